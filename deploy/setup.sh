@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs the Debian packages of deploy/packages.txt that are missing. Safe to run again; as root, or as a user
+# with sudo. Usage: deploy/setup.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+missing=()
+while read -r package; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
+done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' deploy/packages.txt)
+
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "set-up: every package is installed"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "set-up: packages are missing (${missing[*]}); run this as root, or install sudo" >&2
+    exit 2
+  fi
+  as_root=(sudo)
+fi
+echo "set-up: installing ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! { "${as_root[@]}" apt-get update &&
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } \
+     >"$log" 2>&1; then
+  tail -n 20 "$log" >&2
+  echo "set-up: apt-get failed; its last lines are above" >&2
+  exit 1
+fi
+echo "set-up: done"

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace stillhand::topics {
+
+/// How a topic communicates; names its QoS profile in qos/profiles.xml.
+enum class Pattern {
+  kStream1khz,    ///< "stream_1khz": newest sample counts, deadline, lifespan, liveliness
+  kStreamSlow,    ///< "stream_slow": 10 to 60 Hz, newest sample counts, liveliness
+  kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last one
+  kEvent,         ///< "event": reliable, every one counts
+};
+
+constexpr std::string_view profile_of(Pattern pattern) {
+  switch (pattern) {
+    case Pattern::kStream1khz:
+      return "stream_1khz";
+    case Pattern::kStreamSlow:
+      return "stream_slow";
+    case Pattern::kStateLatched:
+      return "state_latched";
+    case Pattern::kEvent:
+      return "event";
+  }
+  return "";
+}
+
+/// Every process of a session.  "recorder" reads every topic and "experiment" is the session's
+/// conductor; neither is repeated in the catalogue rows.
+inline constexpr std::array<std::string_view, 9> kServices{
+    "motion",         "rig",      "sensing",   "cancellation", "display", "human_operator",
+    "identification", "recorder", "experiment"};
+
+/// One row of the catalogue.
+struct Topic {
+  std::string_view name;  ///< DDS topic name
+  std::string_view type;  ///< DDS type name
+  Pattern pattern;
+  double rate_hz;  ///< [Hz] nominal, 0 = when something happens
+  std::span<const std::string_view> writers;
+  std::span<const std::string_view> readers;
+};
+
+namespace who {
+inline constexpr std::string_view kMotion[]{"motion"};
+inline constexpr std::string_view kRig[]{"rig"};
+inline constexpr std::string_view kSensing[]{"sensing"};
+inline constexpr std::string_view kCancellation[]{"cancellation"};
+inline constexpr std::string_view kDisplay[]{"display"};
+inline constexpr std::string_view kOperator[]{"human_operator"};
+inline constexpr std::string_view kIdentification[]{"identification"};
+inline constexpr std::string_view kExperiment[]{"experiment"};
+inline constexpr std::string_view kRecorder[]{"recorder"};
+inline constexpr std::string_view kSensedReaders[]{"motion", "cancellation", "display",
+                                                   "identification", "recorder"};
+inline constexpr std::string_view kRigAndRecorder[]{"rig", "recorder"};
+inline constexpr std::string_view kSensingAndRecorder[]{"sensing", "recorder"};
+inline constexpr std::string_view kOperatorAndRecorder[]{"human_operator", "recorder"};
+inline constexpr std::string_view kTrialReaders[]{"motion",         "rig",     "sensing",
+                                                  "cancellation",   "display", "human_operator",
+                                                  "identification", "recorder"};
+inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};
+inline constexpr std::string_view kModelReaders[]{"cancellation", "experiment", "recorder"};
+inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
+inline constexpr std::string_view kStatusReaders[]{"rig", "cancellation", "display", "recorder",
+                                                   "experiment"};
+}  // namespace who
+
+inline constexpr Topic kPlatformCommand{"stillhand/platform_command",
+                                        "stillhand_msgs::PlatformCommand",
+                                        Pattern::kStream1khz,
+                                        1000.0,
+                                        who::kMotion,
+                                        who::kRigAndRecorder};
+inline constexpr Topic kRawSample{
+    "stillhand/raw_sample",  "stillhand_msgs::RawSample", Pattern::kStream1khz, 1000.0, who::kRig,
+    who::kSensingAndRecorder};
+inline constexpr Topic kRigTruth{
+    "stillhand/rig_truth", "stillhand_msgs::RigTruth", Pattern::kStream1khz, 1000.0, who::kRig,
+    who::kRecorder};
+inline constexpr Topic kSensed{"stillhand/sensed",   "stillhand_msgs::Sensed",
+                               Pattern::kStream1khz, 1000.0,
+                               who::kSensing,        who::kSensedReaders};
+inline constexpr Topic kMotorCommand{"stillhand/motor_command", "stillhand_msgs::MotorCommand",
+                                     Pattern::kStream1khz,      1000.0,
+                                     who::kCancellation,        who::kRigAndRecorder};
+inline constexpr Topic kTrackingSample{"stillhand/tracking_sample",
+                                       "stillhand_msgs::TrackingSample",
+                                       Pattern::kStream1khz,
+                                       1000.0,
+                                       who::kDisplay,
+                                       who::kOperatorAndRecorder};
+inline constexpr Topic kOperatorForce{"stillhand/operator_force",
+                                      "stillhand_msgs::OperatorForce",
+                                      Pattern::kStream1khz,
+                                      1000.0,
+                                      who::kOperator,
+                                      who::kRigAndRecorder};
+inline constexpr Topic kPointer{"stillhand/pointer",  "stillhand_msgs::Pointer",
+                                Pattern::kStreamSlow, 60.0,
+                                who::kDisplay,        who::kOperatorAndRecorder};
+inline constexpr Topic kTrialControl{"stillhand/trial_control", "stillhand_msgs::TrialControl",
+                                     Pattern::kStateLatched,    0.0,
+                                     who::kExperiment,          who::kTrialReaders};
+inline constexpr Topic kTrialAssignment{"stillhand/trial_assignment",
+                                        "stillhand_msgs::TrialAssignment",
+                                        Pattern::kStateLatched,
+                                        0.0,
+                                        who::kExperiment,
+                                        who::kAssignmentReaders};
+inline constexpr Topic kFeedthroughModel{
+    "stillhand/feedthrough_model", "stillhand_msgs::FeedthroughModel",
+    Pattern::kStateLatched,        0.0,
+    who::kIdentification,          who::kModelReaders};
+inline constexpr Topic kEvent{"stillhand/event", "stillhand_msgs::Event", Pattern::kEvent, 0.0,
+                              kServices,         who::kEventReaders};
+inline constexpr Topic kServiceStatus{"stillhand/service_status",
+                                      "stillhand_msgs::ServiceStatus",
+                                      Pattern::kStreamSlow,
+                                      10.0,
+                                      kServices,
+                                      who::kStatusReaders};
+
+/// The whole catalogue; idl/README.md holds the same rows for people (tests/interface compares
+/// them).
+inline constexpr std::array<const Topic*, 13> kCatalogue{
+    &kPlatformCommand,  &kRawSample,     &kRigTruth,     &kSensed,       &kMotorCommand,
+    &kTrackingSample,   &kOperatorForce, &kPointer,      &kTrialControl, &kTrialAssignment,
+    &kFeedthroughModel, &kEvent,         &kServiceStatus};
+
+/// Catalogue row by topic name, or nullptr.
+constexpr const Topic* find(std::string_view name) {
+  for (const Topic* topic : kCatalogue) {
+    if (topic->name == name) return topic;
+  }
+  return nullptr;
+}
+
+}  // namespace stillhand::topics

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "contract/tick.hpp"
+
+namespace stillhand {
+
+/// What a trial is for.
+enum class TrialPhase : std::uint8_t {
+  kIdle = 0,      ///< nothing runs; every force is zero
+  kPegged = 1,    ///< stick held by the peg, idle hand: feedthrough identification (paper III-A)
+  kTracking = 2,  ///< pursuit tracking (paper III-C)
+};
+
+/// One trial on the sample clock.  Measured ticks are [start_tick, start_tick + duration_ticks);
+/// motion and target also run during `ramp_ticks` before and after, growing and fading.
+/// Holds nothing that tells the condition: display and operator stay blinded.
+struct Trial {
+  std::int64_t number = -1;  ///< [-] counted from 0 in a session; -1: none yet
+  TrialPhase phase = TrialPhase::kIdle;
+  Tick start_tick = 0;      ///< first measured tick
+  Tick duration_ticks = 0;  ///< [ticks] measured length
+  Tick ramp_ticks = 0;      ///< [ticks] length of each ramp
+
+  /// True for the measured ticks and both ramps.
+  [[nodiscard]] bool covers(Tick tick) const noexcept {
+    return phase != TrialPhase::kIdle && tick >= start_tick - ramp_ticks &&
+           tick < start_tick + duration_ticks + ramp_ticks;
+  }
+  /// True for the measured ticks alone.
+  [[nodiscard]] bool measures(Tick tick) const noexcept {
+    return phase != TrialPhase::kIdle && tick >= start_tick && tick < start_tick + duration_ticks;
+  }
+};
+
+}  // namespace stillhand

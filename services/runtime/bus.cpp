@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/bus.hpp"
+
+#include <algorithm>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include "contract/config_error.hpp"
+#include "runtime/endpoint.hpp"
+#include "runtime/serialized_type.hpp"
+#include "runtime/type_tag.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::types::ReturnCode_t;
+namespace edds = eprosima::fastdds::dds;
+
+struct Bus::Impl {
+  Impl(const Bus::Options& options) : peers(options.service, options.rig) {}
+  ~Impl() {
+    if (participant == nullptr) return;
+    participant->delete_contained_entities();
+    edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+
+  /// What carries a type on this participant: the type itself, or its bytes.
+  static edds::TypeSupport carrier(const Bus::Options& options, const edds::TypeSupport& real) {
+    return options.serialized ? edds::TypeSupport(new SerializedType(real)) : real;
+  }
+  void open_reader(const Bus::Options& options, const topics::Topic& topic,
+                   const edds::TypeSupport& type, const std::string& profile,
+                   std::shared_ptr<void> sample, detail::Deliver deliver);
+
+  // Readers and writers hand callbacks into `endpoints` until the participant is gone, and the
+  // participant into `peers`: order of members matters.
+  Peers peers;
+  std::atomic<bool> supervising{false};
+  std::vector<std::unique_ptr<detail::Endpoint>> endpoints;
+  std::map<std::string, edds::Topic*> topics;
+  edds::DomainParticipant* participant = nullptr;
+  edds::Publisher* publisher = nullptr;
+  edds::Subscriber* subscriber = nullptr;
+};
+
+namespace {
+
+constexpr std::uint32_t kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
+
+// The factory keeps profiles for the whole process and refuses a file it has already read.
+void load_profiles(const std::filesystem::path& file) {
+  static std::mutex mutex;
+  static std::set<std::string> loaded;
+  const std::lock_guard lock(mutex);
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError("QoS profiles", "no file " + file.string(), "the path of qos/profiles.xml");
+  }
+  const std::string path = std::filesystem::canonical(file).string();
+  if (loaded.count(path) != 0) return;
+  if (edds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(path) !=
+      ReturnCode_t::RETCODE_OK) {
+    throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
+                      "XML as in qos/profiles.xml");
+  }
+  loaded.insert(path);
+}
+
+ConfigError missing_profile(const Bus::Options& options, const char* kind, std::string_view name) {
+  return {options.profiles.string(), "no " + std::string(kind) + " profile",
+          "one named \"" + std::string(name) + "\""};
+}
+
+}  // namespace
+
+Bus::Bus(Options options) : options_(std::move(options)) {
+  if (options_.domain > kMaxDomain) {
+    throw ConfigError("domain", std::to_string(options_.domain), "0 to 232");
+  }
+  edds::Log::SetVerbosity(edds::Log::Kind::Error);
+  load_profiles(options_.profiles);
+  auto* factory = edds::DomainParticipantFactory::get_instance();
+  edds::DomainParticipantQos qos;
+  if (factory->get_participant_qos_from_profile("stillhand_participant", qos) !=
+      ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(options_, "participant", "stillhand_participant");
+  }
+  qos.name(Peers::participant_name(options_.rig, options_.service));
+  impl_ = std::make_unique<Impl>(options_);
+  impl_->participant =
+      factory->create_participant(options_.domain, qos, &impl_->peers, edds::StatusMask::none());
+  if (impl_->participant == nullptr) {
+    throw BusError("Fast DDS opened no participant on domain " + std::to_string(options_.domain) +
+                   ": are its UDP ports free and the addresses in " + options_.profiles.string() +
+                   " those of this machine?");
+  }
+  // Endpoints wait for start(): a callback must not run before its owner is complete.
+  edds::PublisherQos publisher_qos;
+  publisher_qos.entity_factory().autoenable_created_entities = false;
+  impl_->publisher = impl_->participant->create_publisher(publisher_qos);
+  edds::SubscriberQos subscriber_qos;
+  subscriber_qos.entity_factory().autoenable_created_entities = false;
+  impl_->subscriber = impl_->participant->create_subscriber(subscriber_qos);
+  if (impl_->publisher == nullptr || impl_->subscriber == nullptr) {
+    throw BusError("Fast DDS gave no publisher or subscriber");
+  }
+}
+
+Bus::~Bus() = default;
+
+namespace {
+
+edds::Topic* topic_of(edds::DomainParticipant& participant,
+                      std::map<std::string, edds::Topic*>& known, const topics::Topic& row,
+                      const edds::TypeSupport& type) {
+  const std::string name(row.name);
+  if (known.count(name) == 0) {
+    type.register_type(&participant);
+    known[name] = participant.create_topic(name, std::string(row.type), edds::TOPIC_QOS_DEFAULT);
+  }
+  if (known[name] == nullptr) throw BusError("Fast DDS refused the topic " + name);
+  return known[name];
+}
+
+}  // namespace
+
+detail::Endpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& type) {
+  const std::string profile(topics::profile_of(topic.pattern));
+  edds::DataWriterQos qos;
+  if (impl_->publisher->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(options_, "data_writer", profile);
+  }
+  edds::Topic* dds_topic =
+      topic_of(*impl_->participant, impl_->topics, topic, impl_->carrier(options_, type.support));
+  auto endpoint =
+      std::make_unique<detail::WriterEndpoint>(topic, impl_->peers, options_, impl_->supervising);
+  if (options_.serialized) endpoint->serializer = &type;
+  endpoint->writer = impl_->publisher->create_datawriter(dds_topic, qos, endpoint.get());
+  if (endpoint->writer == nullptr) {
+    throw BusError("Fast DDS refused the writer of " + std::string(topic.name));
+  }
+  impl_->endpoints.push_back(std::move(endpoint));
+  return impl_->endpoints.back().get();
+}
+
+void Bus::add_reader(const topics::Topic& topic, const TypeTag& type, std::shared_ptr<void> sample,
+                     detail::Deliver deliver) {
+  if (options_.serialized) {
+    // Bytes come in; the typed callback gets a message made from them.
+    deliver = [real = type.support, message = std::move(sample), call = std::move(deliver)](
+                  const void* bytes, const Arrival& arrival) -> detail::SampleClock {
+      if (!from_bytes(real, *static_cast<const SerializedSample*>(bytes), message.get())) return {};
+      return call(message.get(), arrival);
+    };
+    sample = std::make_shared<SerializedSample>();
+  }
+  impl_->open_reader(options_, topic, impl_->carrier(options_, type.support),
+                     std::string(topics::profile_of(topic.pattern)), std::move(sample),
+                     std::move(deliver));
+}
+
+void Bus::subscribe_serialized(
+    const topics::Topic& topic,
+    std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample) {
+  const TypeTag* real = find_type(topic.type);
+  if (real == nullptr || !options_.serialized) {
+    throw BusError("no bytes of " + std::string(topic.type) + " to be had");
+  }
+  const bool stream = topic.pattern == topics::Pattern::kStream1khz ||
+                      topic.pattern == topics::Pattern::kStreamSlow;
+  impl_->open_reader(options_, topic, impl_->carrier(options_, real->support),
+                     std::string(stream ? "record_stream" : topics::profile_of(topic.pattern)),
+                     std::make_shared<SerializedSample>(),
+                     [call = std::move(on_sample)](const void* sample, const Arrival& arrival) {
+                       return call(*static_cast<const SerializedSample*>(sample), arrival);
+                     });
+}
+
+void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& topic,
+                            const edds::TypeSupport& type, const std::string& profile,
+                            std::shared_ptr<void> sample, detail::Deliver deliver) {
+  edds::DataReaderQos qos;
+  if (subscriber->get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(options, "data_reader", profile);
+  }
+  edds::Topic* dds_topic = topic_of(*participant, topics, topic, type);
+  auto endpoint = std::make_unique<detail::ReaderEndpoint>(topic, peers, options, supervising,
+                                                           std::move(sample), std::move(deliver));
+  endpoint->reader = subscriber->create_datareader(dds_topic, qos, endpoint.get());
+  if (endpoint->reader == nullptr) {
+    throw BusError("Fast DDS refused the reader of " + std::string(topic.name));
+  }
+  endpoints.push_back(std::move(endpoint));
+}
+
+void Bus::start() {
+  for (const auto& endpoint : impl_->endpoints) endpoint->enable();
+}
+
+std::vector<std::string> Bus::missing_peers() const {
+  std::vector<std::string> missing;
+  for (const auto& endpoint : impl_->endpoints) {
+    const topics::Topic& row = endpoint->topic();
+    const std::set<std::string> matched = endpoint->matched_services();
+    for (const std::string_view wanted : endpoint->writes() ? row.readers : row.writers) {
+      if (wanted == options_.service || matched.count(std::string(wanted)) != 0) continue;
+      missing.push_back(std::string(wanted) + " (" + std::string(row.name) + ")");
+    }
+  }
+  return missing;
+}
+
+std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.duplicates(); }
+bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
+std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
+void Bus::supervise(bool on) noexcept { impl_->supervising.store(on, std::memory_order_relaxed); }
+
+std::vector<EndpointReport> Bus::report() const {
+  std::vector<EndpointReport> reports;
+  for (const auto& endpoint : impl_->endpoints) reports.push_back(endpoint->report());
+  return reports;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/peers.hpp"
+
+#include <algorithm>
+
+#include "idl/topics.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::rtps::InstanceHandle_t;
+using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+
+Peers::Peers(std::string self, std::uint32_t rig)
+    : self_(std::move(self)), prefix_(participant_name(rig, "")) {}
+
+std::string Peers::participant_name(std::uint32_t rig, const std::string& service) {
+  return "stillhand/" + std::to_string(rig) + "/" + service;
+}
+
+void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                     ParticipantDiscoveryInfo&& info) {
+  const std::string name = info.info.m_participantName.to_string();
+  const std::lock_guard lock(mutex_);
+  if (info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
+      info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
+    if (name.starts_with(prefix_)) {
+      services_[info.info.m_guid.guidPrefix] = name.substr(prefix_.size());
+    }
+  } else {
+    services_.erase(info.info.m_guid.guidPrefix);
+  }
+}
+
+std::string Peers::service_of(const InstanceHandle_t& endpoint) const {
+  const auto guid = eprosima::fastrtps::rtps::iHandle2GUID(endpoint);
+  const std::lock_guard lock(mutex_);
+  const auto found = services_.find(guid.guidPrefix);
+  return found == services_.end() ? "" : found->second;
+}
+
+bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
+  const std::string service = service_of(writer);
+  const std::lock_guard lock(mutex_);
+  bool changed = false;
+  if (alive && !service.empty()) {
+    changed = alive_writers_.emplace(writer, service).second;
+    ever_alive_.insert(service);
+  } else if (!alive) {
+    changed = alive_writers_.erase(writer) > 0;
+  }
+  refresh();
+  return changed;
+}
+
+void Peers::refresh() {
+  const bool all = std::all_of(
+      topics::kServices.begin(), topics::kServices.end(), [this](std::string_view service) {
+        return service == self_ ||
+               std::any_of(alive_writers_.begin(), alive_writers_.end(),
+                           [&](const auto& writer) { return writer.second == service; });
+      });
+  all_alive_.store(all, std::memory_order_release);
+}
+
+std::vector<std::string> Peers::lost() const {
+  const std::lock_guard lock(mutex_);
+  std::set<std::string> gone = ever_alive_;
+  for (const auto& [writer, service] : alive_writers_) gone.erase(service);
+  return {gone.begin(), gone.end()};
+}
+
+std::vector<std::string> Peers::duplicates() const {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, int> count{{self_, 1}};
+  for (const auto& [prefix, service] : services_) ++count[service];
+  std::vector<std::string> twice;
+  for (const auto& [service, times] : count) {
+    if (times > 1) twice.push_back(service);
+  }
+  return twice;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/reporting.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "runtime/real_time.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+constexpr std::chrono::milliseconds kStatusPeriod{100};
+
+stillhand_msgs::TopicStatus to_idl(const EndpointReport& report) {
+  stillhand_msgs::TopicStatus status;
+  status.topic(std::string(report.topic->name));
+  status.written(report.written);
+  status.matched(report.matched);
+  status.samples(report.samples);
+  status.lost_ticks(report.lost_ticks);
+  status.cycle_misses(report.cycle_misses);
+  status.deadline_misses(report.deadline_misses);
+  status.worst_interval_us(report.worst_interval_us);
+  status.latency_p50_us(report.latency_p50_us);
+  status.latency_p99_us(report.latency_p99_us);
+  status.latency_max_us(report.latency_max_us);
+  return status;
+}
+
+}  // namespace
+
+Reporter::Reporter(Bus& bus, std::function<void(stillhand_msgs::ServiceStatus&)> complete)
+    : bus_(bus),
+      complete_(std::move(complete)),
+      events_(bus.publisher<stillhand_msgs::Event>(topics::kEvent)),
+      statuses_(bus.publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus)) {}
+
+void Reporter::stop() {
+  worker_.request_stop();
+  if (worker_.joinable()) worker_.join();
+}
+
+void Reporter::start() {
+  worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+}
+
+void Reporter::tell(const Note& note) noexcept {
+  if (!queue_.bounded_push(note)) dropped_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Reporter::work(const std::stop_token& stop) {
+  become_ordinary();
+  while (!stop.stop_requested()) {
+    publish_events();
+    publish_status();
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, stop, kStatusPeriod, [] { return false; });
+  }
+  publish_events();
+}
+
+void Reporter::publish_events() {
+  struct Merged {
+    Note note;
+    int count;
+  };
+  std::map<Key, Merged> merged;
+  Note note{};
+  while (queue_.pop(note)) {
+    const auto [place, first] = merged.try_emplace({note.kind, note.topic}, Merged{note, 0});
+    ++place->second.count;
+    place->second.note.by_us = std::max(place->second.note.by_us, note.by_us);
+  }
+  for (const auto& [key, entry] : merged) {
+    stillhand_msgs::Event event;
+    event.kind(key.first);
+    event.tick(entry.note.tick);
+    event.source(bus_.options().service);
+    event.topic(key.second == nullptr ? std::string() : std::string(key.second->name));
+    event.peer(std::string(entry.note.peer));
+    event.by_us(entry.note.by_us);
+    std::string text = entry.note.text;
+    if (entry.count > 1)
+      text += (text.empty() ? "" : ", ") + std::to_string(entry.count) + " times";
+    event.text(text);
+    events_.write(event);
+  }
+  if (const std::uint64_t dropped = dropped_.exchange(0); dropped > 0) {
+    stillhand_msgs::Event event;
+    event.kind(stillhand_msgs::EVENT_NOTE);
+    event.tick(-1);
+    event.source(bus_.options().service);
+    event.text(std::to_string(dropped) + " events dropped, more than 256 in a tenth of a second");
+    events_.write(event);
+  }
+}
+
+void Reporter::publish_status() {
+  stillhand_msgs::ServiceStatus status;
+  status.service(bus_.options().service);
+  status.pid(static_cast<std::uint32_t>(getpid()));
+  std::string missing;
+  for (const std::string& peer : bus_.missing_peers()) {
+    missing += (missing.empty() ? "" : ", ") + peer;
+  }
+  status.state(missing.empty() ? stillhand_msgs::SERVICE_READY : stillhand_msgs::SERVICE_STARTING);
+  constexpr std::size_t kRoom = 199;  // string<200> in idl/session.idl
+  status.missing(missing.substr(0, kRoom));
+  for (const EndpointReport& report : bus_.report()) {
+    if (status.topics().size() < 16) status.topics().push_back(to_idl(report));
+  }
+  complete_(status);
+  statuses_.write(status);
+}
+
+}  // namespace stillhand::runtime

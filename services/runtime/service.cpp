@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/service.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <iostream>
+
+#include "contract/config_error.hpp"
+#include "runtime/real_time.hpp"
+#include "runtime/reporting.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+constexpr int kRealTimePriority = 40;  // below the kernel's threaded interrupts at 50
+
+stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
+  switch (kind) {
+    case BusIncident::Kind::kDeadlineMissed:
+      return stillhand_msgs::EVENT_DEADLINE_MISSED;
+    case BusIncident::Kind::kCycleMissed:
+      return stillhand_msgs::EVENT_CYCLE_MISSED;
+    case BusIncident::Kind::kTicksLost:
+      return stillhand_msgs::EVENT_TICKS_LOST;
+    case BusIncident::Kind::kLivelinessLost:
+      return stillhand_msgs::EVENT_LIVELINESS_LOST;
+    case BusIncident::Kind::kLivelinessRecovered:
+      return stillhand_msgs::EVENT_LIVELINESS_RECOVERED;
+    case BusIncident::Kind::kIncompatibleQos:
+      return stillhand_msgs::EVENT_INCOMPATIBLE_QOS;
+  }
+  return stillhand_msgs::EVENT_NOTE;
+}
+
+Trial from_idl(const stillhand_msgs::TrialControl& message) {
+  Trial trial;
+  trial.number = message.trial();
+  trial.phase = message.phase() == stillhand_msgs::PHASE_PEGGED     ? TrialPhase::kPegged
+                : message.phase() == stillhand_msgs::PHASE_TRACKING ? TrialPhase::kTracking
+                                                                    : TrialPhase::kIdle;
+  trial.start_tick = message.start_tick();
+  trial.duration_ticks = message.duration_ticks();
+  trial.ramp_ticks = message.ramp_ticks();
+  return trial;
+}
+
+}  // namespace
+
+struct Service::Reporting {
+  explicit Reporting(Service& service, Bus& bus)
+      : reporter(bus, [&service](stillhand_msgs::ServiceStatus& status) {
+          status.tick(service.tick_.load(std::memory_order_relaxed));
+          status.armed_trial(
+              static_cast<std::int32_t>(service.armed_.load(std::memory_order_relaxed)));
+          status.real_time(service.options_.real_time);
+          if (status.state() == stillhand_msgs::SERVICE_READY && status.tick() >= 0) {
+            status.state(stillhand_msgs::SERVICE_RUNNING);
+          }
+        }) {}
+  Reporter reporter;
+};
+
+Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(options)), stop_(stop) {
+  Bus::Options bus_options;
+  bus_options.service = options_.service;
+  bus_options.rig = options_.rig;
+  bus_options.domain = options_.domain;
+  bus_options.profiles = options_.profiles;
+  bus_options.serialized = options_.serialized;
+  bus_options.on_incident = [this](const BusIncident& incident) {
+    Note note{event_kind(incident.kind),
+              incident.topic,
+              tick_.load(std::memory_order_relaxed),
+              incident.by_us,
+              {},
+              {}};
+    std::memcpy(note.peer, incident.peer, sizeof(note.peer));
+    std::strncpy(note.text, incident.policy, sizeof(note.text) - 1);
+    reporting_->reporter.tell(note);
+    if (on_incident_) on_incident_(incident);
+  };
+  bus_ = std::make_unique<Bus>(std::move(bus_options));
+  reporting_ = std::make_unique<Reporting>(*this, *bus_);
+  if (options_.service == "experiment") return;  // it writes the topic
+  bus_->subscribe<stillhand_msgs::TrialControl>(
+      topics::kTrialControl, [this](const stillhand_msgs::TrialControl& message, const Arrival&) {
+        bus_->supervise(message.session() == stillhand_msgs::SESSION_RUNNING);
+        trial_ = from_idl(message);
+        if (on_trial_) on_trial_(trial_, message);
+      });
+}
+
+// The reporter's thread uses the bus, and the bus's threads the reporter: the thread goes first,
+// then the bus (no callback after that), then the queue.
+Service::~Service() {
+  reporting_->reporter.stop();
+  bus_.reset();
+}
+
+void Service::on_trial(
+    std::function<void(const Trial&, const stillhand_msgs::TrialControl&)> call) {
+  on_trial_ = std::move(call);
+}
+
+void Service::on_incident(std::function<void(const BusIncident&)> call) {
+  on_incident_ = std::move(call);
+}
+
+void Service::note_event(stillhand_msgs::EventKind kind, const char* text, double by_us) noexcept {
+  Note note{kind, nullptr, tick_.load(std::memory_order_relaxed), by_us, {}, {}};
+  std::strncpy(note.text, text, sizeof(note.text) - 1);
+  reporting_->reporter.tell(note);
+}
+
+void Service::run() {
+  run([this] { stop_.wait(); });
+}
+
+void Service::run(const std::function<void()>& loop) {
+  bus_->start();
+  reporting_->reporter.start();
+  loop();
+}
+
+int run_service(const std::string& name, int argc, char** argv,
+                const std::function<void(Service&)>& body,
+                const std::function<void(CLI::App&, ServiceOptions&)>& more_options) {
+  ServiceOptions options;
+  options.service = name;
+  CLI::App cli("stillhand-" + name + ": one process of a session; `stillhand lab` starts them all");
+  bool with_parent = false;
+  cli.add_option("--domain", options.domain, "DDS domain, 0 to 232");
+  cli.add_option("--rig", options.rig, "number of the rig on the bus");
+  cli.add_option("--seed", options.seed, "seed of everything random in this process");
+  cli.add_option("--profiles", options.profiles, "QoS profiles (qos/profiles.xml)")->required();
+  cli.add_option("--config", options.config, "folder with the settings of each service")
+      ->required();
+  cli.add_option("--out", options.out, "folder or file this process may write");
+  cli.add_flag("--real-time", options.real_time, "ask for SCHED_FIFO");
+  cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
+  if (more_options) more_options(cli, options);
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    if (with_parent) end_with_parent();
+    Stop stop;
+    if (options.real_time) options.real_time = become_real_time(kRealTimePriority);
+    Service service(options, stop);
+    body(service);
+    return 0;
+  } catch (const ConfigError& error) {
+    std::cerr << "stillhand-" << name << ": " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand-" << name << ": " << error.what() << '\n';
+    return 1;
+  }
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+namespace stillhand::runtime {
+
+/// What TypeTag stands for; only the .cpp files of this folder see it.
+struct TypeTag {
+  eprosima::fastdds::dds::TypeSupport support;
+};
+
+/// Type support by DDS type name, for the recorder; nullptr when idl/ does not define it.
+const TypeTag* find_type(std::string_view type_name);
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/handover.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/wait.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+// Counts its own kind, so that a leak or a double free shows without a sanitizer too.
+struct Counted {
+  explicit Counted(int number_in) : number(number_in) { ++alive; }
+  ~Counted() { --alive; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  int number;
+  static inline std::atomic<int> alive{0};
+};
+
+TEST(HandoverTest, GivesNothingBeforeTheFirst) {
+  Handover<Counted> sut;
+  EXPECT_EQ(sut.current(), nullptr);
+}
+
+TEST(HandoverTest, GivesEachPreparedOneInTurnAndFreesAll) {
+  {
+    Handover<Counted> sut;
+    for (int i = 1; i <= 5; ++i) {
+      sut.prepare([i] { return std::make_unique<Counted>(i); });
+      ASSERT_TRUE(support::eventually([&] {
+        const Counted* now = sut.current();
+        return now != nullptr && now->number == i;
+      })) << "number "
+          << i;
+    }
+  }
+  EXPECT_EQ(Counted::alive.load(), 0);
+}
+
+TEST(HandoverTest, KeepsTheOldOneWhenThereIsNoNewOne) {
+  Handover<Counted> sut;
+  sut.prepare([] { return std::make_unique<Counted>(7); });
+  ASSERT_TRUE(support::eventually([&] { return sut.current() != nullptr; }));
+  std::atomic<bool> asked{false};
+  sut.prepare([&]() -> std::unique_ptr<Counted> {
+    asked = true;
+    return nullptr;
+  });
+  ASSERT_TRUE(support::eventually([&] { return asked.load(); }));
+  EXPECT_EQ(sut.current()->number, 7);
+}
+
+}  // namespace
+}  // namespace stillhand::runtime

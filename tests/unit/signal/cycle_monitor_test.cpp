@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signal/cycle_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stillhand::signal {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(CycleMonitorTest, FindsNothingInAPunctualStream) {
+  CycleMonitor sut;
+  for (Tick n = 0; n < 1000; ++n) {
+    const auto verdict = sut.step(n, n * kMs, n * kMs + 90'000);
+    ASSERT_EQ(verdict.lost, 0);
+    ASSERT_EQ(verdict.late_by_us, 0);
+  }
+  EXPECT_EQ(sut.misses(), 0);
+  EXPECT_EQ(sut.worst_interval_us(), 1000);
+}
+
+TEST(CycleMonitorTest, TellsByHowManyMicrosecondsASampleIsLate) {
+  CycleMonitor sut({1000, 500});
+  sut.step(0, 0, 0);
+  // Due at 1000 us, tolerated to 1500 us, arrived at 1749 us.
+  EXPECT_EQ(sut.step(1, kMs, 1'749'000).late_by_us, 249);
+  EXPECT_EQ(sut.misses(), 1);
+}
+
+TEST(CycleMonitorTest, CountsEachLostTick) {
+  CycleMonitor sut;
+  sut.step(10, 0, 0);
+  EXPECT_EQ(sut.step(14, 0, 4 * kMs).lost, 3);
+  EXPECT_EQ(sut.lost(), 3);
+}
+
+TEST(CycleMonitorTest, IgnoresATickThatIsNotNewer) {
+  CycleMonitor sut;
+  sut.step(10, 0, 0);
+  EXPECT_EQ(sut.step(10, 0, kMs).lost, 0);
+  EXPECT_EQ(sut.step(9, 0, kMs).lost, 0);
+  EXPECT_EQ(sut.step(11, 0, 2 * kMs).lost, 0);
+  EXPECT_EQ(sut.lost(), 0);
+}
+
+TEST(CycleMonitorTest, LatencyPercentilesAreWithinABinOfTheTruth) {
+  CycleMonitor sut;
+  // Latencies 1 .. 10000 us, once each: the p share is p * 10000 us; bins are at most 12.5 % wide.
+  for (Tick n = 0; n < 10'000; ++n) sut.step(n, n * kMs, n * kMs + (n + 1) * 1000);
+  for (const double share : {0.1, 0.5, 0.9, 0.99}) {
+    const auto truth = share * 10'000.0;
+    EXPECT_GE(static_cast<double>(sut.latency_us(share)), truth * 0.999) << share;
+    EXPECT_LE(static_cast<double>(sut.latency_us(share)), truth * 1.126) << share;
+  }
+  EXPECT_EQ(sut.max_latency_us(), 10'000);
+}
+
+TEST(CycleMonitorTest, TakesAnyLatencyWithoutLeavingItsBins) {
+  CycleMonitor sut;
+  sut.step(0, 0, -5 * kMs);  // clocks of two hosts
+  sut.step(1, 0, INT64_MAX / 2);
+  EXPECT_EQ(sut.samples(), 2);
+  EXPECT_GE(sut.latency_us(0.99), 0);
+}
+
+}  // namespace
+}  // namespace stillhand::signal
