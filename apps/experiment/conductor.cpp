@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/conductor.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "runtime/clock.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+// From the announcement to the first tick of the ramp: time to compute a trial's motion and target.
+constexpr double kLead_s = 1.0;
+constexpr double kArmLimit_s = 10.0;
+constexpr std::chrono::milliseconds kPollPeriod{50};
+// Prepared before a trial may begin; the others only follow samples.
+constexpr std::string_view kArmed[]{"motion", "rig", "cancellation", "display", "human_operator"};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+const char* name_of(stillhand_msgs::EventKind kind) {
+  switch (kind) {
+    case stillhand_msgs::EVENT_DEADLINE_MISSED:
+      return "deadline missed";
+    case stillhand_msgs::EVENT_CYCLE_MISSED:
+      return "cycle missed";
+    case stillhand_msgs::EVENT_TICKS_LOST:
+      return "ticks lost";
+    case stillhand_msgs::EVENT_LIVELINESS_LOST:
+      return "liveliness lost";
+    case stillhand_msgs::EVENT_LIVELINESS_RECOVERED:
+      return "liveliness recovered";
+    case stillhand_msgs::EVENT_INTERLOCK_OPENED:
+      return "interlock opened";
+    case stillhand_msgs::EVENT_MODEL_REFUSED:
+      return "model refused";
+    case stillhand_msgs::EVENT_MODEL_LOADED:
+      return "model loaded";
+    case stillhand_msgs::EVENT_INCOMPATIBLE_QOS:
+      return "incompatible QoS";
+    case stillhand_msgs::EVENT_NOTE:
+      return "note";
+  }
+  return "event";
+}
+
+std::string line_of(const stillhand_msgs::Event& event) {
+  std::string line = std::string(event.source().c_str()) + ": " + name_of(event.kind());
+  if (event.topic().size() > 0) line += std::string(" on ") + event.topic().c_str();
+  if (event.peer().size() > 0) line += std::string(" of ") + event.peer().c_str();
+  if (event.by_us() > 0.0) {
+    const bool ticks = event.kind() == stillhand_msgs::EVENT_TICKS_LOST;
+    line += ", worst " + std::to_string(static_cast<std::int64_t>(event.by_us())) +
+            (ticks ? " ticks" : " us");
+  }
+  if (event.text().size() > 0) line += std::string(" (") + event.text().c_str() + ")";
+  return line;
+}
+
+stillhand_msgs::MotionKind to_idl(const PlannedTrial& planned) {
+  if (!planned.moving) return stillhand_msgs::MOTION_STILL;
+  switch (planned.motion) {
+    case Motion::kBandNoise:
+      return stillhand_msgs::MOTION_BAND_NOISE;
+    case Motion::kRoad:
+      return stillhand_msgs::MOTION_ROAD;
+    case Motion::kRide:
+      return stillhand_msgs::MOTION_RIDE;
+  }
+  return stillhand_msgs::MOTION_STILL;
+}
+
+}  // namespace
+
+Conductor::Conductor(runtime::Service& service, Watch watch, Progress progress)
+    : service_(service),
+      watch_(std::move(watch)),
+      progress_(std::move(progress)),
+      control_(service.bus().publisher<stillhand_msgs::TrialControl>(topics::kTrialControl)),
+      assignment_(
+          service.bus().publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment)) {
+  const auto stored = [this](auto store) {
+    {
+      const std::lock_guard lock(mutex_);
+      store();
+    }
+    news_.notify_all();
+  };
+  service.bus().subscribe<stillhand_msgs::ServiceStatus>(
+      topics::kServiceStatus, [this, stored](const auto& status, const auto&) {
+        stored([&] { seen_.statuses[status.service().c_str()] = status; });
+      });
+  service.bus().subscribe<stillhand_msgs::Event>(topics::kEvent,
+                                                 [this, stored](const auto& event, const auto&) {
+                                                   stored([&] { seen_.events.push_back(event); });
+                                                 });
+  service.bus().subscribe<stillhand_msgs::FeedthroughModel>(
+      topics::kFeedthroughModel,
+      [this, stored](const auto& model, const auto&) { stored([&] { seen_.model = model; }); });
+}
+
+bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done) {
+  const std::int64_t limit_ns = runtime::monotonic_ns() + static_cast<std::int64_t>(limit_s * 1e9);
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (done(seen_)) return true;
+      news_.wait_for(lock, kPollPeriod);
+      if (done(seen_)) return true;
+    }
+    trouble_ = watch_();
+    if (!trouble_.empty() || interrupted()) return false;
+    if (runtime::monotonic_ns() > limit_ns) return false;
+  }
+}
+
+std::vector<std::string> Conductor::absent(const Seen& seen) const {
+  std::vector<std::string> absent;
+  for (const std::string_view service : topics::kServices) {
+    if (service == "experiment") continue;
+    const auto status = seen.statuses.find(std::string(service));
+    if (status == seen.statuses.end()) {
+      absent.push_back(std::string(service) + " did not come");
+    } else if (status->second.state() == stillhand_msgs::SERVICE_STARTING) {
+      absent.push_back(std::string(service) + " waits for " + status->second.missing().c_str());
+    }
+  }
+  return absent;
+}
+
+void Conductor::await_everybody(double limit_s) {
+  const bool complete = wait_for(limit_s, [this](Seen& seen) {
+    const auto missing = absent(seen);
+    const auto total = static_cast<double>(topics::kServices.size() - 1);
+    progress_("matching endpoints", 1.0 - static_cast<double>(missing.size()) / total);
+    return missing.empty() && service_.bus().missing_peers().empty();
+  });
+  const auto twice = service_.bus().duplicate_peers();
+  if (!twice.empty()) {
+    throw std::runtime_error("on domain " + std::to_string(service_.options().domain) + " rig " +
+                             std::to_string(service_.options().rig) + " there is more than one " +
+                             joined(twice) +
+                             ": another lab runs; choose another --domain or --rig");
+  }
+  if (complete) return;
+  if (!trouble_.empty()) throw std::runtime_error(trouble_);
+  if (interrupted()) return;
+  const std::lock_guard lock(mutex_);
+  auto missing = absent(seen_);
+  for (const std::string& peer : service_.bus().missing_peers()) {
+    missing.push_back("experiment waits for " + peer);
+  }
+  throw std::runtime_error("not everybody matched within " +
+                           std::to_string(static_cast<int>(limit_s)) + " s: " + joined(missing));
+}
+
+void Conductor::announce(const PlannedTrial* planned, stillhand_msgs::SessionState session) {
+  stillhand_msgs::TrialControl message;
+  message.session(session);
+  message.trial(-1);
+  message.phase(stillhand_msgs::PHASE_IDLE);
+  if (planned != nullptr) {
+    message.trial(static_cast<std::int32_t>(planned->trial.number));
+    message.phase(planned->trial.phase == TrialPhase::kPegged ? stillhand_msgs::PHASE_PEGGED
+                                                              : stillhand_msgs::PHASE_TRACKING);
+    message.start_tick(planned->trial.start_tick);
+    message.duration_ticks(planned->trial.duration_ticks);
+    message.ramp_ticks(planned->trial.ramp_ticks);
+    message.reference_seed(planned->reference_seed);
+  }
+  service_.bus().supervise(session == stillhand_msgs::SESSION_RUNNING);
+  control_.write(message);
+}
+
+void Conductor::assign(const PlannedTrial& planned) {
+  stillhand_msgs::TrialAssignment message;
+  message.trial(static_cast<std::int32_t>(planned.trial.number));
+  message.motion(to_idl(planned));
+  message.band_low_hz(planned.band_low_hz);
+  message.band_high_hz(planned.band_high_hz);
+  message.rms_m_s2(planned.rms_m_s2);
+  message.peak_m_s2(planned.peak_m_s2);
+  message.motion_seed(planned.motion_seed);
+  message.cancellation(planned.cancellation);
+  assignment_.write(message);
+}
+
+Tick Conductor::newest_tick() {
+  const std::lock_guard lock(mutex_);
+  const auto rig = seen_.statuses.find("rig");
+  return rig == seen_.statuses.end() ? -1 : rig->second.tick();
+}
+
+void Conductor::begin_session() {
+  announce(nullptr, stillhand_msgs::SESSION_RUNNING);
+  const bool ticking = wait_for(5.0, [](Seen& seen) {
+    return std::all_of(seen.statuses.begin(), seen.statuses.end(), [](const auto& entry) {
+      return entry.first == "experiment" || entry.first == "human_operator" ||
+             entry.first == "identification" || entry.second.tick() >= 0;
+    });
+  });
+  if (!ticking && !interrupted()) {
+    throw std::runtime_error(trouble_.empty() ? "the sample clock did not start within 5 s"
+                                              : trouble_);
+  }
+}
+
+bool Conductor::await_armed(const PlannedTrial& planned, TrialOutcome& outcome) {
+  const auto number = planned.trial.number;
+  const bool armed = wait_for(kArmLimit_s, [&](Seen& seen) {
+    return std::all_of(std::begin(kArmed), std::end(kArmed), [&](std::string_view service) {
+      return seen.statuses[std::string(service)].armed_trial() == number;
+    });
+  });
+  if (armed) return true;
+  outcome.aborted = !trouble_.empty() ? trouble_ : interrupted() ? "interrupted" : "";
+  if (outcome.aborted.empty()) {
+    const std::lock_guard lock(mutex_);
+    for (const std::string_view service : kArmed) {
+      if (seen_.statuses[std::string(service)].armed_trial() != number) {
+        outcome.aborted += std::string(service) + " was not prepared within 10 s; ";
+      }
+    }
+  }
+  return false;
+}
+
+TrialOutcome Conductor::run(PlannedTrial planned) {
+  TrialOutcome outcome;
+  {
+    const std::lock_guard lock(mutex_);
+    seen_.events.clear();
+  }
+  planned.trial.start_tick = newest_tick() + ticks_in(kLead_s) + planned.trial.ramp_ticks;
+  assign(planned);
+  announce(&planned, stillhand_msgs::SESSION_RUNNING);
+  outcome.planned = planned;
+  const Trial& trial = planned.trial;
+  if (await_armed(planned, outcome)) {
+    const Tick end = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
+    const double limit_s = 2.0 * static_cast<double>(end - newest_tick()) * kControlPeriod_s + 10.0;
+    outcome.completed = wait_for(limit_s, [&](Seen& seen) {
+      const Tick now = seen.statuses["rig"].tick();
+      progress_(trial.phase == TrialPhase::kPegged
+                    ? "identification, stick pegged"
+                    : "trial " + std::to_string(trial.number) + ", tracking",
+                std::clamp(static_cast<double>(now - trial.start_tick) /
+                               static_cast<double>(trial.duration_ticks),
+                           0.0, 1.0));
+      const bool broken = std::any_of(
+          seen.events.begin(), seen.events.end(), [](const stillhand_msgs::Event& event) {
+            return event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED;
+          });
+      return now >= end || broken;
+    });
+    if (!outcome.completed) {
+      outcome.aborted = !trouble_.empty() ? trouble_
+                        : interrupted()   ? "interrupted"
+                                          : "no end seen";
+    }
+  }
+  collect_marks(outcome);
+  return outcome;
+}
+
+void Conductor::collect_marks(TrialOutcome& outcome) {
+  const std::lock_guard lock(mutex_);
+  for (const stillhand_msgs::Event& event : seen_.events) {
+    outcome.marks.push_back({event.tick(), line_of(event)});
+    if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
+      outcome.completed = false;
+      if (outcome.aborted.empty()) outcome.aborted = line_of(event);
+    }
+  }
+  for (const auto& [service, status] : seen_.statuses) {
+    for (const stillhand_msgs::TopicStatus& topic : status.topics()) {
+      if (topic.written()) continue;
+      outcome.deadline_misses += static_cast<std::int64_t>(topic.deadline_misses());
+      outcome.cycle_misses += static_cast<std::int64_t>(topic.cycle_misses());
+      outcome.lost_ticks += static_cast<std::int64_t>(topic.lost_ticks());
+    }
+  }
+}
+
+stillhand_msgs::FeedthroughModel Conductor::await_model(std::int64_t trial, double limit_s) {
+  stillhand_msgs::FeedthroughModel model;
+  const bool came = wait_for(limit_s, [&](Seen& seen) {
+    if (!seen.model || seen.model->trial() != trial) return false;
+    model = *seen.model;
+    return true;
+  });
+  if (!came) {
+    throw std::runtime_error(!trouble_.empty() ? trouble_
+                             : interrupted()   ? "interrupted"
+                                               : "identification gave no model in time");
+  }
+  return model;
+}
+
+void Conductor::end_session() { announce(nullptr, stillhand_msgs::SESSION_ENDING); }
+
+}  // namespace stillhand::experiment

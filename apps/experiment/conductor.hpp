@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/protocol.hpp"
+#include "idl/model.h"
+#include "idl/session.h"
+#include "runtime/service.hpp"
+
+namespace stillhand::experiment {
+
+/// One line worth keeping about a trial.
+struct Mark {
+  std::int64_t tick;
+  std::string text;
+};
+
+/// How a trial went.
+struct TrialOutcome {
+  PlannedTrial planned;
+  bool completed = false;
+  std::string aborted;               ///< why not, or empty
+  std::vector<Mark> marks;           ///< events during the trial, oldest first
+  std::int64_t deadline_misses = 0;  ///< DDS's count, all readers
+  std::int64_t cycle_misses = 0;     ///< own microsecond supervision, all readers
+  std::int64_t lost_ticks = 0;
+};
+
+/// The "experiment" role on the bus: announces trials, follows everybody's status and events.  Used
+/// from one thread; bus callbacks only store what came.
+class Conductor {
+ public:
+  /// Looks for trouble that the bus does not tell, such as a process that ended; returns what, or
+  /// "".
+  using Watch = std::function<std::string()>;
+  /// Called about ten times a second while something runs; done in [0, 1].
+  using Progress = std::function<void(const std::string& what, double done)>;
+
+  Conductor(runtime::Service& service, Watch watch, Progress progress);
+
+  /// Returns once every endpoint of the catalogue has matched.
+  /// @throws std::runtime_error naming who did not come within `limit_s` [s].
+  void await_everybody(double limit_s);
+  /// The sample clock starts.
+  void begin_session();
+  /// Runs one trial to its end, or until something breaks it.
+  TrialOutcome run(PlannedTrial planned);
+  /// The model identified from a trial.  @throws std::runtime_error when none comes in time.
+  stillhand_msgs::FeedthroughModel await_model(std::int64_t trial, double limit_s);
+  /// Misses no longer count; processes may leave.
+  void end_session();
+  /// True once the user asked to stop.
+  [[nodiscard]] bool interrupted() const noexcept { return service_.stop().requested(); }
+
+ private:
+  struct Seen {
+    std::map<std::string, stillhand_msgs::ServiceStatus> statuses;
+    std::vector<stillhand_msgs::Event> events;
+    std::optional<stillhand_msgs::FeedthroughModel> model;
+  };
+
+  /// Waits until `done(seen)` holds.  @return false after `limit_s`, on trouble or on a stop.
+  bool wait_for(double limit_s, const std::function<bool(Seen&)>& done);
+  void announce(const PlannedTrial* planned, stillhand_msgs::SessionState session);
+  void assign(const PlannedTrial& planned);
+  [[nodiscard]] Tick newest_tick();
+  [[nodiscard]] std::vector<std::string> absent(const Seen& seen) const;
+  bool await_armed(const PlannedTrial& planned, TrialOutcome& outcome);
+  void collect_marks(TrialOutcome& outcome);
+
+  runtime::Service& service_;
+  Watch watch_;
+  Progress progress_;
+  runtime::Publisher<stillhand_msgs::TrialControl> control_;
+  runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
+  std::mutex mutex_;
+  std::condition_variable news_;
+  Seen seen_;
+  std::string trouble_;
+};
+
+}  // namespace stillhand::experiment

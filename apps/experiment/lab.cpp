@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/lab.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <iostream>
+
+#include "contract/config_error.hpp"
+#include "experiment/conductor.hpp"
+#include "experiment/processes.hpp"
+#include "experiment/progress.hpp"
+#include "experiment/results.hpp"
+#include "idl/topics.hpp"
+#include "runtime/real_time.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr double kEndPatience_s = 5.0;
+constexpr double kModelLimit_s = 60.0;
+
+/// One lab a domain and rig on this machine, held by an abstract socket name: nothing stays behind
+/// however the process ends.
+class DomainLock {
+ public:
+  DomainLock(std::uint32_t domain, std::uint32_t rig)
+      : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    const std::string name = "stillhand-lab-" + std::to_string(domain) + "-" + std::to_string(rig);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    name.copy(address.sun_path + 1, sizeof(address.sun_path) - 2);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+      close(socket_);
+      throw ConfigError("--domain", std::to_string(domain) + ", where another lab runs",
+                        "a free DDS domain, or another --rig");
+    }
+  }
+  ~DomainLock() { close(socket_); }
+  DomainLock(const DomainLock&) = delete;
+  DomainLock& operator=(const DomainLock&) = delete;
+
+ private:
+  int socket_;
+};
+
+/// The output folder: made if need be, proved writable, and cleared of what a run left half done.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::filesystem::path& path) : path_(path) {
+    std::error_code error;
+    made_ = std::filesystem::create_directories(path, error);
+    if (error || !std::filesystem::is_directory(path)) {
+      throw ConfigError("--out", path.string() + (error ? ": " + error.message() : ""),
+                        "a folder that can be made and written");
+    }
+    const std::filesystem::path probe = path / ".stillhand-probe";
+    std::ofstream file(probe);
+    if (!file) {
+      if (made_) std::filesystem::remove(path, error);
+      throw ConfigError("--out", path.string() + ", which cannot be written",
+                        "a folder with write permission");
+    }
+    file.close();
+    std::filesystem::remove(probe, error);
+    clear();
+    std::filesystem::create_directories(path / "logs");
+  }
+  /// Takes away what this program writes, and the folder if it made it.
+  void discard() const {
+    clear();
+    std::error_code error;
+    if (made_) std::filesystem::remove(path_, error);
+  }
+
+ private:
+  void clear() const {
+    std::error_code error;
+    for (const char* name : {"session.mcap", "summary.json", "model.json", "screen.avi"}) {
+      std::filesystem::remove(path_ / name, error);
+    }
+    std::filesystem::remove_all(path_ / "logs", error);
+  }
+
+  std::filesystem::path path_;
+  bool made_ = false;
+};
+
+std::vector<Launch> launches(const LabOptions& options) {
+  std::vector<Launch> list;
+  // The recorder first: it is there when the others begin.
+  for (const std::string_view service : {"recorder", "rig", "sensing", "motion", "cancellation",
+                                         "display", "human_operator", "identification"}) {
+    Launch launch;
+    launch.name = service;
+    launch.executable = options.programs / ("stillhand-" + launch.name);
+    launch.log = options.out / "logs" / (launch.name + ".log");
+    launch.arguments = {"--domain",
+                        std::to_string(options.domain),
+                        "--rig",
+                        std::to_string(options.rig),
+                        "--seed",
+                        std::to_string(options.protocol.seed),
+                        "--profiles",
+                        options.profiles.string(),
+                        "--config",
+                        options.config.string(),
+                        "--end-with-parent"};
+    const auto add = [&](std::initializer_list<std::string> words) {
+      launch.arguments.insert(launch.arguments.end(), words);
+    };
+    if (options.real_time && service != "recorder") add({"--real-time"});
+    if (service == "recorder") add({"--out", (options.out / "session.mcap").string()});
+    if (service == "motion" && !options.ride.empty()) add({"--ride", options.ride.string()});
+    if (service == "display" && options.headless) add({"--headless"});
+    if (service == "display" && options.video) {
+      add({"--video", (options.out / "screen.avi").string()});
+    }
+    if (options.who == Operator::kMouse && (service == "display" || service == "human_operator")) {
+      add({"--pointer"});
+    }
+    list.push_back(std::move(launch));
+  }
+  return list;
+}
+
+std::string describe(const Ended& ended) {
+  std::string text = ended.name + " (pid " + std::to_string(ended.pid) + ") ended: " + ended.how;
+  if (!ended.said.empty()) text += "; it said: " + ended.said;
+  return text;
+}
+
+/// The session proper, once every process runs.
+class Session {
+ public:
+  Session(const LabOptions& options, runtime::Service& service, Processes& processes)
+      : options_(options),
+        conductor_(
+            service,
+            [&processes] {
+              const auto ended = processes.reap();
+              return ended ? describe(*ended) : std::string();
+            },
+            [this](const std::string& what, double done) { progress_.show(what, done); }) {}
+
+  std::vector<TrialOutcome> run() {
+    std::vector<TrialOutcome> outcomes;
+    conductor_.await_everybody(options_.match_s);
+    if (conductor_.interrupted()) return outcomes;
+    conductor_.begin_session();
+    for (const PlannedTrial& planned : plan(options_.protocol)) {
+      if (conductor_.interrupted()) break;
+      outcomes.push_back(conductor_.run(planned));
+      if (!outcomes.back().completed) break;
+      if (planned.trial.phase == TrialPhase::kPegged) {
+        model_ = conductor_.await_model(planned.trial.number, kModelLimit_s);
+        if (!model_->usable()) {
+          progress_.finish();
+          std::cerr << "identification: " << model_->text().c_str() << '\n';
+        }
+      }
+    }
+    progress_.finish();
+    return outcomes;
+  }
+  void end() { conductor_.end_session(); }
+  [[nodiscard]] bool interrupted() const { return conductor_.interrupted(); }
+  [[nodiscard]] bool matched() const { return matched_; }
+
+ private:
+  const LabOptions& options_;
+  ProgressLine progress_;
+  Conductor conductor_;
+  std::optional<stillhand_msgs::FeedthroughModel> model_;
+  bool matched_ = false;
+};
+
+}  // namespace
+
+int run_lab(const LabOptions& options, runtime::Stop& stop) {
+  const std::vector<PlannedTrial> planned = plan(options.protocol);  // checks the durations
+  const DomainLock lock(options.domain, options.rig);
+  const OutputFolder folder(options.out);
+
+  std::vector<TrialOutcome> outcomes;
+  bool interrupted = false;
+  try {
+    runtime::ServiceOptions service_options;
+    service_options.service = "experiment";
+    service_options.domain = options.domain;
+    service_options.rig = options.rig;
+    service_options.seed = options.protocol.seed;
+    service_options.profiles = options.profiles;
+    service_options.config = options.config;
+    runtime::Service service(service_options, stop);
+    Processes processes;
+    Session session(options, service, processes);
+    for (const Launch& launch : launches(options)) processes.start(launch);
+    service.run([&] {
+      outcomes = session.run();
+      session.end();
+      interrupted = session.interrupted();
+      processes.end_all("recorder", kEndPatience_s);
+    });
+  } catch (...) {
+    if (outcomes.empty()) folder.discard();
+    throw;
+  }
+  if (outcomes.empty() && interrupted) {
+    folder.discard();
+    std::cerr << "stillhand lab: interrupted before the first trial\n";
+    return 1;
+  }
+  return report_session(options, outcomes, interrupted);
+}
+
+}  // namespace stillhand::experiment

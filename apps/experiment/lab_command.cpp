@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/lab_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+
+#include "experiment/lab.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+// Where this program and the files it needs are: build tree, or an installed prefix.
+struct Places {
+  std::filesystem::path programs;
+  std::filesystem::path profiles;
+  std::filesystem::path config;
+};
+
+Places find_places() {
+  const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  for (const std::filesystem::path& root :
+       {programs.parent_path() / "share" / "stillhand", std::filesystem::path(STILLHAND_SOURCE)}) {
+    if (std::filesystem::exists(root / "qos" / "profiles.xml")) {
+      return {programs, root / "qos" / "profiles.xml", root / "deploy" / "config"};
+    }
+  }
+  return {programs, "qos/profiles.xml", "deploy/config"};
+}
+
+}  // namespace
+
+void add_lab_command(CLI::App& cli, int& status) {
+  auto options = std::make_shared<LabOptions>();
+  auto conditions = std::make_shared<std::string>("A,B,C");
+  const Places places = find_places();
+  options->programs = places.programs;
+  options->profiles = places.profiles;
+  options->config = places.config;
+
+  CLI::App* lab = cli.add_subcommand(
+      "lab",
+      "A whole session on this machine: every process over DDS, identification with the stick "
+      "pegged,\n"
+      "then one tracking trial a condition in blinded, shuffled order, recorded and evaluated.\n"
+      "Example: stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out "
+      "run1");
+  lab->add_option("--conditions", *conditions,
+                  "A stationary, B moving, C moving with cancellation; comma-separated")
+      ->capture_default_str();
+  lab->add_option("--trial-seconds", options->protocol.trial_s, "length of a tracking trial [s]")
+      ->capture_default_str();
+  lab->add_option("--identify-seconds", options->protocol.identify_s,
+                  "length of the pegged trial [s]; the paper's is 120")
+      ->capture_default_str();
+  lab->add_option("--seed", options->protocol.seed, "seed of everything random")
+      ->capture_default_str();
+  lab->add_option("--out", options->out, "folder of recording, results and logs")->required();
+  lab->add_flag("--headless", options->headless, "no window");
+  lab->add_flag("--video", options->video, "write the tracking screen to DIR/screen.avi");
+  lab->add_option("--operator", options->who, "who tracks: simulated, or a person with the mouse")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Operator>{
+          {"simulated", Operator::kSimulated}, {"mouse", Operator::kMouse}}))
+      ->default_str("simulated");
+  lab->add_option("--motion", options->protocol.motion,
+                  "platform motion in B and C: noise (the paper's), road (ISO 8608), ride")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Motion>{
+          {"noise", Motion::kBandNoise}, {"road", Motion::kRoad}, {"ride", Motion::kRide}}))
+      ->default_str("noise");
+  lab->add_option("--ride", options->ride, "recorded ride for --motion ride: CSV with a_y [m/s^2]");
+  lab->add_option("--domain", options->domain, "DDS domain, 0 to 232")->capture_default_str();
+  lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
+  lab->add_option("--match-seconds", options->match_s,
+                  "patience until every endpoint has matched [s]")
+      ->capture_default_str();
+  lab->add_option("--profiles", options->profiles, "QoS profiles")->capture_default_str();
+  lab->add_option("--config", options->config, "folder with the settings of each service")
+      ->capture_default_str();
+  lab->add_flag("!--no-real-time", options->real_time, "do not ask for SCHED_FIFO");
+  lab->callback([options, conditions, &status] {
+    options->protocol.conditions = parse_conditions(*conditions);
+    runtime::Stop stop;
+    status = run_lab(*options, stop);
+  });
+}
+
+}  // namespace stillhand::experiment

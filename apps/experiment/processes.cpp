@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/processes.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "contract/config_error.hpp"
+#include "runtime/clock.hpp"
+
+extern char** environ;
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr std::int64_t kPollPeriod_ns = 5'000'000;
+
+std::string last_line(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  std::string line;
+  std::string last;
+  while (std::getline(file, line)) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+class SpawnSettings {
+ public:
+  explicit SpawnSettings(const std::filesystem::path& log) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    posix_spawnattr_init(&attributes_);
+    // The lab blocks the signals it waits for; its children start with none blocked.
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes_, &none);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+  }
+  ~SpawnSettings() {
+    posix_spawn_file_actions_destroy(&actions_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+
+  posix_spawn_file_actions_t actions_;
+  posix_spawnattr_t attributes_;
+};
+
+}  // namespace
+
+Processes::~Processes() {
+  for (const Child& child : children_) {
+    kill(child.pid, SIGKILL);
+    waitpid(child.pid, nullptr, 0);
+  }
+}
+
+void Processes::start(const Launch& launch) {
+  if (access(launch.executable.c_str(), X_OK) != 0) {
+    throw ConfigError("executable of " + launch.name, "no program " + launch.executable.string(),
+                      "a complete build: every stillhand-* beside stillhand");
+  }
+  std::vector<std::string> words{launch.executable.string()};
+  words.insert(words.end(), launch.arguments.begin(), launch.arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const SpawnSettings settings(launch.log);
+  pid_t pid = 0;
+  const int error = posix_spawn(&pid, launch.executable.c_str(), &settings.actions_,
+                                &settings.attributes_, argv.data(), environ);
+  if (error != 0) {
+    throw std::system_error(error, std::generic_category(), "cannot start " + launch.name);
+  }
+  children_.push_back({launch, pid});
+}
+
+Ended Processes::ended(const Child& child, int wait_status) const {
+  Ended ended{child.launch.name, child.pid, "", -1, last_line(child.launch.log)};
+  if (WIFSIGNALED(wait_status)) {
+    const int signal = WTERMSIG(wait_status);
+    ended.how = "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+  } else {
+    ended.exit_status = WEXITSTATUS(wait_status);
+    ended.how = "exit status " + std::to_string(ended.exit_status);
+  }
+  return ended;
+}
+
+std::optional<Ended> Processes::reap() {
+  for (auto child = children_.begin(); child != children_.end(); ++child) {
+    int status = 0;
+    if (waitpid(child->pid, &status, WNOHANG) == child->pid) {
+      const Ended result = ended(*child, status);
+      children_.erase(child);
+      return result;
+    }
+  }
+  return std::nullopt;
+}
+
+void Processes::signal_and_wait(const std::vector<std::string>& names, double patience_s) {
+  const auto named = [&](const Child& child) {
+    return std::find(names.begin(), names.end(), child.launch.name) != names.end();
+  };
+  for (const Child& child : children_) {
+    if (named(child)) kill(child.pid, SIGTERM);
+  }
+  const std::int64_t limit_ns =
+      runtime::monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+  bool killed = false;
+  while (std::any_of(children_.begin(), children_.end(), named)) {
+    std::erase_if(children_, [&](const Child& child) {
+      return named(child) && waitpid(child.pid, nullptr, WNOHANG) == child.pid;
+    });
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (now_ns > limit_ns && !killed) {
+      killed = true;
+      for (const Child& child : children_) {
+        if (named(child)) kill(child.pid, SIGKILL);
+      }
+    }
+    runtime::sleep_until_ns(now_ns + kPollPeriod_ns);
+  }
+}
+
+void Processes::end(const std::string& name, double patience_s) {
+  signal_and_wait({name}, patience_s);
+}
+
+void Processes::end_all(const std::string& last, double patience_s) {
+  std::vector<std::string> others;
+  for (const Child& child : children_) {
+    if (child.launch.name != last) others.push_back(child.launch.name);
+  }
+  signal_and_wait(others, patience_s);
+  end(last, patience_s);
+}
+
+std::vector<std::pair<std::string, pid_t>> Processes::running() const {
+  std::vector<std::pair<std::string, pid_t>> list;
+  for (const Child& child : children_) list.emplace_back(child.launch.name, child.pid);
+  return list;
+}
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stillhand::experiment {
+
+/// One process to start.
+struct Launch {
+  std::string name;  ///< service
+  std::filesystem::path executable;
+  std::vector<std::string> arguments;  ///< without the program's name
+  std::filesystem::path log;           ///< standard output and error go here
+};
+
+/// How a process ended.
+struct Ended {
+  std::string name;
+  pid_t pid;
+  std::string how;   ///< "exit status 2", "signal 9 (Killed)"
+  int exit_status;   ///< -1 after a signal
+  std::string said;  ///< last line of its log
+};
+
+/// The processes of a session: each in a process group of its own (Ctrl-C reaches the lab alone),
+/// told to end when the lab does.  One thread.
+class Processes {
+ public:
+  Processes() = default;
+  /// Ends whatever still runs.
+  ~Processes();
+  Processes(const Processes&) = delete;
+  Processes& operator=(const Processes&) = delete;
+
+  /// @throws ConfigError when the executable is missing; std::system_error when it cannot start.
+  void start(const Launch& launch);
+  /// One that ended since the last call, or nothing; does not wait.
+  std::optional<Ended> reap();
+  /// Asks one to end and waits; kills it after `patience_s` [s].
+  void end(const std::string& name, double patience_s);
+  /// Asks all but `last` to end, waits, then ends `last`: the recorder sees the others out.
+  void end_all(const std::string& last, double patience_s);
+  [[nodiscard]] std::vector<std::pair<std::string, pid_t>> running() const;
+
+ private:
+  struct Child {
+    Launch launch;
+    pid_t pid;
+  };
+  void signal_and_wait(const std::vector<std::string>& names, double patience_s);
+  Ended ended(const Child& child, int wait_status) const;
+
+  std::vector<Child> children_;
+};
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "contract/trial.hpp"
+
+namespace stillhand::experiment {
+
+/// A condition of the paper, section III-C.
+enum class Condition : char {
+  kStationary = 'A',       ///< platform still, motor off
+  kMoving = 'B',           ///< platform moves, motor off
+  kMovingCancelled = 'C',  ///< platform moves, motor cancels
+};
+
+/// Kind of platform motion during B and C.
+enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide };
+
+/// The numbers of a session, from the command line; defaults are the paper's unless said otherwise.
+struct ProtocolOptions {
+  std::vector<Condition> conditions;
+  double trial_s = 180.0;    ///< [s] measured length of a tracking trial; paper III-C
+  double identify_s = 40.0;  ///< [s] pegged trial; the paper's is 120 s (III-A)
+  double ramp_s = 2.0;       ///< [s] motion and target fade in and out
+  std::uint64_t seed = 1;    ///< of everything random
+  Motion motion = Motion::kBandNoise;
+};
+
+/// One trial of the session: what everybody may know, and what stays blinded.
+struct PlannedTrial {
+  Trial trial;                   ///< start_tick is set when it runs
+  std::uint64_t reference_seed;  ///< phases of the target
+  char label;                    ///< 'I' identification, or the condition: blinded
+  bool moving;
+  Motion motion;
+  double band_low_hz, band_high_hz;  ///< [Hz]
+  double rms_m_s2, peak_m_s2;        ///< [m/s^2]
+  std::uint64_t motion_seed;
+  bool cancellation;
+};
+
+/// "A,B,C" to conditions.  @throws ConfigError for an unknown, repeated or missing one.
+std::vector<Condition> parse_conditions(const std::string& text);
+
+/// Identification first, then the conditions in an order shuffled by the seed; every seed of a
+/// trial follows from the session's.
+/// @throws ConfigError for durations out of range (5 s to 3600 s).
+std::vector<PlannedTrial> plan(const ProtocolOptions& options);
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/conductor.hpp"
+#include "experiment/lab.hpp"
+#include "experiment/session_recording.hpp"
+#include "identification/core/tracking_metrics.hpp"
+
+namespace stillhand::experiment {
+
+/// One tracking trial, computed from the recording alone.
+struct TrialResult {
+  std::int64_t number;
+  char label;  ///< condition
+  identification::TrackingMetrics metrics;
+  std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
+  /// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f'), f' the
+  /// force the body would exert with the stick held, f_m the motor's; only where the platform
+  /// moves.
+  std::optional<double> cancelled_share;
+};
+
+/// What the model predicts of the pegged trial's true feedthrough force, as residual share
+/// RMS(f' - f_hat) / RMS(f'), for the filter at 1 kHz and for the 50 Hz model behind a zero-order
+/// hold, over one tracking trial with motion.
+struct RateConversionCost {
+  double control_filter = 0.0;
+  double zero_order_hold = 0.0;
+};
+
+/// Everything a session's summary says that is computed from the recording.
+struct SessionResult {
+  std::vector<TrialResult> trials;
+  std::optional<stillhand_msgs::FeedthroughModel> model;
+  std::optional<RateConversionCost> conversion;
+  std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic
+  std::vector<std::string> damage;
+};
+
+/// Computes the completed trials' results from a recording.
+/// @throws ConfigError when the recording cannot be read.
+SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes);
+
+/// Evaluates, prints the table beside the paper's, writes summary.json and model.json.
+/// @return exit status of the lab.
+int report_session(const LabOptions& options, const std::vector<TrialOutcome>& outcomes,
+                   bool interrupted);
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "contract/config_error.hpp"
+#include "experiment/paper_table.hpp"
+#include "experiment/results.hpp"
+#include "identification/codec.hpp"
+#include "identification/model_file.hpp"
+#include "recording/file_io.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+using nlohmann::ordered_json;
+
+// JSON has no NaN: what could not be computed is null.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+const TrialResult* find(const SessionResult& result, char label) {
+  const auto trial = std::find_if(result.trials.begin(), result.trials.end(),
+                                  [&](const TrialResult& t) { return t.label == label; });
+  return trial == result.trials.end() ? nullptr : &*trial;
+}
+
+double value_of(const TrialResult& trial, const Metric& metric) { return metric.of(trial.metrics); }
+
+// The study's shape with one subject: a standard deviation needs two.
+ordered_json condition_json(const TrialResult& trial) {
+  ordered_json condition;
+  for (const Metric& metric : kMetrics) {
+    const double value = value_of(trial, metric);
+    condition[metric.key] = {{"mean", number(value)},
+                             {"std", nullptr},
+                             {"per_subject", ordered_json::array({number(value)})}};
+  }
+  condition["crossover_reference_hz"] = number(trial.metrics.crossover_reference_hz);
+  condition["cancelled_share"] =
+      trial.cancelled_share ? number(*trial.cancelled_share) : ordered_json(nullptr);
+  return condition;
+}
+
+ordered_json restoration_json(const SessionResult& result) {
+  const TrialResult* a = find(result, 'A');
+  const TrialResult* b = find(result, 'B');
+  const TrialResult* c = find(result, 'C');
+  ordered_json restoration;
+  for (const Metric& metric : kMetrics) {
+    restoration[metric.restoration_key] =
+        a != nullptr && b != nullptr && c != nullptr
+            ? number((value_of(*b, metric) - value_of(*c, metric)) /
+                     (value_of(*b, metric) - value_of(*a, metric)))
+            : ordered_json(nullptr);
+  }
+  return restoration;
+}
+
+ordered_json trial_json(const TrialOutcome& outcome) {
+  ordered_json marks = ordered_json::array();
+  for (const Mark& mark : outcome.marks) {
+    marks.push_back({{"tick", mark.tick}, {"text", mark.text}});
+  }
+  const Trial& trial = outcome.planned.trial;
+  return {
+      {"number", trial.number},
+      {"condition", std::string(1, outcome.planned.label)},
+      {"start_tick", trial.start_tick},
+      {"duration_ticks", trial.duration_ticks},
+      {"completed", outcome.completed},
+      {"aborted", outcome.aborted.empty() ? ordered_json(nullptr) : ordered_json(outcome.aborted)},
+      {"deadline_misses", outcome.deadline_misses},
+      {"cycle_misses", outcome.cycle_misses},
+      {"lost_ticks", outcome.lost_ticks},
+      {"marks", marks}};
+}
+
+ordered_json identification_json(const SessionResult& result) {
+  if (!result.model) return nullptr;
+  const auto& model = *result.model;
+  ordered_json json{{"usable", model.usable()},
+                    {"text", model.text().c_str()},
+                    {"heldout_vaf_percent", number(model.heldout_vaf_percent())},
+                    {"heldout_rmse_n", number(model.heldout_rmse_n())},
+                    {"conversion_error", number(model.conversion_error())}};
+  if (result.conversion) {
+    json["residual_share"] = {
+        {"filter_at_1_khz", number(result.conversion->control_filter)},
+        {"zero_order_hold_of_50_hz", number(result.conversion->zero_order_hold)}};
+  }
+  return json;
+}
+
+ordered_json summary_json(const LabOptions& options, const std::vector<TrialOutcome>& outcomes,
+                          const SessionResult& result, bool interrupted) {
+  ordered_json summary;
+  summary["conditions"] = ordered_json::object();
+  for (const char label : {'A', 'B', 'C'}) {
+    if (const TrialResult* trial = find(result, label)) {
+      summary["conditions"][std::string(1, label)] = condition_json(*trial);
+    }
+  }
+  // Tests over subjects need subjects; a lab session has one.
+  summary["t_tests"] = nullptr;
+  summary["manova"] = nullptr;
+  summary["restoration"] = restoration_json(result);
+  summary["identification"] = identification_json(result);
+  summary["trials"] = ordered_json::array();
+  for (const TrialOutcome& outcome : outcomes) summary["trials"].push_back(trial_json(outcome));
+  summary["lost_ticks"] = result.lost_ticks;
+  summary["recording_damage"] = result.damage;
+  summary["interrupted"] = interrupted;
+  summary["seed"] = options.protocol.seed;
+  summary["trial_seconds"] = options.protocol.trial_s;
+  summary["identify_seconds"] = options.protocol.identify_s;
+  summary["reference_note"] =
+      options.protocol.trial_s == 180.0
+          ? "harmonics of 1/180 Hz as printed in the paper"
+          : "the fifteen frequencies sit on harmonics of the trial's own length";
+  summary["version"] = STILLHAND_VERSION;
+  return summary;
+}
+
+void print_table(const SessionResult& result) {
+  std::printf("\n%-22s %9s %9s %9s   %9s   %s\n", "", "A", "B", "C", "restored",
+              "paper (12 subjects): A, B, C, restored");
+  for (const Metric& metric : kMetrics) {
+    std::printf("%-22s", metric.title);
+    for (const char label : {'A', 'B', 'C'}) {
+      const TrialResult* trial = find(result, label);
+      if (trial == nullptr) {
+        std::printf(" %9s", "-");
+      } else {
+        std::printf(" %9.3f", value_of(*trial, metric));
+      }
+    }
+    const auto restored = restoration_json(result)[metric.restoration_key];
+    if (restored.is_null()) {
+      std::printf("   %9s", "-");
+    } else {
+      std::printf("   %7.0f %%", 100.0 * restored.get<double>());
+    }
+    std::printf("   %.2f, %.2f, %.2f, %.0f %%\n", metric.paper_a, metric.paper_b, metric.paper_c,
+                metric.paper_restored_percent);
+  }
+  std::printf("The paper's RMS error has no unit; one unit is near 5.5 mm.\n");
+  if (result.model && result.model->usable()) {
+    std::printf("feedthrough model: VAF on held-out pegged data %.2f %%\n",
+                result.model->heldout_vaf_percent());
+  }
+  for (const TrialResult& trial : result.trials) {
+    if (trial.label == 'C' && trial.cancelled_share) {
+      std::printf("feedthrough force cancelled while tracking: %.1f %%\n",
+                  100.0 * *trial.cancelled_share);
+    }
+  }
+  if (result.conversion) {
+    std::printf(
+        "left by the 1 kHz filter %.1f %%, by a zero-order hold of the 50 Hz model %.1f %%\n",
+        100.0 * result.conversion->control_filter, 100.0 * result.conversion->zero_order_hold);
+  }
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  const recording::Status status = recording::write_file_atomically(path.string(), text);
+  if (!status.ok()) throw std::runtime_error(path.string() + ": " + status.text);
+}
+
+}  // namespace
+
+int report_session(const LabOptions& options, const std::vector<TrialOutcome>& outcomes,
+                   bool interrupted) {
+  const SessionResult result = evaluate((options.out / "session.mcap").string(), outcomes);
+  write(options.out / "summary.json",
+        summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
+  print_table(result);
+  std::int64_t lost = 0;
+  for (const auto& [topic, count] : result.lost_ticks) lost += count;
+  std::printf("lost ticks on the 1 kHz topics: %lld\n", static_cast<long long>(lost));
+  std::printf("results in %s\n", options.out.string().c_str());
+  bool good = !interrupted && outcomes.size() == options.protocol.conditions.size() + 1;
+  for (const TrialOutcome& outcome : outcomes) {
+    if (outcome.completed) continue;
+    good = false;
+    std::cerr << "stillhand lab: trial " << outcome.planned.trial.number << " ("
+              << outcome.planned.label << ") is marked: " << outcome.aborted << '\n';
+  }
+  return good ? 0 : 1;
+}
+
+}  // namespace stillhand::experiment

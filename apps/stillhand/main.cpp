@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "contract/config_error.hpp"
+#include "experiment/lab_command.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
+  cli.name("stillhand");
+  cli.set_version_flag("--version", STILLHAND_VERSION);
+  cli.require_subcommand(1);
+  int status = 0;
+  stillhand::experiment::add_lab_command(cli, status);
+  try {
+    cli.parse(argc, argv);
+    return status;
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : 2;
+  } catch (const stillhand::ConfigError& error) {
+    std::cerr << "stillhand: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cancellation/core/canceller.hpp"
+#include "idl/control_loop.h"
+#include "idl/model.h"
+
+namespace stillhand::cancellation {
+
+CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted);
+
+/// The filter for the control rate; whether it is sound is for the canceller to judge.
+ControlRateModel from_idl(const stillhand_msgs::FeedthroughModel& message);
+
+/// @param sensed  the sample answered: its tick and acquisition stamp travel on
+/// @param model   number of the model in use, -1 none
+stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const CancellerInput& input,
+                                    const stillhand_msgs::Sensed& sensed, std::int32_t model);
+
+}  // namespace stillhand::cancellation

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "cancellation/core/model_check.hpp"
+#include "cancellation/core/model_filter.hpp"
+#include "contract/config_field.hpp"
+#include "contract/flag.hpp"
+#include "contract/tick.hpp"
+#include "signal/force_envelope.hpp"
+
+namespace stillhand::cancellation {
+
+struct CancellerInput {
+  Tick tick;            ///< of the sensed sample
+  double accel_y_m_s2;  ///< [m/s^2] platform, + right
+  double theta_rad;     ///< [rad] stick; not used by this law
+  double omega_rad_s;   ///< [rad/s] stick; not used by this law
+  Flags sensed_flags;   ///< of the sensed sample
+  bool enabled;         ///< the trial asks for cancellation
+  bool permitted;       ///< interlock closed
+};
+struct CancellerOutput {
+  double force_n;            ///< [N] motor force wanted at the hand, + right, after limits
+  double predicted_force_n;  ///< [N] f_hat, + right
+  Flags flags;
+};
+
+struct Config {
+  signal::ForceLimits limits;
+  double gain = 1.0;
+  double max_model_gain_n_s2_m = 60.0;
+  double max_acceleration_m_s2 = 60.0;
+  std::int64_t fade_ticks = 250;
+  std::int64_t max_hold_ticks = 50;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit.group("limits", self.limits);
+    visit("gain", self.gain, Range{0.0, 1.2}, "[-] share of the predicted force that is cancelled");
+    visit("max_model_gain_n_s2_m", self.max_model_gain_n_s2_m, Range{1.0, 200.0},
+          "[N s^2/m] largest |H| of a model, any frequency; paper IV-A: 3.2 at 0 Hz");
+    visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 500.0},
+          "[m/s^2] a larger magnitude is no platform motion (paper III-C: peak 7.5) but a fault");
+    visit("fade_ticks", self.fade_ticks, Range{50.0, 5000.0},
+          "[ticks] fade from zero or from the model before, after the new one has settled");
+    visit("max_hold_ticks", self.max_hold_ticks, Range{1.0, 200.0},
+          "[ticks] longest run of missing samples bridged by holding the last; then start anew");
+  }
+};
+
+/// Cancels biodynamic feedthrough, README Eq. CC-1 (paper III: the motor acts against f_hat):
+///
+///   f_hat = H a_y,   wanted = -gain f_hat,   force = ForceEnvelope(wanted)   (Eq. SG-6)
+///
+/// The force leaves zero only while enabled, permitted, with a model and a sound sample.  A lost or
+/// unsound sample holds the last acceleration (Eq. CC-2); a run longer than max_hold_ticks starts
+/// the filter anew.  After an interruption the force fades in again; a new model settles beside the
+/// old one and is faded over (Eq. CC-3).
+/// One thread: load_model() is called between two steps.  step() neither allocates nor throws; its
+/// cost is bounded by max_hold_ticks + 2 filter steps.
+class Canceller {
+ public:
+  /// @throws stillhand::ConfigError when a setting is outside its range.
+  explicit Canceller(const Config& config);
+
+  /// Checks a model and, if sound, takes it at the next step.  Never throws; a refused model leaves
+  /// the one in use as it is.  Takes tens of microseconds (gain scan): keep it out of a deadline.
+  Refusal load_model(const ControlRateModel& model) noexcept;
+
+  /// True once a model was taken, even while it still settles.
+  [[nodiscard]] bool has_model() const noexcept { return active_.loaded() || incoming_.loaded(); }
+
+  CancellerOutput step(const CancellerInput& input) noexcept;
+
+ private:
+  /// Forgets all motion, as at the start; the newest model stays.
+  void restart() noexcept;
+  /// Brings the filters to the tick before `tick`; false when that tick is not a new one.
+  bool catch_up(Tick tick, Flags& flags) noexcept;
+  /// The acceleration to use at this tick: the sample's, or the one held.
+  double sound_acceleration(const CancellerInput& input, Flags& flags) noexcept;
+  /// One more tick without a sound sample.
+  void count_absent() noexcept;
+  /// Prediction of one tick, Eq. CC-3.
+  double predict(double accel_m_s2) noexcept;
+  /// Takes the step from settling to fading to done.
+  void advance_fade() noexcept;
+
+  Config config_;
+  signal::ForceEnvelope envelope_;
+  ModelFilter active_;
+  ModelFilter incoming_;  ///< settles, then is faded in
+  ModelFilter pending_;   ///< came while another was fading in
+  std::int64_t settle_left_ = 0;
+  std::int64_t fade_done_ = 0;
+  std::int64_t engaged_ = 0;  ///< ticks that the force has been acting, up to fade_ticks
+  std::int64_t absent_ = 0;   ///< ticks since the last sound sample
+  double held_m_s2_ = 0.0;
+  Tick last_tick_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace stillhand::cancellation

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cancellation/shell.hpp"
+
+#include <string>
+
+namespace stillhand::cancellation {
+
+Shell::Shell(runtime::Service& service)
+    : service_(service),
+      core_(service.config<Config>()),
+      command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)) {
+  runtime::Bus& bus = service.bus();
+  service.on_trial([this](const Trial&, const auto&) { note_when_armed(); });
+  bus.subscribe<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment,
+                                                 [this](const auto& message, const auto&) {
+                                                   assignment_ = message;
+                                                   note_when_armed();
+                                                 });
+  bus.subscribe<stillhand_msgs::FeedthroughModel>(
+      topics::kFeedthroughModel, [this](const auto& message, const auto&) { on_model(message); });
+  // The canceller watches everybody's life sign through this topic; its content is not used.
+  bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
+                                               [](const auto&, const auto&) {});
+  bus.subscribe<stillhand_msgs::Sensed>(
+      topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message); });
+}
+
+void Shell::note_when_armed() {
+  if (assignment_ && assignment_->trial() == service_.trial().number) {
+    service_.note_armed(service_.trial().number);
+  }
+}
+
+void Shell::on_model(const stillhand_msgs::FeedthroughModel& message) {
+  if (!message.usable()) return;
+  const Refusal refusal = core_.load_model(from_idl(message));
+  if (refusal == Refusal::kNone) {
+    model_ = message.model();
+    service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");
+  } else {
+    service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED,
+                        std::string(describe(refusal)).c_str());
+  }
+}
+
+void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
+  const Trial& trial = service_.trial();
+  const bool permitted = interlock_.step(trial, sensed.tick(), service_.bus().peers_alive());
+  if (interlock_.latched(trial) != told_latch_) {
+    told_latch_ = !told_latch_;
+    if (told_latch_) {
+      service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, "a process is missing");
+    }
+  }
+  const bool enabled = assignment_ && assignment_->trial() == trial.number &&
+                       assignment_->cancellation() && trial.phase == TrialPhase::kTracking &&
+                       trial.covers(sensed.tick());
+  const CancellerInput input = from_idl(sensed, enabled, permitted);
+  auto message = to_idl(core_.step(input), input, sensed, model_);
+  command_.write(message);
+  service_.note_tick(sensed.tick());
+}
+
+}  // namespace stillhand::cancellation

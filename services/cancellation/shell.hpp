@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "cancellation/codec.hpp"
+#include "cancellation/core/canceller.hpp"
+#include "idl/model.h"
+#include "idl/session.h"
+#include "runtime/interlock.hpp"
+#include "runtime/service.hpp"
+
+namespace stillhand::cancellation {
+
+/// The canceller's process: one motor command for each sensed sample, in the receiving thread.
+class Shell {
+ public:
+  explicit Shell(runtime::Service& service);
+  void run() { service_.run(); }
+
+ private:
+  void on_sensed(const stillhand_msgs::Sensed& sensed);
+  void on_model(const stillhand_msgs::FeedthroughModel& message);
+  void note_when_armed();
+
+  runtime::Service& service_;
+  Canceller core_;
+  runtime::Interlock interlock_;
+  bool told_latch_ = false;
+  std::int32_t model_ = -1;
+  std::optional<stillhand_msgs::TrialAssignment> assignment_;
+  runtime::Publisher<stillhand_msgs::MotorCommand> command_;
+};
+
+}  // namespace stillhand::cancellation

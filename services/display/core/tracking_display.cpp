@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/core/tracking_display.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::display {
+namespace {
+
+/// Draws before giving up.  With the default scale one in six fits; that 400 fail in a row has a
+/// chance below 1e-30.
+constexpr int kMostDraws = 400;
+/// Odd constant of Weyl's sequence (2^64 / golden ratio): seeds of successive draws all differ.
+constexpr std::uint64_t kNextSeed = 0x9e3779b97f4a7c15u;
+
+const TrackingDisplay::Config& checked(const TrackingDisplay::Config& config) {
+  validate(config, "display");
+  ScreenLayout(config.screen, config.box_width_m);  // throws what validate() cannot see
+  return config;
+}
+
+/// 10 u^3 - 15 u^4 + 6 u^5: from 0 to 1 with first and second derivative zero at both ends.
+double smooth_step(double u) noexcept { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); }
+
+/// Ticks far enough from the ends of Tick to be added without overflow, whatever a message says.
+void check(const Trial& trial) {
+  constexpr Tick kLast = Tick{1} << 60;
+  const auto inside = [](const char* key, Tick ticks) {
+    if (ticks < 0 || ticks > kLast) {
+      throw ConfigError(key, std::to_string(ticks), "0 to " + std::to_string(kLast));
+    }
+  };
+  inside("display.trial.start_tick", trial.start_tick);
+  inside("display.trial.duration_ticks", trial.duration_ticks);
+  inside("display.trial.ramp_ticks", trial.ramp_ticks);
+}
+
+double peak(const signal::ReferenceSignal& reference, Tick count) noexcept {
+  double highest_m = 0.0;
+  for (Tick n = 0; n < count; ++n) highest_m = std::max(highest_m, std::abs(reference.at(n)));
+  return highest_m;
+}
+
+}  // namespace
+
+signal::ReferenceSignal reference_on_screen(const TrackingDisplay::Config& config,
+                                            Tick duration_ticks, std::uint64_t seed) {
+  const auto set =
+      config.coprime_reference ? signal::ReferenceSet::kCoprime : signal::ReferenceSet::kPaper;
+  const auto design =
+      signal::reference_design(static_cast<double>(duration_ticks) * kControlPeriod_s, set);
+  const double limit_m =
+      config.screen.width_m / 2.0 - config.box_width_m / 2.0 - config.screen.line_width_m / 2.0;
+  // Four samples a cycle of the fastest line find nearly every misfit at a hundredth of the cost;
+  // the full table has the last word.
+  const Tick coarse_ticks = std::min(duration_ticks, 4 * design.harmonics.back());
+  for (int draw = 0; draw < kMostDraws; ++draw, seed += kNextSeed) {
+    const double scale_m = config.reference_scale_m;
+    const signal::ReferenceSignal coarse(design, coarse_ticks, seed, scale_m);
+    if (peak(coarse, coarse_ticks) > limit_m) continue;
+    signal::ReferenceSignal reference(design, duration_ticks, seed, scale_m);
+    if (peak(reference, duration_ticks) <= limit_m) return reference;
+  }
+  throw ConfigError("display.reference_scale_m", std::to_string(config.reference_scale_m),
+                    "a smaller scale: the target's box leaves the screen whatever the phases");
+}
+
+TrackingDisplay::TrackingDisplay(const Config& config) : config_(checked(config)) {}
+
+void TrackingDisplay::arm(signal::ReferenceSignal&& reference, const Trial& trial) {
+  check(trial);
+  if (reference_) {
+    std::swap(*reference_, reference);
+  } else {
+    reference_ = std::move(reference);
+  }
+  trial_ = trial;
+}
+
+void TrackingDisplay::arm(const Trial& trial, std::uint64_t reference_seed) {
+  if (trial.phase == TrialPhase::kTracking) {
+    arm(reference_on_screen(config_, trial.duration_ticks, reference_seed), trial);
+  } else {
+    check(trial);
+    reference_.reset();
+    trial_ = trial;
+  }
+}
+
+double TrackingDisplay::target_at(Tick tick) const noexcept {
+  if (!reference_ || !trial_.covers(tick)) return 0.0;
+  const double target_m = reference_->at(tick - trial_.start_tick);
+  if (trial_.measures(tick)) return target_m;
+  const Tick away = tick < trial_.start_tick
+                        ? trial_.start_tick - tick
+                        : tick - (trial_.start_tick + trial_.duration_ticks) + 1;
+  // away runs from 1 next to the measured part to ramp_ticks at the far end.
+  const double u = 1.0 - static_cast<double>(away) / static_cast<double>(trial_.ramp_ticks + 1);
+  return smooth_step(u) * target_m;
+}
+
+TrackingSample TrackingDisplay::step(const TrackingInput& input) noexcept {
+  Flags flags = kGood;
+  if (last_tick_ >= 0 && input.tick > last_tick_ + 1) flags |= kInputGap;
+  last_tick_ = input.tick;
+  const double target_m = target_at(input.tick);
+  const bool known = std::isfinite(input.theta_rad);
+  if (known) {
+    cursor_m_ = config_.gain_m_rad * input.theta_rad;
+  } else {
+    flags |= kInputInvalid;
+  }
+  const bool inside = known && std::abs(cursor_m_ - target_m) < config_.box_width_m / 2.0;
+  return {target_m, cursor_m_, inside, flags};
+}
+
+}  // namespace stillhand::display

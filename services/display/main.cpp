@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include "display/screen_loop.hpp"
+
+int main(int argc, char** argv) {
+  using namespace stillhand;
+  bool headless = false;
+  display::ScreenOptions screen;
+  return runtime::run_service(
+      "display", argc, argv,
+      [&](runtime::Service& service) {
+        screen.window = !headless;
+        display::Shell shell(service);
+        display::ScreenLoop loop(shell, screen);
+        service.run([&] { loop.run(); });
+      },
+      [&](CLI::App& cli, runtime::ServiceOptions&) {
+        cli.add_flag("--headless", headless, "no window");
+        cli.add_option("--video", screen.video, "write the screen to this .avi or .mp4 file");
+        cli.add_flag("--pointer", screen.pointer, "a person tracks with the mouse over the window");
+      });
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/screen_loop.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "display/view_opencv.hpp"
+#include "display/view_output.hpp"
+#include "runtime/real_time.hpp"
+
+namespace stillhand::display {
+namespace {
+
+constexpr int kColumns = 1024;  // a 15 inch monitor of the paper's day, 4:3
+constexpr int kRows = 768;
+constexpr double kRate_hz = 60.0;
+// With no new tick for this long the picture is old.
+constexpr std::int64_t kLinkLost_ns = 100'000'000;
+
+ViewStatus status_of(const Shown& shown, bool fresh) {
+  ViewStatus status;
+  status.trial_number = shown.trial.number;
+  const Trial& trial = shown.trial;
+  const Tick left =
+      trial.start_tick + trial.duration_ticks - std::max(shown.tick, trial.start_tick);
+  status.time_left_s = static_cast<double>(std::max<Tick>(left, 0)) * kControlPeriod_s;
+  const bool tracking = trial.phase == TrialPhase::kTracking && trial.covers(shown.tick);
+  status.notice = !fresh ? Notice::kLinkLost : tracking ? Notice::kNone : Notice::kHold;
+  return status;
+}
+
+}  // namespace
+
+ScreenLoop::ScreenLoop(Shell& shell, ScreenOptions options)
+    : shell_(shell),
+      options_(std::move(options)),
+      pointer_(shell.service().bus().publisher<stillhand_msgs::Pointer>(topics::kPointer)) {}
+
+void ScreenLoop::run() {
+  runtime::Stop& stop = shell_.service().stop();
+  if (!options_.window && options_.video.empty()) {
+    stop.wait();
+    return;
+  }
+  runtime::become_ordinary();
+  TrackingView view(shell_.config(), kColumns, kRows);
+  std::optional<FrameFile> file;
+  std::optional<ScreenWindow> window;
+  if (!options_.video.empty()) file.emplace(options_.video.string(), kRate_hz, kColumns, kRows);
+  if (options_.window) window.emplace("Stillhand", view.projection(), false);
+
+  constexpr auto kPeriod_ns = static_cast<std::int64_t>(1e9 / kRate_hz);
+  std::int64_t due_ns = runtime::monotonic_ns();
+  Tick last_tick = -1;
+  std::int64_t fresh_ns = due_ns;
+  while (!stop.requested()) {
+    due_ns = std::max(due_ns + kPeriod_ns, runtime::monotonic_ns());
+    runtime::sleep_until_ns(due_ns);
+    const Shown& shown = shell_.shown();
+    if (shown.tick != last_tick) fresh_ns = due_ns;
+    last_tick = shown.tick;
+    const cv::Mat& frame =
+        view.draw(shown.sample, status_of(shown, due_ns - fresh_ns < kLinkLost_ns));
+    // Frames of a session that has not begun, or of a disk that is full, are not kept.
+    if (file && shown.tick >= 0 && !file->write(frame)) {
+      shell_.service().note_event(stillhand_msgs::EVENT_NOTE, "the video cannot be written");
+      file.reset();
+    }
+    if (!window) continue;
+    if (!window->show(frame)) return;  // closed: this process ends, and with it the session
+    if (options_.pointer) {
+      stillhand_msgs::Pointer message;
+      message.tick(shown.tick);
+      message.position_m(window->pointer_m().value_or(0.0));
+      message.inside_window(window->pointer_m().has_value());
+      pointer_.write(message);
+    }
+  }
+}
+
+}  // namespace stillhand::display

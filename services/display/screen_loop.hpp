@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+
+#include "display/shell.hpp"
+
+namespace stillhand::display {
+
+/// What happens to the frames.
+struct ScreenOptions {
+  bool window = false;          ///< show them on the desktop
+  bool pointer = false;         ///< publish the mouse over the window
+  std::filesystem::path video;  ///< write them here, or empty
+};
+
+/// Draws 60 frames a second from the newest data, in the calling thread, until stopped or the
+/// window is closed.  Of ordinary priority: a slow window or disk costs frames, never samples.
+/// @throws ConfigError when window or file cannot be opened.
+class ScreenLoop {
+ public:
+  ScreenLoop(Shell& shell, ScreenOptions options);
+  void run();
+
+ private:
+  Shell& shell_;
+  ScreenOptions options_;
+  runtime::Publisher<stillhand_msgs::Pointer> pointer_;
+};
+
+}  // namespace stillhand::display

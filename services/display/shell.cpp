@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/shell.hpp"
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::display {
+
+Shell::Shell(runtime::Service& service)
+    : service_(service),
+      config_(service.config<TrackingDisplay::Config>()),
+      core_(config_),
+      tracking_(service.bus().publisher<stillhand_msgs::TrackingSample>(topics::kTrackingSample)) {
+  service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
+    if (trial.number >= 0) prepare(trial, message.reference_seed());
+  });
+  // The catalogue gives the display the others' status; a stale picture shows by its tick.
+  service.bus().subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
+                                                         [](const auto&, const auto&) {});
+  service.bus().subscribe<stillhand_msgs::Sensed>(
+      topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message); });
+}
+
+void Shell::prepare(const Trial& trial, std::uint64_t reference_seed) {
+  handover_.prepare([this, trial, reference_seed]() -> std::unique_ptr<Prepared> {
+    try {
+      auto prepared = std::make_unique<Prepared>(Prepared{std::nullopt, trial});
+      if (trial.phase == TrialPhase::kTracking) {
+        prepared->reference = reference_on_screen(config_, trial.duration_ticks, reference_seed);
+      }
+      return prepared;
+    } catch (const ConfigError& error) {
+      service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
+      return nullptr;  // the trial is never armed, and so never begins
+    }
+  });
+}
+
+void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
+  if (Prepared* newest = handover_.current(); newest != nullptr && newest != armed_) {
+    armed_ = newest;
+    if (newest->reference) {
+      core_.arm(std::move(*newest->reference), newest->trial);
+    } else {
+      core_.disarm();
+    }
+    service_.note_armed(newest->trial.number);
+  }
+  const TrackingSample sample = core_.step(from_idl(sensed));
+  auto message = to_idl(sample, sensed.tick(), armed_ == nullptr ? -1 : armed_->trial.number);
+  tracking_.write(message);
+  shown_.store({sensed.tick(), sample, service_.trial()});
+  service_.note_tick(sensed.tick());
+}
+
+}  // namespace stillhand::display

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "display/codec.hpp"
+#include "display/core/tracking_display.hpp"
+#include "runtime/handover.hpp"
+#include "runtime/latest_value.hpp"
+#include "runtime/service.hpp"
+
+namespace stillhand::display {
+
+/// What the screen shows, handed from the 1 kHz data to the 60 Hz frames.
+struct Shown {
+  Tick tick = -1;
+  TrackingSample sample{};
+  Trial trial;
+};
+
+/// The display's process.  Target and cursor are computed in the receiving thread, one pair for
+/// each sensed sample; the frames are drawn elsewhere from the newest pair and never delay it.
+class Shell {
+ public:
+  explicit Shell(runtime::Service& service);
+
+  /// Newest pair, for one drawing thread.
+  const Shown& shown() noexcept { return shown_.load(); }
+  [[nodiscard]] runtime::Service& service() noexcept { return service_; }
+  [[nodiscard]] const TrackingDisplay::Config& config() const noexcept { return config_; }
+
+ private:
+  struct Prepared {
+    std::optional<signal::ReferenceSignal> reference;
+    Trial trial;
+  };
+  void on_sensed(const stillhand_msgs::Sensed& sensed);
+  void prepare(const Trial& trial, std::uint64_t reference_seed);
+
+  runtime::Service& service_;
+  TrackingDisplay::Config config_;
+  TrackingDisplay core_;
+  runtime::Handover<Prepared> handover_;
+  const Prepared* armed_ = nullptr;
+  runtime::LatestValue<Shown> shown_;
+  runtime::Publisher<stillhand_msgs::TrackingSample> tracking_;
+};
+
+}  // namespace stillhand::display

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "human_operator/codec.hpp"
+
+namespace stillhand::human_operator {
+
+OperatorInput from_idl(const stillhand_msgs::TrackingSample& sample, bool active) {
+  return {sample.tick(), sample.target_m(), sample.cursor_m(), active};
+}
+
+stillhand_msgs::OperatorForce to_idl(const OperatorOutput& output, const OperatorInput& input,
+                                     std::int64_t trial) {
+  stillhand_msgs::OperatorForce message;
+  message.tick(input.tick);
+  message.force_n(output.force_n);
+  message.active(input.active);
+  message.trial(static_cast<std::int32_t>(trial));
+  message.flags(output.flags);
+  return message;
+}
+
+}  // namespace stillhand::human_operator

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "human_operator/core/crossover_operator.hpp"
+#include "idl/control_loop.h"
+
+namespace stillhand::human_operator {
+
+OperatorInput from_idl(const stillhand_msgs::TrackingSample& sample, bool active);
+stillhand_msgs::OperatorForce to_idl(const OperatorOutput& output, const OperatorInput& input,
+                                     std::int64_t trial);
+
+}  // namespace stillhand::human_operator

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "contract/config_field.hpp"
+#include "human_operator/core/arm_feel.hpp"
+
+namespace stillhand::human_operator {
+
+/// One simulated subject; README, "Where the numbers come from".
+struct CrossoverConfig {
+  std::int64_t seed = 1;
+  double crossover_hz = 0.27;
+  double delay_s = 0.22;
+  double muscle_rad_s = 13.0;
+  double muscle_damping_ratio = 0.7;
+  double regression_error_m = 0.040;
+  double regression_above_hz = 0.5;
+  double regression_memory_s = 4.0;
+  double remnant_ratio = 0.02;
+  double remnant_floor_m = 0.001;
+  ArmFeel arm;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] of the subject's remnant");
+    visit("crossover_hz", self.crossover_hz, Range{0.02, 1.0},
+          "[Hz] crossover with no fast error, w_c0 / 2 pi; paper Table I (0.25 Hz, condition A)");
+    visit(
+        "delay_s", self.delay_s, Range{0.05, 0.6},
+        "[s] T_d of the whole subject, muscle lag included; 0.2 to 0.25 s, McRuer and Jex (1967)");
+    visit("muscle_rad_s", self.muscle_rad_s, Range{4.0, 40.0},
+          "[rad/s] w_n of arm and muscle; 10 to 20 rad/s, McRuer and Jex (1967)");
+    visit("muscle_damping_ratio", self.muscle_damping_ratio, Range{0.1, 0.95},
+          "[-] z of arm and muscle; McRuer and Jex (1967)");
+    visit("regression_error_m", self.regression_error_m, Range{0.001, 1e6},
+          "[m] RMS of fast error that halves the crossover; README, Eq. HO-5");
+    visit("regression_above_hz", self.regression_above_hz, Range{0.05, 5.0},
+          "[Hz] error above this is fast: too fast to be tracked");
+    visit("regression_memory_s", self.regression_memory_s, Range{0.5, 60.0},
+          "[s] time constant of the subject's impression of the fast error");
+    visit("remnant_ratio", self.remnant_ratio, Range{0.0, 0.2},
+          "[-] noise-to-signal ratio of what is seen, 0.01 is -20 dB; Levison, Kleinman and Baron "
+          "(1969)");
+    visit(
+        "remnant_floor_m", self.remnant_floor_m, Range{0.0, 0.02},
+        "[m] error RMS below which the remnant no longer shrinks, of the order of a line's width");
+    visit.group("arm", self.arm);
+  }
+};
+
+}  // namespace stillhand::human_operator

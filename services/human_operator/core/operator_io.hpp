@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contract/flag.hpp"
+#include "contract/tick.hpp"
+
+namespace stillhand::human_operator {
+
+/// What the subject sees in one tick.
+struct OperatorInput {
+  Tick tick;
+  double target_m;  ///< x_r on the screen, right of its centre
+  double cursor_m;  ///< x_p, same frame
+  bool active;      ///< a tracking trial runs and its samples arrive
+};
+
+/// What the subject does, whoever it is.
+struct OperatorOutput {
+  double force_n;  ///< f_t, volitional force at the hand, + right
+  Flags flags;  ///< kInputGap, kInputInvalid, kInputStale, kSaturated, kSlewLimited, kRampingDown
+};
+
+}  // namespace stillhand::human_operator

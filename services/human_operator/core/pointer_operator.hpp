@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contract/trial.hpp"
+#include "human_operator/core/arm_feel.hpp"
+#include "human_operator/core/muscle_filter.hpp"
+#include "human_operator/core/operator_io.hpp"
+#include "signal/force_envelope.hpp"
+
+namespace stillhand::human_operator {
+
+/// A person's pointer as it is known at one tick.
+struct PointerInput {
+  Tick tick;
+  double pointer_m;        ///< newest position on the screen, right of its centre; NaN: none yet
+  Tick pointer_age_ticks;  ///< since that position was read
+  bool linked;             ///< the display that reads the pointer is alive
+  bool active;             ///< a tracking trial runs and its samples arrive
+};
+
+/// A person instead of the simulated subject: a pointer on the screen moves a virtual arm, Eq.
+/// HO-6:
+///
+///   x = muscle(pointer / 6),   f_t = B x' + K x
+///
+/// The arm of stiffness K and damping B whose rest position is x pulls the stick at x_j with
+/// K (x - x_j) + B (x' - x_j'); the part with x_j is the passive body on the stick already.
+/// Source: equilibrium-point control, README [Feldman 1986].  A pointer older than
+/// `stale_age_ticks` holds its place and is flagged kInputStale: a still mouse sends nothing.
+/// Without link, trial or position the force fades to zero within 50 ticks.
+/// Force bounded and slew-limited.  Pure; step() never allocates, locks or throws.
+class PointerOperator {
+ public:
+  struct Config {
+    double smoothing_rad_s = 25.0;
+    std::int64_t stale_age_ticks = 500;
+    ArmFeel arm;
+
+    template <typename Visitor, typename Self>
+    static void fields(Visitor&& visit, Self& self) {
+      visit("smoothing_rad_s", self.smoothing_rad_s, Range{5.0, 200.0},
+            "[rad/s] of the second-order lag that joins 60 Hz pointer samples; a person's own arm "
+            "is about 13");
+      visit("stale_age_ticks", self.stale_age_ticks, Range{1.0, 60000.0},
+            "[ticks] age at which a pointer is flagged as stale");
+      visit.group("arm", self.arm);
+    }
+  };
+
+  /// @throws stillhand::ConfigError naming the first field that is out of range.
+  explicit PointerOperator(const Config& config);
+
+  /// A new trial: the arm starts at rest, upright.
+  void arm(const Trial& trial) noexcept;
+
+  OperatorOutput step(const PointerInput& input) noexcept;
+
+ private:
+  Config config_;
+  MuscleFilter smoothing_;
+  signal::ForceEnvelope envelope_;
+  Tick last_tick_ = -1;
+};
+
+}  // namespace stillhand::human_operator

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "contract/tick.hpp"
+#include "signal/random.hpp"
+
+namespace stillhand::human_operator {
+
+/// Observation noise on the seen error: the remnant, Eq. HO-4.  White with the two-sided density
+///
+///   Phi = pi rho (m + floor^2)  [m^2 s],   E{v(t) v(t + tau)} = Phi delta(tau)
+///
+/// where m is the running mean square of the error over `kMemory_s`.  Drawn every kHold ticks and
+/// held: variance Phi / (kHold dt), white to beyond 10 Hz, far above what the muscle passes.
+/// Source: README [Levison, Kleinman and Baron 1969].  Same seed, same bits.  Pure.
+class Remnant {
+ public:
+  static constexpr double kMemory_s = 4.0;
+  static constexpr int kHold = 20;
+
+  /// @param ratio    rho [-], 0 switches the remnant off
+  /// @param floor_m  error RMS below which it no longer shrinks [m]
+  Remnant(double ratio, double floor_m, std::uint64_t seed, std::uint64_t stream)
+      : per_mean_square_(std::numbers::pi * ratio / (kHold * kControlPeriod_s)),
+        mean_square_m2_(0.0),
+        floor_m2_(floor_m * floor_m),
+        draw_(seed, stream) {}
+
+  /// Noise to add to the error of this tick [m].
+  double step(double error_m) noexcept {
+    mean_square_m2_ += kForget * (error_m * error_m - mean_square_m2_);
+    if (--left_ <= 0) {
+      left_ = kHold;
+      held_m_ = std::sqrt(per_mean_square_ * (mean_square_m2_ + floor_m2_)) * draw_();
+    }
+    return held_m_;
+  }
+
+ private:
+  static constexpr double kForget = kControlPeriod_s / kMemory_s;
+
+  double per_mean_square_;
+  double mean_square_m2_;
+  double floor_m2_;
+  signal::Gaussian draw_;
+  double held_m_ = 0.0;
+  int left_ = 0;
+};
+
+}  // namespace stillhand::human_operator

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "human_operator/codec.hpp"
+#include "human_operator/core/crossover_operator.hpp"
+#include "human_operator/core/pointer_operator.hpp"
+#include "runtime/service.hpp"
+
+namespace stillhand::human_operator {
+
+/// What a subject is started with: the simulated one, or the arm behind a person's pointer.
+struct SubjectConfig {
+  CrossoverConfig crossover;
+  PointerOperator::Config pointer;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit.group("crossover", self.crossover);
+    visit.group("pointer", self.pointer);
+  }
+};
+
+/// The subject's process: one volitional force for each tracking sample, in the receiving thread.
+class Shell {
+ public:
+  /// @param with_pointer  a person at the mouse takes the simulated subject's place
+  Shell(runtime::Service& service, bool with_pointer);
+  void run() { service_.run(); }
+
+ private:
+  void on_tracking(const stillhand_msgs::TrackingSample& sample);
+  [[nodiscard]] PointerInput pointer_input(const OperatorInput& input) const;
+
+  runtime::Service& service_;
+  SubjectConfig config_;
+  CrossoverOperator simulated_;
+  PointerOperator person_;
+  bool with_pointer_;
+  stillhand_msgs::Pointer pointer_;
+  runtime::Publisher<stillhand_msgs::OperatorForce> force_;
+};
+
+}  // namespace stillhand::human_operator

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "contract/config_field.hpp"
+#include "identification/core/rate_conversion.hpp"
+#include "identification/core/record.hpp"
+
+namespace stillhand::identification {
+
+/// Settings of an identification.
+struct Config {
+  std::int64_t order = 4;              ///< p of Eq. ID-1
+  bool refine = false;                 ///< Eq. ID-6 after the paper's fit
+  double max_conversion_error = 0.05;  ///< bound on Eq. ID-11
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("order", self.order, Range{1.0, 12.0},
+          "[-] order of the difference model; paper III-A uses 4");
+    visit("refine", self.refine, Range{0.0, 1.0},
+          "[-] refine the paper's least-squares fit on its free-run error");
+    visit(
+        "max_conversion_error", self.max_conversion_error, Range{0.001, 1.0},
+        "[-] largest error of the 1 kHz filter over 0 to 10 Hz, over the excited band's peak gain");
+  }
+};
+
+/// An identified biodynamic feedthrough model, ready for file and bus.
+struct FeedthroughModel {
+  DifferenceModel fit;            ///< at 50 Hz, paper Eq. 3
+  DifferenceModel control;        ///< the same at 1 kHz, for the canceller
+  FitQuality heldout;             ///< on the record's last quarter, by a fit to the rest
+  double condition_number = 0.0;  ///< [-] of the least squares
+  double conversion_error = 0.0;  ///< [-] Eq. ID-11 over 0 to 10 Hz
+  bool refined = false;           ///< Eq. ID-6 was applied
+};
+
+/// The whole chain of paper III-A: preprocessed(), fit_arx(), refine_output_error() when asked or
+/// when the paper's fit is unstable, to_control_rate().  Pure.
+/// @param recorded  at 100 Hz or more
+/// @throws stillhand::ConfigError with the reason when no usable model comes out.
+FeedthroughModel identify(const Record& recorded, const Config& config = {});
+
+}  // namespace stillhand::identification

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "motion/core/harmonic_motion.hpp"
+#include "motion/core/motion_profile.hpp"
+
+namespace stillhand::motion {
+
+/// Tones of a multisine motion without components of its own; as many as the paper's reference.
+inline constexpr int kDefaultTones = 15;
+
+// The designed excitations, as harmonics of the measured duration, so that every line holds whole
+// cycles and the RMS of the measured part is that of the spectrum.  Phases are uniform, drawn from
+// the profile's seed; the same profile gives the same bits.
+// Each throws stillhand::ConfigError when the band holds no harmonic or a setting contradicts
+// another.
+
+/// Band noise, Eq. MO-11: C_k = rms sqrt(2/K) exp(j phi_k) for all K harmonics in the band.  One
+/// amplitude for all rather than Rayleigh draws: no line is weak by chance, so a response is
+/// estimated equally well at each, and the RMS is exact for every seed; by the central limit
+/// theorem the samples still tend to a normal distribution (Pintelon and Schoukens, System
+/// Identification, 2nd ed., section 2.6: random-phase multisine).
+MotionSpectrum band_noise(const MotionProfile& profile);
+
+/// The profile's components as they are (sines, Eq. SG-1); without any, kDefaultTones equal sines
+/// spaced geometrically over the band.  rms_m_s2 > 0 scales the whole.
+MotionSpectrum multisine(const MotionProfile& profile);
+
+/// ISO 8608 road at constant speed u, Eq. MO-12: displacement PSD G(n) = G0 (n/n0)^-2, n0 = 0.1
+/// cycles/m, n = f/u, so that per hertz
+///
+///   G_x(f) = G0 n0^2 u / f^2,   G_a(f) = (2 pi f)^4 G_x(f),   |C_k| = sqrt(2 G_a(f_k) / T)
+///
+/// G0 of classes A to H: 16e-6 4^i m^3, geometric means of ISO 8608:2016, which describes
+/// 0.011 < n < 2.83 cycles/m: the band must lie inside.  rms_m_s2 > 0 scales the whole.
+MotionSpectrum road(const MotionProfile& profile);
+
+}  // namespace stillhand::motion

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contract/config_field.hpp"
+#include "contract/tick.hpp"
+#include "contract/trial.hpp"
+#include "motion/core/motion_trajectory.hpp"
+#include "motion/core/platform_command.hpp"
+#include "motion/core/platform_guard.hpp"
+
+namespace stillhand::motion {
+
+/// Core of the motion service: one platform command a tick.  Inside the armed trial it gives the
+/// trajectory, at any other tick the middle at rest; always through the guard, so that an aborted
+/// or late trial brakes and returns instead of jumping.
+/// A gap in the ticks is stepped through (at most kMaxCatchUp ticks) and flagged kInputGap; a
+/// repeated tick repeats the answer; a tick before the last one is a new sample clock.
+/// step() never allocates, locks or throws; arm() and disarm() may; one thread.
+class MotionGenerator {
+ public:
+  struct Config {
+    PlatformLimits limits;
+
+    template <typename Visitor, typename Self>
+    static void fields(Visitor&& visit, Self& self) {
+      visit.group("limits", self.limits);
+    }
+  };
+
+  /// Longest gap stepped through [ticks]; from any state the guard is at rest well before.
+  static constexpr Tick kMaxCatchUp = 1000;
+
+  /// @throws stillhand::ConfigError when a limit is out of range.
+  explicit MotionGenerator(const Config& config);
+
+  /// Takes over the motion of a trial, in place of the one before.
+  /// @throws stillhand::ConfigError when their lengths differ.
+  void arm(MotionTrajectory trajectory, const Trial& trial);
+  /// Drops the trial: the platform returns to the middle.
+  void disarm() noexcept { trial_ = Trial{}; }
+
+  /// @param tick  the tick the command is for, not negative
+  PlatformCommand step(Tick tick) noexcept;
+
+  [[nodiscard]] const MotionTrajectory& trajectory() const noexcept { return trajectory_; }
+
+ private:
+  PlatformCommand advance(Tick tick) noexcept;
+
+  PlatformGuard guard_;
+  MotionTrajectory trajectory_;
+  Trial trial_;
+  PlatformCommand last_;
+  Tick last_tick_ = -1;
+};
+
+}  // namespace stillhand::motion

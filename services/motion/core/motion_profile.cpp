@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/core/motion_profile.hpp"
+
+#include <array>
+#include <cstddef>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::motion {
+namespace {
+
+constexpr std::array<std::string_view, 5> kWords{"still", "band_noise", "multisine", "road",
+                                                 "ride"};
+
+}  // namespace
+
+std::string_view to_string(MotionKind kind) noexcept {
+  const auto index = static_cast<std::size_t>(kind);
+  return index < kWords.size() ? kWords[index] : "unknown";
+}
+
+MotionKind motion_kind_from(const std::string& word) {
+  for (std::size_t i = 0; i < kWords.size(); ++i) {
+    if (kWords[i] == word) return static_cast<MotionKind>(i);
+  }
+  throw ConfigError("motion.kind", word, "still, band_noise, multisine, road or ride");
+}
+
+}  // namespace stillhand::motion

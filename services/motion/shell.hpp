@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "idl/control_loop.h"
+#include "idl/session.h"
+#include "motion/core/motion_generator.hpp"
+#include "runtime/handover.hpp"
+#include "runtime/service.hpp"
+
+namespace stillhand::motion {
+
+/// The motion generator's process.  Sensed samples are its clock: each one brings the command for a
+/// tick that lies `kLead` ahead, so that the rig always has it in time and two machines' clocks
+/// cannot drift apart.
+class Shell {
+ public:
+  /// Ticks between a command and the tick it is for: four times the DDS deadline.
+  static constexpr Tick kLead = 20;
+
+  /// @param ride  CSV of a recorded ride (a_y [m/s^2]), or empty
+  Shell(runtime::Service& service, const std::filesystem::path& ride);
+  void run() { service_.run(); }
+
+ private:
+  struct Prepared {
+    MotionTrajectory trajectory;
+    Trial trial;
+  };
+
+  void on_sensed(Tick tick);
+  void prepare_when_complete();
+
+  runtime::Service& service_;
+  MotionGenerator::Config config_;
+  MotionGenerator core_;
+  double ride_rate_hz_ = 0.0;
+  std::vector<double> ride_accel_m_s2_;
+  runtime::Publisher<stillhand_msgs::PlatformCommand> command_;
+  runtime::Handover<Prepared> handover_;
+  Prepared* armed_ = nullptr;
+  std::optional<stillhand_msgs::TrialAssignment> assignment_;
+  std::int64_t prepared_trial_ = -1;
+  Tick last_ = -1;
+};
+
+}  // namespace stillhand::motion

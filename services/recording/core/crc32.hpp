@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace stillhand::recording {
+
+/// CRC-32 (IEEE 802.3, reflected polynomial 0xEDB88320) as MCAP uses it, by zlib.  To go on over
+/// several pieces pass the result for the piece before as `before`.  Pure.
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before = 0) noexcept;
+
+}  // namespace stillhand::recording

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace stillhand::recording {
+
+/// What is wrong with a file.
+enum class DamageKind {
+  kNoMagic,         ///< the file does not begin as an MCAP file
+  kNoFooter,        ///< no valid footer: cut off, or its end is damaged; the file was scanned
+  kBadSummary,      ///< footer valid, summary not; the file was scanned
+  kBadRecord,       ///< a record whose length or fields contradict themselves
+  kCutOff,          ///< the last record is not complete
+  kBadChunk,        ///< cannot be unpacked, or its checksum differs: all of the chunk is lost
+  kTooLarge,        ///< a chunk or record beyond McapReaderOptions; not read
+  kUnknownChannel,  ///< messages whose Channel record is lost
+  kUnknownRecord,   ///< a record of a kind unknown here, skipped by the scan
+  kBadDataSection,  ///< found by verify(): the checksum of the whole data section differs
+};
+
+/// One finding.
+struct Damage {
+  DamageKind kind;
+  std::uint64_t offset;      ///< [B] in the file
+  std::uint64_t lost_bytes;  ///< [B] of the file that are not delivered because of it
+  std::string text;          ///< one line for a person
+};
+
+}  // namespace stillhand::recording

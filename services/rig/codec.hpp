@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "idl/control_loop.h"
+#include "rig/core/rig.hpp"
+
+namespace stillhand::rig {
+
+/// Which messages a step used: with RigTruth a recording holds everything the step depended on.
+struct UsedTicks {
+  Tick command = -1;   ///< tick of the platform command, -1 none
+  Tick motor = -1;     ///< tick answered by the motor command, -1 none
+  Tick volition = -1;  ///< tick answered by the operator's force, -1 none
+};
+
+stillhand_msgs::RawSample to_idl(const RigOutput& output, Tick tick);
+stillhand_msgs::RigTruth to_idl(const RigOutput& output, Tick tick, const RigInput& input,
+                                const UsedTicks& used);
+
+/// The input of the step at `tick` from the messages it used; nullptr = none.
+RigInput make_input(Tick tick, const stillhand_msgs::PlatformCommand* command,
+                    const stillhand_msgs::MotorCommand* motor,
+                    const stillhand_msgs::OperatorForce* volition, bool pegged,
+                    bool motor_permitted);
+
+}  // namespace stillhand::rig

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/core/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillhand::rig {
+namespace {
+
+/// Closer and slower than this the peg counts as seated; the step to exactly 0 changes the grip
+/// force by less than 5 mN, a quarter of the load cell's noise.
+constexpr double kSeated_m = 1e-6;
+constexpr double kSeated_m_s = 1e-5;
+
+const StickConfig& checked(const BodyConfig& body, const StickConfig& stick) {
+  validate(body, "rig.body");
+  validate(stick, "rig.stick");
+  return stick;
+}
+
+void add_force(FreeChain::State& x, const FreeChain& chain, double force_n) noexcept {
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += chain.from_force[i] * force_n;
+}
+
+/// Force of the grip on the hand and stick, + right.
+double grip_force(const ChainParameters& p, double stretch_m, double stretch_m_s) noexcept {
+  return p.grip_stiffness_n_m * stretch_m + p.grip_damping_n_s_m * stretch_m_s;
+}
+
+}  // namespace
+
+Body::Muscles Body::muscles(const BodyConfig& body, const StickConfig& stick, bool relaxed,
+                            double period_s) {
+  const auto parameters = chain_parameters(body, stick, relaxed);
+  return {parameters, free_chain(parameters, period_s), held_chain(parameters, period_s)};
+}
+
+Body::Body(const BodyConfig& body, const StickConfig& stick, double period_s)
+    : stick_(checked(body, stick)),
+      period_s_(period_s),
+      stop_m_(stick.stop_angle_rad * stick.lever_m),
+      seating_keep_(std::exp(-period_s / stick.peg_seat_time_s)),
+      relaxed_(muscles(body, stick, true, period_s)),
+      tense_(muscles(body, stick, false, period_s)) {}
+
+double Body::seating_velocity() const noexcept {
+  const double tau_s = stick_.peg_seat_time_s;
+  const double sum_m_s = x_[kStickRate] + x_[kStick] / tau_s;
+  return (x_[kStickRate] - sum_m_s * period_s_ / tau_s) * seating_keep_;
+}
+
+double Body::stop_force(const FreeChain::State& ahead, const FreeChain& chain) const noexcept {
+  const double side = ahead[kStick] < 0.0 ? -1.0 : 1.0;
+  const double depth_m = side * ahead[kStick] - stop_m_;
+  if (depth_m <= 0.0) return 0.0;
+  const double k = stick_.stop_stiffness_n_m;
+  const double c = stick_.stop_damping_n_s_m;
+  // Implicit: the depth and speed that the force acts on are those at the end of the tick.
+  const double push_n = (k * depth_m + c * side * ahead[kStickRate]) /
+                        (1.0 + k * chain.from_force[kStick] + c * chain.from_force[kStickRate]);
+  return -side * std::max(0.0, push_n);
+}
+
+void Body::end_at_steel() noexcept {
+  const double steel_m = stop_m_ + stick_.stop_travel_m;
+  if (std::abs(x_[kStick]) <= steel_m) return;
+  x_[kStick] = std::copysign(steel_m, x_[kStick]);
+  if (x_[kStick] * x_[kStickRate] > 0.0) x_[kStickRate] = 0.0;
+}
+
+double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexcept {
+  const double applied_n = input.motor_force_n + input.volitional_force_n;
+  auto ahead = chain.free.step(x_, last_acceleration_m_s2_, input.acceleration_m_s2, applied_n);
+
+  const double stop_n = stop_force(ahead, chain.free);
+  if (stop_n != 0.0) {
+    flags |= kAtStop;
+    add_force(ahead, chain.free, stop_n);
+  }
+  // The force that would end the tick at the wanted speed: rest for friction, which can't pull
+  // harder than F_c, the way to the centre for the peg, which can.
+  double brake_n = 0.0;
+  if (input.pegged) {
+    brake_n = (seating_velocity() - ahead[kStickRate]) / chain.free.from_force[kStickRate];
+  } else {
+    brake_n = std::clamp(-ahead[kStickRate] / chain.free.from_force[kStickRate],
+                         -stick_.coulomb_friction_n, stick_.coulomb_friction_n);
+  }
+  add_force(ahead, chain.free, brake_n);
+  x_ = ahead;
+  end_at_steel();
+
+  const auto& p = chain.parameters;
+  const double below_n = input.motor_force_n + stop_n + brake_n -
+                         p.viscous_damping_n_s_m * x_[kStickRate] -
+                         p.centring_stiffness_n_m * x_[kStick];
+  const double above_n = grip_force(p, x_[kArm] - x_[kStick], x_[kArmRate] - x_[kStickRate]) +
+                         input.volitional_force_n - p.cell_mass_kg * input.acceleration_m_s2;
+  const double above_share = p.cell_mass_kg / p.stick_mass_kg;
+  return (1.0 - above_share) * above_n - above_share * below_n;
+}
+
+void Body::stay(const Input& input, const Muscles& chain) noexcept {
+  const HeldChain::State ahead =
+      chain.held.step({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]}, last_acceleration_m_s2_,
+                      input.acceleration_m_s2, 0.0);
+  x_ = {ahead[kTrunk], ahead[kTrunkRate], ahead[kArm], ahead[kArmRate], 0.0, 0.0};
+}
+
+Body::Output Body::step(const Input& input) noexcept {
+  Flags flags = kGood;
+  const Muscles& chain = input.pegged ? relaxed_ : tense_;
+  const auto& p = chain.parameters;
+  pegged_ = input.pegged;
+  seated_ =
+      input.pegged &&
+      (seated_ || (std::abs(x_[kStick]) < kSeated_m && std::abs(x_[kStickRate]) < kSeated_m_s));
+
+  copy_ = chain.held.step(copy_, last_acceleration_m_s2_, input.acceleration_m_s2, 0.0);
+  const double held_n =
+      grip_force(p, copy_[kArm], copy_[kArmRate]) - p.cell_mass_kg * input.acceleration_m_s2;
+  double hand_n = 0.0;
+  if (seated_) {
+    stay(input, chain);
+    hand_n = grip_force(p, x_[kArm], x_[kArmRate]) - p.cell_mass_kg * input.acceleration_m_s2 +
+             input.volitional_force_n;
+  } else {
+    hand_n = move(input, chain, flags);
+  }
+  last_acceleration_m_s2_ = input.acceleration_m_s2;
+  return {.theta_rad = x_[kStick] / stick_.lever_m,
+          .omega_rad_s = x_[kStickRate] / stick_.lever_m,
+          .feedthrough_force_n = held_n,
+          .hand_force_n = hand_n,
+          .flags = flags};
+}
+
+double Body::energy_j() const noexcept {
+  const auto& p = (pegged_ ? relaxed_ : tense_).parameters;
+  const auto half_square = [](double factor, double x) { return 0.5 * factor * x * x; };
+  return half_square(p.trunk_mass_kg, x_[kTrunkRate]) + half_square(p.arm_mass_kg, x_[kArmRate]) +
+         half_square(p.stick_mass_kg, x_[kStickRate]) +
+         half_square(p.seat_stiffness_n_m, x_[kTrunk]) +
+         half_square(p.shoulder_stiffness_n_m, x_[kArm] - x_[kTrunk]) +
+         half_square(p.grip_stiffness_n_m, x_[kArm] - x_[kStick]) +
+         half_square(p.centring_stiffness_n_m, x_[kStick]);
+}
+
+}  // namespace stillhand::rig

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <complex>
+
+#include "rig/core/body_config.hpp"
+
+namespace stillhand::rig {
+
+/// Biodynamic feedthrough of the linear body, README Eq. RG-6: load-cell force per platform
+/// acceleration with the stick held, H(jw) = F'/A [N per m/s^2 = kg]; about -3.2 at 0 Hz.
+/// Source: paper Eq. 1, Fig. 6.  Pure.
+/// @param relaxed       true: idle hand (pegged);  false: co-contracted (tracking)
+/// @param frequency_hz  [Hz], finite, zero or more
+std::complex<double> feedthrough_response(const BodyConfig& body, const StickConfig& stick,
+                                          bool relaxed, double frequency_hz);
+
+/// Displacement of the stick at the hand per force applied to it there, with the body attached,
+/// README Eq. RG-7: X_j/F_t [m/N]; Coulomb friction and stops left out.  At 0 Hz it is the series
+/// compliance of seat, shoulder and grip (beside the centring spring).  Pure.
+std::complex<double> hand_admittance(const BodyConfig& body, const StickConfig& stick, bool relaxed,
+                                     double frequency_hz);
+
+}  // namespace stillhand::rig

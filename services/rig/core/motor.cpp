@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/core/motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillhand::rig {
+namespace {
+
+const MotorConfig& checked(const MotorConfig& config) {
+  validate(config, "rig.motor");
+  return config;
+}
+
+}  // namespace
+
+Motor::Motor(const MotorConfig& config, double lever_m)
+    : envelope_(checked(config).limits),
+      max_age_ticks_(config.max_motor_age_ticks),
+      current_limit_n_(config.current_limit_a * config.torque_constant_n_m_a *
+                       config.capstan_ratio / lever_m),
+      lag_blend_(1.0 - std::exp(-kControlPeriod_s / config.lag_s)) {}
+
+Motor::Output Motor::step(const MotorDemand& demand) noexcept {
+  Flags flags = kGood;
+  if (!demand.permitted) flags |= kInhibited;
+  const bool fresh = demand.age_ticks >= 0 && demand.age_ticks <= max_age_ticks_;
+  const bool finite = std::isfinite(demand.force_n);
+  if (demand.valid && !fresh) flags |= kInputStale;
+  if (demand.valid && !finite) flags |= kInputInvalid;
+  const bool usable = demand.permitted && demand.valid && fresh && finite;
+
+  if (usable) {
+    const double target_n = std::clamp(demand.force_n, -current_limit_n_, current_limit_n_);
+    if (target_n != demand.force_n) flags |= kSaturated;
+    lagged_n_ += lag_blend_ * (target_n - lagged_n_);
+  }
+  const auto out = envelope_.step(lagged_n_, usable);
+  // After a gap the lag starts from the force that acts, not from the one before the gap.
+  if (!usable) lagged_n_ = out.force_n;
+  return {out.force_n, flags | out.flags};
+}
+
+}  // namespace stillhand::rig

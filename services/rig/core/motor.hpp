@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "contract/config_field.hpp"
+#include "contract/flag.hpp"
+#include "contract/tick.hpp"
+#include "signal/force_envelope.hpp"
+
+namespace stillhand::rig {
+
+/// DC motor, capstan and the drive's own barrier.
+struct MotorConfig {
+  double torque_constant_n_m_a = 0.0302;
+  double capstan_ratio = 10.0;
+  double current_limit_a = 10.0;
+  double lag_s = 0.0015;
+  std::int64_t max_motor_age_ticks = 10;
+  signal::ForceLimits limits;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("torque_constant_n_m_a", self.torque_constant_n_m_a, Range{0.001, 1.0},
+          "[N m/A] maxon RE 40, 150 W, 24 V winding, data sheet");
+    visit("capstan_ratio", self.capstan_ratio, Range{1.0, 50.0},
+          "[-] stick drum over motor pulley");
+    visit("current_limit_a", self.current_limit_a, Range{0.1, 40.0},
+          "[A] of the amplifier; 6 A continuous for the RE 40, 10 A for seconds");
+    visit("lag_s", self.lag_s, Range{0.0002, 0.02},
+          "[s] current loop and capstan cable, first order; 1 to 2 ms");
+    visit("max_motor_age_ticks", self.max_motor_age_ticks, Range{1.0, 100.0},
+          "[ticks] oldest sample that a motor command may answer");
+    visit.group("limits", self.limits);
+  }
+};
+
+/// Motor command as the drive sees it.
+struct MotorDemand {
+  bool valid;      ///< false: none arrived yet
+  Tick age_ticks;  ///< since the sample that it answers
+  double force_n;  ///< at the hand, + right
+  bool permitted;  ///< the interlock
+};
+
+/// Motor, README Eq. RG-8: current limit, first-order lag, then the drive's last barrier, which
+/// takes any force to exactly zero within `limits.ramp_ticks` of a command that is missing, too
+/// old, not finite or not permitted.  Pure; never allocates or throws.
+class Motor {
+ public:
+  struct Output {
+    double force_n;  ///< at the hand, + right
+    Flags
+        flags;  ///< kInhibited, kInputStale, kInputInvalid, kSaturated, kSlewLimited, kRampingDown
+  };
+
+  /// @param lever_m  hand to pivot [m]
+  /// @throws stillhand::ConfigError when a field is outside its range.
+  Motor(const MotorConfig& config, double lever_m);
+
+  Output step(const MotorDemand& demand) noexcept;
+
+ private:
+  signal::ForceEnvelope envelope_;
+  std::int64_t max_age_ticks_;
+  double current_limit_n_;  ///< force at the hand at the current limit
+  double lag_blend_;
+  double lagged_n_ = 0.0;
+};
+
+}  // namespace stillhand::rig

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/core/rig.hpp"
+
+#include <cmath>
+
+namespace stillhand::rig {
+namespace {
+
+const RigConfig& checked(const RigConfig& config) {
+  validate(config, "rig");
+  return config;
+}
+
+/// A person's force changes as fast as it likes within its bound; a lost one fades in 50 ticks.
+signal::ForceLimits volitional_limits(const RigConfig& config) {
+  return {.max_force_n = config.max_operator_force_n, .max_slew_n_s = 20000.0, .ramp_ticks = 50};
+}
+
+}  // namespace
+
+Rig::Rig(const RigConfig& config)
+    : max_operator_age_ticks_(checked(config).max_operator_age_ticks),
+      platform_(config.platform),
+      motor_(config.motor, config.stick.lever_m),
+      operator_envelope_(volitional_limits(config)),
+      body_(config.body, config.stick),
+      sensors_(config.sensors, static_cast<std::uint64_t>(config.seed)) {}
+
+signal::ForceEnvelope::Output Rig::volitional(const RigInput& input) noexcept {
+  Flags flags = kGood;
+  const bool fresh =
+      input.operator_age_ticks >= 0 && input.operator_age_ticks <= max_operator_age_ticks_;
+  if (input.operator_valid && !fresh) flags |= kInputStale;
+  if (!input.operator_valid) return operator_envelope_.step(0.0, false);
+  auto out = operator_envelope_.step(input.operator_force_n, fresh);
+  out.flags |= flags;
+  return out;
+}
+
+RigOutput Rig::step(const RigInput& input) noexcept {
+  const auto platform =
+      platform_.step({input.command_valid, input.command_position_m, input.command_velocity_m_s,
+                      input.command_acceleration_m_s2});
+  const auto motor = motor_.step(
+      {input.motor_valid, input.motor_age_ticks, input.motor_force_n, input.motor_permitted});
+  const auto person = volitional(input);
+  const auto body =
+      body_.step({platform.state.acceleration_m_s2, motor.force_n, person.force_n, input.pegged});
+  const auto sensed = sensors_.step({.accel_x_m_s2 = 0.0,
+                                     .accel_y_m_s2 = platform.state.acceleration_m_s2,
+                                     .accel_z_m_s2 = kGravity_m_s2,
+                                     .force_n = body.hand_force_n,
+                                     .theta_rad = body.theta_rad,
+                                     .roll_rad = 0.0});
+  return {.raw = sensed.raw,
+          .truth = {.platform_position_m = platform.state.position_m,
+                    .platform_velocity_m_s = platform.state.velocity_m_s,
+                    .platform_acceleration_m_s2 = platform.state.acceleration_m_s2,
+                    .theta_rad = body.theta_rad,
+                    .omega_rad_s = body.omega_rad_s,
+                    .feedthrough_force_n = body.feedthrough_force_n,
+                    .motor_force_n = motor.force_n,
+                    .volitional_force_n = person.force_n,
+                    .hand_force_n = body.hand_force_n},
+          .flags = platform.flags | motor.flags | person.flags | body.flags | sensed.flags};
+}
+
+}  // namespace stillhand::rig

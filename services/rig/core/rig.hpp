@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "contract/config_field.hpp"
+#include "contract/flag.hpp"
+#include "contract/tick.hpp"
+#include "rig/core/body.hpp"
+#include "rig/core/motor.hpp"
+#include "rig/core/platform.hpp"
+#include "rig/core/sensors.hpp"
+#include "signal/force_envelope.hpp"
+
+namespace stillhand::rig {
+
+/// The whole simulated rig.
+struct RigConfig {
+  std::int64_t seed = 1;
+  double max_operator_force_n = 60.0;
+  std::int64_t max_operator_age_ticks = 100;
+  PlatformConfig platform;
+  BodyConfig body;
+  StickConfig stick;
+  MotorConfig motor;
+  SensorConfig sensors;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] of the sensors' noise");
+    visit("max_operator_force_n", self.max_operator_force_n, Range{0.0, 60.0},
+          "[N] bound of the volitional force at the hand");
+    visit("max_operator_age_ticks", self.max_operator_age_ticks, Range{1.0, 10000.0},
+          "[ticks] oldest volitional force that still acts; older ones fade to zero");
+    visit.group("platform", self.platform);
+    visit.group("body", self.body);
+    visit.group("stick", self.stick);
+    visit.group("motor", self.motor);
+    visit.group("sensors", self.sensors);
+  }
+};
+
+/// Everything that reaches the rig in one tick.
+struct RigInput {
+  bool command_valid = false;  ///< a platform command for this tick arrived
+  double command_position_m = 0.0;
+  double command_velocity_m_s = 0.0;
+  double command_acceleration_m_s2 = 0.0;
+  bool motor_valid = false;       ///< a motor command has arrived
+  Tick motor_age_ticks = 0;       ///< since the sample that it answers
+  double motor_force_n = 0.0;     ///< at the hand, + right
+  bool operator_valid = false;    ///< a volitional force has arrived
+  Tick operator_age_ticks = 0;    ///< since the sample that it answers
+  double operator_force_n = 0.0;  ///< at the hand, + right
+  bool pegged = false;            ///< the peg holds the stick at theta = 0
+  bool motor_permitted = false;   ///< interlock: every required process alive, and a trial runs
+};
+
+/// What only a simulated rig can tell; recorded for evaluation, never used for control.
+struct RigTruth {
+  double platform_position_m, platform_velocity_m_s, platform_acceleration_m_s2;
+  double theta_rad, omega_rad_s;
+  double feedthrough_force_n;  ///< f'_b: the body's force on the stick were it held at 0
+  double motor_force_n;        ///< applied, after limits and lag
+  double volitional_force_n;   ///< applied, after its bound
+  double hand_force_n;         ///< through the load cell, without noise
+};
+
+struct RigOutput {
+  RawSample raw;
+  RigTruth truth;
+  Flags flags;  ///< of every part, or-ed
+};
+
+/// Simulated platform, subject, stick, motor and sensors: the stand-in for the hardware.
+///
+///   command -> Platform -> a_y -> Body (+ Motor, volitional force) -> Sensors -> RawSample
+///
+/// A volitional force that is stale or not finite fades to zero within 50 ticks; an absent one
+/// (operator_valid false) is none.  Source: paper section III-C; README Eq. RG-1 to RG-10.
+/// Pure: same config and inputs, same bits out; step() never allocates, locks or throws, and its
+/// output is finite and bounded for every input.
+class Rig {
+ public:
+  /// @throws stillhand::ConfigError naming the first field that is out of range.
+  explicit Rig(const RigConfig& config);
+
+  RigOutput step(const RigInput& input) noexcept;
+
+ private:
+  signal::ForceEnvelope::Output volitional(const RigInput& input) noexcept;
+
+  std::int64_t max_operator_age_ticks_;
+  Platform platform_;
+  Motor motor_;
+  signal::ForceEnvelope operator_envelope_;
+  Body body_;
+  Sensors sensors_;
+};
+
+}  // namespace stillhand::rig

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/shell.hpp"
+
+#include <algorithm>
+
+namespace stillhand::rig {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+// Later than this the schedule is laid anew instead of caught up: a burst of ticks would look to
+// the loop like a motor command growing old.
+constexpr std::int64_t kMaxCatchUp_ns = 5 * kPeriod_ns;
+
+RigConfig seeded(RigConfig config, std::uint64_t seed) {
+  constexpr std::uint64_t kSeedMask = 0xffffffffu;  // RigConfig::seed is a 32-bit number
+  config.seed = static_cast<std::int64_t>(seed & kSeedMask);
+  return config;
+}
+
+}  // namespace
+
+Shell::Shell(runtime::Service& service)
+    : service_(service),
+      core_(seeded(service.config<RigConfig>(), service.options().seed)),
+      raw_(service.bus().publisher<stillhand_msgs::RawSample>(topics::kRawSample)),
+      truth_(service.bus().publisher<stillhand_msgs::RigTruth>(topics::kRigTruth)) {
+  for (auto& command : commands_) command.tick(-1);
+  // "None" until the first one comes.
+  stillhand_msgs::MotorCommand no_motor;
+  no_motor.tick(-1);
+  for (int i = 0; i < 3; ++i) motor_.store(no_motor);
+  stillhand_msgs::OperatorForce no_force;
+  no_force.tick(-1);
+  for (int i = 0; i < 3; ++i) volition_.store(no_force);
+
+  runtime::Bus& bus = service.bus();
+  bus.subscribe<stillhand_msgs::PlatformCommand>(
+      topics::kPlatformCommand,
+      [this](const auto& message, const auto&) { arriving_commands_.push(message); });
+  bus.subscribe<stillhand_msgs::MotorCommand>(
+      topics::kMotorCommand, [this](const auto& message, const auto&) { motor_.store(message); });
+  bus.subscribe<stillhand_msgs::OperatorForce>(
+      topics::kOperatorForce,
+      [this](const auto& message, const auto&) { volition_.store(message); });
+  // The rig watches everybody's life sign through this topic; its content is not used.
+  bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
+                                               [](const auto&, const auto&) {});
+  service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
+    announced_.store({trial, message.session()});
+    service_.note_armed(trial.number);
+  });
+  service.on_incident([this](const runtime::BusIncident& incident) {
+    if (incident.kind == runtime::BusIncident::Kind::kDeadlineMissed &&
+        incident.topic == &topics::kMotorCommand) {
+      motor_deadline_missed_.store(true, std::memory_order_relaxed);
+    }
+  });
+}
+
+void Shell::run() {
+  service_.run([this] {
+    std::int64_t due_ns = runtime::monotonic_ns();
+    Tick tick = 0;
+    while (!service_.stop().requested()) {
+      due_ns += kPeriod_ns;
+      runtime::sleep_until_ns(due_ns);
+      if (announced_.load().session == stillhand_msgs::SESSION_WAITING) continue;
+      const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
+      if (late_ns > kMaxCatchUp_ns) {
+        due_ns += late_ns;
+        service_.note_event(stillhand_msgs::EVENT_CYCLE_MISSED, "sample clock held up",
+                            static_cast<double>(late_ns) / 1000.0);
+      }
+      tick_once(tick++);
+    }
+  });
+}
+
+void Shell::tick_once(Tick tick) {
+  const Trial trial = announced_.load().trial;
+  const bool permitted = interlock_.step(trial, tick, service_.bus().peers_alive());
+  if (interlock_.latched(trial) != told_latch_) {
+    told_latch_ = !told_latch_;
+    if (told_latch_) {
+      service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, "a process is missing");
+    }
+  }
+  const auto* command = command_for(tick);
+  const auto* motor = motor_now();
+  const auto& newest_force = volition_.load();
+  const auto* volition = newest_force.tick() >= 0 ? &newest_force : nullptr;
+  const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
+  const RigInput input = make_input(tick, command, motor, volition, pegged, permitted);
+  const RigOutput output = core_.step(input);
+
+  auto raw = to_idl(output, tick);
+  raw_.write(raw);
+  UsedTicks used;
+  if (command != nullptr) used.command = command->tick();
+  if (motor != nullptr) used.motor = motor->tick();
+  if (volition != nullptr) used.volition = volition->tick();
+  auto truth = to_idl(output, tick, input, used);
+  truth_.write(truth);
+  service_.note_tick(tick);
+}
+
+const stillhand_msgs::PlatformCommand* Shell::command_for(Tick tick) {
+  arriving_commands_.consume_all([this](const stillhand_msgs::PlatformCommand& command) {
+    if (command.tick() >= 0) {
+      commands_[static_cast<std::size_t>(command.tick()) % kCommandsAhead] = command;
+    }
+  });
+  const auto& slot = commands_[static_cast<std::size_t>(tick) % kCommandsAhead];
+  return slot.tick() == tick ? &slot : nullptr;
+}
+
+const stillhand_msgs::MotorCommand* Shell::motor_now() {
+  const auto& newest = motor_.load();
+  // A missed DDS deadline voids what is there; the next command counts again.
+  if (motor_deadline_missed_.exchange(false, std::memory_order_relaxed)) {
+    motor_void_tick_ = newest.tick();
+  }
+  return newest.tick() > motor_void_tick_ ? &newest : nullptr;
+}
+
+}  // namespace stillhand::rig

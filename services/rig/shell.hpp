@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+
+#include "idl/control_loop.h"
+#include "rig/codec.hpp"
+#include "rig/core/rig.hpp"
+#include "runtime/interlock.hpp"
+#include "runtime/latest_value.hpp"
+#include "runtime/service.hpp"
+
+namespace stillhand::rig {
+
+/// The rig's process: one step each millisecond on an absolute schedule.  It holds the sample clock
+/// that everybody else answers to, so it alone runs a loop of its own.
+class Shell {
+ public:
+  explicit Shell(runtime::Service& service);
+  void run();
+
+ private:
+  struct Announced {
+    Trial trial;
+    stillhand_msgs::SessionState session = stillhand_msgs::SESSION_WAITING;
+  };
+  /// Platform commands arrive ahead of their tick; this many are kept.
+  static constexpr std::size_t kCommandsAhead = 64;
+
+  void tick_once(Tick tick);
+  const stillhand_msgs::PlatformCommand* command_for(Tick tick);
+  const stillhand_msgs::MotorCommand* motor_now();
+
+  runtime::Service& service_;
+  Rig core_;
+  runtime::Interlock interlock_;
+  bool told_latch_ = false;
+
+  runtime::Publisher<stillhand_msgs::RawSample> raw_;
+  runtime::Publisher<stillhand_msgs::RigTruth> truth_;
+
+  // From the receiving thread.
+  boost::lockfree::spsc_queue<stillhand_msgs::PlatformCommand, boost::lockfree::capacity<128>>
+      arriving_commands_;
+  runtime::LatestValue<stillhand_msgs::MotorCommand> motor_;
+  runtime::LatestValue<stillhand_msgs::OperatorForce> volition_;
+  runtime::LatestValue<Announced> announced_;
+  std::atomic<bool> motor_deadline_missed_{false};
+
+  // Of the loop.
+  std::array<stillhand_msgs::PlatformCommand, kCommandsAhead> commands_;
+  Tick motor_void_tick_ = -1;
+};
+
+}  // namespace stillhand::rig

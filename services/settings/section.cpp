@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "settings/section.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::settings {
+namespace {
+
+std::string place_of(const YAML::Mark& mark, const std::string& source_name) {
+  if (mark.is_null()) return source_name;
+  return source_name + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
+}
+
+Entry converted(const YAML::Node& node, const std::string& source_name);
+
+void add_children(Entry& map, const YAML::Node& node, const std::string& source_name) {
+  for (const auto& pair : node) {
+    const std::string place = place_of(pair.first.Mark(), source_name);
+    if (!pair.first.IsScalar()) throw ConfigError(place, "a key that is no word", "a plain name");
+    Entry child = converted(pair.second, source_name);
+    child.key = pair.first.Scalar();
+    child.key_place = place;
+    for (const Entry& sibling : map.children) {
+      if (sibling.key == child.key) {
+        throw ConfigError(place, "a second \"" + child.key + "\"",
+                          "each key once; the first stands at " + sibling.key_place);
+      }
+    }
+    map.children.push_back(std::move(child));
+  }
+}
+
+Entry converted(const YAML::Node& node, const std::string& source_name) {
+  Entry entry;
+  entry.place = entry.key_place = place_of(node.Mark(), source_name);
+  if (node.IsMap()) {
+    entry.kind = Entry::Kind::kMap;
+    add_children(entry, node, source_name);
+  } else if (node.IsSequence()) {
+    entry.kind = Entry::Kind::kSequence;
+    for (const auto& item : node) entry.children.push_back(converted(item, source_name));
+  } else if (node.IsScalar()) {
+    entry.kind = Entry::Kind::kScalar;
+    entry.text = node.Scalar();
+    entry.quoted = node.Tag() == "!";
+  }
+  return entry;
+}
+
+// Edit distance of Levenshtein (1966): insertions, deletions, substitutions, each one.
+std::size_t edit_distance(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t substituted = diagonal + (from[i] == to[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string interval(Range range) {
+  return "a value from " + shown(range.min) + " to " + shown(range.max);
+}
+
+// The whole text as a number; from_chars knows neither a leading + nor other locales.
+template <typename Number>
+std::optional<Number> number_from(const Entry& entry) {
+  if (entry.kind != Entry::Kind::kScalar || entry.quoted) return std::nullopt;
+  Number value{};
+  const char* begin = entry.text.data();
+  const char* end = begin + entry.text.size();
+  const auto [rest, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return value;
+}
+
+std::string got_of(const Entry& entry) {
+  switch (entry.kind) {
+    case Entry::Kind::kNull:
+      return "nothing";
+    case Entry::Kind::kMap:
+      return "a map";
+    case Entry::Kind::kSequence:
+      return "a list";
+    case Entry::Kind::kScalar:
+      break;
+  }
+  return entry.quoted ? "\"" + entry.text + "\"" : entry.text;
+}
+
+}  // namespace
+
+Entry parse_text(const std::string& yaml, const std::string& source_name) {
+  YAML::Node root;
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() > 1) {
+      throw ConfigError(source_name, std::to_string(documents.size()) + " documents", "one");
+    }
+    if (!documents.empty()) root = documents.front();
+  } catch (const YAML::Exception& error) {
+    throw ConfigError(place_of(error.mark, source_name), error.msg, "well-formed YAML");
+  }
+  Entry top = converted(root, source_name);
+  if (top.kind == Entry::Kind::kNull) top.kind = Entry::Kind::kMap;
+  if (top.kind != Entry::Kind::kMap) throw ConfigError(top.place, got_of(top), "a map of settings");
+  return top;
+}
+
+Entry parse_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw ConfigError(file.string(), "no such file", "a YAML file of settings");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  const std::string yaml{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw ConfigError(file.string(), "an unreadable file", "a file one may read");
+  return parse_text(yaml, file.string());
+}
+
+SectionReader::SectionReader(const Entry& section, std::string scope)
+    : section_(section), scope_(std::move(scope)) {
+  if (section.kind != Entry::Kind::kMap && section.kind != Entry::Kind::kNull) {
+    throw ConfigError(section.place + ": " + scope_, got_of(section), "a map of settings");
+  }
+}
+
+const Entry* SectionReader::find(std::string_view name) {
+  names_.emplace_back(name);
+  const auto found = std::find_if(section_.children.begin(), section_.children.end(),
+                                  [&](const Entry& child) { return child.key == name; });
+  return found == section_.children.end() ? nullptr : &*found;
+}
+
+void SectionReader::fail(const Entry& entry, const std::string& want) const {
+  const std::string& place = entry.kind == Entry::Kind::kNull ? entry.key_place : entry.place;
+  throw ConfigError(place + ": " + scope_ + "." + entry.key, got_of(entry), want);
+}
+
+void SectionReader::operator()(std::string_view name, double& value, Range range,
+                               std::string_view /*doc*/) {
+  const Entry* entry = find(name);
+  if (entry == nullptr) return;
+  const auto number = number_from<double>(*entry);
+  if (!number || !(*number >= range.min && *number <= range.max) || !std::isfinite(*number)) {
+    fail(*entry, interval(range));
+  }
+  value = *number;
+}
+
+void SectionReader::operator()(std::string_view name, std::int64_t& value, Range range,
+                               std::string_view /*doc*/) {
+  const Entry* entry = find(name);
+  if (entry == nullptr) return;
+  const auto number = number_from<std::int64_t>(*entry);
+  const double as_double = number ? static_cast<double>(*number) : std::nan("");
+  if (!(as_double >= range.min && as_double <= range.max)) {
+    fail(*entry, "a whole number, " + interval(range));
+  }
+  value = *number;
+}
+
+void SectionReader::operator()(std::string_view name, bool& value, Range range,
+                               std::string_view /*doc*/) {
+  const Entry* entry = find(name);
+  if (entry == nullptr) return;
+  const bool plain = entry->kind == Entry::Kind::kScalar && !entry->quoted;
+  if (!plain || (entry->text != "true" && entry->text != "false")) fail(*entry, "true or false");
+  const bool wanted = entry->text == "true";
+  if ((wanted ? 1.0 : 0.0) < range.min || (wanted ? 1.0 : 0.0) > range.max) {
+    fail(*entry, wanted ? "false" : "true");
+  }
+  value = wanted;
+}
+
+void SectionReader::operator()(std::string_view name, std::string& value, Range range,
+                               std::string_view /*doc*/) {
+  const Entry* entry = find(name);
+  if (entry == nullptr) return;
+  const auto length = static_cast<double>(entry->text.size());
+  if (entry->kind != Entry::Kind::kScalar || !(length >= range.min && length <= range.max)) {
+    fail(*entry, "text of " + shown(range.min) + " to " + shown(range.max) + " characters");
+  }
+  value = entry->text;
+}
+
+void SectionReader::refuse_unknown() const {
+  for (const Entry& child : section_.children) {
+    if (std::find(names_.begin(), names_.end(), child.key) != names_.end()) continue;
+    const auto nearest =
+        std::min_element(names_.begin(), names_.end(), [&](const auto& a, const auto& b) {
+          return edit_distance(child.key, a) < edit_distance(child.key, b);
+        });
+    throw ConfigError(child.key_place + ": " + scope_ + "." + child.key, "an unknown key",
+                      nearest == names_.end() ? "no keys here" : "\"" + *nearest + "\" perhaps");
+  }
+}
+
+}  // namespace stillhand::settings

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contract/config_field.hpp"
+
+namespace stillhand::settings {
+
+/// One value of a settings file with the place it stands at.
+struct Entry {
+  enum class Kind : std::uint8_t { kNull, kScalar, kMap, kSequence };
+
+  Kind kind = Kind::kNull;
+  std::string key;
+  std::string text;             ///< scalar only
+  bool quoted = false;          ///< scalar in quotes: a string, never a number
+  std::string place;            ///< "file:line:column" of the value, counted from 1
+  std::string key_place;        ///< the same of its key
+  std::vector<Entry> children;  ///< map: in the order of the file
+};
+
+/// Parses one YAML document.  An empty document is an empty map.
+/// @throws stillhand::ConfigError for malformed YAML, a duplicate key, or a top level that is no
+/// map.
+Entry parse_text(const std::string& yaml, const std::string& source_name);
+/// @throws stillhand::ConfigError also when the file is missing or unreadable.
+Entry parse_file(const std::filesystem::path& file);
+
+/// Visitor of a Config's `fields()` that overwrites the fields the section names.
+class SectionReader {
+ public:
+  /// @param section  outlives the reader; a map or null (nothing set)
+  /// @param scope    prefix of keys in messages
+  /// @throws stillhand::ConfigError when the section is no map.
+  SectionReader(const Entry& section, std::string scope);
+
+  void operator()(std::string_view name, double& value, Range range, std::string_view doc);
+  void operator()(std::string_view name, std::int64_t& value, Range range, std::string_view doc);
+  void operator()(std::string_view name, bool& value, Range range, std::string_view doc);
+  void operator()(std::string_view name, std::string& value, Range range, std::string_view doc);
+
+  template <typename Group>
+  void group(std::string_view name, Group& fields) {
+    if (const Entry* entry = find(name)) {
+      SectionReader inner(*entry, scope_ + "." + std::string(name));
+      Group::fields(inner, fields);
+      inner.refuse_unknown();
+    }
+  }
+
+  /// Call after the last field.  @throws stillhand::ConfigError naming the first key that no field
+  /// has, and the nearest name that one has.
+  void refuse_unknown() const;
+
+ private:
+  const Entry* find(std::string_view name);
+  [[noreturn]] void fail(const Entry& entry, const std::string& want) const;
+
+  const Entry& section_;
+  std::string scope_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace stillhand::settings

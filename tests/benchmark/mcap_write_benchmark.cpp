@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writing a recording to a file, beside a plain write() of the same messages, and reading it back.
+// Messages are 92 bytes, the size of a Sensed sample in CDR, filled like one: a slow sine per
+// field.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "recording/core/mcap_reader.hpp"
+#include "recording/core/mcap_writer.hpp"
+#include "recording/file_io.hpp"
+
+namespace stillhand::recording {
+namespace {
+
+constexpr std::size_t kMessageBytes = 92;
+constexpr std::size_t kBatch = 50'000;  // 50 s of one topic at 1 kHz
+
+using Message = std::array<std::byte, kMessageBytes>;
+
+const std::vector<Message>& messages() {
+  static const std::vector<Message> all = [] {
+    std::vector<Message> made(kBatch);
+    for (std::size_t n = 0; n < kBatch; ++n) {
+      for (std::size_t field = 0; 4 + 8 * (field + 1) <= kMessageBytes; ++field) {
+        const double value = std::sin(1e-3 * static_cast<double>(n * (field + 1)));
+        std::memcpy(made[n].data() + 4 + 8 * field, &value, sizeof(value));
+      }
+    }
+    return made;
+  }();
+  return all;
+}
+
+std::string path(const char* name) {
+  return (std::filesystem::temp_directory_path() / name).string();
+}
+
+void set_rates(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kBatch));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(kBatch * kMessageBytes));
+}
+
+void plain_write(benchmark::State& state) {
+  const std::string file = path("stillhand_plain.bin");
+  for (auto _ : state) {
+    FileSink sink(file, Existing::kReplace);
+    for (const Message& message : messages()) {
+      if (!sink.write(message).ok()) state.SkipWithError("write failed");
+    }
+  }
+  set_rates(state);
+  std::filesystem::remove(file);
+}
+BENCHMARK(plain_write)->Unit(benchmark::kMillisecond);
+
+void write_all(ByteSink& sink, Compression compression, std::size_t chunk_bytes,
+               benchmark::State& state) {
+  McapWriter writer(sink, {chunk_bytes, compression});
+  const auto channel = writer.add_channel("stillhand/sensed", 0, "cdr");
+  std::uint32_t sequence = 0;
+  for (const Message& message : messages()) {
+    const std::uint64_t time_ns = 1'000'000ull * sequence;
+    if (!writer.write(channel, sequence++, time_ns, time_ns, message).ok()) {
+      state.SkipWithError("write failed");
+    }
+  }
+  // No close(): it waits for the disk, which plain_write does not.
+  if (!writer.flush_chunk().ok()) state.SkipWithError("write failed");
+}
+
+void mcap_write(benchmark::State& state) {
+  const auto compression = static_cast<Compression>(state.range(0));
+  const std::string file = path("stillhand_benchmark.mcap");
+  std::uint64_t size = 0;
+  for (auto _ : state) {
+    FileSink sink(file, Existing::kReplace);
+    write_all(sink, compression, static_cast<std::size_t>(state.range(1)) * 1024, state);
+    size = sink.size();
+  }
+  set_rates(state);
+  state.counters["file_bytes_per_message"] = static_cast<double>(size) / kBatch;
+  state.SetLabel(std::string(compression_name(compression)));
+  std::filesystem::remove(file);
+}
+BENCHMARK(mcap_write)
+    ->ArgNames({"compression", "chunk_KiB"})
+    ->ArgsProduct({{0, 1, 2}, {64, 256, 1024}})
+    ->Unit(benchmark::kMillisecond);
+
+void mcap_read(benchmark::State& state) {
+  const auto compression = static_cast<Compression>(state.range(0));
+  const std::string file = path("stillhand_benchmark.mcap");
+  {
+    FileSink sink(file, Existing::kReplace);
+    write_all(sink, compression, 256 * 1024, state);
+  }
+  for (auto _ : state) {
+    FileSource source(file);
+    McapReader reader(source);  // scanned: the worse case, every chunk is unpacked twice
+    std::uint64_t bytes = 0;
+    const Status status = reader.for_each_message({}, [&](const MessageView& message) {
+      bytes += message.bytes.size();
+      return true;
+    });
+    if (!status.ok() || bytes != kBatch * kMessageBytes) state.SkipWithError("read failed");
+  }
+  set_rates(state);
+  state.SetLabel(std::string(compression_name(compression)));
+  std::filesystem::remove(file);
+}
+BENCHMARK(mcap_read)->ArgName("compression")->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace stillhand::recording
+
+BENCHMARK_MAIN();

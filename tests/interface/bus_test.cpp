@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real bus on loopback: profiles load, endpoints match, samples arrive, peers are named.
+#include "runtime/bus.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+
+#include "contract/config_error.hpp"
+#include "idl/control_loop.h"
+#include "idl/model.h"
+#include "idl/session.h"
+#include "support/wait.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+using support::eventually;
+
+// A domain of this process's own; labs and other tests use others.
+std::uint32_t test_domain() { return 100 + static_cast<std::uint32_t>(getpid()) % 60; }
+
+Bus::Options options_of(const std::string& service) {
+  Bus::Options options;
+  options.service = service;
+  options.domain = test_domain();
+  options.profiles = STILLHAND_SOURCE "/qos/profiles.xml";
+  return options;
+}
+
+template <typename Message>
+void expect_delivery(const topics::Topic& topic) {
+  Bus writer(options_of("motion"));
+  Bus reader(options_of("rig"));
+  std::atomic<int> received{0};
+  auto publisher = writer.publisher<Message>(topic);
+  reader.subscribe<Message>(topic, [&](const Message&, const Arrival&) { ++received; });
+  writer.start();
+  reader.start();
+  ASSERT_TRUE(eventually([&] {
+    return reader.report().front().matched == 1 && writer.report().front().matched == 1;
+  })) << topic.name;
+  Message message;
+  ASSERT_TRUE(eventually([&] {
+    publisher.write(message);
+    return received.load() > 0;
+  })) << topic.name;
+}
+
+TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
+  using namespace stillhand_msgs;
+  expect_delivery<PlatformCommand>(topics::kPlatformCommand);
+  expect_delivery<RawSample>(topics::kRawSample);
+  expect_delivery<RigTruth>(topics::kRigTruth);
+  expect_delivery<Sensed>(topics::kSensed);
+  expect_delivery<MotorCommand>(topics::kMotorCommand);
+  expect_delivery<TrackingSample>(topics::kTrackingSample);
+  expect_delivery<OperatorForce>(topics::kOperatorForce);
+  expect_delivery<Pointer>(topics::kPointer);
+  expect_delivery<TrialControl>(topics::kTrialControl);
+  expect_delivery<TrialAssignment>(topics::kTrialAssignment);
+  expect_delivery<FeedthroughModel>(topics::kFeedthroughModel);
+  expect_delivery<Event>(topics::kEvent);
+  expect_delivery<ServiceStatus>(topics::kServiceStatus);
+}
+
+TEST(BusTest, ALateJoinerGetsTheLatchedState) {
+  Bus writer(options_of("experiment"));
+  auto publisher = writer.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+  writer.start();
+  stillhand_msgs::TrialControl message;
+  message.trial(7);
+  publisher.write(message);
+  Bus reader(options_of("rig"));
+  std::atomic<int> trial{-1};
+  reader.subscribe<stillhand_msgs::TrialControl>(
+      topics::kTrialControl,
+      [&](const stillhand_msgs::TrialControl& m, const Arrival&) { trial = m.trial(); });
+  reader.start();
+  EXPECT_TRUE(eventually([&] { return trial.load() == 7; }));
+}
+
+TEST(BusTest, TheRecordersBytesAreTheMessage) {
+  auto options = options_of("recorder");
+  options.serialized = true;
+  Bus recorder(options);
+  Bus writer(options_of("sensing"));
+  std::atomic<std::size_t> size{0};
+  recorder.subscribe_serialized(topics::kSensed,
+                                [&](std::span<const std::byte> bytes, const Arrival&) {
+                                  size = bytes.size();
+                                  return detail::SampleClock{true, -1, 0};
+                                });
+  auto publisher = writer.publisher<stillhand_msgs::Sensed>(topics::kSensed);
+  recorder.start();
+  writer.start();
+  ASSERT_TRUE(eventually([&] {
+    stillhand_msgs::Sensed message;
+    publisher.write(message);
+    return size.load() > 0;
+  }));
+  // 4 encapsulation, then rig 4 (+4), tick, stamp, acquired 3 x 8, seven doubles, flags 4.
+  EXPECT_EQ(size.load(), 4u + 8u + 3u * 8u + 7u * 8u + 4u);
+}
+
+TEST(BusTest, NamesThePeersThatAreMissing) {
+  Bus sut(options_of("sensing"));
+  sut.subscribe<stillhand_msgs::RawSample>(topics::kRawSample, [](const auto&, const auto&) {});
+  sut.start();
+  EXPECT_THAT(sut.missing_peers(), testing::ElementsAre("rig (stillhand/raw_sample)"));
+  Bus rig(options_of("rig"));
+  rig.publisher<stillhand_msgs::RawSample>(topics::kRawSample);
+  rig.start();
+  EXPECT_TRUE(eventually([&] { return sut.missing_peers().empty(); }));
+}
+
+TEST(BusTest, SaysWhenAServiceIsThereTwice) {
+  Bus first(options_of("rig"));
+  Bus second(options_of("rig"));
+  first.start();
+  second.start();
+  EXPECT_TRUE(
+      eventually([&] { return first.duplicate_peers() == std::vector<std::string>{"rig"}; }));
+}
+
+TEST(BusTest, AnotherRigsSamplesAreNotDelivered) {
+  auto other = options_of("motion");
+  other.rig = 2;
+  Bus writer(other);
+  Bus reader(options_of("rig"));
+  std::atomic<int> received{0};
+  auto publisher = writer.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+  reader.subscribe<stillhand_msgs::TrialControl>(topics::kTrialControl,
+                                                 [&](const auto&, const auto&) { ++received; });
+  // The same reader hears its own rig afterwards: silence alone would prove nothing.
+  Bus own(options_of("experiment"));
+  auto own_publisher = own.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+  writer.start();
+  reader.start();
+  own.start();
+  ASSERT_TRUE(eventually([&] { return reader.report().front().matched == 2; }));
+  stillhand_msgs::TrialControl message;
+  publisher.write(message);
+  own_publisher.write(message);
+  ASSERT_TRUE(eventually([&] { return received.load() > 0; }));
+  EXPECT_EQ(received.load(), 1);
+}
+
+TEST(BusTest, ADomainOutOfRangeIsTheOperatorsToMend) {
+  auto options = options_of("rig");
+  options.domain = 233;
+  EXPECT_THROW(Bus{options}, ConfigError);
+}
+
+TEST(BusTest, AMissingProfileFileIsNamed) {
+  auto options = options_of("rig");
+  options.profiles = "/nowhere/profiles.xml";
+  try {
+    Bus sut(options);
+    FAIL() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("/nowhere/profiles.xml"));
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::runtime

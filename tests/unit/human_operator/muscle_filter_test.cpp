@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "human_operator/core/muscle_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contract/tick.hpp"
+
+namespace stillhand::human_operator {
+namespace {
+
+constexpr double kW_rad_s = 13.0;
+constexpr double kZ = 0.7;
+
+// Oracle: the closed step response; the filter is exact, so rounding of 2000 steps is all.
+TEST(MuscleFilterTest, TheStepResponseIsThatOfTheOscillator) {
+  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+  const double d = kW_rad_s * std::sqrt(1.0 - kZ * kZ);
+  const double s = kZ * kW_rad_s;
+  for (int n = 0; n < 2000; ++n) {
+    const double t = n * kControlPeriod_s;
+    const double decay = std::exp(-s * t);
+    const auto state = sut.step(1.0);
+    ASSERT_NEAR(state.x, 1.0 - decay * (std::cos(d * t) + s / d * std::sin(d * t)), 1e-12);
+    ASSERT_NEAR(state.v, decay * kW_rad_s * kW_rad_s / d * std::sin(d * t), 1e-11);
+  }
+}
+
+// The second derivative satisfies Eq. HO-2 to rounding; terms are of the order w^2 = 169.
+TEST(MuscleFilterTest, TheAccelerationFulfilsTheEquationOfMotion) {
+  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+  for (int n = 0; n < 1000; ++n) {
+    const double u = std::sin(0.01 * n);
+    const auto state = sut.step(u);
+    ASSERT_NEAR(state.a, kW_rad_s * kW_rad_s * (u - state.x) - 2.0 * kZ * kW_rad_s * state.v,
+                1e-11);
+  }
+}
+
+// A ramp is followed with the lag 2 z / w; the step-wise input adds half a tick, the step's
+// convention (u acts from now on) none.
+TEST(MuscleFilterTest, ARampIsFollowedWithTheLagThatTheDelayCounts) {
+  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+  MuscleFilter::State state{};
+  double u = 0.0;
+  for (int n = 0; n < 3000; ++n) {
+    u = n * kControlPeriod_s;
+    state = sut.step(u);
+  }
+  EXPECT_NEAR(u - state.x, 2.0 * kZ / kW_rad_s + kControlPeriod_s / 2.0, 1e-9);
+}
+
+TEST(MuscleFilterTest, ResetPutsItToRest) {
+  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+  for (int n = 0; n < 100; ++n) sut.step(1.0);
+  sut.reset();
+  const auto state = sut.step(0.0);
+  EXPECT_EQ(state.x, 0.0);
+  EXPECT_EQ(state.v, 0.0);
+}
+
+}  // namespace
+}  // namespace stillhand::human_operator

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/core/platform_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "contract/config_error.hpp"
+#include "motion/core/motion_trajectory.hpp"
+#include "signal/random.hpp"
+
+namespace stillhand::motion {
+namespace {
+
+constexpr double kDt_s = kControlPeriod_s;
+
+GuardInput asking(double position_m, double velocity_m_s, double acceleration_m_s2) {
+  return {true, {position_m, velocity_m_s, acceleration_m_s2, kGood}};
+}
+
+bool same_bits(const PlatformCommand& a, const PlatformCommand& b) {
+  return a.position_m == b.position_m && a.velocity_m_s == b.velocity_m_s &&
+         a.acceleration_m_s2 == b.acceleration_m_s2 && a.flags == b.flags;
+}
+
+// The promise of the guard for one step, Eqs. MO-1 and MO-2.  Position, velocity and acceleration
+// bounds are exact comparisons.  The stopping point and the consistency of two samples are
+// recomputed here, so they carry the rounding of a few operations on numbers up to X + V^2/2A:
+// 1e-14 of 1 is 45 ulp.
+std::string broken_promise(const PlatformCommand& from, const PlatformCommand& to,
+                           const PlatformLimits& limits) {
+  constexpr double kRounding = 1e-14;
+  // At the wall the end velocity is found from the gap with a slope of up to 2/dt (Eq. MO-5): a few
+  // ulp of 0.15 m (2.8e-17 each) times 2000/s is some 1e-13 m/s; 1e-12 m/s is 1e-9 m/s^2.
+  constexpr double kRounding_m_s = 1e-12;
+  const double a_max = limits.max_acceleration_m_s2;
+  if (!(std::abs(to.position_m) <= limits.max_position_m)) return "position";
+  if (!(std::abs(to.velocity_m_s) <= limits.max_velocity_m_s)) return "velocity";
+  if (!(std::abs(to.acceleration_m_s2) <= a_max)) return "acceleration";
+  const double stop_m = to.position_m + to.velocity_m_s * std::abs(to.velocity_m_s) / (2.0 * a_max);
+  if (!(std::abs(stop_m) <= limits.max_position_m + kRounding)) return "stopping point";
+  const double change_m_s = to.velocity_m_s - from.velocity_m_s;
+  if (!(std::abs(change_m_s) <= a_max * kDt_s + kRounding_m_s)) return "change of velocity";
+  const double deviation_m =
+      to.position_m - from.position_m - 0.5 * (from.velocity_m_s + to.velocity_m_s) * kDt_s;
+  const double slack_m = (a_max * a_max * kDt_s * kDt_s - change_m_s * change_m_s) / (4.0 * a_max);
+  if (!(std::abs(deviation_m) <= std::max(slack_m, 0.0) + kRounding)) return "change of position";
+  return {};
+}
+
+MotionTrajectory noise(std::uint64_t seed, double high_hz, double rms_m_s2, double peak_m_s2,
+                       Tick duration_ticks = 20'000) {
+  MotionProfile profile;
+  profile.kind = MotionKind::kBandNoise;
+  profile.seed = seed;
+  profile.band_high_hz = high_hz;
+  profile.rms_m_s2 = rms_m_s2;
+  profile.peak_m_s2 = peak_m_s2;
+  profile.duration_ticks = duration_ticks;
+  return MotionTrajectory(profile, PlatformLimits{});
+}
+
+Tick length_of(const MotionTrajectory& t) { return t.duration_ticks() + 2 * t.ramp_ticks(); }
+
+TEST(PlatformGuardTest, AFeasibleTrajectoryPassesBitForBit) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    for (const auto& trajectory : {noise(seed, 4.0, 2.0, 7.36), noise(seed, 2.0, 1.6, 7.5)}) {
+      PlatformGuard sut{PlatformLimits{}};
+      for (Tick i = 0; i <= length_of(trajectory); ++i) {
+        const PlatformCommand asked = trajectory.at(i);
+        ASSERT_TRUE(same_bits(sut.step({true, asked}), asked)) << "seed " << seed << " tick " << i;
+      }
+    }
+  }
+}
+
+// One input of a hostile source: NaN, infinities, huge and tiny values, missing commands, jumps,
+// sinusoids no platform can follow, pushes into a wall at full speed.
+class HostileSource {
+ public:
+  HostileSource(std::uint64_t seed, const PlatformLimits& limits)
+      : random_(seed, 0), limits_(limits) {}
+
+  GuardInput next(const PlatformCommand& now) {
+    if (left_-- <= 0) {
+      mode_ = static_cast<int>(random_.uniform() * 8.0);
+      left_ = static_cast<int>(std::exp(random_.uniform() * 7.0));
+      side_ = random_.uniform() < 0.5 ? -1.0 : 1.0;
+      w_rad_s_ = std::exp(random_.uniform() * 6.0);
+    }
+    const double x = limits_.max_position_m;
+    const double v = limits_.max_velocity_m_s;
+    const double a = limits_.max_acceleration_m_s2;
+    time_s_ += kDt_s;
+    switch (mode_) {
+      case 0:
+        return {};
+      case 1:
+        return asking(odd_value(), odd_value(), odd_value());
+      case 2:
+        return asking(spread(2.0 * x), spread(2.0 * v), spread(2.0 * a));
+      case 3:
+        return asking(side_ * x, side_ * v, side_ * a);
+      case 4:
+        return asking(2.0 * x * std::sin(w_rad_s_ * time_s_),
+                      2.0 * x * w_rad_s_ * std::cos(w_rad_s_ * time_s_),
+                      -2.0 * x * w_rad_s_ * w_rad_s_ * std::sin(w_rad_s_ * time_s_));
+      case 5:  // consistent with the state and as hard as allowed: passed on until the wall
+        return asking(now.position_m + (now.velocity_m_s + 0.5 * side_ * a * kDt_s) * kDt_s,
+                      now.velocity_m_s + side_ * a * kDt_s, side_ * a);
+      case 6:  // the same with the velocity kept: drifts to the wall
+        return asking(now.position_m + now.velocity_m_s * kDt_s, now.velocity_m_s, 0.0);
+      default:
+        return asking(side_ * x * (1.0 + spread(1e-12)), spread(1e-9), spread(1e-9));
+    }
+  }
+
+ private:
+  double spread(double bound) { return bound * (2.0 * random_.uniform() - 1.0); }
+  double odd_value() {
+    const double values[] = {std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity(),
+                             -std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::max(),
+                             -std::numeric_limits<double>::max(),
+                             std::numeric_limits<double>::denorm_min(),
+                             -0.0,
+                             0.15};
+    return values[static_cast<std::size_t>(random_.uniform() * 8.0)];
+  }
+
+  signal::Gaussian random_;
+  PlatformLimits limits_;
+  int mode_ = 0;
+  int left_ = 0;
+  double side_ = 1.0;
+  double w_rad_s_ = 1.0;
+  double time_s_ = 0.0;
+};
+
+void expect_promise_kept(const PlatformLimits& limits, std::uint64_t seed, int steps) {
+  PlatformGuard sut(limits);
+  HostileSource source(seed, limits);
+  double reached_m = 0.0;
+  double fastest_m_s = 0.0;
+  for (int n = 0; n < steps; ++n) {
+    const PlatformCommand before = sut.state();
+    const PlatformCommand after = sut.step(source.next(before));
+    ASSERT_EQ(broken_promise(before, after, limits), "") << "seed " << seed << " step " << n;
+    reached_m = std::max(reached_m, std::abs(after.position_m));
+    fastest_m_s = std::max(fastest_m_s, std::abs(after.velocity_m_s));
+  }
+  // The source must have pushed: a guard that never moves would keep every bound.
+  EXPECT_GT(reached_m, 0.99 * limits.max_position_m);
+  const double sprint_m_s = std::min(
+      limits.max_velocity_m_s, std::sqrt(limits.max_acceleration_m_s2 * limits.max_position_m));
+  EXPECT_GT(fastest_m_s, 0.5 * sprint_m_s);
+}
+
+TEST(PlatformGuardTest, NoInputBreaksTheLimits) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    expect_promise_kept(PlatformLimits{}, seed, 200'000);
+  }
+}
+
+TEST(PlatformGuardTest, NoInputBreaksOtherLimitsEither) {
+  expect_promise_kept({0.02, 2.0, 15.0, 0.1, 100.0}, 11, 200'000);
+  expect_promise_kept({0.15, 0.05, 0.5, 15.0, 5.0}, 12, 400'000);
+  expect_promise_kept({0.001, 0.01, 1.0, 1.0, 20.0}, 13, 200'000);
+}
+
+// From any state the guard was driven to, the missing command brings rest.  Slowest stop: V over
+// the stopping deceleration, 1.25/3 = 0.417 s; closer to a wall it is harder, hence shorter.  One
+// tick more for the last, partial step, and one for the correction at the wall.
+TEST(PlatformGuardTest, AMissingCommandBrakesToRestInTime) {
+  const PlatformLimits limits;
+  PlatformGuard driven(limits);
+  HostileSource source(21, limits);
+  const auto most_ticks = ticks_in(limits.max_velocity_m_s / limits.stop_acceleration_m_s2) + 2;
+  for (int n = 0; n < 50'000; ++n) {
+    driven.step(source.next(driven.state()));
+    if (n % 97 != 0) continue;
+    PlatformGuard sut = driven;
+    for (Tick i = 0; i < most_ticks; ++i) {
+      const PlatformCommand before = sut.state();
+      const PlatformCommand after = sut.step({});
+      ASSERT_EQ(broken_promise(before, after, limits), "");
+      ASSERT_EQ(after.flags, kInputStale);
+    }
+    ASSERT_EQ(sut.state().velocity_m_s, 0.0) << "after step " << n;
+    const double rest_m = sut.state().position_m;
+    sut.step({});
+    ASSERT_EQ(sut.state().position_m, rest_m);
+    ASSERT_EQ(sut.state().acceleration_m_s2, 0.0);
+  }
+}
+
+TEST(PlatformGuardTest, AnInvalidCommandIsTreatedAsMissingAndFlagged) {
+  PlatformGuard sut{PlatformLimits{}};
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    EXPECT_EQ(sut.step(asking(bad, 0, 0)).flags, kInputInvalid);
+    EXPECT_EQ(sut.step(asking(0, bad, 0)).flags, kInputInvalid);
+    EXPECT_EQ(sut.step(asking(0, 0, bad)).flags, kInputInvalid);
+  }
+  EXPECT_EQ(sut.state().position_m, 0.0);
+}
+
+TEST(PlatformGuardTest, AStepIsShapedFlaggedAndReachedWithoutOvershoot) {
+  PlatformGuard sut{PlatformLimits{}};
+  double furthest_m = 0.0;
+  EXPECT_EQ(sut.step(asking(0.1, 0, 0)).flags, kWorkspaceLimit);
+  for (int n = 0; n < 3000; ++n) {
+    furthest_m = std::max(furthest_m, sut.step(asking(0.1, 0, 0)).position_m);
+  }
+  // The linear part of MO-3 is overdamped (4 w against w), so nothing overshoots; the guard locks
+  // onto the command once it is within the slack of MO-2, A dt^2 / 4 = 2.25e-6 m.
+  EXPECT_LE(furthest_m, 0.1 + 2.25e-6);
+  EXPECT_TRUE(same_bits(sut.state(), {0.1, 0, 0, kGood}));
+}
+
+// After an outage of any length within a moving trial the motion is caught up with.  Time allowed:
+// crossing the whole travel, 0.3 m, with the profile's bend 1.5 m/s^2 takes 2 sqrt(0.3/1.5) = 0.9
+// s, and the exponential tail from its linear start 3.75e-3 m to 2e-7 m ln(2e4)/20 = 0.5 s; doubled
+// because the acceleration left over by the trajectory itself may be small for half its cycle.
+TEST(PlatformGuardTest, AfterAnOutageTheTrajectoryIsCaughtUpWithExactly) {
+  const auto trajectory = noise(5, 2.0, 1.6, 7.5, 40'000);
+  int outages = 0;
+  for (Tick outage = 2'000; outage < 36'000; outage += 1'700) {
+    PlatformGuard sut{PlatformLimits{}};
+    for (Tick i = 0; i < outage; ++i) sut.step({true, trajectory.at(i)});
+    for (Tick i = outage; i < outage + 500; ++i) sut.step({});
+    Tick caught = 0;
+    for (Tick i = outage + 500; i < outage + 500 + 2'800; ++i) {
+      if (same_bits(sut.step({true, trajectory.at(i)}), trajectory.at(i))) {
+        ++caught;
+      } else {
+        ASSERT_EQ(caught, 0) << "lost again at " << i;
+      }
+    }
+    ASSERT_GT(caught, 0) << "outage at " << outage;
+    ++outages;
+  }
+  EXPECT_EQ(outages, 20);
+}
+
+TEST(PlatformGuardTest, FlagsOfTheCommandArePassedOn) {
+  PlatformGuard sut{PlatformLimits{}};
+  EXPECT_EQ(sut.step({true, {0, 0, 0, kInputGap}}).flags, kInputGap);
+  EXPECT_EQ(sut.step({true, {0.1, 0, 0, kInputGap}}).flags, kInputGap | kWorkspaceLimit);
+}
+
+TEST(PlatformGuardTest, LimitsBeyondTheApparatusAreRefused) {
+  PlatformLimits limits;
+  limits.max_position_m = 0.16;
+  EXPECT_THROW(PlatformGuard{limits}, ConfigError);
+  limits.max_position_m = std::nan("");
+  EXPECT_THROW(PlatformGuard{limits}, ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::motion

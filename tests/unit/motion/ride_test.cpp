@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/core/ride.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "contract/config_error.hpp"
+#include "motion/core/motion_trajectory.hpp"
+
+namespace stillhand::motion {
+namespace {
+
+// A ride of sines, sampled at a rate that is no divisor of 1 kHz.
+MotionProfile ride_of(const std::vector<std::pair<double, double>>& hz_and_m_s2, double seconds,
+                      double rate_hz = 104.0) {
+  MotionProfile profile;
+  profile.kind = MotionKind::kRide;
+  profile.rms_m_s2 = 0.0;
+  profile.band_low_hz = 0.1;
+  profile.band_high_hz = 10.0;
+  profile.duration_ticks = ticks_in(seconds);
+  profile.ride_rate_hz = rate_hz;
+  const auto count = static_cast<std::size_t>(std::ceil((seconds + 3.0) * rate_hz));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t_s = static_cast<double>(i) / rate_hz;
+    double a = 0.0;
+    for (const auto& [hz, m_s2] : hz_and_m_s2) {
+      a += m_s2 * std::sin(2.0 * std::numbers::pi * hz * t_s);
+    }
+    profile.ride_accel_m_s2.push_back(a);
+  }
+  return profile;
+}
+
+// Oracle: the sine itself, in the middle of the record, away from its ends.  H at 2 Hz with a
+// corner of 0.1 Hz is 1 - (0.05)^8 = 1 - 4e-11; what remains is leakage of the ends, where the
+// mirror image turns the sine round: a kink of slope 2 w A, whose high-passed trace has died out,
+// and whose cut at 8..10 Hz rings as 1/(distance)^3; 1e-3 of the amplitude 15 s away bounds it
+// generously.
+TEST(RideTest, ASineIsResampledWithoutDelayOrLoss) {
+  const auto profile = ride_of({{2.0, 1.0}}, 40.0);
+  const MotionTrajectory sut(profile, PlatformLimits{});
+  EXPECT_EQ(sut.report().corner_hz, 0.1);
+  for (Tick n = 15'000; n < 25'000; ++n) {
+    const double want =
+        std::sin(2.0 * std::numbers::pi * 2.0 * static_cast<double>(n) * kControlPeriod_s);
+    ASSERT_NEAR(sut.at(n + profile.ramp_ticks).acceleration_m_s2, want, 1e-3) << n;
+  }
+}
+
+// 1 m/s^2 at 0.15 Hz needs 1.13 m of travel: it must go.  1 m/s^2 at 2 Hz needs 6 mm: it stays.
+// Half of the variance goes, plus what the filter takes from 2 Hz: below (0.5/2)^8 of it.
+TEST(RideTest, TheSlowPartThatNeedsTooMuchTravelIsRemovedAndReported) {
+  const auto profile = ride_of({{0.15, 1.0}, {2.0, 1.0}}, 60.0);
+  const MotionTrajectory sut(profile, PlatformLimits{});
+  EXPECT_GT(sut.report().corner_hz, 0.15);
+  EXPECT_LT(sut.report().corner_hz, 0.5);
+  EXPECT_LE(sut.report().peak_position_m, 0.15);
+  // The lowest corner that fits uses nearly the whole travel.
+  EXPECT_GT(sut.report().peak_position_m, 0.145);
+  EXPECT_NEAR(sut.report().removed_share, 0.5, 0.03);
+  EXPECT_NEAR(sut.report().removed_slow_share, 0.5, 0.03);
+}
+
+TEST(RideTest, TheCornerFoundIsTheLowestThatFits) {
+  const auto profile = ride_of({{0.15, 1.0}, {2.0, 1.0}}, 60.0);
+  const double corner_hz = MotionTrajectory(profile, PlatformLimits{}).report().corner_hz;
+  auto lower = profile;
+  lower.band_low_hz = 0.98 * corner_hz;
+  EXPECT_GT(MotionTrajectory(lower, PlatformLimits{}).report().corner_hz, 0.98 * corner_hz);
+  auto higher = profile;
+  higher.band_low_hz = 1.02 * corner_hz;
+  EXPECT_EQ(MotionTrajectory(higher, PlatformLimits{}).report().corner_hz, 1.02 * corner_hz);
+}
+
+TEST(RideTest, AConstantOffsetMakesNoMotion) {
+  auto profile = ride_of({{2.0, 1.0}}, 20.0);
+  const MotionTrajectory plain(profile, PlatformLimits{});
+  for (double& a : profile.ride_accel_m_s2) a -= 9.81;
+  const MotionTrajectory offset(profile, PlatformLimits{});
+  for (Tick i = 0; i < 24'000; i += 7) {
+    // The mean is a sum of 2e3 values near 10: rounding 1e-12 m/s^2, and 1/(2 pi 0.1)^2 of it in x.
+    ASSERT_NEAR(plain.at(i).position_m, offset.at(i).position_m, 1e-11);
+  }
+}
+
+TEST(RideTest, RecordsThatCannotBeFollowedAreRefused) {
+  const PlatformLimits limits;
+  auto profile = ride_of({{2.0, 1.0}}, 20.0);
+  profile.ride_accel_m_s2[100] = std::nan("");
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+  profile = ride_of({{2.0, 1.0}}, 20.0);
+  profile.duration_ticks = 24'000;  // the record has 23 s
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+  profile = ride_of({{2.0, 1.0}}, 20.0);
+  profile.ride_rate_hz = 19.9;  // less than twice 10 Hz
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+  profile = ride_of({{2.0, 0.0}}, 20.0);
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+  profile = ride_of({{2.0, 1.0}}, 20.0);
+  profile.rms_m_s2 = 1.6;
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+  profile = ride_of({{5.0, 1000.0}}, 20.0);  // at the highest corner, 8 Hz, still 1000/44 m/s^2
+  profile.band_high_hz = 8.0;
+  EXPECT_THROW(MotionTrajectory(profile, limits), ConfigError);
+}
+
+struct Column {
+  std::vector<double> time_s;
+  std::vector<double> values;
+};
+
+// A column by its header name; CSV as the project writes it.
+Column column_of(const std::filesystem::path& file, const std::string& name) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  std::size_t wanted = 0;
+  {
+    std::istringstream header(line);
+    std::size_t index = 0;
+    for (std::string cell; std::getline(header, cell, ','); ++index) {
+      if (cell == name) wanted = index;
+    }
+  }
+  Column out;
+  while (wanted > 0 && std::getline(stream, line)) {
+    std::istringstream row(line);
+    std::string cell;
+    for (std::size_t i = 0; i <= wanted && std::getline(row, cell, ','); ++i) {
+      if (i == 0) out.time_s.push_back(std::stod(cell));
+      if (i == wanted) out.values.push_back(std::stod(cell));
+    }
+  }
+  return out;
+}
+
+std::filesystem::path measured_recordings() {
+  if (const char* folder = std::getenv("STILLHAND_DATA")) return folder;
+  const auto checkout =
+      std::filesystem::path(__FILE__).parent_path().parent_path().parent_path().parent_path();
+  return checkout.parent_path() / "shared" / "data";
+}
+
+// A measured car ride (comma2k19, MIT), lateral acceleration `a_y [m/s^2]`; gravity is on a_z only.
+TEST(RideTest, AMeasuredCarRideDrivesThePlatform) {
+  const auto file = measured_recordings() / "car_ride.csv";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << "; set STILLHAND_DATA";
+  const Column lateral = column_of(file, "a_y [m/s^2]");
+  ASSERT_GT(lateral.values.size(), 6000u);
+  MotionProfile profile;
+  profile.kind = MotionKind::kRide;
+  profile.rms_m_s2 = 0.0;
+  profile.band_low_hz = 0.05;
+  profile.band_high_hz = 6.0;  // platform bandwidth, paper III-C
+  profile.duration_ticks = 55'000;
+  profile.ride_accel_m_s2 = lateral.values;
+  profile.ride_rate_hz = static_cast<double>(lateral.values.size() - 1) /
+                         (lateral.time_s.back() - lateral.time_s.front());
+  const PlatformLimits limits;
+  const MotionTrajectory sut(profile, limits);
+
+  PlatformGuard guard(limits);
+  for (Tick i = 0; i < profile.duration_ticks + 2 * profile.ramp_ticks; ++i) {
+    const PlatformCommand asked = sut.at(i);
+    const PlatformCommand got = guard.step({true, asked});
+    ASSERT_EQ(got.flags, kGood) << "tick " << i;
+    ASSERT_EQ(got.position_m, asked.position_m) << "tick " << i;
+  }
+  EXPECT_LE(sut.report().peak_position_m, limits.max_position_m);
+  EXPECT_LE(sut.report().peak_m_s2, profile.peak_m_s2);
+  EXPECT_GT(sut.report().removed_share, 0.0);
+  EXPECT_LT(sut.report().removed_share, 1.0);
+  RecordProperty("corner_hz", std::to_string(sut.report().corner_hz));
+  RecordProperty("removed_share", std::to_string(sut.report().removed_share));
+  RecordProperty("removed_slow_share", std::to_string(sut.report().removed_slow_share));
+  RecordProperty("rms_m_s2", std::to_string(sut.report().rms_m_s2));
+  RecordProperty("peak_position_m", std::to_string(sut.report().peak_position_m));
+}
+
+}  // namespace
+}  // namespace stillhand::motion

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signal/delay_line.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stillhand::signal {
+namespace {
+
+TEST(DelayLineTest, GivesTheInputOfThatManySamplesAgo) {
+  for (const std::size_t delay : {0u, 1u, 2u, 7u, 100u}) {
+    DelayLine sut(delay);
+    for (std::size_t n = 0; n < 350; ++n) {
+      const double expected = n >= delay ? static_cast<double>(n - delay) + 1.0 : 0.0;
+      ASSERT_EQ(sut.step(static_cast<double>(n) + 1.0), expected) << delay << " at " << n;
+    }
+  }
+}
+
+TEST(DelayLineTest, ResetFillsItWithZero) {
+  DelayLine sut(3);
+  for (int n = 0; n < 10; ++n) sut.step(5.0);
+  sut.reset();
+  for (int n = 0; n < 3; ++n) EXPECT_EQ(sut.step(1.0), 0.0);
+  EXPECT_EQ(sut.step(2.0), 1.0);
+}
+
+}  // namespace
+}  // namespace stillhand::signal

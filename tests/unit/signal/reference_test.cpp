@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signal/reference.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "contract/config_error.hpp"
+#include "signal/spectrum.hpp"
+
+namespace stillhand::signal {
+namespace {
+
+TEST(ReferenceDesignTest, IsThePapersAtThreeMinutes) {
+  const std::array<std::int64_t, kReferenceLines> printed{2,  3,  5,   7,   11,  17,  23, 37,
+                                                          59, 87, 131, 199, 310, 467, 719};
+  const ReferenceDesign sut = reference_design(180.0);
+  EXPECT_EQ(sut.harmonics, printed);
+  EXPECT_DOUBLE_EQ(sut.amplitudes[0], 0.75);
+  EXPECT_DOUBLE_EQ(sut.amplitudes[14], 0.75 * std::exp(-1.96));
+}
+
+TEST(ReferenceDesignTest, HarmonicsRiseAtEveryDuration) {
+  for (const double duration_s : {5.0, 10.0, 20.0, 47.3, 60.0, 180.0, 600.0, 3600.0}) {
+    for (const auto set : {ReferenceSet::kPaper, ReferenceSet::kCoprime}) {
+      const ReferenceDesign sut = reference_design(duration_s, set);
+      EXPECT_GE(sut.harmonics[0], 1);
+      for (std::size_t k = 1; k < kReferenceLines; ++k) {
+        EXPECT_GT(sut.harmonics[k], sut.harmonics[k - 1]) << duration_s;
+      }
+    }
+  }
+}
+
+TEST(ReferenceDesignTest, FrequenciesStayWhereThereIsRoom) {
+  // Rounding moves a line by half a harmonic, crowding only upwards.
+  for (const double duration_s : {10.0, 20.0, 60.0, 180.0}) {
+    const ReferenceDesign long_trial = reference_design(180.0);
+    const ReferenceDesign sut = reference_design(duration_s);
+    for (std::size_t k = 0; k < kReferenceLines; ++k) {
+      const double wanted = static_cast<double>(long_trial.harmonics[k]) * duration_s / 180.0;
+      EXPECT_GE(static_cast<double>(sut.harmonics[k]), wanted - 0.5);
+      if (wanted > static_cast<double>(kReferenceLines)) {
+        EXPECT_NEAR(static_cast<double>(sut.harmonics[k]), wanted, 0.5) << duration_s;
+      }
+    }
+  }
+}
+
+TEST(ReferenceDesignTest, OnlyTheCoprimeSetIsCoprime) {
+  const auto shared = [](const ReferenceDesign& design) {
+    int pairs = 0;
+    for (std::size_t i = 0; i < kReferenceLines; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        pairs += std::gcd(design.harmonics[i], design.harmonics[j]) > 1 ? 1 : 0;
+      }
+    }
+    return pairs;
+  };
+  for (const double duration_s : {10.0, 20.0, 60.0, 180.0}) {
+    EXPECT_EQ(shared(reference_design(duration_s, ReferenceSet::kCoprime)), 0) << duration_s;
+  }
+  // 87 with 3; 310 with 2 and 5.
+  EXPECT_EQ(shared(reference_design(180.0)), 3);
+}
+
+TEST(ReferenceDesignTest, DurationOutsideItsRangeIsRefused) {
+  EXPECT_THROW(reference_design(4.9), ConfigError);
+  EXPECT_THROW(reference_design(3601.0), ConfigError);
+  EXPECT_THROW(reference_design(std::nan("")), ConfigError);
+}
+
+TEST(ReferenceSignalTest, IsTheSumOfItsSines) {
+  const ReferenceDesign design = reference_design(20.0);
+  const ReferenceSignal sut(design, 20'000, 5, 0.04);
+  for (Tick n = 0; n < 20'000; n += 37) {
+    long double sum = 0.0L;
+    for (std::size_t k = 0; k < kReferenceLines; ++k) {
+      const long double turns = static_cast<long double>(design.harmonics[k] * n % 20'000) / 20'000;
+      sum += 0.04L * design.amplitudes[k] *
+             std::sin(2.0L * std::numbers::pi_v<long double> * turns + sut.phases_rad()[k]);
+    }
+    // Stated: 1e-15 of the scale a line.
+    ASSERT_NEAR(sut.at(n), static_cast<double>(sum), 15 * 1e-15 * 0.04) << n;
+  }
+}
+
+TEST(ReferenceSignalTest, EveryLineHasItsAmplitudeAndNothingElseIsThere) {
+  const ReferenceDesign design = reference_design(60.0);
+  const ReferenceSignal sut(design, 60'000, 8, 1.0);
+  std::vector<double> x;
+  for (Tick n = 0; n < 60'000; ++n) x.push_back(sut.at(n));
+  for (std::size_t k = 0; k < kReferenceLines; ++k) {
+    EXPECT_NEAR(std::abs(line_at(x, design.harmonics[k])), design.amplitudes[k], 1e-13);
+  }
+  EXPECT_NEAR(std::abs(line_at(x, 100)), 0.0, 1e-13);
+  // Whole cycles: zero mean, as the paper asks.
+  EXPECT_NEAR(std::accumulate(x.begin(), x.end(), 0.0) / 60'000.0, 0.0, 1e-14);
+}
+
+TEST(ReferenceSignalTest, IsPeriodicBothWays) {
+  const ReferenceSignal sut(reference_design(10.0), 10'000, 1, 0.02);
+  for (const Tick n : {Tick{0}, Tick{1}, Tick{4321}, Tick{9999}}) {
+    EXPECT_EQ(sut.at(n), sut.at(n + 10'000));
+    EXPECT_EQ(sut.at(n), sut.at(n - 10'000));
+    EXPECT_EQ(sut.at(n), sut.at(n - 50'000));
+  }
+}
+
+TEST(ReferenceSignalTest, SeedDecidesThePhases) {
+  const ReferenceDesign design = reference_design(10.0);
+  const ReferenceSignal first(design, 10'000, 1, 0.02);
+  const ReferenceSignal same(design, 10'000, 1, 0.02);
+  const ReferenceSignal other(design, 10'000, 2, 0.02);
+  EXPECT_EQ(first.at(1234), same.at(1234));
+  EXPECT_NE(first.at(1234), other.at(1234));
+}
+
+TEST(ReferenceSignalTest, WhatCannotBeSampledIsRefused) {
+  EXPECT_THROW(ReferenceSignal(reference_design(180.0), 1438, 1, 0.02), ConfigError);
+  EXPECT_NO_THROW(ReferenceSignal(reference_design(180.0), 1439, 1, 0.02));
+  EXPECT_THROW(ReferenceSignal(reference_design(180.0), 0, 1, 0.02), ConfigError);
+  EXPECT_THROW(ReferenceSignal(reference_design(180.0), 180'000, 1, std::nan("")), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::signal
