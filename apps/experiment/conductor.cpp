@@ -37,6 +37,8 @@ const char* name_of(stillhand_msgs::EventKind kind) {
       return "liveliness recovered";
     case stillhand_msgs::EVENT_INTERLOCK_OPENED:
       return "interlock opened";
+    case stillhand_msgs::EVENT_FORCE_ZERO:
+      return "motor force zero after interlock opened";
     case stillhand_msgs::EVENT_MODEL_REFUSED:
       return "model refused";
     case stillhand_msgs::EVENT_MODEL_LOADED:
@@ -49,17 +51,32 @@ const char* name_of(stillhand_msgs::EventKind kind) {
   return "event";
 }
 
-std::string line_of(const stillhand_msgs::Event& event) {
-  std::string line = std::string(event.source().c_str()) + ": " + name_of(event.kind());
-  if (event.topic().size() > 0) line += std::string(" on ") + event.topic().c_str();
-  if (event.peer().size() > 0) line += std::string(" of ") + event.peer().c_str();
-  if (event.by_us() > 0.0) {
-    const bool ticks = event.kind() == stillhand_msgs::EVENT_TICKS_LOST;
-    line += ", worst " + std::to_string(static_cast<std::int64_t>(event.by_us())) +
-            (ticks ? " ticks" : " us");
-  }
-  if (event.text().size() > 0) line += std::string(" (") + event.text().c_str() + ")";
+std::string line_of(const Mark& mark) {
+  std::string line = mark.source + ": " + mark.what;
+  if (!mark.topic.empty()) line += " on " + mark.topic;
+  if (!mark.peer.empty()) line += " of " + mark.peer;
+  if (!mark.text.empty()) line += " (" + mark.text + ")";
   return line;
+}
+
+Mark mark_of(const stillhand_msgs::Event& event) {
+  return {name_of(event.kind()),
+          event.source().c_str(),
+          event.topic().c_str(),
+          event.peer().c_str(),
+          event.text().c_str(),
+          event.tick(),
+          1,
+          event.by_us()};
+}
+
+bool same(const Mark& a, const Mark& b) {
+  return a.what == b.what && a.source == b.source && a.topic == b.topic && a.peer == b.peer;
+}
+
+bool saw(const std::vector<stillhand_msgs::Event>& events, stillhand_msgs::EventKind kind) {
+  return std::any_of(events.begin(), events.end(),
+                     [kind](const auto& event) { return event.kind() == kind; });
 }
 
 stillhand_msgs::MotionKind to_idl(const PlannedTrial& planned) {
@@ -113,7 +130,10 @@ bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done)
       news_.wait_for(lock, kPollPeriod);
       if (done(seen_)) return true;
     }
-    trouble_ = watch_();
+    if (const auto ended = watch_()) {
+      trouble_ = describe(*ended);
+      mendable_ = ended->exit_status == 2;
+    }
     if (!trouble_.empty() || interrupted()) return false;
     if (runtime::monotonic_ns() > limit_ns) return false;
   }
@@ -148,6 +168,7 @@ void Conductor::await_everybody(double limit_s) {
                              ": another lab runs; choose another --domain or --rig");
   }
   if (complete) return;
+  if (mendable_) throw RefusedByProcess(trouble_);
   if (!trouble_.empty()) throw std::runtime_error(trouble_);
   if (interrupted()) return;
   const std::lock_guard lock(mutex_);
@@ -232,9 +253,11 @@ bool Conductor::await_armed(const PlannedTrial& planned, TrialOutcome& outcome) 
 
 TrialOutcome Conductor::run(PlannedTrial planned) {
   TrialOutcome outcome;
+  MissCounts before;
   {
     const std::lock_guard lock(mutex_);
     seen_.events.clear();
+    before = count(seen_);
   }
   planned.trial.start_tick = newest_tick() + ticks_in(kLead_s) + planned.trial.ramp_ticks;
   assign(planned);
@@ -252,11 +275,7 @@ TrialOutcome Conductor::run(PlannedTrial planned) {
                 std::clamp(static_cast<double>(now - trial.start_tick) /
                                static_cast<double>(trial.duration_ticks),
                            0.0, 1.0));
-      const bool broken = std::any_of(
-          seen.events.begin(), seen.events.end(), [](const stillhand_msgs::Event& event) {
-            return event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED;
-          });
-      return now >= end || broken;
+      return now >= end || saw(seen.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
     });
     if (!outcome.completed) {
       outcome.aborted = !trouble_.empty() ? trouble_
@@ -264,27 +283,58 @@ TrialOutcome Conductor::run(PlannedTrial planned) {
                                           : "no end seen";
     }
   }
-  collect_marks(outcome);
+  collect(outcome, before);
   return outcome;
 }
 
-void Conductor::collect_marks(TrialOutcome& outcome) {
-  const std::lock_guard lock(mutex_);
-  for (const stillhand_msgs::Event& event : seen_.events) {
-    outcome.marks.push_back({event.tick(), line_of(event)});
-    if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
-      outcome.completed = false;
-      if (outcome.aborted.empty()) outcome.aborted = line_of(event);
-    }
-  }
-  for (const auto& [service, status] : seen_.statuses) {
+// After something broke, the rig gets the time to bring the force to zero and the recorder to see
+// it.
+void Conductor::see_force_out(bool completed) {
+  constexpr std::chrono::milliseconds kLimit{1500};
+  constexpr std::chrono::milliseconds kAfterwards{300};
+  std::unique_lock lock(mutex_);
+  const bool opened = saw(seen_.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
+  if (completed && !opened) return;
+  news_.wait_for(lock, kLimit,
+                 [this] { return saw(seen_.events, stillhand_msgs::EVENT_FORCE_ZERO); });
+  const Tick now = seen_.statuses["rig"].tick();
+  news_.wait_for(lock, kAfterwards,
+                 [&] { return seen_.statuses["rig"].tick() >= now + kAfterwards.count(); });
+}
+
+MissCounts Conductor::count(const Seen& seen) {
+  MissCounts counts;
+  for (const auto& [service, status] : seen.statuses) {
     for (const stillhand_msgs::TopicStatus& topic : status.topics()) {
       if (topic.written()) continue;
-      outcome.deadline_misses += static_cast<std::int64_t>(topic.deadline_misses());
-      outcome.cycle_misses += static_cast<std::int64_t>(topic.cycle_misses());
-      outcome.lost_ticks += static_cast<std::int64_t>(topic.lost_ticks());
+      counts.deadline += static_cast<std::int64_t>(topic.deadline_misses());
+      counts.cycle += static_cast<std::int64_t>(topic.cycle_misses());
+      counts.lost_ticks += static_cast<std::int64_t>(topic.lost_ticks());
     }
   }
+  return counts;
+}
+
+void Conductor::collect(TrialOutcome& outcome, const MissCounts& before) {
+  const std::lock_guard lock(mutex_);
+  for (const stillhand_msgs::Event& event : seen_.events) {
+    const Mark mark = mark_of(event);
+    const auto known = std::find_if(outcome.marks.begin(), outcome.marks.end(),
+                                    [&](const Mark& other) { return same(mark, other); });
+    if (known == outcome.marks.end()) {
+      outcome.marks.push_back(mark);
+    } else {
+      ++known->count;
+      known->worst_us = std::max(known->worst_us, mark.worst_us);
+    }
+    if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
+      outcome.completed = false;
+      if (outcome.aborted.empty()) outcome.aborted = line_of(mark);
+    }
+  }
+  const MissCounts now = count(seen_);
+  outcome.misses = {now.deadline - before.deadline, now.cycle - before.cycle,
+                    now.lost_ticks - before.lost_ticks};
 }
 
 stillhand_msgs::FeedthroughModel Conductor::await_model(std::int64_t trial, double limit_s) {

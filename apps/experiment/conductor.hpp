@@ -6,9 +6,11 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "experiment/processes.hpp"
 #include "experiment/protocol.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
@@ -16,37 +18,53 @@
 
 namespace stillhand::experiment {
 
-/// One line worth keeping about a trial.
+/// What happened during a trial, events of one kind, topic, process and peer as one.
 struct Mark {
-  std::int64_t tick;
-  std::string text;
+  std::string what;         ///< "deadline missed", ...
+  std::string source;       ///< process that said so
+  std::string topic;        ///< or empty
+  std::string peer;         ///< or empty
+  std::string text;         ///< of the first
+  std::int64_t first_tick;  ///< -1: not known
+  std::int64_t count;       ///< events; each may stand for several within a tenth of a second
+  double worst_us;          ///< [us], or [ticks] of "ticks lost"
+};
+
+/// Misses that every reader counted since the session began.
+struct MissCounts {
+  std::int64_t deadline = 0;  ///< DDS's count
+  std::int64_t cycle = 0;     ///< own microsecond supervision
+  std::int64_t lost_ticks = 0;
 };
 
 /// How a trial went.
 struct TrialOutcome {
   PlannedTrial planned;
   bool completed = false;
-  std::string aborted;               ///< why not, or empty
-  std::vector<Mark> marks;           ///< events during the trial, oldest first
-  std::int64_t deadline_misses = 0;  ///< DDS's count, all readers
-  std::int64_t cycle_misses = 0;     ///< own microsecond supervision, all readers
-  std::int64_t lost_ticks = 0;
+  std::string aborted;      ///< why not, or empty
+  std::vector<Mark> marks;  ///< events during the trial, in order of their first
+  MissCounts misses;        ///< during the trial, all readers together
+};
+
+/// A process of the session refused what the user gave it; its own line says what.  Exit status 2.
+class RefusedByProcess : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 /// The "experiment" role on the bus: announces trials, follows everybody's status and events.  Used
 /// from one thread; bus callbacks only store what came.
 class Conductor {
  public:
-  /// Looks for trouble that the bus does not tell, such as a process that ended; returns what, or
-  /// "".
-  using Watch = std::function<std::string()>;
+  /// Looks for a process that ended; nothing when all run.
+  using Watch = std::function<std::optional<Ended>()>;
   /// Called about ten times a second while something runs; done in [0, 1].
   using Progress = std::function<void(const std::string& what, double done)>;
 
   Conductor(runtime::Service& service, Watch watch, Progress progress);
 
   /// Returns once every endpoint of the catalogue has matched.
-  /// @throws std::runtime_error naming who did not come within `limit_s` [s].
+  /// @throws std::runtime_error naming who did not come within `limit_s` [s]; RefusedByProcess.
   void await_everybody(double limit_s);
   /// The sample clock starts.
   void begin_session();
@@ -73,7 +91,9 @@ class Conductor {
   [[nodiscard]] Tick newest_tick();
   [[nodiscard]] std::vector<std::string> absent(const Seen& seen) const;
   bool await_armed(const PlannedTrial& planned, TrialOutcome& outcome);
-  void collect_marks(TrialOutcome& outcome);
+  void see_force_out(bool completed);
+  void collect(TrialOutcome& outcome, const MissCounts& before);
+  [[nodiscard]] static MissCounts count(const Seen& seen);
 
   runtime::Service& service_;
   Watch watch_;
@@ -83,7 +103,8 @@ class Conductor {
   std::mutex mutex_;
   std::condition_variable news_;
   Seen seen_;
-  std::string trouble_;
+  std::string trouble_;    ///< a process that ended, or empty
+  bool mendable_ = false;  ///< it said that the user can mend it
 };
 
 }  // namespace stillhand::experiment

@@ -113,7 +113,7 @@ std::vector<Launch> launches(const LabOptions& options) {
     const auto add = [&](std::initializer_list<std::string> words) {
       launch.arguments.insert(launch.arguments.end(), words);
     };
-    if (options.real_time && service != "recorder") add({"--real-time"});
+    if (options.real_time) add({"--real-time"});
     if (service == "recorder") add({"--out", (options.out / "session.mcap").string()});
     if (service == "motion" && !options.ride.empty()) add({"--ride", options.ride.string()});
     if (service == "display" && options.headless) add({"--headless"});
@@ -128,23 +128,13 @@ std::vector<Launch> launches(const LabOptions& options) {
   return list;
 }
 
-std::string describe(const Ended& ended) {
-  std::string text = ended.name + " (pid " + std::to_string(ended.pid) + ") ended: " + ended.how;
-  if (!ended.said.empty()) text += "; it said: " + ended.said;
-  return text;
-}
-
 /// The session proper, once every process runs.
 class Session {
  public:
   Session(const LabOptions& options, runtime::Service& service, Processes& processes)
       : options_(options),
         conductor_(
-            service,
-            [&processes] {
-              const auto ended = processes.reap();
-              return ended ? describe(*ended) : std::string();
-            },
+            service, [&processes] { return processes.reap(); },
             [this](const std::string& what, double done) { progress_.show(what, done); }) {}
 
   std::vector<TrialOutcome> run() {
@@ -159,8 +149,9 @@ class Session {
       if (planned.trial.phase == TrialPhase::kPegged) {
         model_ = conductor_.await_model(planned.trial.number, kModelLimit_s);
         if (!model_->usable()) {
-          progress_.finish();
-          std::cerr << "identification: " << model_->text().c_str() << '\n';
+          outcomes.back().completed = false;
+          outcomes.back().aborted = std::string("no usable model: ") + model_->text().c_str();
+          break;
         }
       }
     }
@@ -169,14 +160,12 @@ class Session {
   }
   void end() { conductor_.end_session(); }
   [[nodiscard]] bool interrupted() const { return conductor_.interrupted(); }
-  [[nodiscard]] bool matched() const { return matched_; }
 
  private:
   const LabOptions& options_;
   ProgressLine progress_;
   Conductor conductor_;
   std::optional<stillhand_msgs::FeedthroughModel> model_;
-  bool matched_ = false;
 };
 
 }  // namespace

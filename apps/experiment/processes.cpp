@@ -61,6 +61,12 @@ class SpawnSettings {
 
 }  // namespace
 
+std::string describe(const Ended& ended) {
+  std::string text = ended.name + " (pid " + std::to_string(ended.pid) + ") ended: " + ended.how;
+  if (!ended.said.empty()) text += "; it said: " + ended.said;
+  return text;
+}
+
 Processes::~Processes() {
   for (const Child& child : children_) {
     kill(child.pid, SIGKILL);

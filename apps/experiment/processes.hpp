@@ -27,6 +27,9 @@ struct Ended {
   std::string said;  ///< last line of its log
 };
 
+/// "rig (pid 7) ended: signal 9 (Killed); it said: ..."
+std::string describe(const Ended& ended);
+
 /// The processes of a session: each in a process group of its own (Ctrl-C reaches the lab alone),
 /// told to end when the lab does.  One thread.
 class Processes {

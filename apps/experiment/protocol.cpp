@@ -89,7 +89,7 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
     const bool noise = options.motion == Motion::kBandNoise;
     planned.band_low_hz = noise ? 0.7 : 0.05;  // paper III-C; a ride's high-pass starts there
     planned.band_high_hz = noise ? 2.0 : 6.0;  // paper III-C; the platform follows to 6 Hz
-    planned.rms_m_s2 = noise ? 1.6 : 0.0;  // others keep their own
+    planned.rms_m_s2 = noise ? 1.6 : 0.0;      // others keep their own
     planned.peak_m_s2 = 7.5;
     planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, planned.trial.number);
     planned.cancellation = condition == Condition::kMovingCancelled;

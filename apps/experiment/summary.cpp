@@ -63,7 +63,14 @@ ordered_json restoration_json(const SessionResult& result) {
 ordered_json trial_json(const TrialOutcome& outcome) {
   ordered_json marks = ordered_json::array();
   for (const Mark& mark : outcome.marks) {
-    marks.push_back({{"tick", mark.tick}, {"text", mark.text}});
+    marks.push_back({{"what", mark.what},
+                     {"source", mark.source},
+                     {"topic", mark.topic},
+                     {"peer", mark.peer},
+                     {"text", mark.text},
+                     {"first_tick", mark.first_tick},
+                     {"count", mark.count},
+                     {"worst_us", mark.worst_us}});
   }
   const Trial& trial = outcome.planned.trial;
   return {
@@ -73,9 +80,9 @@ ordered_json trial_json(const TrialOutcome& outcome) {
       {"duration_ticks", trial.duration_ticks},
       {"completed", outcome.completed},
       {"aborted", outcome.aborted.empty() ? ordered_json(nullptr) : ordered_json(outcome.aborted)},
-      {"deadline_misses", outcome.deadline_misses},
-      {"cycle_misses", outcome.cycle_misses},
-      {"lost_ticks", outcome.lost_ticks},
+      {"deadline_misses", outcome.misses.deadline},
+      {"cycle_misses", outcome.misses.cycle},
+      {"lost_ticks", outcome.misses.lost_ticks},
       {"marks", marks}};
 }
 
@@ -175,6 +182,10 @@ void write(const std::filesystem::path& path, const std::string& text) {
 int report_session(const LabOptions& options, const std::vector<TrialOutcome>& outcomes,
                    bool interrupted) {
   const SessionResult result = evaluate((options.out / "session.mcap").string(), outcomes);
+  if (result.model && result.model->usable()) {
+    write(options.out / "model.json",
+          identification::model_json(identification::from_idl(*result.model)));
+  }
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
   print_table(result);

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "contract/config_error.hpp"
+#include "experiment/conductor.hpp"
 #include "experiment/lab_command.hpp"
 
 int main(int argc, char** argv) {
@@ -18,6 +19,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return cli.exit(error) == 0 ? 0 : 2;
   } catch (const stillhand::ConfigError& error) {
+    std::cerr << "stillhand: " << error.what() << '\n';
+    return 2;
+  } catch (const stillhand::experiment::RefusedByProcess& error) {
     std::cerr << "stillhand: " << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {

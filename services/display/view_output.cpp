@@ -105,7 +105,7 @@ bool FrameFile::write(const cv::Mat& frame) {
 }
 
 ScreenWindow::ScreenWindow(const std::string& title, const Projection& projection, bool full_screen)
-    : title_(title), projection_(projection) {
+    : title_(title), projection_(projection), sized_(full_screen) {
   check_display();
   try {
     cv::namedWindow(title_, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO | cv::WINDOW_GUI_NORMAL);
@@ -129,6 +129,8 @@ ScreenWindow::~ScreenWindow() {
 
 bool ScreenWindow::show(const cv::Mat& frame) {
   try {
+    if (!sized_) cv::resizeWindow(title_, frame.cols, frame.rows);
+    sized_ = true;
     cv::imshow(title_, frame);
     const int key = cv::waitKey(1);
     if (key == kEscapeKey || key == 'q') return false;

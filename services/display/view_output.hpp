@@ -66,6 +66,7 @@ class ScreenWindow {
   std::string title_;
   Projection projection_;
   std::optional<double> pointer_m_;
+  bool sized_;  ///< the window has its size: full screen, or the first frame's
 };
 
 }  // namespace stillhand::display

@@ -79,12 +79,6 @@ void Shell::run() {
 void Shell::tick_once(Tick tick) {
   const Trial trial = announced_.load().trial;
   const bool permitted = interlock_.step(trial, tick, service_.bus().peers_alive());
-  if (interlock_.latched(trial) != told_latch_) {
-    told_latch_ = !told_latch_;
-    if (told_latch_) {
-      service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, "a process is missing");
-    }
-  }
   const auto* command = command_for(tick);
   const auto* motor = motor_now();
   const auto& newest_force = volition_.load();
@@ -92,6 +86,7 @@ void Shell::tick_once(Tick tick) {
   const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
   const RigInput input = make_input(tick, command, motor, volition, pegged, permitted);
   const RigOutput output = core_.step(input);
+  tell_interlock(trial, tick, output.truth.motor_force_n);
 
   auto raw = to_idl(output, tick);
   raw_.write(raw);
@@ -102,6 +97,23 @@ void Shell::tick_once(Tick tick) {
   auto truth = to_idl(output, tick, input, used);
   truth_.write(truth);
   service_.note_tick(tick);
+}
+
+void Shell::tell_interlock(const Trial& trial, Tick tick, double motor_force_n) {
+  if (!interlock_.latched(trial)) {
+    latched_tick_ = -1;
+    told_zero_ = false;
+    return;
+  }
+  if (latched_tick_ < 0) {
+    latched_tick_ = tick;
+    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, "a process is missing");
+  }
+  if (!told_zero_ && motor_force_n == 0.0) {
+    told_zero_ = true;
+    service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",
+                        static_cast<double>(tick - latched_tick_) * kControlPeriod_s * 1e6);
+  }
 }
 
 const stillhand_msgs::PlatformCommand* Shell::command_for(Tick tick) {

@@ -30,13 +30,15 @@ class Shell {
   static constexpr std::size_t kCommandsAhead = 64;
 
   void tick_once(Tick tick);
+  void tell_interlock(const Trial& trial, Tick tick, double motor_force_n);
   const stillhand_msgs::PlatformCommand* command_for(Tick tick);
   const stillhand_msgs::MotorCommand* motor_now();
 
   runtime::Service& service_;
   Rig core_;
   runtime::Interlock interlock_;
-  bool told_latch_ = false;
+  Tick latched_tick_ = -1;  ///< when the interlock opened for good, -1: closed
+  bool told_zero_ = false;
 
   runtime::Publisher<stillhand_msgs::RawSample> raw_;
   runtime::Publisher<stillhand_msgs::RigTruth> truth_;

@@ -11,9 +11,9 @@
 namespace stillhand::display {
 namespace {
 
-/// Draws before giving up.  With the default scale one in six fits; that 400 fail in a row has a
-/// chance below 1e-30.
-constexpr int kMostDraws = 400;
+/// Draws before giving up.  With the default scale and 180 s 3 % fit (of 2000 seeds): that 2000
+/// fail in a row has a chance of 0.97^2000 = 4e-27.
+constexpr int kMostDraws = 2000;
 /// Odd constant of Weyl's sequence (2^64 / golden ratio): seeds of successive draws all differ.
 constexpr std::uint64_t kNextSeed = 0x9e3779b97f4a7c15u;
 

@@ -33,8 +33,8 @@ struct ArmFeel {
     visit("cursor_per_hand", self.cursor_per_hand, Range{0.1, 100.0},
           "[m/m] cursor per hand displacement; paper III-C (0.6 m/rad) over II (0.10 m lever)");
     visit("max_force_n", self.max_force_n, Range{0.0, 60.0},
-          "[N] bound of the volitional force, a fifth of what a seated man can push sideways; "
-          "README, \"Bounds\"");
+          "[N] bound of the volitional force, twice what the whole screen takes; README, "
+          "\"Bounds\"");
     visit("max_slew_n_s", self.max_slew_n_s, Range{1.0, 20000.0},
           "[N/s] bound of its rate; README, \"Bounds\"");
   }

@@ -17,9 +17,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Unexcited harmonics that measure the remnant beside a line.
 constexpr int kNeighbours = 6;
-// 95 % of F(2, 2m): x = m (0.05^(-1/m) - 1), the ratio of a line without any signal to the mean of
-// m neighbours, all of them exponentially distributed powers; 3.885 for m = 6.
-const double kChanceRatio = kNeighbours * (std::pow(0.05, -1.0 / kNeighbours) - 1.0);
 // Rate below which samples aren't averaged any further [Hz]; the fastest line is at 4 Hz.
 constexpr double kLeastRateHz = 100.0;
 
@@ -98,43 +95,42 @@ double snr(const std::vector<double>& samples, Complex line,
 }
 
 OpenLoopLine open_loop_line(const std::vector<double>& cursor, const std::vector<double>& error,
-                            std::int64_t harmonic, const signal::ReferenceDesign& design) {
+                            Complex x_e, std::int64_t harmonic,
+                            const signal::ReferenceDesign& design) {
   const auto beside = neighbours(design, harmonic);
   const Complex x_p = signal::line_at(cursor, harmonic);
-  const Complex x_e = signal::line_at(error, harmonic);
   OpenLoopLine line{};
   line.harmonic = harmonic;
   line.gain = x_p / x_e;
   line.cursor_snr = snr(cursor, x_p, beside);
   line.error_snr = snr(error, x_e, beside);
-  line.significant = line.cursor_snr > kChanceRatio && line.error_snr > kChanceRatio;
-  // Expected power of a line is signal plus remnant: taking the remnant's share off leaves what
-  // came from the reference.
-  line.gain_reference = Complex(kNan, kNan);
-  if (line.significant) {
-    line.gain_reference =
-        line.gain * std::sqrt((1.0 - 1.0 / line.cursor_snr) / (1.0 - 1.0 / line.error_snr));
-  }
   return line;
 }
 
-// Eq. ID-16: least squares of 20 log10 |G| = 20 log10 f_c - 20 log10 f has a mean as its solution.
-class SlopeFit {
- public:
-  void add(double frequency_hz, Complex gain) {
-    sum_ += std::log10(std::abs(gain)) + std::log10(frequency_hz);
-    ++count_;
+// Eq. ID-16: the least-squares solution of 20 log10 |G| = 20 log10 f_c - 20 log10 f is a mean.
+double slope_fit_hz(const OpenLoopLine* lines, int count) {
+  double sum = 0.0;
+  for (int k = 0; k < count; ++k) {
+    sum += std::log10(std::abs(lines[k].gain)) + std::log10(lines[k].frequency_hz);
   }
-  [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] double crossover_hz() const {
-    const double f = std::pow(10.0, sum_ / count_);
-    return count_ >= 2 && std::isfinite(f) && f > 0.0 ? f : kNan;
-  }
+  const double f = std::pow(10.0, sum / count);
+  return std::isfinite(f) && f > 0.0 ? f : kNan;
+}
 
- private:
-  double sum_ = 0.0;
-  int count_ = 0;
-};
+// Eq. ID-15.  A line's expected power is that of the signal plus the remnant's.
+double pooled_fit_hz(const OpenLoopLine* lines, const std::vector<Complex>& errors, int count) {
+  double above = 0.0;
+  double below = 0.0;
+  for (int k = 0; k < count; ++k) {
+    const OpenLoopLine& line = lines[k];
+    const double error_power = std::norm(errors[static_cast<std::size_t>(k)]);
+    const double cursor_power = std::norm(line.gain) * error_power;
+    above += line.frequency_hz * line.frequency_hz * cursor_power * (1.0 - 1.0 / line.cursor_snr);
+    below += error_power * (1.0 - 1.0 / line.error_snr);
+  }
+  const double f = std::sqrt(above / below);
+  return std::isfinite(f) && above > 0.0 && below > 0.0 ? f : kNan;
+}
 
 void add_open_loop(TrackingMetrics& out, const TrackingRecord& record,
                    const std::vector<double>& error_m, const signal::ReferenceDesign& design,
@@ -143,19 +139,15 @@ void add_open_loop(TrackingMetrics& out, const TrackingRecord& record,
   const std::vector<double> cursor = thinned(record.cursor_m, group);
   const std::vector<double> error = thinned(error_m, group);
   const double duration_s = static_cast<double>(record.target_m.size()) / record.rate_hz;
-  SlopeFit paper;
-  SlopeFit reference;
+  std::vector<Complex> errors;
   for (std::size_t k = 0; k < signal::kReferenceLines; ++k) {
-    OpenLoopLine& line = out.lines[k];
-    line = open_loop_line(cursor, error, design.harmonics[k], design);
-    line.frequency_hz = static_cast<double>(line.harmonic) / duration_s;
-    if (static_cast<int>(k) >= fitted_lines) continue;
-    paper.add(line.frequency_hz, line.gain);
-    if (line.significant) reference.add(line.frequency_hz, line.gain_reference);
+    const std::int64_t harmonic = design.harmonics[k];
+    errors.push_back(signal::line_at(error, harmonic));
+    out.lines[k] = open_loop_line(cursor, error, errors.back(), harmonic, design);
+    out.lines[k].frequency_hz = static_cast<double>(harmonic) / duration_s;
   }
-  out.crossover_hz = paper.crossover_hz();
-  out.crossover_reference_hz = reference.crossover_hz();
-  out.reference_lines = reference.count();
+  out.crossover_hz = slope_fit_hz(out.lines.data(), fitted_lines);
+  out.crossover_reference_hz = pooled_fit_hz(out.lines.data(), errors, fitted_lines);
 }
 
 // Eq. ID-17 by a sliding sum, made anew every window so that rounding can't build up.

@@ -24,33 +24,32 @@ struct TrackingMetricsConfig {
   int fitted_lines = 11;            ///< [-] lowest lines in the crossover fit
 };
 
-/// Open loop at one line of the reference, G = X_p / X_e.
+/// Open loop at one line of the reference.
 struct OpenLoopLine {
-  std::int64_t harmonic;                ///< h [cycles a trial]
-  double frequency_hz;                  ///< [Hz]
-  std::complex<double> gain;            ///< Eq. ID-14 [-], paper
-  std::complex<double> gain_reference;  ///< Eq. ID-15 [-]: only what comes from the reference
-  double cursor_snr;                    ///< |X_p|^2 over the remnant's power around the line [-]
-  double error_snr;                     ///< |X_e|^2 over the same [-]
-  bool significant;  ///< both above chance (95 %): the line counts in crossover_reference_hz
+  std::int64_t harmonic;      ///< h [cycles a trial]
+  double frequency_hz;        ///< [Hz]
+  std::complex<double> gain;  ///< G = X_p / X_e, Eq. ID-14 [-]
+  double cursor_snr;          ///< |X_p|^2 over the remnant's power around the line [-]
+  double error_snr;           ///< |X_e|^2 over the same [-]
 };
 
 /// Paper III-C, README Eq. ID-12 to ID-17.
 struct TrackingMetrics {
   double rms_error_mm = 0.0;            ///< Eq. ID-12 [mm]
   double dwell_ratio = 0.0;             ///< Eq. ID-13 [-], |x_e| < half width
-  double crossover_hz = 0.0;            ///< Eq. ID-16 [Hz] from the paper's gain; NaN: no fit
-  double crossover_reference_hz = 0.0;  ///< Eq. ID-16 [Hz] from gain_reference; NaN: < 2 lines
-  int reference_lines = 0;              ///< [-] significant lines in crossover_reference_hz
+  double crossover_hz = 0.0;            ///< Eq. ID-16 [Hz], the paper's line fit; NaN: no fit
+  double crossover_reference_hz = 0.0;  ///< Eq. ID-15 [Hz], remnant taken off; NaN: all remnant
   std::array<OpenLoopLine, signal::kReferenceLines> lines{};
   std::vector<double> moving_rms_mm;  ///< Eq. ID-17 [mm]; entry i covers samples i .. i + W - 1
   std::vector<double> moving_dwell;   ///< [-]; both empty for a trial shorter than the window
 };
 
 /// Metrics of one trial.  The record must hold whole cycles of the design's harmonics, as a trial's
-/// measured ticks do.  On such a record X_p / X_e and S(x_r,x_p) / S(x_r,x_e) are one and the same
-/// number at a line; what distinguishes gain_reference is that the remnant's power, read from the
-/// unexcited harmonics around the line, is taken off both (README Eq. ID-15).  Pure.
+/// measured ticks do.  On such a record X_p / X_e and the estimate through the reference,
+/// S(x_r,x_p) / S(x_r,x_e), are one and the same number at a line; the bias that the remnant leaves
+/// in it is of the logarithm, where signal and remnant are of one size.  crossover_reference_hz
+/// avoids it: the remnant's power, read from the unexcited harmonics around each line, is taken off
+/// and the lines are pooled before a ratio is formed.  README "Crossover" compares them.  Pure.
 /// @throws stillhand::ConfigError for unequal or short records, a sample that isn't finite, or a
 /// harmonic beyond half the rate.
 TrackingMetrics tracking_metrics(const TrackingRecord& record,

@@ -99,8 +99,9 @@ inline double disturbance_at(const Disturbance& disturbance, const signal::Refer
 
 /// Closes the loop over the periodic target of `duration_s`, with one tick from force to cursor,
 /// and keeps its second period: the first is the run-in.
-inline TrackingRun close_the_loop(const CrossoverConfig& config, double duration_s, std::uint64_t seed,
-                          double scale_m, const Disturbance& disturbance = {}) {
+inline TrackingRun close_the_loop(const CrossoverConfig& config, double duration_s,
+                                  std::uint64_t seed, double scale_m,
+                                  const Disturbance& disturbance = {}) {
   const Tick period = ticks_in(duration_s);
   TrackingRun run;
   run.design = signal::reference_design(duration_s);

@@ -42,7 +42,9 @@ TEST(DifferenceModelTest, ResponseIsThatOfTheEquation) {
 TEST(DifferenceModelTest, StabilityIsDecidedAtTheUnitCircle) {
   for (const double angle_rad : {0.0, 0.05, 1.0, 3.14159}) {
     EXPECT_TRUE(is_stable(with_poles(0.999, angle_rad))) << angle_rad;
-    EXPECT_TRUE(is_stable(with_poles(1.0 - 1e-9, angle_rad))) << angle_rad;
+    // Two poles at distance x from 1 leave the recursion x^2 / 2 from its bound, with a rounding of
+    // 1e-16 / x: it can tell down to x = 6e-6.
+    EXPECT_TRUE(is_stable(with_poles(1.0 - 1e-4, angle_rad))) << angle_rad;
     EXPECT_FALSE(is_stable(with_poles(1.0, angle_rad))) << angle_rad;
     EXPECT_FALSE(is_stable(with_poles(1.001, angle_rad))) << angle_rad;
   }

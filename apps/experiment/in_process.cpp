@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/in_process.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr std::uint64_t kSeedMask = 0xffffffffu;  // the cores' seeds are 32-bit numbers
+
+CoreConfigs seeded(CoreConfigs configs, std::uint64_t seed) {
+  configs.rig.seed = static_cast<std::int64_t>(seed & kSeedMask);
+  configs.human_operator.seed = configs.rig.seed;
+  return configs;
+}
+
+motion::MotionProfile profile_of(const PlannedTrial& planned) {
+  motion::MotionProfile profile;
+  profile.kind = planned.moving ? motion::MotionKind::kBandNoise : motion::MotionKind::kStill;
+  profile.band_low_hz = planned.band_low_hz;
+  profile.band_high_hz = planned.band_high_hz;
+  profile.rms_m_s2 = planned.rms_m_s2;
+  profile.peak_m_s2 = planned.peak_m_s2;
+  profile.seed = planned.motion_seed;
+  profile.duration_ticks = planned.trial.duration_ticks;
+  profile.ramp_ticks = planned.trial.ramp_ticks;
+  return profile;
+}
+
+sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
+  return {tick,          raw.accel_x_v,   raw.accel_y_v,
+          raw.accel_z_v, raw.load_cell_v, raw.encoder_counts,
+          raw.roll_rad};
+}
+
+}  // namespace
+
+InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed)
+    : configs_(seeded(configs, seed)),
+      rig_(configs_.rig),
+      conditioner_(configs_.sensing),
+      motion_(configs_.motion),
+      canceller_(configs_.cancellation),
+      display_(configs_.display),
+      operator_(configs_.human_operator) {}
+
+cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
+  return canceller_.load_model(model.control);
+}
+
+void InProcessLoop::arm(const PlannedTrial& planned) {
+  motion_.arm(motion::MotionTrajectory(profile_of(planned), configs_.motion.limits), planned.trial);
+  if (planned.trial.phase == TrialPhase::kTracking) {
+    display_.arm(planned.trial, planned.reference_seed);
+  } else {
+    display_.disarm();
+  }
+  operator_.arm(planned.trial);
+}
+
+TrialSignals InProcessLoop::run(PlannedTrial planned) {
+  planned.trial.start_tick = tick_ + planned.trial.ramp_ticks + 1;
+  arm(planned);
+  TrialSignals signals;
+  signals.pegged.rate_hz = kControlRateHz;
+  signals.tracking.rate_hz = kControlRateHz;
+  while (tick_ <
+         planned.trial.start_tick + planned.trial.duration_ticks + planned.trial.ramp_ticks) {
+    tick_once(planned, signals);
+  }
+  return signals;
+}
+
+void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals) {
+  const Tick tick = ++tick_;
+  const bool covered = planned.trial.covers(tick);
+  const bool tracking = covered && planned.trial.phase == TrialPhase::kTracking;
+
+  const motion::PlatformCommand command = motion_.step(tick);
+  rig::RigInput input;
+  input.command_valid = true;
+  input.command_position_m = command.position_m;
+  input.command_velocity_m_s = command.velocity_m_s;
+  input.command_acceleration_m_s2 = command.acceleration_m_s2;
+  input.motor_valid = true;
+  input.motor_age_ticks = 1;
+  input.motor_force_n = motor_force_n_;
+  input.operator_valid = true;
+  input.operator_age_ticks = 1;
+  input.operator_force_n = operator_force_n_;
+  input.pegged = covered && planned.trial.phase == TrialPhase::kPegged;
+  input.motor_permitted = covered;
+  const rig::RigOutput rig_out = rig_.step(input);
+
+  const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
+  const bool enabled = planned.cancellation && tracking;
+  motor_force_n_ = canceller_
+                       .step({tick, sensed.accel_y_m_s2, sensed.theta_rad, sensed.omega_rad_s,
+                              sensed.flags, enabled, covered})
+                       .force_n;
+  const display::TrackingSample shown = display_.step({tick, sensed.theta_rad});
+  operator_force_n_ = operator_.step({tick, shown.target_m, shown.cursor_m, tracking}).force_n;
+
+  if (!planned.trial.measures(tick)) return;
+  if (planned.trial.phase == TrialPhase::kPegged) {
+    signals.pegged.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
+    signals.pegged.force_n.push_back(sensed.force_n);
+  } else {
+    signals.tracking.target_m.push_back(shown.target_m);
+    signals.tracking.cursor_m.push_back(shown.cursor_m);
+  }
+  signals.feedthrough_n.push_back(rig_out.truth.feedthrough_force_n);
+  signals.motor_n.push_back(rig_out.truth.motor_force_n);
+}
+
+}  // namespace stillhand::experiment

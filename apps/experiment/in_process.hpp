@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "cancellation/core/canceller.hpp"
+#include "display/core/tracking_display.hpp"
+#include "experiment/protocol.hpp"
+#include "human_operator/core/crossover_operator.hpp"
+#include "identification/core/identifier.hpp"
+#include "identification/core/tracking_metrics.hpp"
+#include "motion/core/motion_generator.hpp"
+#include "rig/core/rig.hpp"
+#include "sensing/core/conditioner.hpp"
+
+namespace stillhand::experiment {
+
+/// Settings of every core of a session.
+struct CoreConfigs {
+  rig::RigConfig rig;
+  sensing::Config sensing;
+  motion::MotionGenerator::Config motion;
+  cancellation::Config cancellation;
+  display::TrackingDisplay::Config display;
+  human_operator::CrossoverConfig human_operator;
+  identification::Config identification;
+};
+
+/// A trial's signals over its measured ticks.
+struct TrialSignals {
+  identification::Record pegged;  ///< acceleration and force, 1 kHz, as sensed
+  identification::TrackingRecord tracking;
+  std::vector<double> feedthrough_n;  ///< true f'_b
+  std::vector<double> motor_n;        ///< motor force applied
+};
+
+/// The closed loop of a session in one process: the same cores in catalogue order, one whole tick
+/// of delay on each of the two edges that close the loop (motor command and operator force to the
+/// rig), as fast as the machine goes.  Deterministic.  One thread.
+class InProcessLoop {
+ public:
+  /// @param seed  session seed, used as the processes use theirs
+  /// @throws ConfigError as the cores do.
+  InProcessLoop(const CoreConfigs& configs, std::uint64_t seed);
+
+  /// Runs one trial from its first ramp to its last; start_tick is set by the loop.
+  TrialSignals run(PlannedTrial planned);
+  /// The model the canceller uses from now on.  @return why not, or kNone.
+  cancellation::Refusal use_model(const identification::FeedthroughModel& model);
+
+ private:
+  void arm(const PlannedTrial& planned);
+  void tick_once(const PlannedTrial& planned, TrialSignals& signals);
+
+  CoreConfigs configs_;
+  rig::Rig rig_;
+  sensing::Conditioner conditioner_;
+  motion::MotionGenerator motion_;
+  cancellation::Canceller canceller_;
+  display::TrackingDisplay display_;
+  human_operator::CrossoverOperator operator_;
+  Tick tick_ = 0;
+  double motor_force_n_ = 0.0;
+  double operator_force_n_ = 0.0;
+};
+
+}  // namespace stillhand::experiment

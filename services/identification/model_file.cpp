@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identification/model_file.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "contract/config_error.hpp"
+#include "contract/tick.hpp"
+
+namespace stillhand::identification {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* kFormat = "stillhand model";
+constexpr std::size_t kMostCoefficients = 13;
+
+// An entry of the file, with the path to it for messages.
+class Entry {
+ public:
+  Entry(const Json& json, std::string path) : json_(json), path_(std::move(path)) {}
+
+  [[nodiscard]] Entry at(const std::string& key) const {
+    if (!json_.is_object()) refuse("an object");
+    const auto found = json_.find(key);
+    if (found == json_.end()) throw ConfigError(path_ + "." + key, "no such entry", "one");
+    return {*found, path_ + "." + key};
+  }
+  [[nodiscard]] double number() const {
+    if (!json_.is_number()) refuse("a number");
+    const auto value = json_.get<double>();
+    if (!std::isfinite(value)) refuse("a finite number");
+    return value;
+  }
+  [[nodiscard]] std::size_t count() const {
+    if (!json_.is_number_unsigned()) refuse("a whole number from 0");
+    return json_.get<std::size_t>();
+  }
+  [[nodiscard]] bool boolean() const {
+    if (!json_.is_boolean()) refuse("true or false");
+    return json_.get<bool>();
+  }
+  [[nodiscard]] std::string text() const {
+    if (!json_.is_string()) refuse("a text");
+    return json_.get<std::string>();
+  }
+  [[nodiscard]] std::vector<double> numbers() const {
+    if (!json_.is_array() || json_.empty() || json_.size() > kMostCoefficients) {
+      refuse("an array of 1 to " + std::to_string(kMostCoefficients) + " numbers");
+    }
+    std::vector<double> out;
+    for (std::size_t i = 0; i < json_.size(); ++i) {
+      out.push_back(Entry(json_[i], path_ + "[" + std::to_string(i) + "]").number());
+    }
+    return out;
+  }
+  [[noreturn]] void refuse(const std::string& want) const {
+    constexpr std::size_t kMostShown = 60;
+    std::string got = json_.dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (got.size() > kMostShown) got = got.substr(0, kMostShown) + "...";
+    throw ConfigError(path_, got, want);
+  }
+
+ private:
+  const Json& json_;
+  std::string path_;
+};
+
+void check(const DifferenceModel& model, const std::string& path) {
+  if (model.numerator.size() != model.denominator.size()) {
+    throw ConfigError(path + ".denominator", std::to_string(model.denominator.size()) + " numbers",
+                      std::to_string(model.numerator.size()) + " as the numerator");
+  }
+  if (!signal::well_formed(model)) {
+    throw ConfigError(path, "a malformed model",
+                      "a rate above 0 and finite coefficients, the denominator's first 1");
+  }
+  if (!signal::is_stable(model)) {
+    throw ConfigError(path, "an unstable model", "every pole inside the unit circle");
+  }
+}
+
+Json json_of(const DifferenceModel& model) {
+  return {{"rate_hz", model.rate_hz},
+          {"numerator", model.numerator},
+          {"denominator", model.denominator}};
+}
+
+DifferenceModel model_of(const Entry& entry) {
+  DifferenceModel model{entry.at("rate_hz").number(), entry.at("numerator").numbers(),
+                        entry.at("denominator").numbers()};
+  return model;
+}
+
+void check(const FeedthroughModel& model, const std::string& origin) {
+  check(model.fit, origin + ".fit");
+  check(model.control, origin + ".control");
+  if (model.control.rate_hz != kControlRateHz) {
+    throw ConfigError(origin + ".control.rate_hz", std::to_string(model.control.rate_hz),
+                      "1000, the control rate");
+  }
+}
+
+FitQuality quality_of(const Entry& entry) {
+  FitQuality quality;
+  quality.one_step_rms_n = entry.at("one_step_rms_n").number();
+  quality.one_step_vaf_percent = entry.at("one_step_vaf_percent").number();
+  quality.free_run_rms_n = entry.at("free_run_rms_n").number();
+  quality.free_run_vaf_percent = entry.at("free_run_vaf_percent").number();
+  quality.samples = entry.at("samples").count();
+  return quality;
+}
+
+Json parsed(std::string_view json, const std::string& origin) {
+  try {
+    return Json::parse(json);
+  } catch (const Json::exception& error) {
+    // The library's text names line and column, or the number that does not fit a double.
+    throw ConfigError(origin, error.what(), "JSON of a stillhand model");
+  }
+}
+
+}  // namespace
+
+std::string model_json(const FeedthroughModel& model) {
+  const FitQuality& q = model.heldout;
+  const Json json{{"format", kFormat},
+                  {"version", kModelFormatVersion},
+                  {"fit", json_of(model.fit)},
+                  {"control", json_of(model.control)},
+                  {"heldout",
+                   {{"one_step_rms_n", q.one_step_rms_n},
+                    {"one_step_vaf_percent", q.one_step_vaf_percent},
+                    {"free_run_rms_n", q.free_run_rms_n},
+                    {"free_run_vaf_percent", q.free_run_vaf_percent},
+                    {"samples", q.samples}}},
+                  {"condition_number", model.condition_number},
+                  {"conversion_error", model.conversion_error},
+                  {"refined", model.refined}};
+  std::string text = json.dump(2) + "\n";
+  // A number that isn't finite would be written as null: what can't be read isn't written.
+  static_cast<void>(parse_model(text, "model"));
+  return text;
+}
+
+FeedthroughModel parse_model(std::string_view json, const std::string& origin) {
+  const Json whole = parsed(json, origin);
+  const Entry top(whole, origin);
+  if (top.at("format").text() != kFormat) top.at("format").refuse("\"stillhand model\"");
+  if (top.at("version").count() != kModelFormatVersion) {
+    top.at("version").refuse("1: a newer stillhand wrote this file");
+  }
+  FeedthroughModel model;
+  model.fit = model_of(top.at("fit"));
+  model.control = model_of(top.at("control"));
+  model.heldout = quality_of(top.at("heldout"));
+  model.condition_number = top.at("condition_number").number();
+  model.conversion_error = top.at("conversion_error").number();
+  model.refined = top.at("refined").boolean();
+  check(model, origin);
+  return model;
+}
+
+}  // namespace stillhand::identification

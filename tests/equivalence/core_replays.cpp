@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "equivalence/core_replays.hpp"
+
+#include <algorithm>
+
+#include "cancellation/codec.hpp"
+#include "display/codec.hpp"
+#include "equivalence/recorded_trial.hpp"
+#include "human_operator/codec.hpp"
+#include "human_operator/shell.hpp"
+#include "motion/codec.hpp"
+#include "motion/core/motion_generator.hpp"
+#include "rig/codec.hpp"
+#include "sensing/codec.hpp"
+
+namespace stillhand::equivalence {
+namespace {
+
+namespace msgs = stillhand_msgs;
+
+/// Seeds of the cores are 32-bit numbers.
+std::int64_t core_seed(const SessionSettings& settings) {
+  return static_cast<std::int64_t>(settings.seed & 0xffffffffu);
+}
+
+/// For cores whose every step is told by its input alone.
+constexpr auto kAlways = [](const auto&, const auto&) { return true; };
+constexpr auto kSameTrial = [](const auto& a, const auto& b) { return a.trial() == b.trial(); };
+
+}  // namespace
+
+Replay replay_sensing(const SessionRecording& session, const SessionSettings& settings) {
+  sensing::Conditioner core(settings.of<sensing::Config>("sensing"));
+  const ByTick raws("raw_sample", session.raw_samples);
+  const auto step = [&](Tick tick, const msgs::Sensed&) {
+    const msgs::RawSample& raw = raws.at(tick);
+    return sensing::to_idl(core.step(sensing::from_idl(raw)), raw);
+  };
+  return replay("sensing", session.sensed, step, kAlways);
+}
+
+Replay replay_motion(const SessionRecording& session, const SessionSettings& settings) {
+  const auto config = settings.of<motion::MotionGenerator::Config>("motion");
+  motion::MotionGenerator core(config);
+  std::int64_t armed = -1;
+  const auto step = [&](Tick tick, const msgs::PlatformCommand& like) {
+    if (like.trial() != armed) {
+      const Trial trial = trial_of(of_trial(session.trial_controls, like.trial()));
+      const auto profile =
+          motion::from_idl(of_trial(session.trial_assignments, like.trial()), trial);
+      if (profile.kind == motion::MotionKind::kRide) {
+        throw NotRecorded("the ride's own samples are not in the recording");
+      }
+      core.arm(motion::MotionTrajectory(profile, config.limits), trial);
+      armed = like.trial();
+    }
+    return motion::to_idl(core.step(tick), tick, armed);
+  };
+  return replay("motion", session.platform_commands, step, kSameTrial);
+}
+
+Replay replay_cancellation(const SessionRecording& session, const SessionSettings& settings) {
+  cancellation::Canceller core(settings.of<cancellation::Config>("cancellation"));
+  const ByTick sensed("sensed", session.sensed);
+  std::int32_t offered = -1;
+  const auto step = [&](Tick tick, const msgs::MotorCommand& like) {
+    // A model changes the core in the step that names it; one that was refused is never named.
+    for (; offered < like.model(); ++offered) {
+      const auto model =
+          std::find_if(session.models.begin(), session.models.end(),
+                       [&](const auto& candidate) { return candidate.model() == offered + 1; });
+      if (model == session.models.end()) {
+        throw NotRecorded("model " + std::to_string(offered + 1) + " is not in the recording");
+      }
+      if (model->usable()) core.load_model(cancellation::from_idl(*model));
+    }
+    const msgs::Sensed& sample = sensed.at(tick);
+    const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());
+    return cancellation::to_idl(core.step(input), input, sample, like.model());
+  };
+  const auto agree = [](const msgs::MotorCommand& a, const msgs::MotorCommand& b) {
+    return a.enabled() == b.enabled() && a.permitted() == b.permitted() && a.model() == b.model();
+  };
+  return replay("cancellation", session.motor_commands, step, agree);
+}
+
+Replay replay_display(const SessionRecording& session, const SessionSettings& settings) {
+  const auto config = settings.of<display::TrackingDisplay::Config>("display");
+  display::TrackingDisplay core(config);
+  const ByTick sensed("sensed", session.sensed);
+  std::int64_t armed = -1;
+  const auto step = [&](Tick tick, const msgs::TrackingSample& like) {
+    if (like.trial() != armed) {
+      const msgs::TrialControl& control = of_trial(session.trial_controls, like.trial());
+      const Trial trial = trial_of(control);
+      if (trial.phase == TrialPhase::kTracking) {
+        core.arm(
+            display::reference_on_screen(config, trial.duration_ticks, control.reference_seed()),
+            trial);
+      } else {
+        core.disarm();
+      }
+      armed = like.trial();
+    }
+    return display::to_idl(core.step(display::from_idl(sensed.at(tick))), tick, armed);
+  };
+  return replay("display", session.tracking_samples, step, kSameTrial);
+}
+
+Replay replay_human_operator(const SessionRecording& session, const SessionSettings& settings) {
+  auto config = settings.of<human_operator::SubjectConfig>("human_operator");
+  config.crossover.seed = core_seed(settings);
+  human_operator::CrossoverOperator core(config.crossover);
+  const ByTick tracking("tracking_sample", session.tracking_samples);
+  std::int64_t armed = -1;
+  const auto step = [&](Tick tick, const msgs::OperatorForce& like) {
+    if (like.trial() != armed) {
+      core.arm(trial_of(of_trial(session.trial_controls, like.trial())));
+      armed = like.trial();
+    }
+    const auto input = human_operator::from_idl(tracking.at(tick), like.active());
+    return human_operator::to_idl(core.step(input), input, armed);
+  };
+  const auto agree = [](const msgs::OperatorForce& a, const msgs::OperatorForce& b) {
+    return a.active() == b.active() && a.trial() == b.trial();
+  };
+  return replay("human_operator", session.operator_forces, step, agree);
+}
+
+Replay replay_rig(const SessionRecording& session, const SessionSettings& settings) {
+  auto config = settings.of<rig::RigConfig>("rig");
+  config.seed = core_seed(settings);
+  rig::Rig core(config);
+  const ByTick commands("platform_command", session.platform_commands);
+  const ByTick motors("motor_command", session.motor_commands);
+  const ByTick forces("operator_force", session.operator_forces);
+  std::vector<msgs::RawSample> raws;
+  const auto step = [&](Tick tick, const msgs::RigTruth& like) {
+    if (raws.empty() && tick != 0) throw NotRecorded("the rig's first ticks are not recorded");
+    const auto input =
+        rig::make_input(tick, commands.used(like.command_tick()), motors.used(like.motor_tick()),
+                        forces.used(like.operator_tick()), like.pegged(), like.motor_permitted());
+    const auto output = core.step(input);
+    raws.push_back(rig::to_idl(output, tick));
+    return rig::to_idl(output, tick, input,
+                       {like.command_tick(), like.motor_tick(), like.operator_tick()});
+  };
+  // What a lost truth used is known to nobody.
+  const auto never = [](const msgs::RigTruth&, const msgs::RigTruth&) { return false; };
+  Replay result = replay("rig", session.rig_truths, step, never);
+  const ByTick recorded("raw_sample", session.raw_samples);
+  for (const msgs::RawSample& raw : raws) {
+    if (recorded.has(raw.tick())) {
+      compare(raw, recorded.at(raw.tick()), raw.tick(), result);
+    } else {
+      ++result.unrecorded;
+    }
+  }
+  return result;
+}
+
+}  // namespace stillhand::equivalence

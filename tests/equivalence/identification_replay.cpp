@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "contract/config_error.hpp"
+#include "equivalence/core_replays.hpp"
+#include "equivalence/recorded_trial.hpp"
+#include "identification/codec.hpp"
+#include "identification/shell.hpp"
+
+namespace stillhand::equivalence {
+namespace {
+
+namespace msgs = stillhand_msgs;
+
+/// Ticks of the sensed topic that did not reach the identification, from its own events.
+std::set<Tick> lost_by_identification(const SessionRecording& session, Tick first, Tick end) {
+  std::set<Tick> lost;
+  for (const msgs::Event& event : session.events) {
+    if (event.kind() != msgs::EVENT_TICKS_LOST ||
+        std::string(event.source().c_str()) != "identification" || event.tick() < first) {
+      continue;
+    }
+    const auto count = static_cast<Tick>(event.by_us());
+    if (event.tick() - count >= end) continue;
+    if (event.text().size() > 0) {
+      throw NotRecorded("several gaps of the identification share one event");
+    }
+    for (Tick tick = event.tick() - count; tick < event.tick(); ++tick) lost.insert(tick);
+  }
+  return lost;
+}
+
+/// As the identification's shell answers a finished record.
+msgs::FeedthroughModel fitted(const identification::PeggedRecord& pegged,
+                              const identification::Config& config, std::int32_t number) {
+  const auto trial = static_cast<std::int32_t>(pegged.trial());
+  const identification::Record record = pegged.record();
+  if (static_cast<double>(pegged.lost()) > 0.01 * static_cast<double>(record.size())) {
+    return identification::failure_to_idl(
+        std::to_string(pegged.lost()) + " ticks of the pegged trial were lost", number, trial);
+  }
+  try {
+    return identification::to_idl(identification::identify(record, config), number, trial);
+  } catch (const ConfigError& error) {
+    return identification::failure_to_idl(error.what(), number, trial);
+  }
+}
+
+}  // namespace
+
+Replay replay_identification(const SessionRecording& session, const SessionSettings& settings) {
+  const auto config = settings.of<identification::Config>("identification");
+  const ByTick sensed("sensed", session.sensed);
+  Replay result;
+  result.core = "identification";
+  try {
+    for (const msgs::FeedthroughModel& model : session.models) {
+      const Trial trial = trial_of(of_trial(session.trial_controls, model.trial()));
+      const Tick end = trial.start_tick + trial.duration_ticks;
+      if (result.compared == 0) result.first_tick = trial.start_tick;
+      const std::set<Tick> lost = lost_by_identification(session, trial.start_tick, end);
+      identification::PeggedRecord pegged;
+      pegged.begin(trial);
+      for (Tick tick = trial.start_tick; pegged.active(); ++tick) {
+        if (lost.count(tick) != 0) {
+          ++result.unseen;
+          continue;
+        }
+        const msgs::Sensed& sample = sensed.at(tick);
+        pegged.take(tick, sample.accel_y_m_s2(), sample.force_n());
+      }
+      compare(fitted(pegged, config, model.model()), model, trial.start_tick, result);
+    }
+  } catch (const NotRecorded& reason) {
+    result.ended = reason.what();
+  }
+  return result;
+}
+
+}  // namespace stillhand::equivalence

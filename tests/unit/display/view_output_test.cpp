@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display/view_output.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "contract/config_error.hpp"
+#include "display/view_opencv.hpp"
+
+namespace stillhand::display {
+namespace {
+
+constexpr int kColumns = 640;
+constexpr int kRows = 480;
+
+/// A folder of its own for each test, removed with it.
+class FrameFileTest : public ::testing::Test {
+ protected:
+  FrameFileTest() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("stillhand_") + test->name() + "_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  ~FrameFileTest() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+
+  TrackingView view_{TrackingDisplay::Config{}, kColumns, kRows};
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(FrameFileTest, NumberedImagesHoldTheFramesBitForBit) {
+  FrameFile sut(path("screen.png"), 60.0, kColumns, kRows);
+  std::vector<cv::Mat> frames;
+  for (int i = 0; i < 3; ++i) {
+    frames.push_back(view_.draw({0.01 * i, 0.0, true, kGood}, {}).clone());
+    ASSERT_TRUE(sut.write(frames.back()));
+  }
+  EXPECT_EQ(sut.frames(), 3);
+  for (int i = 0; i < 3; ++i) {
+    const cv::Mat read = cv::imread(path("screen_00000" + std::to_string(i) + ".png"));
+    ASSERT_FALSE(read.empty());
+    EXPECT_EQ(cv::norm(read, frames[static_cast<std::size_t>(i)], cv::NORM_INF), 0.0);
+  }
+}
+
+// Motion JPEG loses detail: quality 95 leaves a few levels of mean error, far below the 30 or so
+// that another frame, with its box elsewhere, would make over the lines' own area.
+TEST_F(FrameFileTest, AVideoPlaysTheFramesBack) {
+  const cv::Mat last = view_.draw({0.05, 0.02, false, kGood}, {}).clone();
+  {
+    FrameFile sut(path("screen.avi"), 60.0, kColumns, kRows);
+    for (int i = 0; i < 30; ++i) {
+      ASSERT_TRUE(sut.write(i == 29 ? last : view_.draw({0.001 * i, 0.0, true, kGood}, {})));
+    }
+  }
+  cv::VideoCapture video(path("screen.avi"));
+  ASSERT_TRUE(video.isOpened());
+  EXPECT_NEAR(video.get(cv::CAP_PROP_FPS), 60.0, 0.01);
+  cv::Mat frame;
+  cv::Mat read;
+  int frames = 0;
+  while (video.read(read)) {
+    frame = read.clone();
+    ++frames;
+  }
+  EXPECT_EQ(frames, 30);
+  ASSERT_EQ(frame.size(), last.size());
+  EXPECT_LT(cv::norm(frame, last, cv::NORM_L1), 0.2 * cv::norm(last, cv::NORM_L1));
+}
+
+TEST_F(FrameFileTest, WhatCannotBeWrittenIsRefusedBeforeTheRun) {
+  EXPECT_THROW(FrameFile("/nonexistent/screen.avi", 60.0, kColumns, kRows), ConfigError);
+  EXPECT_THROW(FrameFile("/nonexistent/screen.png", 60.0, kColumns, kRows), ConfigError);
+  EXPECT_THROW(FrameFile(path("screen.gif"), 60.0, kColumns, kRows), ConfigError);
+  EXPECT_THROW(FrameFile(path("screen.avi"), 0.0, kColumns, kRows), ConfigError);
+  EXPECT_FALSE(std::filesystem::exists(path("screen.gif")));
+}
+
+TEST_F(FrameFileTest, AFolderThatGoesAwayIsReported) {
+  std::filesystem::create_directory(path("gone"));
+  FrameFile sut(path("gone/screen.png"), 60.0, kColumns, kRows);
+  std::filesystem::remove_all(path("gone"));
+  EXPECT_FALSE(sut.write(view_.draw({0.0, 0.0, true, kGood}, {})));
+  EXPECT_EQ(sut.frames(), 0);
+}
+
+TEST(ScreenWindowTest, WithoutADisplayItIsRefusedInsteadOfEndingTheProcess) {
+  ::unsetenv("WAYLAND_DISPLAY");
+  ::unsetenv("QT_QPA_PLATFORM");
+  const Projection projection(ScreenConfig{}, kColumns, kRows);
+  ::unsetenv("DISPLAY");
+  EXPECT_THROW(ScreenWindow("screen", projection, false), ConfigError);
+  ::setenv("DISPLAY", ":4711", 1);
+  EXPECT_THROW(ScreenWindow("screen", projection, false), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::display

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identification/core/excitation_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/feedthrough_records.hpp"
+
+namespace stillhand::identification {
+namespace {
+
+std::vector<double> sines(std::initializer_list<double> frequencies_hz) {
+  std::vector<double> out(3000, 0.0);
+  for (const double f : frequencies_hz) {
+    for (std::size_t n = 0; n < out.size(); ++n) {
+      out[n] += std::sin(2.0 * std::numbers::pi * f * static_cast<double>(n) / 50.0 + f);
+    }
+  }
+  return out;
+}
+Excitation of(const std::vector<double>& a) {
+  return check_excitation(support::record_of(support::body_like_model(), a), 4);
+}
+
+TEST(ExcitationTest, ThePapersMotionSuffices) {
+  auto a = support::band_noise(6000, 50.0, 0.7, 4.0, 1.6, 1);
+  const auto noise = support::white_noise(6000, 0.01, 2);
+  for (std::size_t n = 0; n < a.size(); ++n) a[n] += noise[n];
+  const Excitation sut = of(a);
+  EXPECT_TRUE(sut.sufficient) << sut.verdict;
+  EXPECT_NEAR(sut.acceleration_rms_m_s2, 1.6, 0.01);
+  // Fourth-order Butterworth edges leave a tenth of the power outside the two -3 dB frequencies.
+  EXPECT_GT(sut.band_share, 0.8);
+  EXPECT_LT(sut.band_share, 1.0);
+}
+
+TEST(ExcitationTest, EachSinusoidCountsTwo) {
+  EXPECT_EQ(of(sines({2.0})).persistent_order, 2);
+  EXPECT_EQ(of(sines({1.0, 3.0, 6.0})).persistent_order, 6);
+  EXPECT_FALSE(of(sines({1.0, 3.0, 6.0})).sufficient);
+  // Nine parameters of order 4 need nine components: five sinusoids give ten.
+  EXPECT_TRUE(of(sines({1.0, 3.0, 6.0, 9.0, 14.0})).sufficient);
+}
+
+TEST(ExcitationTest, VerdictSaysWhatIsMissing) {
+  EXPECT_NE(of(sines({2.0})).verdict.find("holds 2 independent components"), std::string::npos);
+  EXPECT_NE(of(std::vector<double>(3000, 1.0)).verdict.find("no excitation"), std::string::npos);
+  EXPECT_NE(of(support::white_noise(3000, 0.01, 3)).verdict.find("no excitation"),
+            std::string::npos);
+  EXPECT_EQ(of(support::white_noise(3000, 1.0, 3)).verdict, "sufficient");
+}
+
+TEST(ExcitationTest, WhiteNoiseReachesTheLargestOrder) {
+  const Excitation sut = of(support::white_noise(3000, 1.0, 4));
+  EXPECT_EQ(sut.persistent_order, 25);
+  // 3.3 of 25 Hz, 60 averages over about 14 lines: relative deviation 1/sqrt(14 * 29) = 5 %.
+  EXPECT_NEAR(sut.band_share, 3.3 / 25.0, 0.03);
+}
+
+}  // namespace
+}  // namespace stillhand::identification

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identification/model_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contract/config_error.hpp"
+#include "support/feedthrough_records.hpp"
+
+namespace stillhand::identification {
+namespace {
+
+using ::testing::HasSubstr;
+
+FeedthroughModel model() {
+  FeedthroughModel out;
+  out.fit = support::body_like_model();
+  const auto conversion = to_control_rate(out.fit);
+  out.control = conversion.model;
+  out.conversion_error = conversion.max_error;
+  out.heldout = {0.1, 99.5, 1.0 / 3.0, 98.7, 1500};
+  out.condition_number = 1234.5;
+  out.refined = true;
+  return out;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+std::string refusal(const std::string& text) {
+  try {
+    parse_model(text, "m.json");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ModelFileTest, KeepsEveryBit) {
+  const FeedthroughModel written = model();
+  const FeedthroughModel sut = parse_model(model_json(written), "m.json");
+  EXPECT_EQ(sut.fit.numerator, written.fit.numerator);
+  EXPECT_EQ(sut.fit.denominator, written.fit.denominator);
+  EXPECT_EQ(sut.fit.rate_hz, written.fit.rate_hz);
+  EXPECT_EQ(sut.control.numerator, written.control.numerator);
+  EXPECT_EQ(sut.control.denominator, written.control.denominator);
+  EXPECT_EQ(sut.heldout.free_run_rms_n, written.heldout.free_run_rms_n);
+  EXPECT_EQ(sut.heldout.samples, written.heldout.samples);
+  EXPECT_EQ(sut.condition_number, written.condition_number);
+  EXPECT_EQ(sut.conversion_error, written.conversion_error);
+  EXPECT_TRUE(sut.refined);
+}
+
+TEST(ModelFileTest, SyntaxErrorsNameTheLine) {
+  EXPECT_THAT(refusal("{\n  \"format\": \"stillhand model\",\n  oops\n}"), HasSubstr("line 3"));
+  EXPECT_THAT(refusal(""), HasSubstr("line 1"));
+  EXPECT_THAT(refusal(model_json(model()).substr(0, 200)), HasSubstr("m.json"));
+}
+
+TEST(ModelFileTest, WrongEntriesAreNamed) {
+  const std::string good = model_json(model());
+  EXPECT_THAT(refusal(replaced(good, "\"condition_number\"", "\"condition\"")),
+              HasSubstr("m.json.condition_number: got no such entry"));
+  EXPECT_THAT(refusal(replaced(good, "\"rate_hz\": 50.0", "\"rate_hz\": \"fast\"")),
+              HasSubstr("m.json.fit.rate_hz: got \"fast\""));
+  EXPECT_THAT(refusal(replaced(good, "\"rate_hz\": 50.0", "\"rate_hz\": null")),
+              HasSubstr("m.json.fit.rate_hz: got null"));
+  EXPECT_THAT(refusal(replaced(good, "\"rate_hz\": 50.0", "\"rate_hz\": 1e999")),
+              HasSubstr("m.json"));
+  EXPECT_THAT(refusal(replaced(good, "\"rate_hz\": 50.0", "\"rate_hz\": -1.0")),
+              HasSubstr("m.json.fit"));
+  EXPECT_THAT(refusal(replaced(good, "\"rate_hz\": 1000.0", "\"rate_hz\": 500.0")),
+              HasSubstr("control.rate_hz"));
+  EXPECT_THAT(refusal(replaced(good, "\"refined\": true", "\"refined\": 1")),
+              HasSubstr("m.json.refined"));
+  EXPECT_THAT(refusal(replaced(good, "\"samples\": 1500", "\"samples\": -3")),
+              HasSubstr("m.json.heldout.samples"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("an object"));
+  EXPECT_THAT(refusal("{\"format\": \"other\"}"), HasSubstr("m.json.format: got \"other\""));
+}
+
+TEST(ModelFileTest, CoefficientsThatDoNotMakeAModelAreRefused) {
+  const std::string good = model_json(model());
+  EXPECT_THAT(refusal(replaced(good, "\"denominator\": [", "\"denominator\": [ 1.0,")),
+              HasSubstr("m.json.fit.denominator: got 6 numbers, want 5"));
+  EXPECT_THAT(refusal(replaced(good, "\"denominator\": [\n      1.0", "\"denominator\": [ 2.0")),
+              HasSubstr("m.json.fit"));
+  EXPECT_THAT(refusal(replaced(good, "\"denominator\": [\n      1.0,\n      -",
+                               "\"denominator\": [ 1.0, -9")),
+              HasSubstr("unstable"));
+  EXPECT_THAT(refusal(replaced(good, "\"numerator\": [", "\"numerator\": [ null,")),
+              HasSubstr("m.json.fit.numerator[0]: got null"));
+  EXPECT_THAT(
+      refusal(replaced(good, "\"numerator\": [", "\"numerator\": [1,1,1,1,1,1,1,1,1,1,1,1,1,1,")),
+      HasSubstr("1 to 13 numbers"));
+}
+
+TEST(ModelFileTest, ANewerVersionIsRefused) {
+  EXPECT_THAT(refusal(replaced(model_json(model()), "\"version\": 1", "\"version\": 2")),
+              HasSubstr("newer stillhand"));
+}
+
+TEST(ModelFileTest, WhatCannotBeReadIsNotWritten) {
+  FeedthroughModel sut = model();
+  sut.heldout.free_run_rms_n = std::nan("");
+  EXPECT_THROW(model_json(sut), ConfigError);
+  sut = model();
+  sut.fit.denominator[1] = -9.0;
+  EXPECT_THROW(model_json(sut), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::identification
