@@ -2,6 +2,7 @@
 #include "display/screen_loop.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "display/view_opencv.hpp"
@@ -29,6 +30,36 @@ ViewStatus status_of(const Shown& shown, bool fresh) {
   return status;
 }
 
+/// View, file and window together; drawn and shown with ordinary priority.
+class Screen {
+ public:
+  Screen(Shell& shell, const ScreenOptions& options)
+      : shell_(shell), view_(shell.config(), kColumns, kRows) {
+    if (!options.video.empty()) file_.emplace(options.video.string(), kRate_hz, kColumns, kRows);
+    if (options.window) window_.emplace("Stillhand", view_.projection(), false);
+  }
+
+  /// @return false once the window was closed.
+  bool show(const Shown& shown, bool fresh) {
+    const cv::Mat& frame = view_.draw(shown.sample, status_of(shown, fresh));
+    // Frames of a session that has not begun, or of a disk that is full, are not kept.
+    if (file_ && shown.tick >= 0 && !file_->write(frame)) {
+      shell_.service().note_event(stillhand_msgs::EVENT_NOTE, "the video cannot be written");
+      file_.reset();
+    }
+    return !window_ || window_->show(frame);
+  }
+  [[nodiscard]] std::optional<double> pointer_m() const {
+    return window_ ? window_->pointer_m() : std::nullopt;
+  }
+
+ private:
+  Shell& shell_;
+  TrackingView view_;
+  std::optional<FrameFile> file_;
+  std::optional<ScreenWindow> window_;
+};
+
 }  // namespace
 
 ScreenLoop::ScreenLoop(Shell& shell, ScreenOptions options)
@@ -42,13 +73,12 @@ void ScreenLoop::run() {
     stop.wait();
     return;
   }
-  runtime::become_ordinary();
-  TrackingView view(shell_.config(), kColumns, kRows);
-  std::optional<FrameFile> file;
-  std::optional<ScreenWindow> window;
-  if (!options_.video.empty()) file.emplace(options_.video.string(), kRate_hz, kColumns, kRows);
-  if (options_.window) window.emplace("Stillhand", view.projection(), false);
-
+  runtime::become_background();
+  std::optional<Screen> screen;
+  {
+    const runtime::OrdinaryWhile ordinary;  // OpenCV's own threads inherit it
+    screen.emplace(shell_, options_);
+  }
   constexpr auto kPeriod_ns = static_cast<std::int64_t>(1e9 / kRate_hz);
   std::int64_t due_ns = runtime::monotonic_ns();
   Tick last_tick = -1;
@@ -59,23 +89,22 @@ void ScreenLoop::run() {
     const Shown& shown = shell_.shown();
     if (shown.tick != last_tick) fresh_ns = due_ns;
     last_tick = shown.tick;
-    const cv::Mat& frame =
-        view.draw(shown.sample, status_of(shown, due_ns - fresh_ns < kLinkLost_ns));
-    // Frames of a session that has not begun, or of a disk that is full, are not kept.
-    if (file && shown.tick >= 0 && !file->write(frame)) {
-      shell_.service().note_event(stillhand_msgs::EVENT_NOTE, "the video cannot be written");
-      file.reset();
+    bool open = true;
+    {
+      const runtime::OrdinaryWhile ordinary;
+      open = screen->show(shown, due_ns - fresh_ns < kLinkLost_ns);
     }
-    if (!window) continue;
-    if (!window->show(frame)) return;  // closed: this process ends, and with it the session
-    if (options_.pointer) {
-      stillhand_msgs::Pointer message;
-      message.tick(shown.tick);
-      message.position_m(window->pointer_m().value_or(0.0));
-      message.inside_window(window->pointer_m().has_value());
-      pointer_.write(message);
-    }
+    if (!open) return;  // closed: this process ends, and with it the session
+    if (options_.pointer) publish_pointer(shown.tick, screen->pointer_m());
   }
+}
+
+void ScreenLoop::publish_pointer(Tick tick, std::optional<double> position_m) {
+  stillhand_msgs::Pointer message;
+  message.tick(tick);
+  message.position_m(position_m.value_or(std::numeric_limits<double>::quiet_NaN()));
+  message.inside_window(position_m.has_value());
+  pointer_.write(message);
 }
 
 }  // namespace stillhand::display

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <stop_token>
+#include <optional>
 
 #include "display/shell.hpp"
 
@@ -24,6 +24,8 @@ class ScreenLoop {
   void run();
 
  private:
+  void publish_pointer(Tick tick, std::optional<double> position_m);
+
   Shell& shell_;
   ScreenOptions options_;
   runtime::Publisher<stillhand_msgs::Pointer> pointer_;

@@ -73,7 +73,7 @@ void Shell::run() {
 }
 
 void Shell::fit_jobs(const std::stop_token& stop) {
-  runtime::become_ordinary();
+  runtime::become_background();
   for (;;) {
     Job job;
     {
@@ -88,6 +88,7 @@ void Shell::fit_jobs(const std::stop_token& stop) {
 }
 
 stillhand_msgs::FeedthroughModel Shell::fit(const Job& job) {
+  const runtime::OrdinaryWhile ordinary;
   const std::int32_t number = models_++;
   const auto trial = static_cast<std::int32_t>(job.trial);
   if (static_cast<double>(job.lost) > kMaxLostShare * static_cast<double>(job.record.size())) {

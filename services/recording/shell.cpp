@@ -86,7 +86,7 @@ void Shell::run() {
 }
 
 void Shell::write_batches(const std::stop_token& stop) {
-  runtime::become_ordinary();
+  runtime::become_background();
   Batch batch;
   auto flushed = std::chrono::steady_clock::now();
   for (bool last = false; !last;) {

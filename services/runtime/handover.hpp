@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "runtime/real_time.hpp"
+
 namespace stillhand::runtime {
 
 /// Makes something large in a thread of its own and hands it to the control path, which takes it
@@ -56,6 +58,7 @@ class Handover {
 
  private:
   void work(const std::stop_token& stop) {
+    become_background();
     while (!stop.stop_requested()) {
       Make make;
       {
@@ -65,10 +68,15 @@ class Handover {
       }
       delete spent_.exchange(nullptr, std::memory_order_acq_rel);
       if (!make) continue;
-      if (std::unique_ptr<T> made = make()) {
+      if (std::unique_ptr<T> made = make_ordinarily(make)) {
         delete fresh_.exchange(made.release(), std::memory_order_acq_rel);
       }
     }
+  }
+
+  static std::unique_ptr<T> make_ordinarily(const Make& make) {
+    const OrdinaryWhile ordinary;
+    return make();
   }
 
   std::mutex mutex_;

@@ -14,9 +14,23 @@ bool become_real_time(int priority) noexcept {
   return sched_setscheduler(0, SCHED_FIFO, &parameter) == 0;
 }
 
-void become_ordinary() noexcept {
-  const sched_param parameter{};
+void become_background() noexcept {
+  constexpr int kBackgroundPriority = 10;
+  if (sched_getscheduler(0) == SCHED_FIFO) become_real_time(kBackgroundPriority);
+}
+
+OrdinaryWhile::OrdinaryWhile() noexcept : policy_(sched_getscheduler(0)) {
+  sched_param parameter{};
+  sched_getparam(0, &parameter);
+  priority_ = parameter.sched_priority;
+  parameter.sched_priority = 0;
   sched_setscheduler(0, SCHED_OTHER, &parameter);
+}
+
+OrdinaryWhile::~OrdinaryWhile() {
+  sched_param parameter{};
+  parameter.sched_priority = priority_;
+  sched_setscheduler(0, policy_, &parameter);
 }
 
 void end_with_parent() noexcept { prctl(PR_SET_PDEATHSIG, SIGTERM); }

@@ -7,8 +7,25 @@ namespace stillhand::runtime {
 /// no thread settings: its threads inherit).  @return false when the system does not grant it.
 bool become_real_time(int priority) noexcept;
 
-/// Back to the ordinary policy, for threads that render, write files or report.
-void become_ordinary() noexcept;
+/// Lowers a real-time thread below the control path, for threads that report or write files.  They
+/// stay real-time: they share locks with the control path inside Fast DDS (its send resources), and
+/// an ordinary thread that is preempted while it holds one stalls the loop for as long as the
+/// machine is busy (measured 2026-11: up to 200 ms beside a parallel build).
+void become_background() noexcept;
+
+/// Ordinary policy for the calling thread as long as this lives, then what it had before: for long
+/// work (drawing, fitting) that holds no lock.
+class OrdinaryWhile {
+ public:
+  OrdinaryWhile() noexcept;
+  ~OrdinaryWhile();
+  OrdinaryWhile(const OrdinaryWhile&) = delete;
+  OrdinaryWhile& operator=(const OrdinaryWhile&) = delete;
+
+ private:
+  int policy_;
+  int priority_;
+};
 
 /// SIGTERM for this process when its parent ends, so that a killed lab leaves nobody behind.
 void end_with_parent() noexcept;

@@ -51,7 +51,7 @@ void Reporter::tell(const Note& note) noexcept {
 }
 
 void Reporter::work(const std::stop_token& stop) {
-  become_ordinary();
+  become_background();
   while (!stop.stop_requested()) {
     publish_events();
     publish_status();
