@@ -239,7 +239,7 @@ bool Conductor::await_armed(const PlannedTrial& planned, TrialOutcome& outcome) 
     });
   });
   if (armed) return true;
-  outcome.aborted = !trouble_.empty() ? trouble_ : interrupted() ? "interrupted" : "";
+  outcome.aborted = why_stopped("");
   if (outcome.aborted.empty()) {
     const std::lock_guard lock(mutex_);
     for (const std::string_view service : kArmed) {
@@ -278,10 +278,9 @@ TrialOutcome Conductor::run(PlannedTrial planned) {
       return now >= end || saw(seen.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
     });
     if (!outcome.completed) {
-      outcome.aborted = !trouble_.empty() ? trouble_
-                        : interrupted()   ? "interrupted"
-                                          : "no end seen";
+      outcome.aborted = why_stopped("the trial did not end in time");
     }
+    see_force_out(outcome.completed);
   }
   collect(outcome, before);
   return outcome;
@@ -337,19 +336,18 @@ void Conductor::collect(TrialOutcome& outcome, const MissCounts& before) {
                     now.lost_ticks - before.lost_ticks};
 }
 
-stillhand_msgs::FeedthroughModel Conductor::await_model(std::int64_t trial, double limit_s) {
-  stillhand_msgs::FeedthroughModel model;
-  const bool came = wait_for(limit_s, [&](Seen& seen) {
-    if (!seen.model || seen.model->trial() != trial) return false;
-    model = *seen.model;
-    return true;
+std::optional<stillhand_msgs::FeedthroughModel> Conductor::await_model(std::int64_t trial,
+                                                                       double limit_s) {
+  std::optional<stillhand_msgs::FeedthroughModel> model;
+  wait_for(limit_s, [&](Seen& seen) {
+    if (seen.model && seen.model->trial() == trial) model = seen.model;
+    return model.has_value();
   });
-  if (!came) {
-    throw std::runtime_error(!trouble_.empty() ? trouble_
-                             : interrupted()   ? "interrupted"
-                                               : "identification gave no model in time");
-  }
   return model;
+}
+
+std::string Conductor::why_stopped(const std::string& otherwise) const {
+  return !trouble_.empty() ? trouble_ : interrupted() ? "interrupted" : otherwise;
 }
 
 void Conductor::end_session() { announce(nullptr, stillhand_msgs::SESSION_ENDING); }

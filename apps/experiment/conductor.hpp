@@ -70,8 +70,10 @@ class Conductor {
   void begin_session();
   /// Runs one trial to its end, or until something breaks it.
   TrialOutcome run(PlannedTrial planned);
-  /// The model identified from a trial.  @throws std::runtime_error when none comes in time.
-  stillhand_msgs::FeedthroughModel await_model(std::int64_t trial, double limit_s);
+  /// The model identified from a trial, or nothing when none comes within `limit_s` [s].
+  std::optional<stillhand_msgs::FeedthroughModel> await_model(std::int64_t trial, double limit_s);
+  /// A process that ended, "interrupted", or else `otherwise`.
+  [[nodiscard]] std::string why_stopped(const std::string& otherwise) const;
   /// Misses no longer count; processes may leave.
   void end_session();
   /// True once the user asked to stop.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiment/lab.hpp"
 
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -47,6 +48,28 @@ class DomainLock {
  private:
   int socket_;
 };
+
+/// Another program on the domain's discovery port would keep everybody apart in silence.
+void check_port(std::uint32_t domain) {
+  constexpr std::uint32_t kPortBase = 7400;  // RTPS 2.2, 9.6.1.1: PB + DG * domain
+  constexpr std::uint32_t kDomainGain = 250;
+  const auto port = static_cast<std::uint16_t>(kPortBase + kDomainGain * domain);
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const int shared = 1;  // as Fast DDS opens it: other participants do not count
+  setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &shared, sizeof(shared));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_ANY);
+  const bool taken = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
+  close(probe);
+  if (taken) {
+    throw ConfigError("--domain",
+                      std::to_string(domain) + ", whose UDP port " + std::to_string(port) +
+                          " another program holds",
+                      "a domain whose port 7400 + 250 * domain is free");
+  }
+}
 
 /// The output folder: made if need be, proved writable, and cleared of what a run left half done.
 class OutputFolder {
@@ -137,42 +160,57 @@ class Session {
             service, [&processes] { return processes.reap(); },
             [this](const std::string& what, double done) { progress_.show(what, done); }) {}
 
-  std::vector<TrialOutcome> run() {
-    std::vector<TrialOutcome> outcomes;
+  /// @param outcomes  filled as trials end, so that a failure keeps what there is
+  void run(std::vector<TrialOutcome>& outcomes) {
     conductor_.await_everybody(options_.match_s);
-    if (conductor_.interrupted()) return outcomes;
+    if (conductor_.interrupted()) return;
     conductor_.begin_session();
     for (const PlannedTrial& planned : plan(options_.protocol)) {
       if (conductor_.interrupted()) break;
       outcomes.push_back(conductor_.run(planned));
-      if (!outcomes.back().completed) break;
-      if (planned.trial.phase == TrialPhase::kPegged) {
-        model_ = conductor_.await_model(planned.trial.number, kModelLimit_s);
-        if (!model_->usable()) {
-          outcomes.back().completed = false;
-          outcomes.back().aborted = std::string("no usable model: ") + model_->text().c_str();
-          break;
-        }
-      }
+      TrialOutcome& outcome = outcomes.back();
+      if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) require_model(outcome);
+      if (!outcome.completed) break;
     }
     progress_.finish();
-    return outcomes;
   }
   void end() { conductor_.end_session(); }
   [[nodiscard]] bool interrupted() const { return conductor_.interrupted(); }
 
  private:
+  // Without a model there is nothing to cancel with: the session ends here.
+  void require_model(TrialOutcome& outcome) {
+    const auto model = conductor_.await_model(outcome.planned.trial.number, kModelLimit_s);
+    if (model && model->usable()) return;
+    outcome.completed = false;
+    outcome.aborted = model ? std::string("no usable model, a longer --identify-seconds helps: ") +
+                                  model->text().c_str()
+                            : conductor_.why_stopped("identification gave no model in time");
+  }
+
   const LabOptions& options_;
   ProgressLine progress_;
   Conductor conductor_;
-  std::optional<stillhand_msgs::FeedthroughModel> model_;
 };
 
 }  // namespace
 
 int run_lab(const LabOptions& options, runtime::Stop& stop) {
-  const std::vector<PlannedTrial> planned = plan(options.protocol);  // checks the durations
+  plan(options.protocol);  // checks the durations
+  if ((options.protocol.motion == Motion::kRide) == options.ride.empty()) {
+    throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
+                      "a file together with --motion ride, and only then");
+  }
+  if (options.who == Operator::kMouse && options.headless) {
+    throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
+  }
+  if (!std::filesystem::is_regular_file(options.profiles)) {
+    throw ConfigError("--profiles", "no file " + options.profiles.string(), "qos/profiles.xml");
+  }
+  if (options.domain > 232)
+    throw ConfigError("--domain", std::to_string(options.domain), "0 to 232");
   const DomainLock lock(options.domain, options.rig);
+  check_port(options.domain);
   const OutputFolder folder(options.out);
 
   std::vector<TrialOutcome> outcomes;
@@ -190,7 +228,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     Session session(options, service, processes);
     for (const Launch& launch : launches(options)) processes.start(launch);
     service.run([&] {
-      outcomes = session.run();
+      session.run(outcomes);
       session.end();
       interrupted = session.interrupted();
       processes.end_all("recorder", kEndPatience_s);

@@ -61,13 +61,16 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_option("--operator", options->who, "who tracks: simulated, or a person with the mouse")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Operator>{
           {"simulated", Operator::kSimulated}, {"mouse", Operator::kMouse}}))
+      ->option_text("simulated|mouse")
       ->default_str("simulated");
   lab->add_option("--motion", options->protocol.motion,
                   "platform motion in B and C: noise (the paper's), road (ISO 8608), ride")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Motion>{
           {"noise", Motion::kBandNoise}, {"road", Motion::kRoad}, {"ride", Motion::kRide}}))
+      ->option_text("noise|road|ride")
       ->default_str("noise");
-  lab->add_option("--ride", options->ride, "recorded ride for --motion ride: CSV with a_y [m/s^2]");
+  lab->add_option("--ride", options->ride,
+                  "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap");
   lab->add_option("--domain", options->domain, "DDS domain, 0 to 232")->capture_default_str();
   lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
   lab->add_option("--match-seconds", options->match_s,

@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   cli.name("stillhand");
   cli.set_version_flag("--version", STILLHAND_VERSION);
   cli.require_subcommand(1);
+  // A script's defaults come first, a user's words after them.
+  cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int status = 0;
   stillhand::experiment::add_lab_command(cli, status);
   try {

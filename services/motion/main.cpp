@@ -13,6 +13,6 @@ int main(int argc, char** argv) {
         shell.run();
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
-        cli.add_option("--ride", ride, "recorded ride to follow: CSV with a_y [m/s^2]");
+        cli.add_option("--ride", ride, "recorded ride to follow: CSV with a_y [m/s^2], or .mcap");
       });
 }

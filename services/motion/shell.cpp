@@ -2,10 +2,10 @@
 #include "motion/shell.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "contract/config_error.hpp"
 #include "motion/codec.hpp"
-#include "recording/file_io.hpp"
 
 namespace stillhand::motion {
 
@@ -14,18 +14,7 @@ Shell::Shell(runtime::Service& service, const std::filesystem::path& ride)
       config_(service.config<MotionGenerator::Config>()),
       core_(config_),
       command_(service.bus().publisher<stillhand_msgs::PlatformCommand>(topics::kPlatformCommand)) {
-  if (!ride.empty()) {
-    const recording::Recording file = recording::read_csv(ride.string());
-    const recording::Column* accel = file.find("a_y");
-    if (accel == nullptr) throw ConfigError(ride.string(), "no column a_y", "a_y [m/s^2]");
-    if (!file.gaps.empty()) {
-      throw ConfigError(ride.string(),
-                        std::to_string(file.gaps.size()) + " gaps in the time column",
-                        "a ride without missing rows");
-    }
-    ride_rate_hz_ = file.rate_hz;
-    ride_accel_m_s2_ = accel->values;
-  }
+  if (!ride.empty()) ride_ = read_ride(ride.string());
   service.on_trial([this](const Trial&, const auto&) { prepare_when_complete(); });
   service.bus().subscribe<stillhand_msgs::TrialAssignment>(
       topics::kTrialAssignment, [this](const auto& message, const auto&) {
@@ -46,8 +35,8 @@ void Shell::prepare_when_complete() {
   prepared_trial_ = trial.number;
   MotionProfile profile = from_idl(*assignment_, trial);
   if (profile.kind == MotionKind::kRide) {
-    profile.ride_rate_hz = ride_rate_hz_;
-    profile.ride_accel_m_s2 = ride_accel_m_s2_;
+    profile.ride_rate_hz = ride_.rate_hz;
+    profile.ride_accel_m_s2 = ride_.accel_m_s2;
   }
   handover_.prepare([this, profile = std::move(profile), trial]() -> std::unique_ptr<Prepared> {
     try {
@@ -57,6 +46,16 @@ void Shell::prepare_when_complete() {
       return nullptr;  // the platform stands still and the trial is never armed
     }
   });
+}
+
+void Shell::tell_what_was_removed(const MotionProfile& profile, const MotionReport& report) {
+  if (profile.kind != MotionKind::kRide) return;
+  char text[128];
+  std::snprintf(text, sizeof(text),
+                "ride high-passed at %.3f Hz to stay in the workspace: %.1f %% of its variance "
+                "removed, RMS %.2f m/s^2 left",
+                report.corner_hz, 100.0 * report.removed_share, report.rms_m_s2);
+  service_.note_event(stillhand_msgs::EVENT_NOTE, text);
 }
 
 void Shell::on_sensed(Tick tick) {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <optional>
-#include <vector>
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "motion/core/motion_generator.hpp"
+#include "motion/ride_file.hpp"
 #include "runtime/handover.hpp"
 #include "runtime/service.hpp"
 
@@ -21,7 +21,7 @@ class Shell {
   /// Ticks between a command and the tick it is for: four times the DDS deadline.
   static constexpr Tick kLead = 20;
 
-  /// @param ride  CSV of a recorded ride (a_y [m/s^2]), or empty
+  /// @param ride  recorded ride for read_ride(), or empty
   Shell(runtime::Service& service, const std::filesystem::path& ride);
   void run() { service_.run(); }
 
@@ -33,12 +33,12 @@ class Shell {
 
   void on_sensed(Tick tick);
   void prepare_when_complete();
+  void tell_what_was_removed(const MotionProfile& profile, const MotionReport& report);
 
   runtime::Service& service_;
   MotionGenerator::Config config_;
   MotionGenerator core_;
-  double ride_rate_hz_ = 0.0;
-  std::vector<double> ride_accel_m_s2_;
+  Ride ride_;
   runtime::Publisher<stillhand_msgs::PlatformCommand> command_;
   runtime::Handover<Prepared> handover_;
   Prepared* armed_ = nullptr;

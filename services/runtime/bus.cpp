@@ -201,6 +201,10 @@ void Bus::start() {
   for (const auto& endpoint : impl_->endpoints) endpoint->enable();
 }
 
+void Bus::stop_receiving() {
+  for (const auto& endpoint : impl_->endpoints) endpoint->close_reader(*impl_->subscriber);
+}
+
 std::vector<std::string> Bus::missing_peers() const {
   std::vector<std::string> missing;
   for (const auto& endpoint : impl_->endpoints) {

@@ -150,6 +150,8 @@ class Bus {
 
   /// Endpoints start to receive; call once, after every publisher() and subscribe().
   void start();
+  /// No callback of a subscription runs after this returns.  Publishers stay usable.
+  void stop_receiving();
 
   /// Catalogue peers that are not matched yet, as "service (topic)", empty when complete.
   [[nodiscard]] std::vector<std::string> missing_peers() const;

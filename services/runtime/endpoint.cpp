@@ -121,9 +121,15 @@ ReaderEndpoint::ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus
       sample_(std::move(sample)),
       deliver_(std::move(deliver)) {}
 
-void ReaderEndpoint::on_data_available(edds::DataReader* /*reader*/) {
+void ReaderEndpoint::close_reader(edds::Subscriber& owner) {
+  if (reader == nullptr) return;
+  owner.delete_datareader(reader);
+  reader = nullptr;
+}
+
+void ReaderEndpoint::on_data_available(edds::DataReader* source) {
   edds::SampleInfo info;
-  while (reader->take_next_sample(sample_.get(), &info) == ReturnCode_t::RETCODE_OK) {
+  while (source->take_next_sample(sample_.get(), &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
     const Arrival arrival{monotonic_ns(), info.source_timestamp.to_ns(), system_ns()};
     const auto clock = deliver_(sample_.get(), arrival);

@@ -6,6 +6,7 @@
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -31,6 +32,8 @@ class Endpoint {
 
   virtual bool write(void* /*message*/) { return false; }
   virtual void enable() = 0;
+  /// Deletes a reader, once its running callback has returned; nothing for a writer.
+  virtual void close_reader(eprosima::fastdds::dds::Subscriber& /*owner*/) {}
   virtual EndpointReport report() = 0;
   /// Services matched now.
   [[nodiscard]] std::set<std::string> matched_services() const;
@@ -91,6 +94,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
                  Deliver deliver);
 
   void enable() override { reader->enable(); }
+  void close_reader(eprosima::fastdds::dds::Subscriber& owner) override;
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return false; }
 

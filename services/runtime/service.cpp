@@ -117,6 +117,15 @@ void Service::run() {
 }
 
 void Service::run(const std::function<void()>& loop) {
+  // Whatever ends the loop: the caller's callbacks must not outlive the call.
+  struct Quiet {
+    Service& service;
+    ~Quiet() {
+      service.reporting_->reporter.stop();
+      service.bus_->stop_receiving();
+    }
+  };
+  const Quiet quiet{*this};
   bus_->start();
   reporting_->reporter.start();
   loop();

@@ -66,6 +66,8 @@ class Service {
 
   /// Starts the bus and the status thread, and waits for the stop.
   void run();
+  /// Callbacks run until this returns, and not after.
+  ///
   /// Starts the bus and the status thread, then runs `loop` in this thread until it returns.
   void run(const std::function<void()>& loop);
 

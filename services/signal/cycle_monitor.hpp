@@ -14,7 +14,7 @@ namespace stillhand::signal {
 /// Supervises one periodic topic from tick numbers and stamps, in microseconds: DDS 2.9.1 counts
 /// deadlines in whole milliseconds, which is too coarse for a 1 ms cycle.  A sample is a cycle miss
 /// when it arrives more than `tolerance_us` after its due time, one period after the sample before
-/// it (Eq. SG-15: interval - lost * period > period + tolerance).  Pure: the caller brings the
+/// it (Eq. SG-15: interval > period + tolerance).  Pure: the caller brings the
 /// time.  No allocation; one thread.
 class CycleMonitor {
  public:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <set>
 
 #include "contract/config_error.hpp"
@@ -12,20 +13,25 @@ namespace {
 
 namespace msgs = stillhand_msgs;
 
-/// Ticks of the sensed topic that did not reach the identification, from its own events.
+/// Ticks in [first, end) of the sensed topic that did not reach the identification, from its own
+/// events.  Gaps within a tenth of a second share one event, which names the first of them alone.
 std::set<Tick> lost_by_identification(const SessionRecording& session, Tick first, Tick end) {
+  constexpr Tick kSharing_ticks = 1000;  // ten times that, for a process that was held up
   std::set<Tick> lost;
   for (const msgs::Event& event : session.events) {
     if (event.kind() != msgs::EVENT_TICKS_LOST ||
-        std::string(event.source().c_str()) != "identification" || event.tick() < first) {
+        std::string(event.source().c_str()) != "identification") {
       continue;
     }
-    const auto count = static_cast<Tick>(event.by_us());
-    if (event.tick() - count >= end) continue;
-    if (event.text().size() > 0) {
-      throw NotRecorded("several gaps of the identification share one event");
+    const Tick begin = event.tick() - static_cast<Tick>(event.by_us());
+    const bool shared = event.text().size() > 0;
+    if (shared && event.tick() + kSharing_ticks > first && begin < end) {
+      throw NotRecorded("which ticks reached the identification about tick " +
+                        std::to_string(event.tick()) + " is not in the recording");
     }
-    for (Tick tick = event.tick() - count; tick < event.tick(); ++tick) lost.insert(tick);
+    for (Tick tick = std::max(begin, first); tick < std::min(event.tick(), end); ++tick) {
+      lost.insert(tick);
+    }
   }
   return lost;
 }

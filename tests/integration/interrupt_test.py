@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ctrl-C and kill -9 of the lab at several moments: it ends soon, nobody is left, what was recorded can be read."""
+import os
+import signal
+
+import lab_process
+from lab_process import STILLHAND, LabTestCase, quick_identification, running
+
+# The pegged trial's ramp, 8 s and the fit, before the first tracking trial.
+IDENTIFY_S = 8
+FIRST_TRIAL_LIMIT_S = 60.0
+# A terminal's Ctrl-C feels answered within this; measured on two cores: see the report line of each test.
+INTERRUPT_LIMIT_S = 10.0
+
+
+class InterruptTest(LabTestCase):
+    def start(self):
+        settings = quick_identification(self.folder / "config")
+        return self.lab("--conditions", "C", "--identify-seconds", IDENTIFY_S, "--trial-seconds", 60, "--seed", 2,
+                        "--config", settings)
+
+    def assert_interrupted(self, lab):
+        lab.interrupt()
+        self.assertEqual(lab.end_status(INTERRUPT_LIMIT_S), 1)
+        self.assert_nothing_left(lab)
+
+    def assert_recording_holds(self, lab, trial):
+        recording = lab.recording(1)
+        self.assertEqual(recording["damage"], [])
+        self.assertEqual(recording["trials"][-1]["number"], trial)
+        self.assertGreater(recording["messages"]["stillhand/rig_truth"], 1000)
+
+    def assert_marked(self, lab, trial):
+        marked = lab.summary()["trials"][trial]
+        self.assertFalse(marked["completed"])
+        self.assertEqual(marked["aborted"], "interrupted")
+        self.assertTrue(lab.summary()["interrupted"])
+
+    def test_interrupt_before_the_services_have_matched_leaves_no_results(self):
+        lab = self.start()
+        lab.wait_for("the first service", lambda: len(running(lab.domain)) > 1, 10.0)
+        self.assert_interrupted(lab)
+        self.assertFalse(lab.out.exists())
+        self.assertEqual(lab.errors(), ["stillhand lab: interrupted before the first trial"])
+
+    def test_interrupt_during_identification_leaves_a_readable_recording(self):
+        lab = self.start()
+        lab.wait_for_tick(0, 2, FIRST_TRIAL_LIMIT_S)
+        self.assert_interrupted(lab)
+        self.assert_recording_holds(lab, 0)
+        self.assert_marked(lab, 0)
+        self.assertEqual({path.name for path in lab.out.iterdir()}, {"session.mcap", "summary.json", "logs"})
+
+    def test_interrupt_during_a_trial_leaves_a_readable_recording_and_the_model(self):
+        lab = self.start()
+        lab.wait_for_tick(1, 2, FIRST_TRIAL_LIMIT_S)
+        self.assert_interrupted(lab)
+        self.assert_recording_holds(lab, 1)
+        self.assert_marked(lab, 1)
+        self.assertEqual(lab.summary()["conditions"], {})
+        self.assertEqual({path.name for path in lab.out.iterdir()},
+                         {"session.mcap", "summary.json", "model.json", "logs"})
+
+    def test_services_of_a_killed_lab_end_by_themselves(self):
+        lab = self.start()
+        lab.wait_for_tick(1, 2, FIRST_TRIAL_LIMIT_S)
+        os.kill(lab.process.pid, signal.SIGKILL)
+        self.assertEqual(lab.end_status(), -signal.SIGKILL)
+        self.assert_nothing_left(lab)
+        self.assert_recording_holds(lab, 1)
+        # Nobody was there to write results: none, rather than half of them.
+        self.assertEqual({path.name for path in lab.out.iterdir()}, {"session.mcap", "logs"})
+
+    def test_lab_whose_folder_holds_an_interrupted_run_begins_afresh(self):
+        out = self.folder / "run"
+        (out / "logs").mkdir(parents=True)
+        for name in ("session.mcap", "summary.json", "model.json"):
+            (out / name).write_text("of an earlier run")
+        lab = self.start()
+        lab.wait_for("the first service", lambda: len(running(lab.domain)) > 1, 10.0)
+        self.assert_interrupted(lab)
+        self.assertEqual(list(out.iterdir()), [])
+
+
+if __name__ == "__main__":
+    lab_process.main()

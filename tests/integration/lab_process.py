@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A `stillhand lab` under test: start it, watch its processes and its recording, see it end.
+
+Every lab gets a DDS domain of its own. Nothing here waits for a time to pass: wait_for() polls a condition and fails
+when its limit is over.
+"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
+INSPECT = BUILD / "tests" / "inspect_recording"
+
+SERVICES = ("motion", "rig", "sensing", "cancellation", "display", "human_operator", "identification", "recorder")
+CTEST_SKIPPED = 77
+TICKS_PER_S = 1000
+
+# Where and for how long a lab under test may take its time [s].
+MATCH_LIMIT_S = 30.0  # the lab itself gives up after 20 s
+END_LIMIT_S = 20.0    # the lab gives its processes 5 s, and the recorder another 5 s
+POLL_S = 0.05
+_domains_used = 0
+
+
+def next_domain():
+    """A DDS domain from 215 to 230, another one at each call.
+
+    From 215 on the UDP ports (7400 + 250 a domain) lie above Linux's ephemeral range, which ends at 60999.
+    """
+    global _domains_used
+    _domains_used += 1
+    return 215 + (os.getpid() + _domains_used) % 16
+
+
+def running(domain):
+    """Processes of Stillhand on a domain, {pid: name of the program}."""
+    found = {}
+    for entry in pathlib.Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            words = (entry / "cmdline").read_bytes().decode().split("\0")
+        except OSError:  # it ended meanwhile
+            continue
+        program = pathlib.PurePath(words[0]).name
+        if program.startswith("stillhand") and ("--domain", str(domain)) in zip(words, words[1:]):
+            found[int(entry.name)] = program
+    return found
+
+
+def shared_memory():
+    """Files in /dev/shm that Fast DDS (fastrtps_*, fast_datasharing_*, sem.fastrtps_*) or Stillhand may have left."""
+    return {name for name in os.listdir("/dev/shm") if "fast" in name or "stillhand" in name}
+
+
+def quick_identification(folder):
+    """A settings folder with which a pegged trial of a few seconds gives a model that is taken.
+
+    Whoever needs a motor force, and not a good model, saves the 40 s that a good one costs.
+    """
+    shutil.copytree(SOURCE / "deploy" / "config", folder)
+    (folder / "identification.yaml").write_text("max_conversion_error: 1.0\n")
+    return folder
+
+
+class LabProcess:
+    """One `stillhand lab`, ended with everything it started by close()."""
+
+    def __init__(self, out, *arguments, domain=None, program=None):
+        self.out = pathlib.Path(out)
+        self.domain = next_domain() if domain is None else domain
+        self._shared_memory_before = shared_memory()
+        self._output = tempfile.TemporaryFile("w+")
+        self._errors = tempfile.TemporaryFile("w+")
+        words = [str(program or STILLHAND), "lab", "--headless", "--domain", str(self.domain), "--out", str(self.out)]
+        # A session of its own: interrupt() reaches the process group, as a terminal's Ctrl-C does.
+        self.process = subprocess.Popen(words + [str(word) for word in arguments], stdin=subprocess.DEVNULL,
+                                        stdout=self._output, stderr=self._errors, start_new_session=True)
+
+    def pid_of(self, service):
+        """Process number of a service, None before it runs."""
+        for pid, program in running(self.domain).items():
+            if program == f"stillhand-{service}":
+                return pid
+        return None
+
+    def interrupt(self):
+        os.killpg(self.process.pid, signal.SIGINT)
+
+    def errors(self):
+        """Standard error so far, without the lines that tell progress."""
+        self._errors.seek(0)
+        progress = ("matching endpoints", "identification, stick pegged", "trial ")
+        return [line for line in self._errors.read().splitlines()
+                if not (line.startswith(progress) and (line.endswith(("endpoints", "pegged", "tracking"))))]
+
+    def output(self):
+        self._output.seek(0)
+        return self._output.read()
+
+    def wait_for(self, what, condition, limit_s, poll_s=POLL_S):
+        """Returns the condition's first true value; fails when it takes longer or when the lab ends meanwhile."""
+        limit = time.monotonic() + limit_s
+        while True:
+            value = condition()
+            if value:
+                return value
+            if self.process.poll() is not None:
+                raise AssertionError(f"lab ended with status {self.process.returncode} before {what}: {self.errors()}")
+            if time.monotonic() > limit:
+                raise AssertionError(f"no {what} within {limit_s} s: {self.errors()}")
+            time.sleep(poll_s)
+
+    def wait_for_start(self):
+        self.wait_for("all services", lambda: len(running(self.domain)) > len(SERVICES), MATCH_LIMIT_S)
+
+    def wait_for_tick(self, trial, after_s, limit_s):
+        """Waits until the recording holds a trial's measured part up to `after_s`."""
+        def reached():
+            seen = self.recording(1)
+            starts = [entry["start_tick"] for entry in seen["trials"] if entry["number"] == trial]
+            newest = seen["rig"]["tick"]
+            return starts and newest and newest[-1] >= starts[-1] + after_s * TICKS_PER_S
+        self.wait_for(f"{after_s} s of trial {trial}", reached, limit_s, poll_s=0.3)
+
+    def end_status(self, limit_s=END_LIMIT_S):
+        """Exit status, once the lab has ended."""
+        return self.process.wait(timeout=limit_s)
+
+    def wait_until_alone(self, limit_s=END_LIMIT_S):
+        """Waits until no process of this lab is left; returns who is, when it takes longer."""
+        limit = time.monotonic() + limit_s
+        while (left := running(self.domain)) and time.monotonic() < limit:
+            time.sleep(POLL_S)
+        return left
+
+    def shared_memory_left(self):
+        return shared_memory() - self._shared_memory_before
+
+    def recording(self, last_ticks):
+        """The recording as inspect_recording sees it, with the newest `last_ticks` ticks of the rig."""
+        inspected = subprocess.run([str(INSPECT), str(self.out / "session.mcap"), str(last_ticks)],
+                                   capture_output=True, text=True, check=False)
+        if inspected.returncode != 0:  # not there yet, or without a complete record
+            return {"messages": {}, "trials": [], "rig": {"tick": []}, "damage": [inspected.stderr]}
+        return json.loads(inspected.stdout)
+
+    def summary(self):
+        return json.loads((self.out / "summary.json").read_text())
+
+    def close(self):
+        """Ends whatever is left, by its number."""
+        self.process.kill()
+        self.process.wait()
+        for pid in running(self.domain):
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:  # it ended meanwhile
+                pass
+        self._output.close()
+        self._errors.close()
+
+
+class LabTestCase(unittest.TestCase):
+    """A test with a folder of its own, in which no lab survives it."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def lab(self, *arguments, out=None, **keywords):
+        lab = LabProcess(out or self.folder / "run", *arguments, **keywords)
+        self.addCleanup(lab.close)
+        return lab
+
+    def assert_nothing_left(self, lab):
+        self.assertEqual(lab.wait_until_alone(), {}, "processes left")
+        self.assertEqual(lab.shared_memory_left(), set(), "files left in /dev/shm")
+
+
+def main():
+    """Runs the calling module's tests; status 77 when the build they test is missing."""
+    missing = [str(path) for path in (STILLHAND, INSPECT) if not path.is_file()]
+    if missing:
+        print("skipped, not built:", ", ".join(missing))
+        sys.exit(CTEST_SKIPPED)
+    unittest.main(module="__main__")

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The main job, once: a whole session over DDS, and what it leaves behind in <build>/tests/lab_run.
+
+ctest's fixture `lab_run`: the equivalence test replays this session's recording.
+"""
+import json
+import math
+import shutil
+import unittest
+
+import lab_process
+from lab_process import BUILD, SERVICES, LabProcess, running
+
+SEED = 1
+TRIAL_S = 20
+METRICS = ("rms_error_mm", "dwell_ratio", "crossover_hz")
+STREAMS = {f"stillhand/{name}" for name in ("platform_command", "raw_sample", "rig_truth", "sensed", "motor_command",
+                                           "tracking_sample", "operator_force")}
+# 40 s and 3 x 20 s measured, ramps and lead of each, matching, two fits, the evaluation: 125 s on two cores.
+SESSION_LIMIT_S = 240
+
+
+class LabSessionTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(BUILD / "tests" / "lab_run", ignore_errors=True)
+        cls.lab = LabProcess(BUILD / "tests" / "lab_run", "--conditions", "A,B,C", "--trial-seconds", TRIAL_S,
+                             "--seed", SEED)
+        cls.addClassCleanup(cls.lab.close)
+        cls.seen = {}
+
+        def over():
+            cls.seen.update(running(cls.lab.domain))
+            return cls.lab.process.poll() is not None
+        cls.lab.wait_for("the end", over, SESSION_LIMIT_S, poll_s=0.5)
+        cls.left = cls.lab.wait_until_alone(limit_s=1.0)
+
+    def setUp(self):
+        self.assertEqual(self.lab.process.returncode, 0, self.lab.errors())
+        self.summary = self.lab.summary()
+
+    def metric(self, condition, metric):
+        return self.summary["conditions"][condition][metric]["mean"]
+
+    def test_every_service_is_a_process_of_its_own(self):
+        self.assertEqual(sorted(self.seen.values()), sorted(["stillhand", *(f"stillhand-{s}" for s in SERVICES)]))
+        self.assertGreaterEqual(len(self.seen), 8)
+
+    def test_nothing_is_left_but_the_results(self):
+        self.assertEqual(self.left, {})
+        self.assertEqual(self.lab.shared_memory_left(), set())
+        self.assertEqual({path.name for path in self.lab.out.iterdir()},
+                         {"session.mcap", "summary.json", "model.json", "logs"})
+        self.assertEqual(self.lab.errors(), [])
+
+    def test_summary_has_the_contract_s_shape(self):
+        self.assertEqual(set(self.summary["conditions"]), {"A", "B", "C"})
+        for condition in "ABC":
+            for metric in METRICS:
+                entry = self.summary["conditions"][condition][metric]
+                self.assertEqual(set(entry), {"mean", "std", "per_subject"})
+                self.assertTrue(math.isfinite(entry["mean"]))
+                self.assertEqual(entry["per_subject"], [entry["mean"]])
+        self.assertEqual(set(self.summary["restoration"]), {"rms_error", "dwell_ratio", "crossover"})
+        # Tests over subjects need subjects.
+        self.assertIsNone(self.summary["t_tests"])
+        self.assertIsNone(self.summary["manova"])
+
+    def test_every_trial_is_completed(self):
+        conditions = [trial["condition"] for trial in self.summary["trials"]]
+        self.assertEqual(conditions[0], "I")
+        self.assertEqual(sorted(conditions[1:]), ["A", "B", "C"])
+        for trial in self.summary["trials"]:
+            self.assertTrue(trial["completed"], trial["aborted"])
+            self.assertIsNone(trial["aborted"])
+
+    # Crossover too: at this seed B's is near half of A's and C's, and a trial's own harmonics keep the lowest lines.
+    def test_motion_disturbs_tracking_and_cancellation_restores_it(self):
+        self.assertGreater(self.metric("B", "rms_error_mm"), self.metric("A", "rms_error_mm"))
+        self.assertLess(self.metric("C", "rms_error_mm"), self.metric("B", "rms_error_mm"))
+        for metric in ("dwell_ratio", "crossover_hz"):
+            self.assertLess(self.metric("B", metric), self.metric("A", metric), metric)
+            self.assertGreater(self.metric("C", metric), self.metric("B", metric), metric)
+
+    def test_model_predicts_unseen_data_and_cancels_most_of_the_force(self):
+        self.assertTrue(self.summary["identification"]["usable"])
+        self.assertGreater(self.summary["identification"]["heldout_vaf_percent"], 95.0)
+        self.assertGreater(self.summary["conditions"]["C"]["cancelled_share"], 0.5)
+        # The motor is off in B.
+        self.assertEqual(self.summary["conditions"]["B"]["cancelled_share"], 0.0)
+        self.assertIsNone(self.summary["conditions"]["A"]["cancelled_share"])
+        model = json.loads((self.lab.out / "model.json").read_text())
+        self.assertTrue(model)
+
+    def test_lost_ticks_are_those_of_the_recording(self):
+        recording = self.lab.recording(1)
+        self.assertEqual(recording["damage"], [])
+        self.assertEqual(set(self.summary["lost_ticks"]), STREAMS)
+        self.assertEqual(self.summary["lost_ticks"], recording["lost_ticks"])
+        measured = sum(trial["duration_ticks"] for trial in self.summary["trials"])
+        for stream in STREAMS:
+            self.assertGreater(recording["messages"][stream], measured, stream)
+
+
+if __name__ == "__main__":
+    lab_process.main()

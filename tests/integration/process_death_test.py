@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""kill -9 of each service during a moving, cancelled trial: the motor force goes to zero and the run says what died.
+
+Detection is the first tick from which on the rig uses no motor command any more: the interlock is open
+(motor_permitted false), or the command is absent (motor_tick -1), or it answers a sample older than the rig's
+max_motor_age_ticks. From there the force must be exactly zero within 50 ms, and stay so to the recording's end.
+
+Prints the times of each service: from the kill to the detection, and from there to zero.
+"""
+import os
+import signal
+import time
+
+import lab_process
+from lab_process import TICKS_PER_S, LabTestCase, quick_identification
+
+FORCE_LIMIT_TICKS = 50
+MAX_MOTOR_AGE_TICKS = 10  # deploy/config/rig.yaml, motor.max_motor_age_ticks
+# Liveliness lease 100 ms (qos/README.md), announced every 30 ms; the rest is room for a loaded machine.
+DETECTION_LIMIT_NS = 250_000_000
+# The recorder writes what it has every 500 ms (services/recording/README.md), in batches of 50 ms.
+RECORDER_LOSS_NS = 600_000_000
+TRIAL_LIMIT_S = 60.0
+
+
+def motor_usable(rig, i):
+    age = rig["tick"][i] - rig["motor_tick"][i]
+    return rig["motor_permitted"][i] and rig["motor_tick"][i] >= 0 and age <= MAX_MOTOR_AGE_TICKS
+
+
+def detection_index(rig):
+    """Index of the first sample of the unusable ones that the recording ends with."""
+    index = len(rig["tick"])
+    while index > 0 and not motor_usable(rig, index - 1):
+        index -= 1
+    return index
+
+
+class ProcessDeathTest(LabTestCase):
+    def kill_during_trial(self, service):
+        """Kills a service 2 s into the trial; returns the ended lab and the kill's time [ns, monotonic]."""
+        settings = quick_identification(self.folder / "config")
+        lab = self.lab("--conditions", "C", "--identify-seconds", 8, "--trial-seconds", 60, "--seed", 2,
+                       "--config", settings)
+        lab.wait_for_tick(1, 2, TRIAL_LIMIT_S)
+        pid = lab.pid_of(service)
+        killed_ns = time.monotonic_ns()
+        os.kill(pid, signal.SIGKILL)
+        status = lab.end_status()
+        self.assertEqual(status, 1, lab.errors())
+        self.assert_nothing_left(lab)
+        self.assert_told(lab, f"{service} (pid {pid}) ended: signal 9 (Killed)")
+        return lab, killed_ns
+
+    def assert_told(self, lab, death):
+        self.assertEqual(len([line for line in lab.errors() if death in line]), 1, lab.errors())
+        trial = lab.summary()["trials"][-1]
+        self.assertEqual(trial["condition"], "C")
+        self.assertFalse(trial["completed"])
+        self.assertIn(death, trial["aborted"])
+        self.assertNotIn("C", lab.summary()["conditions"])
+
+    def assert_force_was_zero_in_time(self, service, lab, killed_ns):
+        recording = lab.recording(100 * TICKS_PER_S)
+        self.assertEqual(recording["damage"], [])
+        rig = recording["rig"]
+        force = rig["motor_force_n"]
+        kill = next(i for i, stamp_ns in enumerate(rig["stamp_ns"]) if stamp_ns >= killed_ns)
+        self.assertTrue(any(motor_usable(rig, i) for i in range(kill)))
+        # There was a force to take away: a cancelled trial's is several newtons RMS.
+        self.assertGreater(max(abs(f) for f in force[kill - TICKS_PER_S:kill]), 1.0)
+        detection = detection_index(rig)
+        self.assertLess(detection, len(force), "the rig never noticed")
+        zero = next((i for i in range(detection, len(force)) if force[i] == 0.0), None)
+        self.assertIsNotNone(zero, "the recording ends before the force is zero")
+        ticks = rig["tick"][zero] - rig["tick"][detection]
+        noticed_ns = rig["stamp_ns"][detection] - killed_ns
+        print(f"{service}: noticed after {noticed_ns / 1e6:.0f} ms, force {force[detection - 1]:+.2f} N zero "
+              f"{ticks} ticks ({(rig['stamp_ns'][zero] - rig['stamp_ns'][detection]) / 1e6:.1f} ms) later, "
+              f"{len(force) - zero} ticks of it recorded", flush=True)
+        self.assertLessEqual(ticks, FORCE_LIMIT_TICKS)
+        self.assertEqual([f for f in force[zero:] if f != 0.0], [])
+        self.assertLessEqual(noticed_ns, DETECTION_LIMIT_NS)
+
+    def test_death_of_motion(self):
+        self.assert_force_was_zero_in_time("motion", *self.kill_during_trial("motion"))
+
+    def test_death_of_sensing(self):
+        self.assert_force_was_zero_in_time("sensing", *self.kill_during_trial("sensing"))
+
+    def test_death_of_cancellation(self):
+        self.assert_force_was_zero_in_time("cancellation", *self.kill_during_trial("cancellation"))
+
+    def test_death_of_display(self):
+        self.assert_force_was_zero_in_time("display", *self.kill_during_trial("display"))
+
+    def test_death_of_human_operator(self):
+        self.assert_force_was_zero_in_time("human_operator", *self.kill_during_trial("human_operator"))
+
+    def test_death_of_identification(self):
+        self.assert_force_was_zero_in_time("identification", *self.kill_during_trial("identification"))
+
+    # The recording ends with the recorder, so the rig's own word on the bus stands in for it: the lab heard the
+    # interlock open and the force reach zero, and says so in the marks.
+    def test_death_of_recorder(self):
+        lab, killed_ns = self.kill_during_trial("recorder")
+        marks = {(mark["source"], mark["what"]): mark for mark in lab.summary()["trials"][-1]["marks"]}
+        self.assertIn(("rig", "interlock opened"), marks)
+        zero = marks["rig", "motor force zero after interlock opened"]
+        print(f"recorder: force zero {zero['worst_us'] / 1e3:.0f} ticks after the interlock opened", flush=True)
+        self.assertLessEqual(zero["worst_us"], FORCE_LIMIT_TICKS * 1000)
+        # Cut off, and readable up to what the recorder had not written yet.
+        recording = lab.recording(1)
+        self.assertGreater(recording["rig"]["stamp_ns"][-1], killed_ns - RECORDER_LOSS_NS)
+        self.assertNotEqual(recording["damage"], [])
+
+    # The simulated rig is the motor: nobody is left to tell its force. What can be told is that it sent nothing any
+    # more, and that nobody went on commanding it: without samples there are no motor commands.
+    def test_death_of_rig(self):
+        lab, killed_ns = self.kill_during_trial("rig")
+        recording = lab.recording(1)
+        self.assertEqual(recording["damage"], [])
+        self.assertLess(recording["rig"]["stamp_ns"][-1], killed_ns + DETECTION_LIMIT_NS)
+        self.assertLess(recording["newest_motor_command_ns"], killed_ns + DETECTION_LIMIT_NS)
+
+
+if __name__ == "__main__":
+    lab_process.main()
