@@ -12,7 +12,7 @@ import signal
 import time
 
 import lab_process
-from lab_process import TICKS_PER_S, LabTestCase, quick_identification
+from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
 
 FORCE_LIMIT_TICKS = 50
 MAX_MOTOR_AGE_TICKS = 10  # deploy/config/rig.yaml, motor.max_motor_age_ticks
@@ -20,7 +20,6 @@ MAX_MOTOR_AGE_TICKS = 10  # deploy/config/rig.yaml, motor.max_motor_age_ticks
 DETECTION_LIMIT_NS = 250_000_000
 # The recorder writes what it has every 500 ms (services/recording/README.md), in batches of 50 ms.
 RECORDER_LOSS_NS = 600_000_000
-TRIAL_LIMIT_S = 60.0
 
 
 def motor_usable(rig, i):
@@ -38,11 +37,9 @@ def detection_index(rig):
 
 class ProcessDeathTest(LabTestCase):
     def kill_during_trial(self, service):
-        """Kills a service 2 s into the trial; returns the ended lab and the kill's time [ns, monotonic]."""
-        settings = quick_identification(self.folder / "config")
-        lab = self.lab("--conditions", "C", "--identify-seconds", 8, "--trial-seconds", 60, "--seed", 2,
-                       "--config", settings)
-        lab.wait_for_tick(1, 2, TRIAL_LIMIT_S)
+        """Kills a service after a second of the trial; returns the ended lab and the kill's time [ns, monotonic]."""
+        lab = self.lab(*quick_session(self.folder / "config"))
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
         pid = lab.pid_of(service)
         killed_ns = time.monotonic_ns()
         os.kill(pid, signal.SIGKILL)

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// The closed loop in one process: the paper's three conditions, and that a seed is a whole session.
+#include "experiment/in_process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "signal/reference.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr double kTrial_s = 60.0;
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+struct Session {
+  std::map<char, identification::TrackingMetrics> metrics;
+  std::map<char, TrialSignals> signals;
+  identification::FeedthroughModel model;
+};
+
+Session run_session(std::uint64_t seed) {
+  ProtocolOptions options;
+  options.conditions = parse_conditions("A,B,C");
+  options.trial_s = kTrial_s;
+  options.seed = seed;
+  Session session;
+  InProcessLoop loop({}, seed);
+  for (const PlannedTrial& planned : plan(options)) {
+    TrialSignals signals = loop.run(planned);
+    if (planned.trial.phase == TrialPhase::kPegged) {
+      session.model = identification::identify(signals.pegged);
+      EXPECT_EQ(loop.use_model(session.model), cancellation::Refusal::kNone);
+    } else {
+      session.metrics[planned.label] =
+          identification::tracking_metrics(signals.tracking, signal::reference_design(kTrial_s));
+    }
+    session.signals[planned.label] = std::move(signals);
+  }
+  return session;
+}
+
+class InProcessLoopTest : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(InProcessLoopTest, MotionDisturbsAndCancellationRestoresInAllThreeMetrics) {
+  const auto m = run_session(GetParam()).metrics;
+  EXPECT_GT(m.at('B').rms_error_mm, m.at('A').rms_error_mm);
+  EXPECT_LT(m.at('C').rms_error_mm, m.at('B').rms_error_mm);
+  EXPECT_LT(m.at('B').dwell_ratio, m.at('A').dwell_ratio);
+  EXPECT_GT(m.at('C').dwell_ratio, m.at('B').dwell_ratio);
+  EXPECT_LT(m.at('B').crossover_hz, m.at('A').crossover_hz);
+  EXPECT_GT(m.at('C').crossover_hz, m.at('B').crossover_hz);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, InProcessLoopTest, testing::Values(1, 2, 3, 4, 5));
+
+TEST(InProcessLoopTest, TheSameSeedGivesTheSameBits) {
+  const Session first = run_session(3);
+  const Session again = run_session(3);
+  EXPECT_EQ(first.signals.at('C').tracking.cursor_m, again.signals.at('C').tracking.cursor_m);
+  EXPECT_EQ(first.model.control.numerator, again.model.control.numerator);
+  EXPECT_NE(first.signals.at('C').tracking.cursor_m,
+            run_session(4).signals.at('C').tracking.cursor_m);
+}
+
+TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
+  const Session session = run_session(1);
+  EXPECT_EQ(rms(session.signals.at('I').motor_n), 0.0);
+  EXPECT_EQ(rms(session.signals.at('A').motor_n), 0.0);
+  EXPECT_EQ(rms(session.signals.at('B').motor_n), 0.0);
+  EXPECT_GT(rms(session.signals.at('C').motor_n), 1.0);
+}
+
+// The arm that tracks is stiffer than the idle one that was identified: 15 % of the force cannot be
+// known to the model (services/rig/README.md), and the loop's delay of two ticks and the motor's
+// lag add less than 3 %.  More than 0.95 cancelled would mean that something knows too much.
+TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
+  const TrialSignals signals = run_session(1).signals.at('C');
+  std::vector<double> left = signals.feedthrough_n;
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += signals.motor_n[i];
+  const double cancelled = 1.0 - rms(left) / rms(signals.feedthrough_n);
+  EXPECT_GT(cancelled, 0.80);
+  EXPECT_LT(cancelled, 0.95);
+}
+
+}  // namespace
+}  // namespace stillhand::experiment
