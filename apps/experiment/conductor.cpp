@@ -131,8 +131,8 @@ bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done)
       if (done(seen_)) return true;
     }
     if (const auto ended = watch_()) {
-      trouble_ = describe(*ended);
-      mendable_ = ended->exit_status == 2;
+      mendable_ = ended->exit_status == 2 && !ended->said.empty();
+      trouble_ = mendable_ ? ended->said : describe(*ended);
     }
     if (!trouble_.empty() || interrupted()) return false;
     if (runtime::monotonic_ns() > limit_ns) return false;

@@ -16,6 +16,7 @@
 #include "experiment/progress.hpp"
 #include "experiment/results.hpp"
 #include "idl/topics.hpp"
+#include "motion/ride_file.hpp"
 #include "runtime/real_time.hpp"
 
 namespace stillhand::experiment {
@@ -193,9 +194,8 @@ class Session {
   Conductor conductor_;
 };
 
-}  // namespace
-
-int run_lab(const LabOptions& options, runtime::Stop& stop) {
+// What can be known to be wrong before anything is touched.
+void check(const LabOptions& options) {
   plan(options.protocol);  // checks the durations
   if ((options.protocol.motion == Motion::kRide) == options.ride.empty()) {
     throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
@@ -204,9 +204,26 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
   if (options.who == Operator::kMouse && options.headless) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
+  if (!options.ride.empty()) {
+    const motion::Ride ride = motion::read_ride(options.ride.string());
+    const double length_s = static_cast<double>(ride.accel_m_s2.size()) / ride.rate_hz;
+    if (length_s < options.protocol.trial_s) {
+      throw ConfigError(options.ride.string(), std::to_string(length_s) + " s of ride",
+                        "at least the --trial-seconds " + std::to_string(options.protocol.trial_s));
+    }
+  }
+  if (!(options.match_s > 0.0 && options.match_s <= 3600.0)) {
+    throw ConfigError("--match-seconds", std::to_string(options.match_s), "up to 3600 seconds");
+  }
   if (!std::filesystem::is_regular_file(options.profiles)) {
     throw ConfigError("--profiles", "no file " + options.profiles.string(), "qos/profiles.xml");
   }
+}
+
+}  // namespace
+
+int run_lab(const LabOptions& options, runtime::Stop& stop) {
+  check(options);
   if (options.domain > 232)
     throw ConfigError("--domain", std::to_string(options.domain), "0 to 232");
   const DomainLock lock(options.domain, options.rig);

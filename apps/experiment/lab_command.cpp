@@ -2,13 +2,20 @@
 #include "experiment/lab_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
+#include <limits>
 #include <memory>
 
 #include "experiment/lab.hpp"
 
 namespace stillhand::experiment {
 namespace {
+
+// What the command line says in words.
+struct Words {
+  std::string conditions = "A,B,C";
+  std::string who = "simulated";
+  std::string motion = "noise";
+};
 
 // Where this program and the files it needs are: build tree, or an installed prefix.
 struct Places {
@@ -32,7 +39,7 @@ Places find_places() {
 
 void add_lab_command(CLI::App& cli, int& status) {
   auto options = std::make_shared<LabOptions>();
-  auto conditions = std::make_shared<std::string>("A,B,C");
+  auto words = std::make_shared<Words>();
   const Places places = find_places();
   options->programs = places.programs;
   options->profiles = places.profiles;
@@ -45,7 +52,7 @@ void add_lab_command(CLI::App& cli, int& status) {
       "then one tracking trial a condition in blinded, shuffled order, recorded and evaluated.\n"
       "Example: stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out "
       "run1");
-  lab->add_option("--conditions", *conditions,
+  lab->add_option("--conditions", words->conditions,
                   "A stationary, B moving, C moving with cancellation; comma-separated")
       ->capture_default_str();
   lab->add_option("--trial-seconds", options->protocol.trial_s, "length of a tracking trial [s]")
@@ -54,21 +61,18 @@ void add_lab_command(CLI::App& cli, int& status) {
                   "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
   lab->add_option("--seed", options->protocol.seed, "seed of everything random")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
   lab->add_option("--out", options->out, "folder of recording, results and logs")->required();
   lab->add_flag("--headless", options->headless, "no window");
   lab->add_flag("--video", options->video, "write the tracking screen to DIR/screen.avi");
-  lab->add_option("--operator", options->who, "who tracks: simulated, or a person with the mouse")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Operator>{
-          {"simulated", Operator::kSimulated}, {"mouse", Operator::kMouse}}))
-      ->option_text("simulated|mouse")
-      ->default_str("simulated");
-  lab->add_option("--motion", options->protocol.motion,
+  lab->add_option("--operator", words->who, "who tracks: simulated, or a person with the mouse")
+      ->check(CLI::IsMember({"simulated", "mouse"}))
+      ->capture_default_str();
+  lab->add_option("--motion", words->motion,
                   "platform motion in B and C: noise (the paper's), road (ISO 8608), ride")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Motion>{
-          {"noise", Motion::kBandNoise}, {"road", Motion::kRoad}, {"ride", Motion::kRide}}))
-      ->option_text("noise|road|ride")
-      ->default_str("noise");
+      ->check(CLI::IsMember({"noise", "road", "ride"}))
+      ->capture_default_str();
   lab->add_option("--ride", options->ride,
                   "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap");
   lab->add_option("--domain", options->domain, "DDS domain, 0 to 232")->capture_default_str();
@@ -80,8 +84,12 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_option("--config", options->config, "folder with the settings of each service")
       ->capture_default_str();
   lab->add_flag("!--no-real-time", options->real_time, "do not ask for SCHED_FIFO");
-  lab->callback([options, conditions, &status] {
-    options->protocol.conditions = parse_conditions(*conditions);
+  lab->callback([options, words, &status] {
+    options->protocol.conditions = parse_conditions(words->conditions);
+    options->who = words->who == "mouse" ? Operator::kMouse : Operator::kSimulated;
+    options->protocol.motion = words->motion == "road"   ? Motion::kRoad
+                               : words->motion == "ride" ? Motion::kRide
+                                                         : Motion::kBandNoise;
     runtime::Stop stop;
     status = run_lab(*options, stop);
   });

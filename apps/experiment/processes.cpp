@@ -82,6 +82,7 @@ void Processes::start(const Launch& launch) {
   std::vector<std::string> words{launch.executable.string()};
   words.insert(words.end(), launch.arguments.begin(), launch.arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const SpawnSettings settings(launch.log);
@@ -98,7 +99,7 @@ Ended Processes::ended(const Child& child, int wait_status) const {
   Ended ended{child.launch.name, child.pid, "", -1, last_line(child.launch.log)};
   if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
-    ended.how = "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+    ended.how = "signal " + std::to_string(signal) + " (" + sigdescr_np(signal) + ")";
   } else {
     ended.exit_status = WEXITSTATUS(wait_status);
     ended.how = "exit status " + std::to_string(ended.exit_status);

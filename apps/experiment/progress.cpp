@@ -15,7 +15,6 @@ void ProgressLine::show(const std::string& step, double done) {
   if (step != step_) {
     finish();
     step_ = step;
-    if (!terminal_) std::fprintf(stderr, "%s\n", step.c_str());
   }
   if (!terminal_ || percent == shown_percent_) return;
   shown_percent_ = percent;

@@ -5,7 +5,7 @@
 
 namespace stillhand::experiment {
 
-/// Progress of long work: a bar that moves on a terminal, one line a step in a pipe.
+/// Progress of long work: a bar that moves on a terminal, nothing in a pipe.
 class ProgressLine {
  public:
   ProgressLine();

@@ -19,12 +19,14 @@ int main(int argc, char** argv) {
     cli.parse(argc, argv);
     return status;
   } catch (const CLI::ParseError& error) {
-    return cli.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
+    std::cerr << "stillhand: " << error.what() << "; `stillhand lab --help` tells\n";
+    return 2;
   } catch (const stillhand::ConfigError& error) {
     std::cerr << "stillhand: " << error.what() << '\n';
     return 2;
   } catch (const stillhand::experiment::RefusedByProcess& error) {
-    std::cerr << "stillhand: " << error.what() << '\n';
+    std::cerr << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {
     std::cerr << "stillhand: " << error.what() << '\n';
