@@ -291,11 +291,12 @@ TrialOutcome Conductor::run(PlannedTrial planned) {
 void Conductor::see_force_out(bool completed) {
   constexpr std::chrono::milliseconds kLimit{1500};
   constexpr std::chrono::milliseconds kAfterwards{300};
+  const bool stopped = trouble_.empty() && interrupted();
+  if (stopped) announce(nullptr, stillhand_msgs::SESSION_RUNNING);  // no trial: no force
   std::unique_lock lock(mutex_);
-  const bool opened = saw(seen_.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
-  if (completed && !opened) return;
+  if (completed && !saw(seen_.events, stillhand_msgs::EVENT_INTERLOCK_OPENED)) return;
   news_.wait_for(lock, kLimit,
-                 [this] { return saw(seen_.events, stillhand_msgs::EVENT_FORCE_ZERO); });
+                 [&] { return stopped || saw(seen_.events, stillhand_msgs::EVENT_FORCE_ZERO); });
   const Tick now = seen_.statuses["rig"].tick();
   news_.wait_for(lock, kAfterwards,
                  [&] { return seen_.statuses["rig"].tick() >= now + kAfterwards.count(); });

@@ -240,6 +240,8 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     service_options.seed = options.protocol.seed;
     service_options.profiles = options.profiles;
     service_options.config = options.config;
+    // Its life sign holds the interlock closed like everybody's.
+    service_options.real_time = options.real_time && runtime::become_real_time();
     runtime::Service service(service_options, stop);
     Processes processes;
     Session session(options, service, processes);
@@ -259,6 +261,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     std::cerr << "stillhand lab: interrupted before the first trial\n";
     return 1;
   }
+  const runtime::OrdinaryWhile ordinary;
   return report_session(options, outcomes, interrupted);
 }
 

@@ -8,15 +8,24 @@
 
 namespace stillhand::runtime {
 
-bool become_real_time(int priority) noexcept {
+namespace {
+
+bool take_priority(int priority) noexcept {
   sched_param parameter{};
   parameter.sched_priority = priority;
   return sched_setscheduler(0, SCHED_FIFO, &parameter) == 0;
 }
 
+}  // namespace
+
+bool become_real_time() noexcept {
+  constexpr int kControlPriority = 40;  // below the kernel's threaded interrupts at 50
+  return take_priority(kControlPriority);
+}
+
 void become_background() noexcept {
   constexpr int kBackgroundPriority = 10;
-  if (sched_getscheduler(0) == SCHED_FIFO) become_real_time(kBackgroundPriority);
+  if (sched_getscheduler(0) == SCHED_FIFO) take_priority(kBackgroundPriority);
 }
 
 OrdinaryWhile::OrdinaryWhile() noexcept : policy_(sched_getscheduler(0)) {

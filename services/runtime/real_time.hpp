@@ -5,7 +5,7 @@ namespace stillhand::runtime {
 
 /// Asks for SCHED_FIFO for the calling thread and those it starts from now on (Fast DDS 2.9.1 has
 /// no thread settings: its threads inherit).  @return false when the system does not grant it.
-bool become_real_time(int priority) noexcept;
+bool become_real_time() noexcept;
 
 /// Lowers a real-time thread below the control path, for threads that report or write files.  They
 /// stay real-time: they share locks with the control path inside Fast DDS (its send resources), and

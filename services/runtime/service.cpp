@@ -12,8 +12,6 @@
 namespace stillhand::runtime {
 namespace {
 
-constexpr int kRealTimePriority = 40;  // below the kernel's threaded interrupts at 50
-
 stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
   switch (kind) {
     case BusIncident::Kind::kDeadlineMissed:
@@ -156,7 +154,7 @@ int run_service(const std::string& name, int argc, char** argv,
   try {
     if (with_parent) end_with_parent();
     Stop stop;
-    if (options.real_time) options.real_time = become_real_time(kRealTimePriority);
+    if (options.real_time) options.real_time = become_real_time();
     Service service(options, stop);
     body(service);
     return 0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the user can mend: exit status 2, one line that says what, where and what would be right, nothing left behind."""
+"""What the user can mend: exit status 2, one line with what, where and what would be right, nothing left behind."""
 import shutil
 import socket
 

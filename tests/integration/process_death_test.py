@@ -41,6 +41,7 @@ class ProcessDeathTest(LabTestCase):
         lab = self.lab(*quick_session(self.folder / "config"))
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
         pid = lab.pid_of(service)
+        self.assertIsNotNone(pid, f"no process of {service}")
         killed_ns = time.monotonic_ns()
         os.kill(pid, signal.SIGKILL)
         status = lab.end_status()
