@@ -157,10 +157,4 @@ void Processes::end_all(const std::string& last, double patience_s) {
   end(last, patience_s);
 }
 
-std::vector<std::pair<std::string, pid_t>> Processes::running() const {
-  std::vector<std::pair<std::string, pid_t>> list;
-  for (const Child& child : children_) list.emplace_back(child.launch.name, child.pid);
-  return list;
-}
-
 }  // namespace stillhand::experiment

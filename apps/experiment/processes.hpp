@@ -48,7 +48,6 @@ class Processes {
   void end(const std::string& name, double patience_s);
   /// Asks all but `last` to end, waits, then ends `last`: the recorder sees the others out.
   void end_all(const std::string& last, double patience_s);
-  [[nodiscard]] std::vector<std::pair<std::string, pid_t>> running() const;
 
  private:
   struct Child {
