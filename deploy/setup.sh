@@ -5,9 +5,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# What is installed, by name and by what it provides: Node.js from its own makers brings npm along and conflicts with
+# Debian's package of that name.
+installed=$(dpkg-query -W -f='${db:Status-Status}, ${Package}, ${Provides}\n' | sed -n 's/^installed, //p' |
+            tr ',' '\n' | sed -e 's/(.*//' -e 's/[[:space:]]//g')
 missing=()
 while read -r package; do
-  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
+  grep -qxF "$package" <<<"$installed" || missing+=("$package")
 done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' deploy/packages.txt)
 
 if [ ${#missing[@]} -eq 0 ]; then
