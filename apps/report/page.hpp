@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "report/draw.hpp"
+
+namespace stillhand::report {
+
+enum class Emphasis { kNone, kStrong, kGood, kBad, kFaint };
+
+struct Cell {
+  Cell(std::string words = {}, Emphasis weight = Emphasis::kNone)  // NOLINT: rows of plain strings
+      : text(std::move(words)), emphasis(weight) {}
+  Cell(const char* words) : text(words) {}  // NOLINT: as above
+
+  std::string text;
+  Emphasis emphasis = Emphasis::kNone;
+};
+
+enum class Align { kLeft, kRight, kCentre };
+
+/// Rows may be shorter than the header; what is missing stays empty.
+struct Table {
+  std::string caption = {};
+  std::vector<std::string> header = {};
+  std::vector<std::vector<Cell>> rows = {};
+  std::vector<Align> align = {};  ///< of the columns; by default the first left, the others right
+};
+
+/// One HTML page that needs nothing besides itself: style and figures are inside, there is no
+/// script, and it loads nothing.  Light and dark as the reader's system is; readable on a phone and
+/// on paper.  Every text is plain text and escaped.  Tables and figures are numbered in order.
+///
+///   report::Page page("Study", "Twelve subjects ...");
+///   page.facts({{"seed", "1"}});
+///   page.section("Tracking error");
+///   page.figure(drawings[0]);
+///   page.write(folder / "report.html");
+///
+/// Thread-compatible.
+class Page {
+ public:
+  explicit Page(std::string title, std::string lead = {});
+
+  /// What the results came from: seed, versions, command line.
+  void facts(const std::vector<std::pair<std::string, std::string>>& pairs);
+  /// A heading, listed in the table of contents.  `level` is 2 or 3.
+  void section(std::string_view heading, int level = 2);
+  void paragraph(std::string_view text);
+  void list(const std::vector<std::string>& items);
+  /// A box that cannot be overlooked.
+  void warning(std::string_view text);
+  void table(const Table& table);
+  void figure(const Drawing& drawing);
+
+  /// The whole page.
+  [[nodiscard]] std::string html() const;
+
+  /// html() into a file, which appears whole or not at all.
+  /// @throws std::runtime_error saying which file and why
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  struct Heading {
+    std::string text;
+    std::string id;
+    int level;
+  };
+
+  [[nodiscard]] std::string contents() const;
+
+  std::string title_;
+  std::string lead_;
+  std::string facts_;
+  std::string body_;
+  std::vector<Heading> headings_;
+  int tables_ = 0;
+  int figures_ = 0;
+};
+
+}  // namespace stillhand::report

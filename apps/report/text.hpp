@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace stillhand::report {
+
+/// Text on one line that every XML reader takes: control characters become spaces, what is no UTF-8
+/// or no XML character becomes U+FFFD.
+std::string clean(std::string_view text);
+
+/// clean(), with & < > " ' as entities: for HTML text and for attributes in either quotes.
+std::string html_escaped(std::string_view text);
+
+/// clean() as a gnuplot string constant.  Single quotes, in which gnuplot substitutes nothing; a
+/// quote inside is doubled.
+std::string gnuplot_quoted(std::string_view text);
+
+/// Shortest decimal text of up to nine digits that reads as the same number to nine digits; the
+/// locale has no say.  For scripts, so with an ASCII minus.
+std::string decimal(double value);
+
+/// For people: `decimals` digits after the point, U+2212 as minus, no "−0.0", an en dash for what
+/// is not finite.
+std::string number(double value, int decimals);
+
+/// For people: as short as three significant digits allow, powers of ten as "2×10⁻⁵" outside
+/// 1e-4 .. 1e6.
+std::string short_number(double value);
+
+/// factor×10^exponent for people, with superscripts: "10⁻⁵", "2×10³".
+std::string power_of_ten(int factor, int exponent);
+
+/// Width of text in DejaVu Sans, generous [px].  Other sans-serif fonts are narrower.
+double text_width_px(std::string_view text, double font_size_px);
+
+}  // namespace stillhand::report

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/axis_layout.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "report/panel_layout.hpp"
+#include "report/text.hpp"
+
+namespace stillhand::report {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+AxisLayout horizontal(const Axis& axis, double low = 0.0, double high = 1.0,
+                      double length_px = 700.0) {
+  return lay_out_axis(axis, {.low = low, .high = high}, length_px, true, true, kFontSize_px);
+}
+
+AxisLayout vertical(const Axis& axis, double low, double high) {
+  return lay_out_axis(axis, {.low = low, .high = high}, 200.0, false, false, kFontSize_px);
+}
+
+std::vector<std::string> labels(const AxisLayout& layout) {
+  std::vector<std::string> result;
+  for (const AxisTick& tick : layout.major) result.push_back(tick.label);
+  return result;
+}
+
+TEST(AxisLayoutTest, ALineAgainstTimeFillsItsAxisExactly) {
+  const AxisLayout sut = horizontal({}, 40.0, 60.0);
+  EXPECT_EQ(sut.low, 40.0);
+  EXPECT_EQ(sut.high, 60.0);
+  EXPECT_THAT(labels(sut),
+              ElementsAre("40", "42", "44", "46", "48", "50", "52", "54", "56", "58", "60"));
+}
+
+TEST(AxisLayoutTest, FrequenciesAreMarkedAtOneTwoFive) {
+  const AxisLayout sut = horizontal({.scale = Scale::kLogarithmic}, 0.1, 10.0);
+  EXPECT_THAT(labels(sut), ElementsAre("0.1", "0.2", "0.5", "1", "2", "5", "10"));
+  EXPECT_EQ(sut.minor.size(), 2 * 6U);  // 3, 4, 6, 7, 8, 9 of each decade
+}
+
+TEST(AxisLayoutTest, AFrequencyTickSitsAtTheNumberThatItsLabelSays) {
+  const AxisLayout sut = horizontal({.scale = Scale::kLogarithmic}, 0.01, 10.0);
+  for (const AxisTick& tick : sut.major) EXPECT_EQ(tick.at, std::stod(tick.label));
+}
+
+TEST(AxisLayoutTest, ManyDecadesAreMarkedWithPowersOfTen) {
+  const AxisLayout sut = vertical({.scale = Scale::kLogarithmic}, 1.1e-6, 0.9);
+  EXPECT_THAT(labels(sut), ElementsAre("10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"));
+}
+
+TEST(AxisLayoutTest, LessThanADecadeOnALogarithmicAxisStillHasTwoTicks) {
+  const AxisLayout sut = vertical({.scale = Scale::kLogarithmic}, 3.1, 3.9);
+  EXPECT_GE(sut.major.size(), 2U);
+}
+
+TEST(AxisLayoutTest, APhaseIsMarkedAtMultiplesOf45AndEndsOnThem) {
+  const AxisLayout sut = vertical({.scale = Scale::kDegrees}, -200.0, -100.0);
+  EXPECT_EQ(sut.low, -225.0);
+  EXPECT_EQ(sut.high, -90.0);
+  EXPECT_THAT(labels(sut), ElementsAre("−225", "−180", "−135", "−90"));
+}
+
+TEST(AxisLayoutTest, AWidePhaseIsMarkedAtMultiplesOf90Or180) {
+  const AxisLayout sut = vertical({.scale = Scale::kDegrees}, -700.0, 0.0);
+  for (const AxisTick& tick : sut.major) EXPECT_EQ(std::fmod(tick.at, 180.0), 0.0);
+}
+
+TEST(AxisLayoutTest, LimitsGivenAreLimitsKept) {
+  const AxisLayout sut = vertical({.low = 0.0, .high = 80.0}, 17.0, 63.0);
+  EXPECT_EQ(sut.low, 0.0);
+  EXPECT_EQ(sut.high, 80.0);
+}
+
+TEST(AxisLayoutTest, AStepGivenIsTheStepUsed) {
+  const AxisLayout sut = vertical({.low = 0.0, .high = 1.0, .tick_step = 0.25}, 0.0, 1.0);
+  EXPECT_THAT(labels(sut), ElementsAre("0", "0.25", "0.50", "0.75", "1.00"));
+}
+
+TEST(AxisLayoutTest, CategoriesReplaceNumbersAndThoseOutsideAreLeftOut) {
+  const AxisLayout sut = horizontal({.ticks = {{1.0, "A"}, {2.0, "B"}, {9.0, "far"}}}, 0.5, 2.5);
+  EXPECT_THAT(labels(sut), ElementsAre("A", "B"));
+  EXPECT_TRUE(sut.categories);
+}
+
+TEST(AxisLayoutTest, LabelsSideBySideDoNotTouch) {
+  for (const double length_px : {60.0, 120.0, 200.0, 400.0, 800.0}) {
+    for (const double high : {0.003, 7.0, 1e4, 3e8}) {
+      const AxisLayout sut = horizontal({}, -high, high, length_px);
+      // Two ticks may always stay, however short the axis.
+      for (std::size_t i = 1; i < sut.major.size() && sut.major.size() > 2; ++i) {
+        const double apart_px =
+            (sut.fraction(sut.major[i].at) - sut.fraction(sut.major[i - 1].at)) * length_px;
+        const double need_px = 0.5 * (text_width_px(sut.major[i].label, kFontSize_px) +
+                                      text_width_px(sut.major[i - 1].label, kFontSize_px));
+        EXPECT_GT(apart_px, need_px) << length_px << " px, " << high;
+      }
+    }
+  }
+}
+
+TEST(AxisLayoutTest, ASingleValueHasRoomOnBothSides) {
+  for (const Scale scale : {Scale::kLinear, Scale::kLogarithmic}) {
+    const AxisLayout sut = vertical({.scale = scale}, 5.0, 5.0);
+    EXPECT_LT(sut.low, 5.0);
+    EXPECT_GT(sut.high, 5.0);
+  }
+}
+
+TEST(AxisLayoutTest, NothingToShowStillGivesAnAxis) {
+  for (const Scale scale : {Scale::kLinear, Scale::kLogarithmic, Scale::kDegrees}) {
+    const AxisLayout sut = lay_out_axis({.scale = scale}, {}, 200.0, false, false, kFontSize_px);
+    EXPECT_LT(sut.low, sut.high);
+    EXPECT_GE(sut.major.size(), 2U);
+  }
+}
+
+TEST(AxisLayoutTest, LimitsThatMakeNoAxisAreOpenedUp) {
+  const AxisLayout crossed = vertical({.low = 10.0, .high = 2.0}, 0.0, 1.0);
+  EXPECT_LT(crossed.low, crossed.high);
+  const AxisLayout zero = vertical({.scale = Scale::kLogarithmic, .low = 0.0}, 1.0, 100.0);
+  EXPECT_GT(zero.low, 0.0);
+}
+
+TEST(AxisLayoutTest, EveryTickLiesWithinTheLimits) {
+  for (const double centre : {0.0, 1e-9, 1.0, 1e6, -1e12}) {
+    for (const double span : {1e-3, 1.0, 1e5}) {
+      const AxisLayout sut = vertical({}, centre - span, centre + span);
+      for (const AxisTick& tick : sut.major) {
+        EXPECT_GE(sut.fraction(tick.at), -1e-6);
+        EXPECT_LE(sut.fraction(tick.at), 1.0 + 1e-6);
+      }
+      EXPECT_LE(sut.major.size(), 12U);
+    }
+  }
+}
+
+TEST(ExtentTest, GapsAndWhatALogarithmicAxisCannotShowDoNotCount) {
+  Panel panel;
+  panel.y.scale = Scale::kLogarithmic;
+  panel.series = {Series{.x = {1, 2, 3, 4, 5},
+                         .y = {kNan, -1.0, 0.0, 3.0, std::numeric_limits<double>::infinity()}}};
+  const Extent extent = extent_y(panel);
+  EXPECT_EQ(extent.low, 3.0);
+  EXPECT_EQ(extent.high, 3.0);
+}
+
+TEST(ExtentTest, OnlyWhatIsVisibleAlongXCountsForY) {
+  Panel panel;
+  panel.x.low = 2.0;
+  panel.x.high = 3.0;
+  panel.series = {Series{.x = {1, 2, 3, 4}, .y = {100, 5, 6, -100}}};
+  EXPECT_EQ(extent_y(panel).low, 5.0);
+  EXPECT_EQ(extent_y(panel).high, 6.0);
+}
+
+TEST(ExtentTest, BarsStandOnZeroAndTheirWidthCounts) {
+  Panel panel;
+  panel.series = {Series{.kind = Kind::kBars, .x = {1, 2}, .y = {5, 6}, .bar_width = 0.6}};
+  EXPECT_EQ(extent_y(panel).low, 0.0);
+  EXPECT_DOUBLE_EQ(extent_x(panel).low, 0.7);
+  EXPECT_DOUBLE_EQ(extent_x(panel).high, 2.3);
+}
+
+TEST(ExtentTest, OutliersOfABoxCount) {
+  Panel panel;
+  panel.series = {Series{.kind = Kind::kBox, .boxes = {{1, 2, 3, 4, 5, 6, {12, -3}}}}};
+  EXPECT_EQ(extent_y(panel).low, -3.0);
+  EXPECT_EQ(extent_y(panel).high, 12.0);
+}
+
+}  // namespace
+}  // namespace stillhand::report

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/thinning.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace stillhand::report {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr double kWidth_px = 100.0;
+
+// 50 points a column; irrational steps, so that extrema fall anywhere in a column.
+std::vector<double> columns(std::size_t count) {
+  std::vector<double> x(count);
+  for (std::size_t i = 0; i < count; ++i) x[i] = 0.02 * static_cast<double>(i);
+  return x;
+}
+
+std::vector<double> wave(std::size_t count) {
+  std::vector<double> y(count);
+  for (std::size_t i = 0; i < count; ++i) y[i] = std::sin(1.7 * static_cast<double>(i * i % 997));
+  return y;
+}
+
+TEST(ThinLineTest, EachColumnKeepsItsFirstLastLowestAndHighest) {
+  const std::vector<double> x{0.0, 0.2, 0.4, 0.6, 0.8, 1.5};
+  const std::vector<double> y{0.0, 5.0, 1.0, -5.0, 2.0, 9.0};
+  EXPECT_THAT(thin_line(x, y, y, kWidth_px), ElementsAre(0, 1, 3, 4, 5));
+}
+
+TEST(ThinLineTest, TheExtremaOfEveryColumnSurvive) {
+  const auto x = columns(5000);
+  const auto y = wave(5000);
+  const auto kept = thin_line(x, y, y, kWidth_px);
+  EXPECT_LE(kept.size(), 4 * 100U);
+  for (int column = 0; column < 100; ++column) {
+    const auto begin = y.begin() + column * 50;
+    const auto [low, high] = std::minmax_element(begin, begin + 50);
+    double kept_low = 2.0;
+    double kept_high = -2.0;
+    for (const std::size_t i : kept) {
+      if (std::floor(x[i]) != column) continue;
+      kept_low = std::min(kept_low, y[i]);
+      kept_high = std::max(kept_high, y[i]);
+    }
+    ASSERT_EQ(kept_low, *low) << "column " << column;
+    ASSERT_EQ(kept_high, *high) << "column " << column;
+  }
+}
+
+TEST(ThinLineTest, KeptPointsStayInOrderAndOccurOnce) {
+  const auto kept = thin_line(columns(5000), wave(5000), wave(5000), kWidth_px);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), std::less_equal<>()));
+}
+
+TEST(ThinLineTest, ABandKeepsTheLowestOfItsLowerAndTheHighestOfItsUpperEdge) {
+  const std::vector<double> x{0.0, 0.1, 0.2, 0.3, 0.4};
+  const std::vector<double> low{0.0, -1.0, -9.0, -1.0, 0.0};
+  const std::vector<double> high{1.0, 8.0, 2.0, 3.0, 1.0};
+  EXPECT_THAT(thin_line(x, low, high, kWidth_px), ElementsAre(0, 1, 2, 4));
+}
+
+TEST(ThinLineTest, WhatLiesOutOfSightCountsAsOneColumnOnEachSide) {
+  auto x = columns(5000);
+  for (double& value : x) value = value * 10.0 - 450.0;  // -450 .. 550 px
+  EXPECT_LE(thin_line(x, wave(5000), wave(5000), kWidth_px).size(), 4 * 102U);
+}
+
+TEST(ThinLineTest, ACurveThatTurnsBackKeepsEveryPoint) {
+  const std::vector<double> x{0.0, 0.3, 0.2, 0.4};
+  const std::vector<double> y{1.0, 1.0, 1.0, 1.0};
+  EXPECT_THAT(thin_line(x, y, y, kWidth_px), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(ThinLineTest, NothingGivesNothing) { EXPECT_TRUE(thin_line({}, {}, {}, kWidth_px).empty()); }
+
+TEST(ThinPointsTest, OfPointsOnOneSquareTheFirstStays) {
+  const std::vector<double> x{0.1, 0.9, 1.1, 0.2};
+  const std::vector<double> y{5.1, 5.9, 5.5, 6.0};
+  EXPECT_THAT(thin_points(x, y), ElementsAre(0, 2, 3));
+}
+
+}  // namespace
+}  // namespace stillhand::report
