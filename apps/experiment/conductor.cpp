@@ -204,6 +204,7 @@ void Conductor::assign(const PlannedTrial& planned) {
   message.motion(to_idl(planned));
   message.band_low_hz(planned.band_low_hz);
   message.band_high_hz(planned.band_high_hz);
+  message.band_order(planned.band_order);
   message.rms_m_s2(planned.rms_m_s2);
   message.peak_m_s2(planned.peak_m_s2);
   message.motion_seed(planned.motion_seed);
@@ -231,6 +232,16 @@ void Conductor::begin_session() {
   }
 }
 
+std::string Conductor::why_not_armed(const Seen& seen, std::string_view service) {
+  std::string why = std::string(service) + " was not prepared within 10 s";
+  for (const stillhand_msgs::Event& event : seen.events) {
+    if (event.kind() == stillhand_msgs::EVENT_NOTE && event.source().c_str() == service) {
+      why += std::string(" (") + event.text().c_str() + ")";
+    }
+  }
+  return why;
+}
+
 bool Conductor::await_armed(const PlannedTrial& planned, TrialOutcome& outcome) {
   const auto number = planned.trial.number;
   const bool armed = wait_for(kArmLimit_s, [&](Seen& seen) {
@@ -244,7 +255,7 @@ bool Conductor::await_armed(const PlannedTrial& planned, TrialOutcome& outcome) 
     const std::lock_guard lock(mutex_);
     for (const std::string_view service : kArmed) {
       if (seen_.statuses[std::string(service)].armed_trial() != number) {
-        outcome.aborted += std::string(service) + " was not prepared within 10 s; ";
+        outcome.aborted += (outcome.aborted.empty() ? "" : "; ") + why_not_armed(seen_, service);
       }
     }
   }
@@ -281,6 +292,7 @@ TrialOutcome Conductor::run(PlannedTrial planned) {
       outcome.aborted = why_stopped("the trial did not end in time");
     }
     see_force_out(outcome.completed);
+    look_for_death(outcome);
   }
   collect(outcome, before);
   return outcome;
@@ -300,6 +312,20 @@ void Conductor::see_force_out(bool completed) {
   const Tick now = seen_.statuses["rig"].tick();
   news_.wait_for(lock, kAfterwards,
                  [&] { return seen_.statuses["rig"].tick() >= now + kAfterwards.count(); });
+}
+
+// A process that ends opens the interlock first and can be seen to have ended a little later; what
+// it said is the better reason.
+void Conductor::look_for_death(TrialOutcome& outcome) {
+  constexpr double kLimit_s = 1.0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!outcome.aborted.empty() || !saw(seen_.events, stillhand_msgs::EVENT_INTERLOCK_OPENED)) {
+      return;
+    }
+  }
+  wait_for(kLimit_s, [](Seen&) { return false; });
+  outcome.aborted = why_stopped("");
 }
 
 MissCounts Conductor::count(const Seen& seen) {

@@ -14,6 +14,7 @@
 #include "experiment/protocol.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
+#include "motion/core/motion_trajectory.hpp"
 #include "runtime/service.hpp"
 
 namespace stillhand::experiment {
@@ -41,9 +42,10 @@ struct MissCounts {
 struct TrialOutcome {
   PlannedTrial planned;
   bool completed = false;
-  std::string aborted;      ///< why not, or empty
-  std::vector<Mark> marks;  ///< events during the trial, in order of their first
-  MissCounts misses;        ///< during the trial, all readers together
+  std::string aborted;                        ///< why not, or empty
+  std::vector<Mark> marks;                    ///< events during the trial, in order of their first
+  MissCounts misses;                          ///< during the trial, all readers together
+  std::optional<motion::MotionReport> asked;  ///< of the platform, when it moves
 };
 
 /// A process of the session refused what the user gave it; its own line says what.  Exit status 2.
@@ -93,7 +95,9 @@ class Conductor {
   [[nodiscard]] Tick newest_tick();
   [[nodiscard]] std::vector<std::string> absent(const Seen& seen) const;
   bool await_armed(const PlannedTrial& planned, TrialOutcome& outcome);
+  [[nodiscard]] static std::string why_not_armed(const Seen& seen, std::string_view service);
   void see_force_out(bool completed);
+  void look_for_death(TrialOutcome& outcome);
   void collect(TrialOutcome& outcome, const MissCounts& before);
   [[nodiscard]] static MissCounts count(const Seen& seen);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiment/in_process.hpp"
 
+#include <cmath>
+
 namespace stillhand::experiment {
 namespace {
 
@@ -17,6 +19,7 @@ motion::MotionProfile profile_of(const PlannedTrial& planned) {
   profile.kind = planned.moving ? motion::MotionKind::kBandNoise : motion::MotionKind::kStill;
   profile.band_low_hz = planned.band_low_hz;
   profile.band_high_hz = planned.band_high_hz;
+  profile.band_order = planned.band_order;
   profile.rms_m_s2 = planned.rms_m_s2;
   profile.peak_m_s2 = planned.peak_m_s2;
   profile.seed = planned.motion_seed;
@@ -33,14 +36,27 @@ sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
 
 }  // namespace
 
-InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed)
+double cancelled_share(const std::vector<double>& feedthrough_n,
+                       const std::vector<double>& motor_n) {
+  double left = 0.0;
+  double all = 0.0;
+  for (std::size_t n = 0; n < feedthrough_n.size(); ++n) {
+    left += (feedthrough_n[n] + motor_n[n]) * (feedthrough_n[n] + motor_n[n]);
+    all += feedthrough_n[n] * feedthrough_n[n];
+  }
+  return 1.0 - std::sqrt(left / all);
+}
+
+InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every)
     : configs_(seeded(configs, seed)),
       rig_(configs_.rig),
       conditioner_(configs_.sensing),
       motion_(configs_.motion),
       canceller_(configs_.cancellation),
       display_(configs_.display),
-      operator_(configs_.human_operator) {}
+      operator_(configs_.human_operator),
+      command_filter_(configs_.command_filter),
+      keep_every_(keep_every) {}
 
 cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
   return canceller_.load_model(model.control);
@@ -61,7 +77,7 @@ TrialSignals InProcessLoop::run(PlannedTrial planned) {
   arm(planned);
   TrialSignals signals;
   signals.pegged.rate_hz = kControlRateHz;
-  signals.tracking.rate_hz = kControlRateHz;
+  signals.tracking.rate_hz = kControlRateHz / static_cast<double>(keep_every_);
   while (tick_ <
          planned.trial.start_tick + planned.trial.duration_ticks + planned.trial.ramp_ticks) {
     tick_once(planned, signals);
@@ -92,23 +108,32 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
 
   const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
   const bool enabled = planned.cancellation && tracking;
-  motor_force_n_ = canceller_
-                       .step({tick, sensed.accel_y_m_s2, sensed.theta_rad, sensed.omega_rad_s,
-                              sensed.flags, enabled, covered})
-                       .force_n;
-  const display::TrackingSample shown = display_.step({tick, sensed.theta_rad});
+  const cancellation::CancellerOutput cancelled =
+      canceller_.step({tick, sensed.accel_y_m_s2, sensed.theta_rad, sensed.omega_rad_s,
+                       sensed.flags, enabled, covered});
+  motor_force_n_ = cancelled.force_n;
+  const double command_rad =
+      planned.command_filter ? command_filter_.step(sensed.theta_rad, cancelled.predicted_force_n)
+                             : sensed.theta_rad;
+  const display::TrackingSample shown = display_.step({tick, command_rad});
   operator_force_n_ = operator_.step({tick, shown.target_m, shown.cursor_m, tracking}).force_n;
+  if (planned.trial.measures(tick)) keep(planned, sensed, rig_out.truth, shown, signals);
+}
 
-  if (!planned.trial.measures(tick)) return;
+void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sensed,
+                         const rig::RigTruth& truth, const display::TrackingSample& shown,
+                         TrialSignals& signals) const {
   if (planned.trial.phase == TrialPhase::kPegged) {
     signals.pegged.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
     signals.pegged.force_n.push_back(sensed.force_n);
-  } else {
+  }
+  if ((tick_ - planned.trial.start_tick) % keep_every_ != 0) return;
+  if (planned.trial.phase == TrialPhase::kTracking) {
     signals.tracking.target_m.push_back(shown.target_m);
     signals.tracking.cursor_m.push_back(shown.cursor_m);
   }
-  signals.feedthrough_n.push_back(rig_out.truth.feedthrough_force_n);
-  signals.motor_n.push_back(rig_out.truth.motor_force_n);
+  signals.feedthrough_n.push_back(truth.feedthrough_force_n);
+  signals.motor_n.push_back(truth.motor_force_n);
 }
 
 }  // namespace stillhand::experiment

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cancellation/core/canceller.hpp"
+#include "cancellation/core/command_filter.hpp"
 #include "display/core/tracking_display.hpp"
 #include "experiment/protocol.hpp"
 #include "human_operator/core/crossover_operator.hpp"
@@ -23,12 +24,14 @@ struct CoreConfigs {
   sensing::Config sensing;
   motion::MotionGenerator::Config motion;
   cancellation::Config cancellation;
+  cancellation::CommandFilterConfig command_filter;
   display::TrackingDisplay::Config display;
   human_operator::CrossoverConfig human_operator;
   identification::Config identification;
 };
 
-/// A trial's signals over its measured ticks.
+/// A trial's signals over its measured ticks: the pegged record at 1 kHz, all others every
+/// `keep_every` ticks.
 struct TrialSignals {
   identification::Record pegged;  ///< acceleration and force, 1 kHz, as sensed
   identification::TrackingRecord tracking;
@@ -36,14 +39,19 @@ struct TrialSignals {
   std::vector<double> motor_n;        ///< motor force applied
 };
 
+/// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f').
+double cancelled_share(const std::vector<double>& feedthrough_n,
+                       const std::vector<double>& motor_n);
+
 /// The closed loop of a session in one process: the same cores in catalogue order, one whole tick
 /// of delay on each of the two edges that close the loop (motor command and operator force to the
 /// rig), as fast as the machine goes.  Deterministic.  One thread.
 class InProcessLoop {
  public:
-  /// @param seed  session seed, used as the processes use theirs
+  /// @param seed        session seed, used as the processes use theirs
+  /// @param keep_every  ticks between two kept samples; 10 is the paper's recording rate
   /// @throws ConfigError as the cores do.
-  InProcessLoop(const CoreConfigs& configs, std::uint64_t seed);
+  InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every = 1);
 
   /// Runs one trial from its first ramp to its last; start_tick is set by the loop.
   TrialSignals run(PlannedTrial planned);
@@ -53,6 +61,8 @@ class InProcessLoop {
  private:
   void arm(const PlannedTrial& planned);
   void tick_once(const PlannedTrial& planned, TrialSignals& signals);
+  void keep(const PlannedTrial& planned, const sensing::Sensed& sensed, const rig::RigTruth& truth,
+            const display::TrackingSample& shown, TrialSignals& signals) const;
 
   CoreConfigs configs_;
   rig::Rig rig_;
@@ -61,6 +71,8 @@ class InProcessLoop {
   cancellation::Canceller canceller_;
   display::TrackingDisplay display_;
   human_operator::CrossoverOperator operator_;
+  cancellation::CommandFilter command_filter_;
+  Tick keep_every_;
   Tick tick_ = 0;
   double motor_force_n_ = 0.0;
   double operator_force_n_ = 0.0;

@@ -6,17 +6,16 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cstring>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "contract/config_error.hpp"
 #include "experiment/conductor.hpp"
+#include "experiment/output_folder.hpp"
 #include "experiment/processes.hpp"
 #include "experiment/progress.hpp"
+#include "experiment/rehearsal.hpp"
 #include "experiment/results.hpp"
-#include "idl/topics.hpp"
-#include "motion/ride_file.hpp"
 #include "runtime/real_time.hpp"
 
 namespace stillhand::experiment {
@@ -72,47 +71,19 @@ void check_port(std::uint32_t domain) {
   }
 }
 
-/// The output folder: made if need be, proved writable, and cleared of what a run left half done.
-class OutputFolder {
- public:
-  explicit OutputFolder(const std::filesystem::path& path) : path_(path) {
-    std::error_code error;
-    made_ = std::filesystem::create_directories(path, error);
-    if (error || !std::filesystem::is_directory(path)) {
-      throw ConfigError("--out", path.string() + (error ? ": " + error.message() : ""),
-                        "a folder that can be made and written");
-    }
-    const std::filesystem::path probe = path / ".stillhand-probe";
-    std::ofstream file(probe);
-    if (!file) {
-      if (made_) std::filesystem::remove(path, error);
-      throw ConfigError("--out", path.string() + ", which cannot be written",
-                        "a folder with write permission");
-    }
-    file.close();
-    std::filesystem::remove(probe, error);
-    clear();
-    std::filesystem::create_directories(path / "logs");
+// What the assignment on the bus leaves open.
+void add_motion(std::vector<std::string>& arguments, const LabOptions& options) {
+  const ProtocolOptions& protocol = options.protocol;
+  if (protocol.motion == Motion::kRide) {
+    arguments.insert(arguments.end(), {"--ride", options.ride.string()});
+  } else if (protocol.motion == Motion::kRoad) {
+    std::ostringstream speed;
+    speed.precision(17);  // every bit of a double
+    speed << protocol.road_speed_m_s;
+    arguments.insert(arguments.end(),
+                     {"--road-class", protocol.road_class, "--speed-m-s", speed.str()});
   }
-  /// Takes away what this program writes, and the folder if it made it.
-  void discard() const {
-    clear();
-    std::error_code error;
-    if (made_) std::filesystem::remove(path_, error);
-  }
-
- private:
-  void clear() const {
-    std::error_code error;
-    for (const char* name : {"session.mcap", "summary.json", "model.json", "screen.avi"}) {
-      std::filesystem::remove(path_ / name, error);
-    }
-    std::filesystem::remove_all(path_ / "logs", error);
-  }
-
-  std::filesystem::path path_;
-  bool made_ = false;
-};
+}
 
 std::vector<Launch> launches(const LabOptions& options) {
   std::vector<Launch> list;
@@ -139,7 +110,7 @@ std::vector<Launch> launches(const LabOptions& options) {
     };
     if (options.real_time) add({"--real-time"});
     if (service == "recorder") add({"--out", (options.out / "session.mcap").string()});
-    if (service == "motion" && !options.ride.empty()) add({"--ride", options.ride.string()});
+    if (service == "motion") add_motion(launch.arguments, options);
     if (service == "display" && options.headless) add({"--headless"});
     if (service == "display" && options.video) {
       add({"--video", (options.out / "screen.avi").string()});
@@ -155,8 +126,10 @@ std::vector<Launch> launches(const LabOptions& options) {
 /// The session proper, once every process runs.
 class Session {
  public:
-  Session(const LabOptions& options, runtime::Service& service, Processes& processes)
+  Session(const LabOptions& options, const AskedMotions& asked, runtime::Service& service,
+          Processes& processes)
       : options_(options),
+        asked_(asked),
         conductor_(
             service, [&processes] { return processes.reap(); },
             [this](const std::string& what, double done) { progress_.show(what, done); }) {}
@@ -170,6 +143,9 @@ class Session {
       if (conductor_.interrupted()) break;
       outcomes.push_back(conductor_.run(planned));
       TrialOutcome& outcome = outcomes.back();
+      if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
+        outcome.asked = motion->second;
+      }
       if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) require_model(outcome);
       if (!outcome.completed) break;
     }
@@ -190,13 +166,16 @@ class Session {
   }
 
   const LabOptions& options_;
+  const AskedMotions& asked_;
   ProgressLine progress_;
   Conductor conductor_;
 };
 
 // What can be known to be wrong before anything is touched.
-void check(const LabOptions& options) {
-  plan(options.protocol);  // checks the durations
+AskedMotions check(const LabOptions& options) {
+  plan(options.protocol);  // checks durations and road
+  if (options.domain > 232)
+    throw ConfigError("--domain", std::to_string(options.domain), "0 to 232");
   if ((options.protocol.motion == Motion::kRide) == options.ride.empty()) {
     throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
                       "a file together with --motion ride, and only then");
@@ -204,31 +183,30 @@ void check(const LabOptions& options) {
   if (options.who == Operator::kMouse && options.headless) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
-  if (!options.ride.empty()) {
-    const motion::Ride ride = motion::read_ride(options.ride.string());
-    const double length_s = static_cast<double>(ride.accel_m_s2.size()) / ride.rate_hz;
-    if (length_s < options.protocol.trial_s) {
-      throw ConfigError(options.ride.string(), std::to_string(length_s) + " s of ride",
-                        "at least the --trial-seconds " + std::to_string(options.protocol.trial_s));
-    }
-  }
   if (!(options.match_s > 0.0 && options.match_s <= 3600.0)) {
     throw ConfigError("--match-seconds", std::to_string(options.match_s), "up to 3600 seconds");
   }
   if (!std::filesystem::is_regular_file(options.profiles)) {
     throw ConfigError("--profiles", "no file " + options.profiles.string(), "qos/profiles.xml");
   }
+  motion::RideRecord ride;
+  if (!options.ride.empty()) {
+    ride = motion::read_ride(options.ride.string());
+    if (ride.length_s() < options.protocol.trial_s) {
+      throw ConfigError(options.ride.string(), std::to_string(ride.length_s()) + " s of ride",
+                        "at least the --trial-seconds " + std::to_string(options.protocol.trial_s));
+    }
+  }
+  return rehearse(options.protocol, ride, options.config);
 }
 
 }  // namespace
 
 int run_lab(const LabOptions& options, runtime::Stop& stop) {
-  check(options);
-  if (options.domain > 232)
-    throw ConfigError("--domain", std::to_string(options.domain), "0 to 232");
+  const AskedMotions asked = check(options);
   const DomainLock lock(options.domain, options.rig);
   check_port(options.domain);
-  const OutputFolder folder(options.out);
+  const OutputFolder folder(options.out, options.ride);
 
   std::vector<TrialOutcome> outcomes;
   bool interrupted = false;
@@ -244,7 +222,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     service_options.real_time = options.real_time && runtime::become_real_time();
     runtime::Service service(service_options, stop);
     Processes processes;
-    Session session(options, service, processes);
+    Session session(options, asked, service, processes);
     for (const Launch& launch : launches(options)) processes.start(launch);
     service.run([&] {
       session.run(outcomes);

@@ -2,9 +2,12 @@
 #include "experiment/lab_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <limits>
 #include <memory>
+#include <optional>
 
+#include "contract/config_error.hpp"
 #include "experiment/lab.hpp"
 
 namespace stillhand::experiment {
@@ -15,7 +18,30 @@ struct Words {
   std::string conditions = "A,B,C";
   std::string who = "simulated";
   std::string motion = "noise";
+  bool ordinary = false;  // scheduling
+  std::optional<std::string> road_class;
+  std::optional<double> road_speed_m_s;
 };
+
+// Words that go with another one would be without effect without it.
+void take_road(const Words& words, ProtocolOptions& protocol) {
+  if (protocol.motion != Motion::kRoad && (words.road_class || words.road_speed_m_s)) {
+    throw ConfigError(words.road_class ? "--road-class" : "--speed-m-s",
+                      "it with --motion " + words.motion, "--motion road with it");
+  }
+  protocol.road_class = words.road_class.value_or(protocol.road_class);
+  protocol.road_speed_m_s = words.road_speed_m_s.value_or(protocol.road_speed_m_s);
+}
+
+// A larger number would be taken for the largest there is.
+std::string check_seed(const std::string& word) {
+  std::int64_t seed = -1;
+  const char* end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, seed);
+  if (error == std::errc() && rest == end && seed >= 0) return {};
+  return "got " + word + ", want a whole number from 0 to " +
+         std::to_string(std::numeric_limits<std::int64_t>::max());
+}
 
 // Where this program and the files it needs are: build tree, or an installed prefix.
 struct Places {
@@ -61,7 +87,7 @@ void add_lab_command(CLI::App& cli, int& status) {
                   "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
   lab->add_option("--seed", options->protocol.seed, "seed of everything random")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->check(check_seed)
       ->capture_default_str();
   lab->add_option("--out", options->out, "folder of recording, results and logs")->required();
   lab->add_flag("--headless", options->headless, "no window");
@@ -75,6 +101,10 @@ void add_lab_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   lab->add_option("--ride", options->ride,
                   "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap");
+  lab->add_option("--road-class", words->road_class,
+                  "road for --motion road: A (very good) to H, by ISO 8608 [B]");
+  lab->add_option("--speed-m-s", words->road_speed_m_s,
+                  "speed of the vehicle on it [m/s], 0.5 to 70 [20]");
   lab->add_option("--domain", options->domain, "DDS domain, 0 to 232")->capture_default_str();
   lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
   lab->add_option("--match-seconds", options->match_s,
@@ -83,13 +113,15 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_option("--profiles", options->profiles, "QoS profiles")->capture_default_str();
   lab->add_option("--config", options->config, "folder with the settings of each service")
       ->capture_default_str();
-  lab->add_flag("!--no-real-time", options->real_time, "do not ask for SCHED_FIFO");
+  lab->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
   lab->callback([options, words, &status] {
     options->protocol.conditions = parse_conditions(words->conditions);
     options->who = words->who == "mouse" ? Operator::kMouse : Operator::kSimulated;
     options->protocol.motion = words->motion == "road"   ? Motion::kRoad
                                : words->motion == "ride" ? Motion::kRide
                                                          : Motion::kBandNoise;
+    take_road(*words, options->protocol);
+    options->real_time = !words->ordinary;
     runtime::Stop stop;
     status = run_lab(*options, stop);
   });

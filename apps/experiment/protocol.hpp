@@ -9,12 +9,20 @@
 
 namespace stillhand::experiment {
 
-/// A condition of the paper, section III-C.
+/// A to C are the conditions of the paper, section III-C; D to F, all with the motor off, are what
+/// its section V wants to compare the motor with.
 enum class Condition : char {
   kStationary = 'A',       ///< platform still, motor off
   kMoving = 'B',           ///< platform moves, motor off
   kMovingCancelled = 'C',  ///< platform moves, motor cancels
+  kCommandFilter = 'D',    ///< platform moves, the prediction is taken off the command
+  kDampedStick = 'E',      ///< platform moves, more stick damping
+  kArmRest = 'F',          ///< platform moves, the forearm rests
 };
+
+/// Conditions of a session over the bus, and of a study.
+inline constexpr const char* kLabConditions = "ABC";
+inline constexpr const char* kStudyConditions = "ABCDEF";
 
 /// Kind of platform motion during B and C.
 enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide };
@@ -27,6 +35,8 @@ struct ProtocolOptions {
   double ramp_s = 2.0;       ///< [s] motion and target fade in and out
   std::uint64_t seed = 1;    ///< of everything random
   Motion motion = Motion::kBandNoise;
+  std::string road_class = "B";  ///< Motion::kRoad: ISO 8608, A (very good) to H
+  double road_speed_m_s = 20.0;  ///< [m/s] Motion::kRoad: speed of the vehicle
 };
 
 /// One trial of the session: what everybody may know, and what stays blinded.
@@ -37,17 +47,26 @@ struct PlannedTrial {
   bool moving;
   Motion motion;
   double band_low_hz, band_high_hz;  ///< [Hz]
+  int band_order;                    ///< roll-off of the noise at each edge; 0: abrupt
   double rms_m_s2, peak_m_s2;        ///< [m/s^2]
   std::uint64_t motion_seed;
   bool cancellation;
+  bool command_filter;  ///< in process only
 };
 
-/// "A,B,C" to conditions.  @throws ConfigError for an unknown, repeated or missing one.
-std::vector<Condition> parse_conditions(const std::string& text);
+/// In a few words, as reports say it.
+const char* condition_name(Condition condition);
+
+/// "A,B,C" to conditions.  @param allowed  their letters
+/// @throws ConfigError for an unknown, repeated or missing one.
+std::vector<Condition> parse_conditions(const std::string& text,
+                                        const std::string& allowed = kLabConditions);
 
 /// Identification first, then the conditions in an order shuffled by the seed; every seed of a
 /// trial follows from the session's.
-/// @throws ConfigError for durations out of range (5 s to 3600 s).
+/// @throws ConfigError for durations out of range (5 s to 3600 s), and for a road that ISO 8608
+/// does
+///         not know or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
 }  // namespace stillhand::experiment

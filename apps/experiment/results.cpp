@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/in_process.hpp"
 #include "identification/codec.hpp"
 #include "signal/reference.hpp"
 
@@ -46,10 +47,9 @@ double cancelled_share(const SessionRecording& session, const Trial& trial) {
   const auto feedthrough = measured(
       session.rig_truths, trial, [](const auto& truth) { return truth.feedthrough_force_n(); },
       missing);
-  auto left = measured(
+  const auto motor = measured(
       session.rig_truths, trial, [](const auto& truth) { return truth.motor_force_n(); }, missing);
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] += feedthrough[i];
-  return 1.0 - rms(left) / rms(feedthrough);
+  return experiment::cancelled_share(feedthrough, motor);
 }
 
 TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {

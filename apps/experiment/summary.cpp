@@ -60,7 +60,28 @@ ordered_json restoration_json(const SessionResult& result) {
   return restoration;
 }
 
-ordered_json trial_json(const TrialOutcome& outcome) {
+// What was asked of the platform.  Null: to stand still.
+ordered_json motion_json(const TrialOutcome& outcome, const ProtocolOptions& protocol) {
+  if (!outcome.asked) return nullptr;
+  const motion::MotionReport& asked = *outcome.asked;
+  ordered_json json{{"kind", "noise"},
+                    {"rms_m_s2", asked.rms_m_s2},
+                    {"peak_m_s2", asked.peak_m_s2},
+                    {"peak_position_m", asked.peak_position_m}};
+  if (outcome.planned.motion == Motion::kRoad) {
+    json["kind"] = "road";
+    json["road_class"] = protocol.road_class;
+    json["speed_m_s"] = protocol.road_speed_m_s;
+  } else if (outcome.planned.motion == Motion::kRide) {
+    json["kind"] = "ride";
+    json["corner_hz"] = asked.corner_hz;
+    json["removed_share"] = asked.removed_share;
+    json["removed_slow_share"] = asked.removed_slow_share;
+  }
+  return json;
+}
+
+ordered_json trial_json(const TrialOutcome& outcome, const ProtocolOptions& protocol) {
   ordered_json marks = ordered_json::array();
   for (const Mark& mark : outcome.marks) {
     marks.push_back({{"what", mark.what},
@@ -78,6 +99,7 @@ ordered_json trial_json(const TrialOutcome& outcome) {
       {"condition", std::string(1, outcome.planned.label)},
       {"start_tick", trial.start_tick},
       {"duration_ticks", trial.duration_ticks},
+      {"motion", motion_json(outcome, protocol)},
       {"completed", outcome.completed},
       {"aborted", outcome.aborted.empty() ? ordered_json(nullptr) : ordered_json(outcome.aborted)},
       {"deadline_misses", outcome.misses.deadline},
@@ -117,7 +139,9 @@ ordered_json summary_json(const LabOptions& options, const std::vector<TrialOutc
   summary["restoration"] = restoration_json(result);
   summary["identification"] = identification_json(result);
   summary["trials"] = ordered_json::array();
-  for (const TrialOutcome& outcome : outcomes) summary["trials"].push_back(trial_json(outcome));
+  for (const TrialOutcome& outcome : outcomes) {
+    summary["trials"].push_back(trial_json(outcome, options.protocol));
+  }
   summary["lost_ticks"] = result.lost_ticks;
   summary["recording_damage"] = result.damage;
   summary["interrupted"] = interrupted;
@@ -172,6 +196,26 @@ void print_table(const SessionResult& result) {
   }
 }
 
+// A ride and a road keep their own intensity, so that the user wants to know it; the same for every
+// trial but for phases.
+void print_motion(const std::vector<TrialOutcome>& outcomes, const ProtocolOptions& protocol) {
+  for (const TrialOutcome& outcome : outcomes) {
+    if (!outcome.asked || outcome.planned.motion == Motion::kBandNoise) continue;
+    const motion::MotionReport& asked = *outcome.asked;
+    if (outcome.planned.motion == Motion::kRide) {
+      std::printf(
+          "ride: high-pass at %.3f Hz, %.1f %% of its variance removed (%.1f %% by the high-pass)",
+          asked.corner_hz, 100.0 * asked.removed_share, 100.0 * asked.removed_slow_share);
+    } else {
+      std::printf("road: class %s at %.1f m/s", protocol.road_class.c_str(),
+                  protocol.road_speed_m_s);
+    }
+    std::printf(", RMS %.2f m/s^2, largest displacement %.0f mm\n", asked.rms_m_s2,
+                1000.0 * asked.peak_position_m);
+    return;
+  }
+}
+
 void write(const std::filesystem::path& path, const std::string& text) {
   const recording::Status status = recording::write_file_atomically(path.string(), text);
   if (!status.ok()) throw std::runtime_error(path.string() + ": " + status.text);
@@ -189,6 +233,7 @@ int report_session(const LabOptions& options, const std::vector<TrialOutcome>& o
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
   print_table(result);
+  print_motion(outcomes, options.protocol);
   std::int64_t lost = 0;
   for (const auto& [topic, count] : result.lost_ticks) lost += count;
   std::printf("lost ticks on the 1 kHz topics: %lld\n", static_cast<long long>(lost));

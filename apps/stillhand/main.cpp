@@ -5,6 +5,7 @@
 #include "contract/config_error.hpp"
 #include "experiment/conductor.hpp"
 #include "experiment/lab_command.hpp"
+#include "study/study_command.hpp"
 
 int main(int argc, char** argv) {
   CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
@@ -15,12 +16,13 @@ int main(int argc, char** argv) {
   cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int status = 0;
   stillhand::experiment::add_lab_command(cli, status);
+  stillhand::study::add_study_command(cli, status);
   try {
     cli.parse(argc, argv);
     return status;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
-    std::cerr << "stillhand: " << error.what() << "; `stillhand lab --help` tells\n";
+    std::cerr << "stillhand: " << error.what() << "; `stillhand <verb> --help` tells\n";
     return 2;
   } catch (const stillhand::ConfigError& error) {
     std::cerr << "stillhand: " << error.what() << '\n';

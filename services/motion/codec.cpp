@@ -36,6 +36,7 @@ MotionProfile from_idl(const stillhand_msgs::TrialAssignment& assignment, const 
   }
   profile.band_low_hz = assignment.band_low_hz();
   profile.band_high_hz = assignment.band_high_hz();
+  profile.band_order = assignment.band_order();
   profile.rms_m_s2 = assignment.rms_m_s2();
   profile.peak_m_s2 = assignment.peak_m_s2();
   profile.seed = assignment.motion_seed();

@@ -5,14 +5,19 @@
 
 int main(int argc, char** argv) {
   using namespace stillhand;
-  std::filesystem::path ride;
+  motion::RideAndRoad way;
   return runtime::run_service(
       "motion", argc, argv,
       [&](runtime::Service& service) {
-        motion::Shell shell(service, ride);
+        motion::Shell shell(service, way);
         shell.run();
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
-        cli.add_option("--ride", ride, "recorded ride to follow: CSV with a_y [m/s^2], or .mcap");
+        cli.add_option("--ride", way.ride,
+                       "recorded ride to follow: CSV with a_y [m/s^2], or .mcap");
+        cli.add_option("--road-class", way.road_class, "ISO 8608 road, A (very good) to H")
+            ->capture_default_str();
+        cli.add_option("--speed-m-s", way.road_speed_m_s, "speed on the road [m/s]")
+            ->capture_default_str();
       });
 }

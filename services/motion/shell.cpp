@@ -9,12 +9,13 @@
 
 namespace stillhand::motion {
 
-Shell::Shell(runtime::Service& service, const std::filesystem::path& ride)
+Shell::Shell(runtime::Service& service, RideAndRoad way)
     : service_(service),
       config_(service.config<MotionGenerator::Config>()),
       core_(config_),
+      way_(std::move(way)),
       command_(service.bus().publisher<stillhand_msgs::PlatformCommand>(topics::kPlatformCommand)) {
-  if (!ride.empty()) ride_ = read_ride(ride.string());
+  if (!way_.ride.empty()) ride_ = read_ride(way_.ride.string());
   service.on_trial([this](const Trial&, const auto&) { prepare_when_complete(); });
   service.bus().subscribe<stillhand_msgs::TrialAssignment>(
       topics::kTrialAssignment, [this](const auto& message, const auto&) {
@@ -34,13 +35,13 @@ void Shell::prepare_when_complete() {
   }
   prepared_trial_ = trial.number;
   MotionProfile profile = from_idl(*assignment_, trial);
-  if (profile.kind == MotionKind::kRide) {
-    profile.ride_rate_hz = ride_.rate_hz;
-    profile.ride_accel_m_s2 = ride_.accel_m_s2;
-  }
+  complete(profile);
   handover_.prepare([this, profile = std::move(profile), trial]() -> std::unique_ptr<Prepared> {
     try {
-      return std::make_unique<Prepared>(Prepared{MotionTrajectory(profile, config_.limits), trial});
+      auto prepared =
+          std::make_unique<Prepared>(Prepared{MotionTrajectory(profile, config_.limits), trial});
+      tell_motion(profile, prepared->trajectory.report());
+      return prepared;
     } catch (const ConfigError& error) {
       service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
       return nullptr;  // the platform stands still and the trial is never armed
@@ -48,13 +49,30 @@ void Shell::prepare_when_complete() {
   });
 }
 
-void Shell::tell_what_was_removed(const MotionProfile& profile, const MotionReport& report) {
+// What the assignment leaves open.
+void Shell::complete(MotionProfile& profile) const {
+  profile.road_class = way_.road_class;
+  profile.road_speed_m_s = way_.road_speed_m_s;
   if (profile.kind != MotionKind::kRide) return;
+  profile.ride_rate_hz = ride_.rate_hz;
+  profile.ride_accel_m_s2 = ride_.accel_m_s2;
+}
+
+// Into the recording: neither the ride nor the road is on the bus.
+void Shell::tell_motion(const MotionProfile& profile, const MotionReport& report) const {
   char text[128];
-  std::snprintf(text, sizeof(text),
-                "ride high-passed at %.3f Hz to stay in the workspace: %.1f %% of its variance "
-                "removed, RMS %.2f m/s^2 left",
-                report.corner_hz, 100.0 * report.removed_share, report.rms_m_s2);
+  if (profile.kind == MotionKind::kRide) {
+    std::snprintf(text, sizeof(text),
+                  "ride: high-pass at %.3f Hz, %.1f %% of its variance removed (%.1f %% by the "
+                  "high-pass), RMS %.3f m/s^2 left",
+                  report.corner_hz, 100.0 * report.removed_share, 100.0 * report.removed_slow_share,
+                  report.rms_m_s2);
+  } else if (profile.kind == MotionKind::kRoad) {
+    std::snprintf(text, sizeof(text), "road: class %s at %.1f m/s, RMS %.3f m/s^2",
+                  profile.road_class.c_str(), profile.road_speed_m_s, report.rms_m_s2);
+  } else {
+    return;
+  }
   service_.note_event(stillhand_msgs::EVENT_NOTE, text);
 }
 

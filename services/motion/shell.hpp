@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
@@ -13,6 +14,13 @@
 
 namespace stillhand::motion {
 
+/// What a trial's assignment on the bus leaves open.
+struct RideAndRoad {
+  std::filesystem::path ride;  ///< recorded ride for read_ride(), or empty
+  std::string road_class = "B";
+  double road_speed_m_s = 20.0;
+};
+
 /// The motion generator's process.  Sensed samples are its clock: each one brings the command for a
 /// tick that lies `kLead` ahead, so that the rig always has it in time and two machines' clocks
 /// cannot drift apart.
@@ -21,8 +29,8 @@ class Shell {
   /// Ticks between a command and the tick it is for: four times the DDS deadline.
   static constexpr Tick kLead = 20;
 
-  /// @param ride  recorded ride for read_ride(), or empty
-  Shell(runtime::Service& service, const std::filesystem::path& ride);
+  /// @throws ConfigError when the ride cannot be read.
+  Shell(runtime::Service& service, RideAndRoad way);
   void run() { service_.run(); }
 
  private:
@@ -33,12 +41,14 @@ class Shell {
 
   void on_sensed(Tick tick);
   void prepare_when_complete();
-  void tell_what_was_removed(const MotionProfile& profile, const MotionReport& report);
+  void complete(MotionProfile& profile) const;
+  void tell_motion(const MotionProfile& profile, const MotionReport& report) const;
 
   runtime::Service& service_;
   MotionGenerator::Config config_;
   MotionGenerator core_;
-  Ride ride_;
+  RideAndRoad way_;
+  RideRecord ride_;
   runtime::Publisher<stillhand_msgs::PlatformCommand> command_;
   runtime::Handover<Prepared> handover_;
   Prepared* armed_ = nullptr;

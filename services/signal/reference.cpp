@@ -19,8 +19,11 @@ constexpr std::array<std::int64_t, kReferenceLines> kPaperMultiples{
 // Stream of the phases under the trial's seed.
 constexpr std::uint64_t kPhaseStream = 0x5265666572656e63;
 constexpr Tick kMaxDuration_ticks = 3'600'000;
-// Samples of a block that share one rotation; near sqrt(180 000), where the fewest sines are drawn.
-constexpr std::size_t kBlock = 512;
+// Samples of a block that share one rotation; near the square root of the period, where the fewest
+// sines are drawn.
+std::size_t block_of(std::size_t count) {
+  return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+}
 
 bool is_prime(std::int64_t n) {
   if (n < 2) return false;
@@ -69,17 +72,18 @@ void add_line(std::vector<double>& table, std::int64_t harmonic, double phase_ra
     const std::size_t cycles = static_cast<std::size_t>(harmonic) * n % count;
     return kTurn_rad * (static_cast<double>(cycles) / static_cast<double>(count));
   };
-  std::array<double, kBlock> sines;
-  std::array<double, kBlock> cosines;
-  for (std::size_t r = 0; r < kBlock; ++r) {
+  const std::size_t block = block_of(count);
+  std::vector<double> sines(block);
+  std::vector<double> cosines(block);
+  for (std::size_t r = 0; r < block; ++r) {
     sines[r] = std::sin(angle(r));
     cosines[r] = std::cos(angle(r));
   }
-  for (std::size_t first = 0; first < count; first += kBlock) {
+  for (std::size_t first = 0; first < count; first += block) {
     const double start_rad = angle(first) + phase_rad;
     const double s = scale * std::sin(start_rad);
     const double c = scale * std::cos(start_rad);
-    const std::size_t length = std::min(kBlock, count - first);
+    const std::size_t length = std::min(block, count - first);
     double* out = table.data() + first;
     for (std::size_t r = 0; r < length; ++r) out[r] += s * cosines[r] + c * sines[r];
   }

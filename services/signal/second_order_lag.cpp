@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/core/muscle_filter.hpp"
+#include "signal/second_order_lag.hpp"
 
 #include <cmath>
 
 #include "contract/expects.hpp"
 
-namespace stillhand::human_operator {
+namespace stillhand::signal {
 
-MuscleFilter::MuscleFilter(double natural_rad_s, double damping_ratio, double period_s)
+SecondOrderLag::SecondOrderLag(double natural_rad_s, double damping_ratio, double period_s)
     : w2_(natural_rad_s * natural_rad_s), damping_(2.0 * damping_ratio * natural_rad_s) {
   STILLHAND_EXPECTS(natural_rad_s > 0.0 && damping_ratio > 0.0 && damping_ratio < 1.0);
   // exp(A t) of the oscillator about u, with decay s and damped frequency d.
@@ -22,4 +22,4 @@ MuscleFilter::MuscleFilter(double natural_rad_s, double damping_ratio, double pe
   vv_ = c - decay_rad_s * s;
 }
 
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::signal

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace stillhand::human_operator {
+namespace stillhand::signal {
 
-/// Second-order lag of arm and muscle, exact for an input held over the tick, Eq. HO-2:
+/// Second-order lag, exact for an input held over the tick, README Eq. SG-16:
 ///
 ///   x'' = w^2 (u - x) - 2 z w x',   lag at low frequency 2 z / w
 ///
-/// Source: README [McRuer and Jex 1967], neuromuscular mode.  Unit of u in, same unit out.  Pure.
-class MuscleFilter {
+/// A mass on spring and damper, or a subject's arm and muscle.  Unit of u in, same unit out.  Pure.
+class SecondOrderLag {
  public:
   struct State {
     double x, v, a;  ///< [unit, unit/s, unit/s^2]
@@ -17,7 +17,7 @@ class MuscleFilter {
   /// @param natural_rad_s  w [rad/s], positive
   /// @param damping_ratio  z [-], 0 < z < 1
   /// @param period_s       length of a tick [s]
-  MuscleFilter(double natural_rad_s, double damping_ratio, double period_s);
+  SecondOrderLag(double natural_rad_s, double damping_ratio, double period_s);
 
   /// State at the tick at which the input becomes `u`; `u` acts on the ticks after it.
   State step(double u) noexcept {
@@ -35,4 +35,4 @@ class MuscleFilter {
   double x_ = 0.0, v_ = 0.0;
 };
 
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::signal

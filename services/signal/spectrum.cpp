@@ -20,6 +20,11 @@ constexpr double kNormal95 = 1.959963984540054;
 
 using Complex = std::complex<double>;
 
+// Samples that share one rotation: near the square root of the record the fewest sines are drawn.
+std::size_t block_of(std::size_t count) {
+  return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+}
+
 // Periodic Hann window: sums of it and of its square over the segment are exactly L/2 and 3L/8.
 std::vector<double> hann(std::size_t length) {
   std::vector<double> window(length);
@@ -128,17 +133,17 @@ Complex line_at(const std::vector<double>& x, std::int64_t cycles_in_record) {
                       "0 < k < " + std::to_string((count + 1) / 2) + " (Nyquist)");
   }
   // Rotations within a block are tabulated; a block's own rotation is applied to its sum.
-  constexpr std::size_t kBlock = 512;
+  const std::size_t block = block_of(count);
   const auto rotation = [&](std::size_t n) {
     const std::size_t cycles = static_cast<std::size_t>(cycles_in_record) * n % count;
     const double angle_rad = kTurn_rad * (static_cast<double>(cycles) / static_cast<double>(count));
     return Complex(std::cos(angle_rad), -std::sin(angle_rad));
   };
-  std::array<Complex, kBlock> within;
-  for (std::size_t r = 0; r < kBlock; ++r) within[r] = rotation(r);
+  std::vector<Complex> within(block);
+  for (std::size_t r = 0; r < block; ++r) within[r] = rotation(r);
   Complex sum = 0.0;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t length = std::min(kBlock, count - first);
+  for (std::size_t first = 0; first < count; first += block) {
+    const std::size_t length = std::min(block, count - first);
     // Two sums in turn: the additions then don't wait for each other.
     std::array<double, 4> part{};
     for (std::size_t r = 0; r + 1 < length; r += 2) {

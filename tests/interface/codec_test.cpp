@@ -157,13 +157,14 @@ TEST(MotionCodecTest, AnAssignmentAndItsTrialMakeAProfile) {
   message.motion(stillhand_msgs::MOTION_ROAD);
   message.band_low_hz(0.5);
   message.band_high_hz(1.5);
+  message.band_order(3);
   message.rms_m_s2(2.5);
   message.peak_m_s2(3.5);
   message.motion_seed(4);
   const Trial trial{.duration_ticks = 5, .ramp_ticks = 6};
-  const auto [kind, seed, low, high, rms, peak, duration, ramp, speed, road, rate, ride, tones] =
-      motion::from_idl(message, trial);
-  EXPECT_EQ(std::tuple(low, high, rms, peak), std::tuple(0.5, 1.5, 2.5, 3.5));
+  const auto [kind, seed, low, high, order, rms, peak, duration, ramp, speed, road, rate, ride,
+              tones] = motion::from_idl(message, trial);
+  EXPECT_EQ(std::tuple(low, high, order, rms, peak), std::tuple(0.5, 1.5, 3, 2.5, 3.5));
   EXPECT_EQ(std::tuple(kind, seed, duration, ramp), std::tuple(motion::MotionKind::kRoad, 4, 5, 6));
   // These are not on the bus and keep their defaults.
   const motion::MotionProfile fresh;

@@ -4,7 +4,7 @@
 #include "contract/trial.hpp"
 #include "human_operator/core/crossover_config.hpp"
 #include "human_operator/core/fast_error.hpp"
-#include "human_operator/core/muscle_filter.hpp"
+#include "signal/second_order_lag.hpp"
 #include "human_operator/core/operator_io.hpp"
 #include "human_operator/core/remnant.hpp"
 #include "signal/delay_line.hpp"
@@ -49,7 +49,7 @@ class CrossoverOperator {
   signal::DelayLine delay_;
   FastError fast_error_;
   Remnant remnant_;
-  MuscleFilter muscle_;
+  signal::SecondOrderLag muscle_;
   signal::ForceEnvelope envelope_;
   double wanted_m_ = 0.0;  ///< u
   double crossover_rad_s_;

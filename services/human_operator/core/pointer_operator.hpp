@@ -3,7 +3,7 @@
 
 #include "contract/trial.hpp"
 #include "human_operator/core/arm_feel.hpp"
-#include "human_operator/core/muscle_filter.hpp"
+#include "signal/second_order_lag.hpp"
 #include "human_operator/core/operator_io.hpp"
 #include "signal/force_envelope.hpp"
 
@@ -57,7 +57,7 @@ class PointerOperator {
 
  private:
   Config config_;
-  MuscleFilter smoothing_;
+  signal::SecondOrderLag smoothing_;
   signal::ForceEnvelope envelope_;
   Tick last_tick_ = -1;
 };

@@ -30,11 +30,8 @@ Eigen::MatrixXd data_matrix(const Record& record, Eigen::Index order) {
   return matrix;
 }
 
-LeastSquares solve(const Record& record, int order_asked) {
-  const Eigen::Index order = order_asked;
-  Eigen::MatrixXd matrix = data_matrix(record, order);
-  const Eigen::VectorXd b =
-      Eigen::Map<const Eigen::VectorXd>(record.force_n.data() + order, matrix.rows());
+LeastSquares solve(Eigen::MatrixXd matrix, const Eigen::VectorXd& b, Eigen::Index order,
+                   double rate_hz) {
   // Columns of norm 1: acceleration and force have different units.
   const Eigen::RowVectorXd norms = matrix.colwise().norm();
   matrix.array().rowwise() /= norms.array();
@@ -45,7 +42,7 @@ LeastSquares solve(const Record& record, int order_asked) {
   const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(r).singularValues();
   LeastSquares out;
   out.condition_number = singular(0) / singular(singular.size() - 1);
-  out.model.rate_hz = record.rate_hz;
+  out.model.rate_hz = rate_hz;
   out.model.numerator.assign(parameters.begin(), parameters.begin() + order + 1);
   out.model.denominator.assign(1, 1.0);
   out.model.denominator.insert(out.model.denominator.end(), parameters.begin() + order + 1,
@@ -53,13 +50,63 @@ LeastSquares solve(const Record& record, int order_asked) {
   return out;
 }
 
-}  // namespace
+LeastSquares solve(const Record& record, int order) {
+  Eigen::MatrixXd matrix = data_matrix(record, order);
+  const Eigen::VectorXd force =
+      Eigen::Map<const Eigen::VectorXd>(record.force_n.data() + order, matrix.rows());
+  return solve(std::move(matrix), force, order, record.rate_hz);
+}
 
-ArxFit fit_arx(const Record& record, int order) {
+void check_order(int order) {
   if (order < kMinOrder || order > kMaxOrder) {
     throw ConfigError("identification.order", std::to_string(order),
                       std::to_string(kMinOrder) + " to " + std::to_string(kMaxOrder));
   }
+}
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
+
+ArxFactor factor_arx(const Record& record, int order) {
+  check(record);
+  check_order(order);
+  const Eigen::Index columns = 2 * order + 2;
+  if (static_cast<Eigen::Index>(record.size()) < columns + order) {
+    throw ConfigError("identification.record", std::to_string(record.size()) + " samples",
+                      std::to_string(columns + order) + " or more");
+  }
+  Eigen::MatrixXd with_force(static_cast<Eigen::Index>(record.size()) - order, columns);
+  with_force.leftCols(columns - 1) = data_matrix(record, order);
+  with_force.col(columns - 1) =
+      Eigen::Map<const Eigen::VectorXd>(record.force_n.data() + order, with_force.rows());
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(with_force);
+  const RowMajor triangle =
+      qr.matrixQR().topRows(columns - 1).triangularView<Eigen::Upper>().toDenseMatrix();
+  return {order, record.rate_hz,
+          std::vector<double>(triangle.data(), triangle.data() + triangle.size())};
+}
+
+DifferenceModel fit_pooled(const std::vector<ArxFactor>& factors) {
+  if (factors.empty()) throw ConfigError("identification.records", "none", "one or more");
+  const ArxFactor& first = factors.front();
+  const Eigen::Index columns = 2 * first.order + 2;
+  RowMajor stacked((columns - 1) * static_cast<Eigen::Index>(factors.size()), columns);
+  Eigen::Index row = 0;
+  for (const ArxFactor& factor : factors) {
+    if (factor.order != first.order || factor.rate_hz != first.rate_hz) {
+      throw ConfigError("identification.records", "different orders or rates", "the same");
+    }
+    stacked.middleRows(row, columns - 1) =
+        Eigen::Map<const RowMajor>(factor.triangle.data(), columns - 1, columns);
+    row += columns - 1;
+  }
+  return solve(stacked.leftCols(columns - 1), stacked.col(columns - 1), first.order, first.rate_hz)
+      .model;
+}
+
+ArxFit fit_arx(const Record& record, int order) {
+  check_order(order);
   const Excitation excitation = check_excitation(record, order);
   if (!excitation.sufficient) {
     throw ConfigError("identification.record", excitation.verdict,

@@ -29,4 +29,19 @@ struct ArxFit {
 /// @throws stillhand::ConfigError when the order is out of range or check_excitation() says no.
 ArxFit fit_arx(const Record& record, int order);
 
+/// What the least squares of one record needs to know of it: R and Q^T f of A = Q R.
+struct ArxFactor {
+  int order = 0;
+  double rate_hz = 0.0;
+  std::vector<double> triangle;  ///< R with Q^T f as its last column, [(2p + 1) x (2p + 2)] by rows
+};
+
+/// @throws stillhand::ConfigError when the order is out of range or the record too short.
+ArxFactor factor_arx(const Record& record, int order);
+
+/// One model for several records, Eq. ID-18: the least-squares solution on all their samples
+/// together, each record's first `order` samples as its own past.
+/// @throws stillhand::ConfigError when there is none, or they differ in order or rate.
+DifferenceModel fit_pooled(const std::vector<ArxFactor>& factors);
+
 }  // namespace stillhand::identification

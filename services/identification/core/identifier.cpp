@@ -1,32 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "identification/core/identifier.hpp"
 
-#include "identification/core/arx.hpp"
-#include "identification/core/output_error.hpp"
+#include "contract/config_error.hpp"
 #include "identification/core/paper_preprocessing.hpp"
 
 namespace stillhand::identification {
 
-FeedthroughModel identify(const Record& recorded, const Config& config) {
+IdentificationSteps identify_stepwise(const Record& recorded, const Config& config,
+                                      bool refine_beside) {
   validate(config, "identification");
-  const Record record = preprocessed(recorded);
-  const ArxFit arx = fit_arx(record, static_cast<int>(config.order));
-  FeedthroughModel out;
-  out.fit = arx.model;
-  out.heldout = arx.heldout;
-  out.condition_number = arx.condition_number;
-  // A free run that diverges can't cancel anything: the refinement keeps stability.
-  if (config.refine || !arx.stable) {
-    const OutputErrorFit refined = refine_output_error(record, arx.model);
-    out.fit = refined.model;
-    out.heldout = refined.heldout;
-    out.refined = true;
-  }
   ConversionBand band;
   band.max_error = config.max_conversion_error;
-  const RateConversion conversion = to_control_rate(out.fit, band);
-  out.control = conversion.model;
-  out.conversion_error = conversion.max_error;
+  IdentificationSteps steps;
+  steps.record = preprocessed(recorded);
+  steps.paper = fit_arx(steps.record, static_cast<int>(config.order));
+  if (!steps.paper.stable) {
+    steps.paper_unusable = "unstable";  // a free run that diverges can't cancel anything
+  } else if (!config.refine) {
+    try {
+      steps.control = to_control_rate(steps.paper.model, band);
+    } catch (const ConfigError& error) {
+      steps.paper_unusable = error.what();
+    }
+  }
+  steps.refined_used = config.refine || !steps.paper_unusable.empty();
+  if (steps.refined_used || refine_beside) {
+    steps.refined = refine_output_error(steps.record, steps.paper.model);
+  }
+  if (steps.refined_used) steps.control = to_control_rate(steps.refined->model, band);
+  return steps;
+}
+
+FeedthroughModel identify(const Record& recorded, const Config& config) {
+  const IdentificationSteps steps = identify_stepwise(recorded, config, false);
+  FeedthroughModel out;
+  out.refined = steps.refined_used;
+  out.fit = out.refined ? steps.refined->model : steps.paper.model;
+  out.heldout = out.refined ? steps.refined->heldout : steps.paper.heldout;
+  out.condition_number = steps.paper.condition_number;
+  out.control = steps.control.model;
+  out.conversion_error = steps.control.max_error;
   return out;
 }
 

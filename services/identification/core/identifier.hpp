@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "contract/config_field.hpp"
+#include "identification/core/arx.hpp"
+#include "identification/core/output_error.hpp"
 #include "identification/core/rate_conversion.hpp"
 #include "identification/core/record.hpp"
 
@@ -37,8 +41,23 @@ struct FeedthroughModel {
   bool refined = false;           ///< Eq. ID-6 was applied
 };
 
+/// What the steps of identify() found.
+struct IdentificationSteps {
+  Record record;                          ///< preprocessed(), 50 Hz
+  ArxFit paper;                           ///< paper Eqs 3 to 5
+  std::optional<OutputErrorFit> refined;  ///< Eq. ID-6, where it was wanted or needed
+  RateConversion control;  ///< of the refined model if refined_used, else the paper's
+  bool refined_used = false;
+  std::string paper_unusable;  ///< why the paper's fit cannot cancel; empty: it can
+};
+
+/// @param refine_beside  refine also when the result isn't used
+/// @throws as identify().
+IdentificationSteps identify_stepwise(const Record& recorded, const Config& config,
+                                      bool refine_beside);
+
 /// The whole chain of paper III-A: preprocessed(), fit_arx(), refine_output_error() when asked or
-/// when the paper's fit is unstable, to_control_rate().  Pure.
+/// when the paper's fit is unstable or does not convert, to_control_rate().  Pure.
 /// @param recorded  at 100 Hz or more
 /// @throws stillhand::ConfigError with the reason when no usable model comes out.
 FeedthroughModel identify(const Record& recorded, const Config& config = {});

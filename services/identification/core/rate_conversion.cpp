@@ -94,17 +94,29 @@ Polynomial next_denominator(const Target& want, const Polynomial& before, Eigen:
   return denominator;
 }
 
-// Poles of the left half plane, none faster than a quarter of the control rate: a faster one would
-// come to lie beside z = -1 and ring there.
-std::vector<Complex> admissible_poles(const Polynomial& denominator, std::size_t order,
-                                      double fastest, int& reflected) {
+// Longest transient of a pole, to 1 % [s]: a body settles within a second.  A slower pole is one
+// that the fit left beside a zero, or above its band where nothing held it.
+constexpr double kSlowestSettle_s = 4.0;
+
+// Distance of such a pole from the imaginary axis of v: |z| = exp(2 warp Re v) beside z = 1, and up
+// to twice as slow at a quarter of the rate.
+double least_decay(double warp) {
+  return std::log(100.0) / kSlowestSettle_s / (2.0 * kControlRateHz * warp);
+}
+
+// Poles of the left half plane, none faster than a quarter of the control rate, where it would
+// come to lie beside z = -1 and ring there, none slower than kSlowestSettle_s.
+std::vector<Complex> admissible_poles(const Polynomial& denominator, std::size_t order, double warp,
+                                      int& reflected) {
+  const double fastest = 1.0 / warp;
   std::vector<Complex> out = roots(denominator);
   reflected = 0;
   for (Complex& pole : out) {
     if (!(pole.real() < 0.0)) {
       ++reflected;
-      pole = {std::min(-pole.real(), -1e-6), pole.imag()};
+      pole = -std::conj(pole);
     }
+    pole = {std::min(pole.real(), -least_decay(warp)), pole.imag()};
     if (std::abs(pole) > fastest) pole *= fastest / std::abs(pole);
   }
   // A vanished leading coefficient is a pole at infinity.
@@ -208,7 +220,7 @@ RateConversion to_control_rate(const DifferenceModel& model, const ConversionBan
     denominator = next_denominator(want, denominator, static_cast<Eigen::Index>(order));
     RateConversion now;
     const std::vector<Complex> poles =
-        admissible_poles(denominator, order, 1.0 / warp(band), now.reflected_poles);
+        admissible_poles(denominator, order, warp(band), now.reflected_poles);
     now.model = discretised(best_numerator(want, from_roots(poles)), poles, warp(band));
     judge(now, want);
     if (now.max_error < best.max_error) best = now;

@@ -60,6 +60,23 @@ void scale_to(MotionSpectrum& spectrum, double rms_m_s2) {
   if (rms_m_s2 > 0.0) spectrum.scale(rms_m_s2 / spectrum.rms_m_s2());
 }
 
+// Eq. MO-11.
+double roll_off(const MotionProfile& profile, double f_hz) {
+  if (profile.band_order == 0) return 1.0;
+  const auto power = 2.0 * static_cast<double>(profile.band_order);
+  return 1.0 / std::sqrt((1.0 + std::pow(profile.band_low_hz / f_hz, power)) *
+                         (1.0 + std::pow(f_hz / profile.band_high_hz, power)));
+}
+
+// The band out to where an edge has fallen to -40 dB.
+MotionProfile with_skirts(MotionProfile profile) {
+  if (profile.band_order == 0) return profile;
+  const double reach = std::pow(100.0, 1.0 / static_cast<double>(profile.band_order));
+  profile.band_low_hz /= reach;
+  profile.band_high_hz *= reach;
+  return profile;
+}
+
 // Geometric spacing, rounded, each harmonic once.
 std::vector<std::int64_t> tones_over(const Lines& lines) {
   std::set<std::int64_t> tones;
@@ -79,9 +96,13 @@ MotionSpectrum band_noise(const MotionProfile& profile) {
     throw ConfigError("motion.rms_m_s2", std::to_string(profile.rms_m_s2),
                       "a positive value for band noise");
   }
-  MotionSpectrum spectrum = empty_spectrum(lines_in_band(profile));
+  MotionSpectrum spectrum = empty_spectrum(lines_in_band(with_skirts(profile)));
   signal::Gaussian random(profile.seed, kPhaseStream);
-  for (Complex& c : spectrum.accel_m_s2) c = unit(2.0 * std::numbers::pi * random.uniform());
+  double f_hz = static_cast<double>(spectrum.first) / spectrum.period_s;
+  for (Complex& c : spectrum.accel_m_s2) {
+    c = roll_off(profile, f_hz) * unit(2.0 * std::numbers::pi * random.uniform());
+    f_hz += 1.0 / spectrum.period_s;
+  }
   scale_to(spectrum, profile.rms_m_s2);
   return spectrum;
 }
@@ -122,18 +143,21 @@ MotionSpectrum multisine(const MotionProfile& profile) {
   return spectrum;
 }
 
+Range road_band_hz(double speed_m_s) noexcept {
+  return {kRoadLowest_1_m * speed_m_s, kRoadHighest_1_m * speed_m_s};
+}
+
 MotionSpectrum road(const MotionProfile& profile) {
   const char road_class = profile.road_class.empty() ? '?' : profile.road_class.front();
   if (profile.road_class.size() != 1 || road_class < 'A' || road_class > 'H') {
     throw ConfigError("motion.road_class", profile.road_class, "A to H");
   }
-  const double lowest_hz = kRoadLowest_1_m * profile.road_speed_m_s;
-  const double highest_hz = kRoadHighest_1_m * profile.road_speed_m_s;
-  if (profile.band_low_hz < lowest_hz || profile.band_high_hz > highest_hz) {
+  const Range described_hz = road_band_hz(profile.road_speed_m_s);
+  if (profile.band_low_hz < described_hz.min || profile.band_high_hz > described_hz.max) {
     throw ConfigError(
         "motion.band_low_hz",
         std::to_string(profile.band_low_hz) + " to " + std::to_string(profile.band_high_hz) + " Hz",
-        std::to_string(lowest_hz) + " to " + std::to_string(highest_hz) +
+        std::to_string(described_hz.min) + " to " + std::to_string(described_hz.max) +
             " Hz, where ISO 8608 describes the road at this speed");
   }
   const double g0_m3 = kRoadClassA_m3 * std::pow(4.0, road_class - 'A');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contract/config_field.hpp"
 #include "motion/core/harmonic_motion.hpp"
 #include "motion/core/motion_profile.hpp"
 
@@ -19,7 +20,9 @@ inline constexpr int kDefaultTones = 15;
 /// amplitude for all rather than Rayleigh draws: no line is weak by chance, so a response is
 /// estimated equally well at each, and the RMS is exact for every seed; by the central limit
 /// theorem the samples still tend to a normal distribution (Pintelon and Schoukens, System
-/// Identification, 2nd ed., section 2.6: random-phase multisine).
+/// Identification, 2nd ed., section 2.6: random-phase multisine).  With band_order n > 0 the edges
+/// roll off as a band-pass filter's, |C_k| ~ ((1 + (f_low/f)^2n)(1 + (f/f_high)^2n))^-1/2, down to
+/// -40 dB.
 MotionSpectrum band_noise(const MotionProfile& profile);
 
 /// The profile's components as they are (sines, Eq. SG-1); without any, kDefaultTones equal sines
@@ -34,5 +37,9 @@ MotionSpectrum multisine(const MotionProfile& profile);
 /// G0 of classes A to H: 16e-6 4^i m^3, geometric means of ISO 8608:2016, which describes
 /// 0.011 < n < 2.83 cycles/m: the band must lie inside.  rms_m_s2 > 0 scales the whole.
 MotionSpectrum road(const MotionProfile& profile);
+
+/// Frequencies [Hz] at which ISO 8608 describes a road for a vehicle of this speed: 0.011 to 2.83
+/// cycles/m times u.
+Range road_band_hz(double speed_m_s) noexcept;
 
 }  // namespace stillhand::motion

@@ -32,6 +32,7 @@ struct MotionProfile {
   std::uint64_t seed = 1;  ///< [-] phases of band noise, multisine without components, and road
   double band_low_hz = 0.7;
   double band_high_hz = 2.0;
+  std::int64_t band_order = 0;  ///< roll-off of band noise at each edge; 0: none outside the band
   double rms_m_s2 = 1.6;  ///< noise: exact; multisine, road: 0 keeps their own; ride: must be 0
   double peak_m_s2 = 7.5;
   Tick duration_ticks = 180'000;
@@ -48,6 +49,8 @@ struct MotionProfile {
           "[Hz] lower edge; ride: lowest corner tried; paper III-A, 0.7 Hz");
     visit("band_high_hz", self.band_high_hz, Range{0.02, 40.0},
           "[Hz] upper edge; paper III-A 4 Hz, III-C 2 Hz");
+    visit("band_order", self.band_order, Range{0.0, 8.0},
+          "[-] Butterworth order of each edge of band noise, down to -40 dB; 0: an abrupt end");
     visit("rms_m_s2", self.rms_m_s2, Range{0.0, 10.0},
           "[m/s^2] acceleration, RMS of the measured part; paper III-C, 1.6 m/s^2; 0: multisine, "
           "road and ride keep their own");

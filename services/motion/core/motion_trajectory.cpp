@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "contract/config_error.hpp"
@@ -88,10 +89,11 @@ void MotionTrajectory::refuse_unless_within(const MotionProfile& profile,
   if (within(profile, limits)) return;
   const auto beyond = [](const char* key, double got, double bound, const std::string& unit,
                          const char* remedy) {
-    if (got > bound) {
-      throw ConfigError(std::string("motion.") + key, std::to_string(got) + unit,
-                        "at most " + std::to_string(bound) + unit + remedy);
-    }
+    if (got <= bound) return;
+    std::ostringstream value;  // short, however large
+    value << got << unit;
+    throw ConfigError(std::string("motion.") + key, value.str(),
+                      "at most " + std::to_string(bound) + unit + remedy);
   };
   beyond("peak_m_s2", report_.peak_m_s2, profile.peak_m_s2 * kRounding, " m/s^2",
          "; lower rms_m_s2 or the amplitudes");

@@ -142,6 +142,7 @@ double Body::energy_j() const noexcept {
          half_square(p.stick_mass_kg, x_[kStickRate]) +
          half_square(p.seat_stiffness_n_m, x_[kTrunk]) +
          half_square(p.shoulder_stiffness_n_m, x_[kArm] - x_[kTrunk]) +
+         half_square(p.arm_rest_stiffness_n_m, x_[kArm]) +
          half_square(p.grip_stiffness_n_m, x_[kArm] - x_[kStick]) +
          half_square(p.centring_stiffness_n_m, x_[kStick]);
 }

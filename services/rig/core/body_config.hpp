@@ -17,6 +17,8 @@ struct BodyConfig {
   double shoulder_damping_n_s_m = 11.0;         ///< c_a
   double grip_stiffness_n_m = 2400.0;           ///< k_h
   double grip_damping_n_s_m = 12.0;             ///< c_h
+  double arm_rest_stiffness_n_m = 0.0;          ///< k_r, arm to platform; 0: no arm rest
+  double arm_rest_damping_n_s_m = 0.0;          ///< c_r
   double hand_mass_kg = 0.30;                   ///< m_h, moves with the handle
   double cocontraction_stiffness_factor = 1.3;  ///< on k_a and k_h while not pegged
   double cocontraction_damping_factor = 1.14;   ///< on c_a and c_h while not pegged
@@ -43,6 +45,11 @@ struct BodyConfig {
           "[N/m] k_h, palm and wrist around the handle; Hasser and Cutkosky (2002)");
     visit("grip_damping_n_s_m", self.grip_damping_n_s_m, Range{0.5, 300.0},
           "[N s/m] c_h, palm and wrist; Hasser and Cutkosky (2002)");
+    visit("arm_rest_stiffness_n_m", self.arm_rest_stiffness_n_m, Range{0.0, 5000.0},
+          "[N/m] k_r, padded rest under the forearm, fixed to the platform; the paper's subjects "
+          "were told not to use theirs");
+    visit("arm_rest_damping_n_s_m", self.arm_rest_damping_n_s_m, Range{0.0, 300.0},
+          "[N s/m] c_r, same");
     visit("hand_mass_kg", self.hand_mass_kg, Range{0.05, 0.8},
           "[kg] m_h, part of the hand that moves with the handle; hand 0.006 of body mass, Winter "
           "(2009) table 4.1");

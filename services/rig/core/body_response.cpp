@@ -27,7 +27,8 @@ DynamicStiffness dynamic_stiffness(const ChainParameters& p, double frequency_hz
   k.grip = p.grip_stiffness_n_m + k.s * p.grip_damping_n_s_m;
   k.trunk =
       p.trunk_mass_kg * k.s * k.s + p.seat_stiffness_n_m + k.s * p.seat_damping_n_s_m + k.shoulder;
-  k.arm = p.arm_mass_kg * k.s * k.s + k.shoulder + k.grip;
+  const Complex arm_rest = p.arm_rest_stiffness_n_m + k.s * p.arm_rest_damping_n_s_m;
+  k.arm = p.arm_mass_kg * k.s * k.s + k.shoulder + k.grip + arm_rest;
   k.determinant = k.trunk * k.arm - k.shoulder * k.shoulder;
   return k;
 }

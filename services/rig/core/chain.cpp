@@ -40,6 +40,8 @@ Continuous continuous(const ChainParameters& p) {
           p.shoulder_damping_n_s_m);
   connect(a, kArm, kStick, p.arm_mass_kg, p.stick_mass_kg, p.grip_stiffness_n_m,
           p.grip_damping_n_s_m);
+  a(kArmRate, kArm) -= p.arm_rest_stiffness_n_m / p.arm_mass_kg;
+  a(kArmRate, kArmRate) -= p.arm_rest_damping_n_s_m / p.arm_mass_kg;
   a(kStickRate, kStick) -= p.centring_stiffness_n_m / p.stick_mass_kg;
   a(kStickRate, kStickRate) -= p.viscous_damping_n_s_m / p.stick_mass_kg;
   system.b_column(kTrunkRate) = system.b_column(kArmRate) = -1.0;
@@ -86,6 +88,8 @@ ChainParameters chain_parameters(const BodyConfig& body, const StickConfig& stic
           .arm_mass_kg = body.arm_mass_kg,
           .shoulder_stiffness_n_m = body.shoulder_stiffness_n_m * stiffer,
           .shoulder_damping_n_s_m = body.shoulder_damping_n_s_m * damper,
+          .arm_rest_stiffness_n_m = body.arm_rest_stiffness_n_m,
+          .arm_rest_damping_n_s_m = body.arm_rest_damping_n_s_m,
           .grip_stiffness_n_m = body.grip_stiffness_n_m * stiffer,
           .grip_damping_n_s_m = body.grip_damping_n_s_m * damper,
           .cell_mass_kg = cell_mass_kg,

@@ -13,6 +13,7 @@ namespace stillhand::rig {
 struct ChainParameters {
   double trunk_mass_kg, seat_stiffness_n_m, seat_damping_n_s_m;
   double arm_mass_kg, shoulder_stiffness_n_m, shoulder_damping_n_s_m;
+  double arm_rest_stiffness_n_m, arm_rest_damping_n_s_m;
   double grip_stiffness_n_m, grip_damping_n_s_m;
   double cell_mass_kg;   ///< m_0 = hand + handle, above the load cell
   double stick_mass_kg;  ///< M = m_0 + m_d, everything that moves with the hand

@@ -83,9 +83,7 @@ TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
 // lag add less than 3 %.  More than 0.95 cancelled would mean that something knows too much.
 TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
   const TrialSignals signals = run_session(1).signals.at('C');
-  std::vector<double> left = signals.feedthrough_n;
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] += signals.motor_n[i];
-  const double cancelled = 1.0 - rms(left) / rms(signals.feedthrough_n);
+  const double cancelled = cancelled_share(signals.feedthrough_n, signals.motor_n);
   EXPECT_GT(cancelled, 0.80);
   EXPECT_LT(cancelled, 0.95);
 }

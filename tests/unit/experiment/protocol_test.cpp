@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "contract/config_error.hpp"
@@ -70,6 +72,55 @@ TEST(ProtocolTest, OnlyCMovesAndCancels) {
     EXPECT_EQ(trial.cancellation, trial.label == 'C');
     EXPECT_EQ(trial.moving, trial.label != 'A');
   }
+}
+
+const PlannedTrial& moving_trial(const std::vector<PlannedTrial>& trials) {
+  for (const PlannedTrial& trial : trials) {
+    if (trial.label == 'B') return trial;
+  }
+  return trials.front();
+}
+
+ProtocolOptions road(const std::string& road_class, double speed_m_s) {
+  ProtocolOptions options = three_conditions(1);
+  options.motion = Motion::kRoad;
+  options.road_class = road_class;
+  options.road_speed_m_s = speed_m_s;
+  return options;
+}
+
+// ISO 8608 describes 0.011 to 2.83 cycles/m, the platform follows 0.05 to 6 Hz.
+TEST(ProtocolTest, ARoadKeepsToWhatTheStandardDescribesAndThePlatformFollows) {
+  const auto at_20 = plan(road("B", 20.0));
+  EXPECT_EQ(moving_trial(at_20).motion, Motion::kRoad);
+  EXPECT_DOUBLE_EQ(moving_trial(at_20).band_low_hz, 0.22);
+  EXPECT_EQ(moving_trial(at_20).band_high_hz, 6.0);
+  EXPECT_EQ(moving_trial(at_20).rms_m_s2, 0.0);
+  const auto at_1 = plan(road("H", 1.0));
+  EXPECT_EQ(moving_trial(at_1).band_low_hz, 0.05);
+  EXPECT_DOUBLE_EQ(moving_trial(at_1).band_high_hz, 2.83);
+  EXPECT_EQ(at_20[0].motion, Motion::kBandNoise);  // identification, whatever the trials use
+}
+
+std::string road_error(const ProtocolOptions& options) {
+  try {
+    plan(options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ProtocolTest, ARoadBeyondItsBoundsIsRefusedAndNamed) {
+  for (const char* wrong : {"", "I", "b", "AB", "1"}) {
+    EXPECT_THAT(road_error(road(wrong, 20.0)), testing::StartsWith("--road-class: got ")) << wrong;
+  }
+  for (const double wrong :
+       {0.49, 70.1, -1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    EXPECT_THAT(road_error(road("A", wrong)), testing::StartsWith("--speed-m-s: got ")) << wrong;
+  }
+  EXPECT_EQ(road_error(road("A", 0.5)), "no error");
+  EXPECT_EQ(road_error(road("H", 70.0)), "no error");
 }
 
 class BadConditionsTest : public testing::TestWithParam<const char*> {};

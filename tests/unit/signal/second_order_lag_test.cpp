@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/core/muscle_filter.hpp"
+#include "signal/second_order_lag.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,15 +7,15 @@
 
 #include "contract/tick.hpp"
 
-namespace stillhand::human_operator {
+namespace stillhand::signal {
 namespace {
 
 constexpr double kW_rad_s = 13.0;
 constexpr double kZ = 0.7;
 
 // Oracle: the closed step response; the filter is exact, so rounding of 2000 steps is all.
-TEST(MuscleFilterTest, TheStepResponseIsThatOfTheOscillator) {
-  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+TEST(SecondOrderLagTest, TheStepResponseIsThatOfTheOscillator) {
+  SecondOrderLag sut(kW_rad_s, kZ, kControlPeriod_s);
   const double d = kW_rad_s * std::sqrt(1.0 - kZ * kZ);
   const double s = kZ * kW_rad_s;
   for (int n = 0; n < 2000; ++n) {
@@ -30,8 +30,8 @@ TEST(MuscleFilterTest, TheStepResponseIsThatOfTheOscillator) {
 // Oracle: central difference of v while u is held.  Error <= dt^2/6 times the third derivative of
 // v,
 // <= 1e-6/6 w^4 = 5e-3, of an acceleration that starts at w^2 = 169.
-TEST(MuscleFilterTest, TheAccelerationIsTheSlopeOfTheVelocity) {
-  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+TEST(SecondOrderLagTest, TheAccelerationIsTheSlopeOfTheVelocity) {
+  SecondOrderLag sut(kW_rad_s, kZ, kControlPeriod_s);
   auto before = sut.step(1.0);
   auto now = sut.step(1.0);
   for (int n = 0; n < 1000; ++n) {
@@ -44,9 +44,9 @@ TEST(MuscleFilterTest, TheAccelerationIsTheSlopeOfTheVelocity) {
 
 // A ramp is followed with the lag 2 z / w; the step-wise input adds half a tick, the step's
 // convention (u acts from now on) none.
-TEST(MuscleFilterTest, ARampIsFollowedWithTheLagThatTheDelayCounts) {
-  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
-  MuscleFilter::State state{};
+TEST(SecondOrderLagTest, ARampIsFollowedWithTheLagThatTheDelayCounts) {
+  SecondOrderLag sut(kW_rad_s, kZ, kControlPeriod_s);
+  SecondOrderLag::State state{};
   double u = 0.0;
   for (int n = 0; n < 3000; ++n) {
     u = n * kControlPeriod_s;
@@ -55,8 +55,8 @@ TEST(MuscleFilterTest, ARampIsFollowedWithTheLagThatTheDelayCounts) {
   EXPECT_NEAR(u - state.x, 2.0 * kZ / kW_rad_s + kControlPeriod_s / 2.0, 1e-9);
 }
 
-TEST(MuscleFilterTest, ResetPutsItToRest) {
-  MuscleFilter sut(kW_rad_s, kZ, kControlPeriod_s);
+TEST(SecondOrderLagTest, ResetPutsItToRest) {
+  SecondOrderLag sut(kW_rad_s, kZ, kControlPeriod_s);
   for (int n = 0; n < 100; ++n) sut.step(1.0);
   sut.reset();
   const auto state = sut.step(0.0);
@@ -65,4 +65,4 @@ TEST(MuscleFilterTest, ResetPutsItToRest) {
 }
 
 }  // namespace
-}  // namespace stillhand::human_operator
+}  // namespace stillhand::signal

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/output_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "contract/config_error.hpp"
+#include "idl/topics.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+// Everything that a session writes, logs aside.
+constexpr const char* kResults[]{"session.mcap", "summary.json", "model.json", "screen.avi"};
+
+std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : kResults) files.push_back(folder / name);
+  for (const std::string_view service : topics::kServices) {
+    files.push_back(folder / "logs" / (std::string(service) + ".log"));
+  }
+  return files;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::filesystem::path& path, const std::filesystem::path& ride)
+    : path_(path) {
+  make();
+  try {
+    prove_writable();
+    lock();
+    refuse_if_needed(ride);
+    clear();
+    std::error_code error;
+    std::filesystem::create_directories(path_ / "logs", error);
+    if (error || !std::filesystem::is_directory(path_ / "logs")) {
+      throw ConfigError("--out", path_.string() + ", in which logs is no folder",
+                        "a folder whose logs can be written");
+    }
+    for (const std::filesystem::path& file : session_files(path_)) {
+      if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) {
+        throw ConfigError("--out", file.string() + ", which is in the way",
+                          "a folder of an earlier session, or an empty one");
+      }
+    }
+  } catch (...) {
+    close(descriptor_);
+    std::error_code error;
+    if (made_) std::filesystem::remove(path_, error);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() { close(descriptor_); }
+
+void OutputFolder::make() {
+  std::error_code error;
+  made_ = std::filesystem::create_directories(path_, error);
+  if (error || !std::filesystem::is_directory(path_, error)) {
+    throw ConfigError(
+        "--out", (path_.empty() ? "\"\"" : path_.string()) + (error ? ": " + error.message() : ""),
+        "a folder that can be made and written");
+  }
+}
+
+void OutputFolder::prove_writable() const {
+  const std::filesystem::path probe = path_ / ".stillhand-probe";
+  std::ofstream file(probe);
+  file << "probe";
+  file.close();  // a full disk shows here at the latest
+  const bool written = file.good();
+  std::error_code error;
+  std::filesystem::remove(probe, error);
+  if (!written) {
+    throw ConfigError("--out", path_.string() + ", which cannot be written",
+                      "a folder with write permission and room");
+  }
+}
+
+// A lock on the folder itself: nothing stays behind however the process ends.
+void OutputFolder::lock() {
+  descriptor_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    throw ConfigError("--out", path_.string() + ", where another lab writes",
+                      "a folder of its own for each lab");
+  }
+}
+
+void OutputFolder::refuse_if_needed(const std::filesystem::path& ride) const {
+  if (ride.empty()) return;
+  for (const std::filesystem::path& file : session_files(path_)) {
+    std::error_code error;
+    if (std::filesystem::equivalent(file, ride, error)) {
+      throw ConfigError("--out",
+                        path_.string() + ", whose " + file.filename().string() +
+                            " is the ride and would be replaced",
+                        "another folder than the ride's");
+    }
+  }
+}
+
+void OutputFolder::discard() const {
+  clear();
+  std::error_code error;
+  if (made_) std::filesystem::remove(path_, error);
+}
+
+void OutputFolder::clear() const {
+  std::error_code error;
+  for (const std::filesystem::path& file : session_files(path_)) {
+    if (!std::filesystem::is_directory(file, error)) std::filesystem::remove(file, error);
+  }
+  const std::filesystem::path logs = path_ / "logs";
+  if (std::filesystem::is_directory(logs, error)) {
+    std::filesystem::remove(logs, error);  // unless it holds something else
+  }
+}
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace stillhand::experiment {
+
+/// The folder of a session's results: made if need be, proved writable, held against other labs,
+/// and cleared of what an earlier session left in it.  Only files that a session writes are ever
+/// taken away.
+class OutputFolder {
+ public:
+  /// @param ride  recorded ride of this session, or empty; it is not to be cleared away
+  /// @throws ConfigError when the folder cannot be made or written, holds the ride, or another lab
+  ///         uses it.
+  OutputFolder(const std::filesystem::path& path, const std::filesystem::path& ride);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Takes away what a session writes, and the folder if it was made here.
+  void discard() const;
+
+ private:
+  void make();
+  void prove_writable() const;
+  void lock();
+  void refuse_if_needed(const std::filesystem::path& ride) const;
+  void clear() const;
+
+  std::filesystem::path path_;
+  bool made_ = false;
+  int descriptor_ = -1;  ///< of the folder; carries the lock
+};
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/rehearsal.hpp"
+
+#include <optional>
+#include <sstream>
+
+#include "contract/config_error.hpp"
+#include "display/core/tracking_display.hpp"
+#include "motion/core/motion_generator.hpp"
+#include "settings/load.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+motion::MotionProfile profile_of(const PlannedTrial& planned, const ProtocolOptions& options,
+                                 const motion::RideRecord& ride) {
+  motion::MotionProfile profile;
+  switch (planned.motion) {
+    case Motion::kBandNoise:
+      profile.kind = motion::MotionKind::kBandNoise;
+      break;
+    case Motion::kRoad:
+      profile.kind = motion::MotionKind::kRoad;
+      profile.road_class = options.road_class;
+      profile.road_speed_m_s = options.road_speed_m_s;
+      break;
+    case Motion::kRide:
+      profile.kind = motion::MotionKind::kRide;
+      profile.ride_rate_hz = ride.rate_hz;
+      profile.ride_accel_m_s2 = ride.accel_m_s2;
+      break;
+  }
+  profile.band_low_hz = planned.band_low_hz;
+  profile.band_high_hz = planned.band_high_hz;
+  profile.band_order = planned.band_order;
+  profile.rms_m_s2 = planned.rms_m_s2;
+  profile.peak_m_s2 = planned.peak_m_s2;
+  profile.seed = planned.motion_seed;
+  profile.duration_ticks = planned.trial.duration_ticks;
+  profile.ramp_ticks = planned.trial.ramp_ticks;
+  return profile;
+}
+
+// What the user can change about a motion that the platform cannot follow.
+ConfigError refusal(const PlannedTrial& planned, const ProtocolOptions& options,
+                    const motion::RideRecord& ride, const std::string& why) {
+  std::ostringstream got;
+  switch (planned.motion) {
+    case Motion::kBandNoise:
+      got << "the noise of trial " << planned.trial.number << " (" << planned.label << ")";
+      return {"motion.yaml", got.str(), "limits that allow it (" + why + ")"};
+    case Motion::kRoad:
+      got << options.road_class << " at " << options.road_speed_m_s << " m/s";
+      return {"--road-class", got.str(),
+              "a better road or less speed, which the platform can follow (" + why + ")"};
+    case Motion::kRide:
+      break;
+  }
+  return {ride.source, "a ride that the platform cannot follow", "another (" + why + ")"};
+}
+
+}  // namespace
+
+AskedMotions rehearse(const ProtocolOptions& options, const motion::RideRecord& ride,
+                      const std::filesystem::path& config) {
+  const auto platform =
+      settings::load<motion::MotionGenerator::Config>(config / "motion.yaml", "motion");
+  const auto screen =
+      settings::load<display::TrackingDisplay::Config>(config / "display.yaml", "display");
+  AskedMotions asked;
+  std::optional<motion::MotionReport> followed_ride;
+  for (const PlannedTrial& planned : plan(options)) {
+    const Trial& trial = planned.trial;
+    if (trial.phase == TrialPhase::kTracking) {
+      display::reference_on_screen(screen, trial.duration_ticks, planned.reference_seed);
+    }
+    if (!planned.moving) continue;
+    // A ride has no seed: every trial gets the same one, and an hour of it takes seconds.
+    if (planned.motion == Motion::kRide && followed_ride) {
+      asked[trial.number] = *followed_ride;
+      continue;
+    }
+    try {
+      const motion::MotionTrajectory motion(profile_of(planned, options, ride), platform.limits);
+      asked[trial.number] = motion.report();
+      if (planned.motion == Motion::kRide) followed_ride = motion.report();
+    } catch (const ConfigError& error) {
+      throw refusal(planned, options, ride, error.what());
+    }
+  }
+  return asked;
+}
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <iterator>
+#include <limits>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using experiment::kMetrics;
+
+constexpr const char* kPaperConditions = "ABC";
+constexpr Eigen::Index kThirds = 3;
+constexpr std::size_t kWindow_s = 10;  // of the moving averages, which have one value a second
+
+bool has(const Analysis& analysis, char condition) {
+  return analysis.conditions.contains(condition);
+}
+
+template <typename Value>
+std::vector<double> over_subjects(const std::vector<SubjectResult>& results, Value value) {
+  std::vector<double> out;
+  out.reserve(results.size());
+  for (const SubjectResult& result : results) out.push_back(value(result));
+  return out;
+}
+
+Comparison compared(const Analysis& analysis, char from, char to) {
+  Comparison out{from, to, {}};
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    const auto& before = analysis.conditions.at(from)[k].per_subject;
+    const auto& after = analysis.conditions.at(to)[k].per_subject;
+    if (before.size() < 2) continue;
+    try {
+      out.tests[k] = statistics::paired_t_test(after, before);
+    } catch (const ConfigError&) {
+      // No variance, or a crossover that could not be found: no test.
+    }
+  }
+  return out;
+}
+
+MultivariateResult manova(const Eigen::MatrixXd& observations,
+                          const statistics::ManovaLayout& layout) {
+  try {
+    return {statistics::two_way_manova(observations, layout), ""};
+  } catch (const ConfigError& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+MultivariateResult main_effects(const Analysis& analysis, Eigen::Index subjects) {
+  Eigen::MatrixXd observations(3 * subjects, kMetricCount);
+  for (Eigen::Index row = 0; row < observations.rows(); ++row) {
+    const auto& metrics = analysis.conditions.at(kPaperConditions[row % 3]);
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      observations(row, static_cast<Eigen::Index>(k)) =
+          metrics[k].per_subject[static_cast<std::size_t>(row / 3)];
+    }
+  }
+  return manova(observations, {subjects, 3, 1});
+}
+
+// RMS error and dwell ratio of one third of a trial, from windows that follow one another.
+std::array<double, 2> third(const TrackedTrial& trial, std::size_t which, std::size_t windows) {
+  double square_mm2 = 0.0;
+  double dwell = 0.0;
+  for (std::size_t w = 0; w < windows; ++w) {
+    const std::size_t at = (which * windows + w) * kWindow_s;
+    square_mm2 += std::pow(trial.metrics.moving_rms_mm[at], 2);
+    dwell += trial.metrics.moving_dwell[at];
+  }
+  const auto n = static_cast<double>(windows);
+  return {std::sqrt(square_mm2 / n), dwell / n};
+}
+
+MultivariateResult thirds(const std::vector<SubjectResult>& results) {
+  const auto entries = results.front().trials.at('A').metrics.moving_rms_mm.size();
+  const std::size_t windows = (entries + kWindow_s - 1) / kWindow_s / kThirds;
+  if (windows == 0) return {std::nullopt, "trials of 30 s or more have thirds to compare"};
+  const auto subjects = static_cast<Eigen::Index>(results.size());
+  Eigen::MatrixXd observations(subjects * 3 * kThirds, 2);
+  for (Eigen::Index row = 0; row < observations.rows(); ++row) {
+    const auto& result = results[static_cast<std::size_t>(row / (3 * kThirds))];
+    const auto& trial = result.trials.at(kPaperConditions[row / kThirds % 3]);
+    const auto values = third(trial, static_cast<std::size_t>(row % kThirds), windows);
+    observations.row(row) << values[0], values[1];
+  }
+  return manova(observations, {subjects, 3, kThirds});
+}
+
+std::vector<PooledLine> pooled_lines(const std::vector<SubjectResult>& results, char condition) {
+  std::vector<PooledLine> out(signal::kReferenceLines);
+  for (std::size_t line = 0; line < out.size(); ++line) {
+    std::complex<double> cursor = 0.0;
+    std::complex<double> error = 0.0;
+    std::vector<double> remnant;
+    for (const SubjectResult& result : results) {
+      const auto& at = result.trials.at(condition).metrics.lines[line];
+      out[line].frequency_hz = at.frequency_hz;
+      out[line].paper_db += 20.0 * std::log10(std::abs(at.gain));
+      // X_r = X_p + X_e, so X_p/X_r = G/(1 + G) and X_e/X_r = 1/(1 + G).
+      cursor += at.gain / (1.0 + at.gain);
+      error += 1.0 / (1.0 + at.gain);
+      remnant.push_back(std::min(1.0, 1.0 / at.error_snr));
+    }
+    const auto n = static_cast<double>(results.size());
+    out[line].paper_db /= n;
+    out[line].reference_db = 20.0 * std::log10(std::abs(cursor / error));
+    out[line].remnant_share = statistics::median(remnant);
+  }
+  return out;
+}
+
+void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& results) {
+  for (const auto& entry : results.front().wrong) {
+    const char which = entry.first;
+    WrongModel& wrong = analysis.wrong[which];
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      wrong.metrics[k] = summarised(over_subjects(results, [&](const SubjectResult& result) {
+        return kMetrics[k].of(result.wrong.at(which).metrics);
+      }));
+    }
+    wrong.surviving_share = over_subjects(results, [&](const SubjectResult& result) {
+      const double b = result.trials.at('B').metrics.rms_error_mm;
+      const double c = result.trials.at('C').metrics.rms_error_mm;
+      return (b - result.wrong.at(which).metrics.rms_error_mm) / (b - c);
+    });
+  }
+}
+
+void add_restoration(Analysis& analysis) {
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    const double a = analysis.conditions.at('A')[k].mean;
+    const double b = analysis.conditions.at('B')[k].mean;
+    const double c = analysis.conditions.at('C')[k].mean;
+    analysis.restoration[k] = (b - c) / (b - a);
+  }
+}
+
+}  // namespace
+
+MetricSample summarised(std::vector<double> values) {
+  MetricSample out;
+  std::vector<double> known;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(known),
+               [](double value) { return std::isfinite(value); });
+  out.per_subject = std::move(values);
+  if (known.empty()) {
+    out.mean = std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
+  out.mean = statistics::mean(known);
+  if (known.size() > 1) out.standard_deviation = statistics::standard_deviation(known);
+  out.box = statistics::box_plot(known);
+  return out;
+}
+
+Analysis analyse(const std::vector<SubjectResult>& results) {
+  Analysis out;
+  for (const auto& entry : results.front().trials) {
+    const char condition = entry.first;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      out.conditions[condition][k] =
+          summarised(over_subjects(results, [&](const SubjectResult& result) {
+            return kMetrics[k].of(result.trials.at(condition).metrics);
+          }));
+    }
+    out.crossover_reference_hz[condition] =
+        summarised(over_subjects(results, [&](const SubjectResult& result) {
+          return result.trials.at(condition).metrics.crossover_reference_hz;
+        }));
+    out.open_loop[condition] = pooled_lines(results, condition);
+  }
+  if (has(out, 'C')) {
+    out.cancelled_share['C'] = summarised(over_subjects(
+        results, [](const SubjectResult& r) { return r.trials.at('C').cancelled_share; }));
+  }
+  if (has(out, 'A') && has(out, 'B')) out.comparisons.push_back(compared(out, 'A', 'B'));
+  for (const char to : {'C', 'D', 'E', 'F'}) {
+    if (has(out, 'B') && has(out, to)) out.comparisons.push_back(compared(out, 'B', to));
+  }
+  if (has(out, 'A') && has(out, 'B') && has(out, 'C')) {
+    out.main_effects = main_effects(out, static_cast<Eigen::Index>(results.size()));
+    out.thirds = thirds(results);
+    add_restoration(out);
+  } else {
+    out.main_effects.reason = out.thirds.reason = "needs conditions A, B and C";
+  }
+  if (has(out, 'B') && has(out, 'C')) add_wrong_models(out, results);
+  for (const SubjectResult& result : results) {
+    if (!result.identification.paper_unusable.empty()) ++out.refined_used;
+  }
+  return out;
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "study/output.hpp"
+
+namespace stillhand::study {
+namespace {
+
+// Shortest text that reads back as the same number; nothing where there is none.
+std::string text(double value) {
+  if (!std::isfinite(value)) return "";
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string row(std::initializer_list<std::string> cells) {
+  std::string out;
+  for (const std::string& cell : cells) out += (out.empty() ? "" : ",") + cell;
+  return out + "\n";
+}
+
+CsvFile metrics_file(const StudyRecord& record) {
+  std::string out =
+      "subject,condition,place in order,rms error [mm],dwell ratio [-],crossover [Hz],"
+      "crossover through reference [Hz],cancelled share [-],feedthrough rms [N]\n";
+  for (std::size_t i = 0; i < record.results.size(); ++i) {
+    for (const auto& [condition, trial] : record.results[i].trials) {
+      out += row({std::to_string(i + 1), std::string(1, condition),
+                  std::to_string(record.results[i].order.find(condition) + 1),
+                  text(trial.metrics.rms_error_mm), text(trial.metrics.dwell_ratio),
+                  text(trial.metrics.crossover_hz), text(trial.metrics.crossover_reference_hz),
+                  text(trial.cancelled_share), text(trial.feedthrough_rms_n)});
+    }
+  }
+  return {"metrics.csv", out};
+}
+
+CsvFile subjects_file(const StudyRecord& record) {
+  std::string out =
+      "subject,trunk mass [kg],seat stiffness [N/m],seat damping [N s/m],arm mass [kg],shoulder "
+      "stiffness [N/m],shoulder damping [N s/m],grip stiffness [N/m],grip damping [N s/m],hand "
+      "mass "
+      "[kg],co-contraction [-],crossover [Hz],delay [s],muscle [rad/s],remnant ratio "
+      "[-],regression error [m]\n";
+  for (std::size_t i = 0; i < record.results.size(); ++i) {
+    const rig::BodyConfig& body = record.results[i].subject.body;
+    const human_operator::CrossoverConfig& who = record.results[i].subject.who;
+    out +=
+        row({std::to_string(i + 1), text(body.trunk_mass_kg), text(body.seat_stiffness_n_m),
+             text(body.seat_damping_n_s_m), text(body.arm_mass_kg),
+             text(body.shoulder_stiffness_n_m), text(body.shoulder_damping_n_s_m),
+             text(body.grip_stiffness_n_m), text(body.grip_damping_n_s_m), text(body.hand_mass_kg),
+             text(body.cocontraction_stiffness_factor), text(who.crossover_hz), text(who.delay_s),
+             text(who.muscle_rad_s), text(who.remnant_ratio), text(who.regression_error_m)});
+  }
+  return {"subjects.csv", out};
+}
+
+CsvFile models_file(const StudyRecord& record) {
+  std::string out = "subject,model,rate [Hz]";
+  const std::size_t order = record.results.front().identification.paper.model.order();
+  for (std::size_t i = 0; i <= order; ++i) out += ",c" + std::to_string(i) + " [N s^2/m]";
+  for (std::size_t i = 1; i <= order; ++i) out += ",d" + std::to_string(i) + " [-]";
+  out += '\n';
+  const auto line = [&](std::size_t subject, const char* which,
+                        const signal::DifferenceModel& model) {
+    out += std::to_string(subject) + "," + which + "," + text(model.rate_hz);
+    for (const double c : model.numerator) out += "," + text(c);
+    for (std::size_t i = 1; i < model.denominator.size(); ++i) {
+      out += "," + text(model.denominator[i]);
+    }
+    out += '\n';
+  };
+  for (std::size_t i = 0; i < record.results.size(); ++i) {
+    line(i + 1, "paper", record.results[i].identification.paper.model);
+    line(i + 1, "refined", record.results[i].identification.refined.model);
+    line(i + 1, "1 kHz filter", record.results[i].identification.control.model);
+  }
+  return {"models.csv", out};
+}
+
+CsvFile moving_file(const StudyRecord& record) {
+  std::string out = "subject,condition,window start [s],rms error [mm],dwell ratio [-]\n";
+  for (std::size_t i = 0; i < record.results.size(); ++i) {
+    for (const auto& [condition, trial] : record.results[i].trials) {
+      for (std::size_t s = 0; s < trial.metrics.moving_rms_mm.size(); ++s) {
+        out += row({std::to_string(i + 1), std::string(1, condition), std::to_string(s),
+                    text(trial.metrics.moving_rms_mm[s]), text(trial.metrics.moving_dwell[s])});
+      }
+    }
+  }
+  return {"moving_averages.csv", out};
+}
+
+CsvFile open_loop_file(const StudyRecord& record) {
+  std::string out =
+      "subject,condition,frequency [Hz],gain [-],phase [rad],remnant share of error power [-]\n";
+  for (std::size_t i = 0; i < record.results.size(); ++i) {
+    for (const auto& [condition, trial] : record.results[i].trials) {
+      for (const auto& line : trial.metrics.lines) {
+        out += row({std::to_string(i + 1), std::string(1, condition), text(line.frequency_hz),
+                    text(std::abs(line.gain)), text(std::arg(line.gain)),
+                    text(std::min(1.0, 1.0 / line.error_snr))});
+      }
+    }
+  }
+  return {"open_loop.csv", out};
+}
+
+}  // namespace
+
+std::vector<CsvFile> csv_files(const StudyRecord& record) {
+  return {metrics_file(record), subjects_file(record), models_file(record), moving_file(record),
+          open_loop_file(record)};
+}
+
+}  // namespace stillhand::study

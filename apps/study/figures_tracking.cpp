@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiment/protocol.hpp"
+#include "study/figures.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using report::Colour;
+using report::Kind;
+using report::Panel;
+using report::Scale;
+using report::Series;
+
+constexpr const char* kPaperConditions = "ABC";
+constexpr double kMmPerM = 1000.0;
+constexpr double kExcerptRate_hz = 20.0;
+constexpr std::size_t kFittedLines = 11;  // paper III-C
+
+double phase_deg(std::complex<double> g) {
+  const double deg = std::arg(g) * 180.0 / std::numbers::pi;
+  return deg > 90.0 ? deg - 360.0 : deg;
+}
+
+Panel trace_panel(const TrackedTrial& trial, char condition) {
+  Panel panel;
+  panel.title = label_of(condition);
+  panel.x.label = "time [s]";
+  panel.y.label = "position on the screen [mm]";
+  Series target{.label = "target", .kind = Kind::kLine, .colour = Colour::kTarget};
+  Series cursor{.label = "cursor", .kind = Kind::kDashedLine, .colour = colour_of(condition)};
+  for (std::size_t i = 0; i < trial.target_m.size(); ++i) {
+    target.x.push_back(static_cast<double>(i) / kExcerptRate_hz);
+    target.y.push_back(kMmPerM * trial.target_m[i]);
+    cursor.y.push_back(kMmPerM * trial.cursor_m[i]);
+  }
+  cursor.x = target.x;
+  target.line_width_px = 1.3;
+  panel.series = {target, cursor};
+  return panel;
+}
+
+// Mean over subjects and one standard deviation either side, against the window's start.
+Panel moving_panel(const StudyRecord& record, char condition,
+                   const std::vector<double>& (*series_of)(const TrackedTrial&)) {
+  Panel panel;
+  panel.title = label_of(condition);
+  panel.x.label = "start of the 10 s window [s]";
+  panel.legend = report::Legend::kNone;
+  Series band{.kind = Kind::kBand, .colour = colour_of(condition)};
+  Series mean{.kind = Kind::kLine, .colour = colour_of(condition)};
+  const std::size_t seconds = series_of(record.results.front().trials.at(condition)).size();
+  for (std::size_t s = 0; s < seconds; ++s) {
+    std::vector<double> values;
+    for (const SubjectResult& result : record.results) {
+      values.push_back(series_of(result.trials.at(condition))[s]);
+    }
+    const MetricSample at = summarised(values);
+    const double deviation = at.standard_deviation.value_or(0.0);
+    mean.x.push_back(static_cast<double>(s));
+    mean.y.push_back(at.mean);
+    band.y_low.push_back(at.mean - deviation);
+    band.y_high.push_back(at.mean + deviation);
+  }
+  band.x = mean.x;
+  mean.line_width_px = 2.4;
+  panel.series = {band, mean};
+  return panel;
+}
+
+report::Figure moving_figure(const StudyRecord& record, const char* name, const char* quantity,
+                             const char* number,
+                             const std::vector<double>& (*series_of)(const TrackedTrial&)) {
+  report::Figure figure{.name = name,
+                        .caption = std::string("The paper's ") + number + ": " + quantity +
+                                   " over a moving 10 s window, mean of the subjects with one "
+                                   "standard deviation either side.",
+                        .panels = {},
+                        .columns = 3,
+                        .width_px = 1180,
+                        .height_px = 330};
+  double highest = 0.0;
+  for (const char condition : conditions_run(record, kPaperConditions)) {
+    figure.panels.push_back(moving_panel(record, condition, series_of));
+    for (const double y : figure.panels.back().series.front().y_high) {
+      highest = std::max(highest, y);
+    }
+  }
+  for (Panel& panel : figure.panels) {  // one scale, so that the conditions can be compared
+    panel.y.low = 0.0;
+    panel.y.high = 1.08 * highest;
+  }
+  if (!figure.panels.empty()) figure.panels.front().y.label = quantity;
+  return figure;
+}
+
+void add_open_loop(Panel& magnitude, Panel& phase, const identification::TrackingMetrics& metrics,
+                   char condition) {
+  Series points{.label = "X_p/X_e", .kind = Kind::kPoints, .colour = colour_of(condition)};
+  Series line{.label = "−20 dB/decade", .kind = Kind::kLine, .colour = Colour::kModel};
+  Series angle = points;
+  for (std::size_t k = 0; k < metrics.lines.size(); ++k) {
+    const auto& at = metrics.lines[k];
+    points.x.push_back(at.frequency_hz);
+    points.y.push_back(20.0 * std::log10(std::abs(at.gain)));
+    angle.y.push_back(phase_deg(at.gain));
+    if (k >= kFittedLines) continue;
+    line.x.push_back(at.frequency_hz);
+    line.y.push_back(20.0 * std::log10(metrics.crossover_hz / at.frequency_hz));
+  }
+  angle.x = points.x;
+  angle.show_in_legend = false;
+  magnitude.series = {line, points};
+  phase.series = {angle};
+}
+
+}  // namespace
+
+report::Figure figure_traces(const StudyRecord& record) {
+  const std::size_t typical = typical_subject(record);
+  report::Figure figure{.name = "fig07_traces",
+                        .caption =
+                            "The paper's Fig. 7: twenty seconds from the middle of the trials "
+                            "of subject " +
+                            std::to_string(typical + 1) + ".",
+                        .panels = {},
+                        .columns = 1,
+                        .width_px = 980,
+                        .height_px = 780};
+  for (const char condition : conditions_run(record, kPaperConditions)) {
+    figure.panels.push_back(trace_panel(record.results[typical].trials.at(condition), condition));
+    figure.panels.back().y.low = -200.0;
+    figure.panels.back().y.high = 200.0;
+  }
+  return figure;
+}
+
+report::Figure figure_moving_rms(const StudyRecord& record) {
+  return moving_figure(record, "fig08_moving_rms", "RMS error [mm]", "Fig. 8",
+                       [](const TrackedTrial& trial) -> const std::vector<double>& {
+                         return trial.metrics.moving_rms_mm;
+                       });
+}
+
+report::Figure figure_moving_dwell(const StudyRecord& record) {
+  return moving_figure(record, "fig09_moving_dwell", "dwell ratio [-]", "Fig. 9",
+                       [](const TrackedTrial& trial) -> const std::vector<double>& {
+                         return trial.metrics.moving_dwell;
+                       });
+}
+
+report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
+  constexpr std::array<const char*, kMetricCount> kNames{"fig10_rms_error", "fig11_dwell_ratio",
+                                                         "fig13_crossover"};
+  constexpr std::array<const char*, kMetricCount> kNumbers{"Fig. 10", "Fig. 11", "Fig. 13"};
+  const experiment::Metric& what = experiment::kMetrics[metric];
+  const double unit = metric == 0 ? kPaperUnit_mm : 1.0;
+  Panel panel;
+  panel.y.label = what.title;
+  panel.y.low = 0.0;
+  Series paper{.label = "paper, mean", .kind = Kind::kPoints, .colour = Colour::kTarget};
+  double place = 1.0;
+  for (const auto& [condition, metrics] : record.analysis.conditions) {
+    const statistics::BoxPlot& box = metrics[metric].box;
+    Series series{.kind = Kind::kBox, .colour = colour_of(condition)};
+    // Whiskers over the whole range, as in the paper.
+    series.boxes = {
+        {place, box.minimum, box.lower_quartile, box.median, box.upper_quartile, box.maximum, {}}};
+    series.show_in_legend = false;
+    panel.series.push_back(series);
+    panel.x.ticks.push_back({place, label_of(condition)});
+    if (condition <= 'C') {
+      paper.x.push_back(place);
+      paper.y.push_back(unit * (condition == 'A'   ? what.paper_a
+                                : condition == 'B' ? what.paper_b
+                                                   : what.paper_c));
+    }
+    place += 1.0;
+  }
+  panel.series.push_back(paper);
+  panel.x.low = 0.4;
+  panel.x.high = place - 0.4;
+  return {.name = kNames[metric],
+          .caption = std::string("The paper's ") + kNumbers[metric] + ": " + what.title +
+                     " over the subjects; box from quartile to quartile with the median, whiskers "
+                     "over the whole range. Squares: the paper's means" +
+                     (metric == 0 ? ", at 5.5 mm a unit." : "."),
+          .panels = {panel},
+          .columns = 1,
+          .width_px = 760,
+          .height_px = 400};
+}
+
+report::Figure figure_open_loop(const StudyRecord& record) {
+  const std::size_t typical = typical_subject(record);
+  report::Figure figure{
+      .name = "fig12_open_loop",
+      .caption = "The paper's Fig. 12: open loop X_p/X_e of subject " +
+                 std::to_string(typical + 1) +
+                 " at the fifteen frequencies of the target, with the line of −20 dB/decade "
+                 "through the lowest eleven. It crosses 0 dB at the crossover frequency.",
+      .panels = {},
+      .columns = 3,
+      .width_px = 1180,
+      .height_px = 560};
+  std::vector<Panel> phases;
+  for (const char condition : conditions_run(record, kPaperConditions)) {
+    Panel magnitude;
+    Panel phase;
+    const auto& metrics = record.results[typical].trials.at(condition).metrics;
+    add_open_loop(magnitude, phase, metrics, condition);
+    char text[48];
+    std::snprintf(text, sizeof text, "f_c = %.2f Hz", metrics.crossover_hz);
+    magnitude.notes = {{.text = text, .corner = report::Corner::kTopRight}};
+    magnitude.title = label_of(condition);
+    magnitude.x = phase.x = {.label = "", .scale = Scale::kLogarithmic, .low = 0.008, .high = 6.0};
+    phase.x.label = "frequency [Hz]";
+    magnitude.y = {.label = phases.empty() ? "|X_p/X_e| [dB]" : "", .low = -45.0, .high = 35.0};
+    phase.y = {.label = phases.empty() ? "phase [°]" : "",
+               .scale = Scale::kDegrees,
+               .low = -270.0,
+               .high = 90.0};
+    magnitude.reference_lines = {{.at = 0.0, .label = {}, .colour = Colour::kNeutral}};
+    magnitude.legend = phase.legend = report::Legend::kNone;
+    figure.panels.push_back(magnitude);
+    phases.push_back(phase);
+  }
+  figure.columns = static_cast<int>(phases.size());
+  figure.panels.insert(figure.panels.end(), phases.begin(), phases.end());
+  return figure;
+}
+
+report::Figure figure_wrong_models(const StudyRecord& record) {
+  Panel panel;
+  panel.y.label = "share of the own model's gain that survives [-]";
+  panel.x.label = "subjects, worst first";
+  for (const auto& [which, wrong] : record.analysis.wrong) {
+    Series series{.label = which == 'O' ? "another subject's model" : "mean model of all others",
+                  .kind = Kind::kLineAndPoints,
+                  .colour = which == 'O' ? Colour::kWarning : Colour::kModel};
+    series.y = wrong.surviving_share;
+    std::sort(series.y.begin(), series.y.end());
+    for (std::size_t i = 0; i < series.y.size(); ++i) {
+      series.x.push_back(static_cast<double>(i + 1));
+    }
+    panel.series.push_back(series);
+  }
+  panel.reference_lines = {{.at = 1.0, .label = "own model", .colour = Colour::kNeutral},
+                           {.at = 0.0, .label = "no cancellation", .colour = Colour::kNeutral}};
+  return {.name = "wrong_models",
+          .caption =
+              "Cancelling with a model that is not the subject's: (B − C with that model) / "
+              "(B − C with the own) by RMS error, same motion and target.",
+          .panels = {panel},
+          .columns = 1,
+          .width_px = 860,
+          .height_px = 380};
+}
+
+std::vector<report::Figure> study_figures(const StudyRecord& record) {
+  std::vector<report::Figure> figures{figure_estimate(record), figure_models(record)};
+  if (!conditions_run(record, kPaperConditions).empty()) {
+    figures.push_back(figure_traces(record));
+    const auto& first = *record.results.front().trials.begin();
+    if (!first.second.metrics.moving_rms_mm.empty()) {
+      figures.push_back(figure_moving_rms(record));
+      figures.push_back(figure_moving_dwell(record));
+    }
+  }
+  for (const std::size_t metric : {std::size_t{0}, std::size_t{1}}) {
+    figures.push_back(figure_box(record, metric));
+  }
+  if (!conditions_run(record, kPaperConditions).empty()) {
+    figures.push_back(figure_open_loop(record));
+  }
+  figures.push_back(figure_box(record, 2));
+  if (!record.analysis.wrong.empty()) figures.push_back(figure_wrong_models(record));
+  return figures;
+}
+
+std::size_t typical_subject(const StudyRecord& record) {
+  const auto& metrics = record.analysis.conditions.contains('B')
+                            ? record.analysis.conditions.at('B')
+                            : record.analysis.conditions.begin()->second;
+  const std::vector<double>& values = metrics[0].per_subject;
+  const double middle = metrics[0].box.median;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i] - middle) < std::abs(values[best] - middle)) best = i;
+  }
+  return best;
+}
+
+report::Colour colour_of(char condition) {
+  switch (condition) {
+    case 'A':
+      return Colour::kConditionA;
+    case 'B':
+      return Colour::kConditionB;
+    case 'C':
+      return Colour::kConditionC;
+    case 'D':
+      return Colour::kConditionD;
+    case 'E':
+      return Colour::kConditionE;
+    case 'F':
+      return Colour::kConditionF;
+    default:
+      return Colour::kNeutral;
+  }
+}
+
+std::string label_of(char condition) {
+  return std::string(1, condition) + " " +
+         experiment::condition_name(static_cast<experiment::Condition>(condition));
+}
+
+std::string conditions_run(const StudyRecord& record, const std::string& among) {
+  std::string out;
+  for (const char condition : among) {
+    if (record.analysis.conditions.contains(condition)) out += condition;
+  }
+  return out;
+}
+
+}  // namespace stillhand::study

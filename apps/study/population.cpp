@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/population.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "rig/core/body_response.hpp"
+#include "signal/random.hpp"
+
+namespace stillhand::study {
+namespace {
+
+// Stream of the draws under the study's seed; the subject's index is added.
+constexpr std::uint64_t kSubjectStream = 0x7375626a00000000;
+// A deviate farther out than this is drawn again.
+constexpr double kFarthestDeviate = 2.5;
+
+// Winter (2009) table 4.1: head, arms and trunk 0.678, of which 0.6 sways on a seat; upper arm,
+// forearm and hand 0.050, three tenths of it felt at the hand; hand 0.006, two thirds of it on the
+// handle.
+constexpr double kTrunkShare = 0.40;
+constexpr double kArmShare = 0.0147;
+constexpr double kHandShare = 0.0040;
+
+using Draw = std::function<double(double mean, double cv)>;
+
+double damping(double ratio, double stiffness_n_m, double mass_kg) {
+  return 2.0 * ratio * std::sqrt(stiffness_n_m * mass_kg);
+}
+
+rig::BodyConfig body(const Population& p, const Draw& draw) {
+  rig::BodyConfig out;
+  const double mass_kg = draw(p.body_mass_kg, p.body_mass_cv);
+  out.trunk_mass_kg = kTrunkShare * mass_kg;
+  out.arm_mass_kg = kArmShare * mass_kg;
+  out.hand_mass_kg = kHandShare * mass_kg;
+  const double seat_rad_s = 2.0 * std::numbers::pi * draw(p.seat_frequency_hz, p.seat_frequency_cv);
+  out.seat_stiffness_n_m = out.trunk_mass_kg * seat_rad_s * seat_rad_s;
+  out.seat_damping_n_s_m = damping(draw(p.seat_damping_ratio, p.seat_damping_cv),
+                                   out.seat_stiffness_n_m, out.trunk_mass_kg);
+  out.shoulder_stiffness_n_m = draw(p.shoulder_stiffness_n_m, p.shoulder_stiffness_cv);
+  out.shoulder_damping_n_s_m = damping(draw(p.shoulder_damping_ratio, p.shoulder_damping_cv),
+                                       out.shoulder_stiffness_n_m, out.arm_mass_kg);
+  out.grip_stiffness_n_m = draw(p.grip_stiffness_n_m, p.grip_stiffness_cv);
+  out.grip_damping_n_s_m = damping(draw(p.grip_damping_ratio, p.grip_damping_cv),
+                                   out.grip_stiffness_n_m, out.arm_mass_kg + out.hand_mass_kg);
+  const double factor = std::max(1.0, draw(p.cocontraction_factor, p.cocontraction_cv));
+  out.cocontraction_stiffness_factor = factor;
+  out.cocontraction_damping_factor = std::sqrt(factor);
+  return out;
+}
+
+Subject subject(const Population& p, const Draw& draw) {
+  Subject out;
+  out.body = body(p, draw);
+  out.who.crossover_hz = draw(p.crossover_hz, p.crossover_cv);
+  out.who.delay_s = draw(p.delay_s, p.delay_cv);
+  out.who.muscle_rad_s = draw(p.muscle_rad_s, p.muscle_cv);
+  out.who.remnant_ratio = draw(p.remnant_ratio, p.remnant_cv);
+  out.who.regression_error_m = draw(p.regression_error_m, p.regression_cv);
+  out.who.arm = learnt_feel(out.body, {});
+  return out;
+}
+
+}  // namespace
+
+human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick) {
+  human_operator::ArmFeel feel;
+  const auto impedance = [&](double hz) {
+    return 1.0 / rig::hand_admittance(body, stick, false, hz);
+  };
+  // Eq. SU-2: K - M w^2 and B w, the first with K known from 0 Hz.
+  feel.effective_stiffness_n_m = impedance(0.0).real();
+  double w4 = 0.0;
+  double w2 = 0.0;
+  double mass_part = 0.0;
+  double damping_part = 0.0;
+  for (int step = 1; step <= 10; ++step) {
+    const double w = 2.0 * std::numbers::pi * 0.1 * step;
+    const auto z = impedance(0.1 * step);
+    w2 += w * w;
+    w4 += w * w * w * w;
+    mass_part += (feel.effective_stiffness_n_m - z.real()) * w * w;
+    damping_part += z.imag() * w;
+  }
+  feel.effective_mass_kg = mass_part / w4;
+  feel.effective_damping_n_s_m = damping_part / w2;
+  return feel;
+}
+
+Subject mean_subject(const Population& population) {
+  validate(population, "population");
+  return subject(population, [](double mean, double) { return mean; });
+}
+
+Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index) {
+  validate(population, "population");
+  signal::Gaussian deviate(seed, kSubjectStream + static_cast<std::uint64_t>(index));
+  return subject(population, [&](double mean, double cv) {
+    double z = deviate();
+    while (std::abs(z) > kFarthestDeviate) z = deviate();
+    // Eq. SU-1: mean and standard deviation of the lognormal, before the cut.
+    const double log_variance = std::log1p(cv * cv);
+    return mean * std::exp(std::sqrt(log_variance) * z - 0.5 * log_variance);
+  });
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "contract/config_field.hpp"
+#include "human_operator/core/crossover_config.hpp"
+#include "rig/core/body_config.hpp"
+
+namespace stillhand::study {
+
+/// From what a study's subjects are drawn: a mean and a coefficient of variation (standard
+/// deviation over mean) a quantity, README "The population".  Every draw is lognormal, so that no
+/// mass or stiffness can be negative, and cut at 2.5 standard deviations of its logarithm.
+struct Population {
+  double body_mass_kg = 75.0;
+  double body_mass_cv = 0.13;
+  double seat_frequency_hz = 3.2;
+  double seat_frequency_cv = 0.08;
+  double seat_damping_ratio = 0.33;
+  double seat_damping_cv = 0.15;
+  double shoulder_stiffness_n_m = 1200.0;
+  double shoulder_stiffness_cv = 0.20;
+  double shoulder_damping_ratio = 0.166;
+  double shoulder_damping_cv = 0.20;
+  double grip_stiffness_n_m = 2400.0;
+  double grip_stiffness_cv = 0.20;
+  double grip_damping_ratio = 0.10;
+  double grip_damping_cv = 0.20;
+  double cocontraction_factor = 1.6;
+  double cocontraction_cv = 0.10;
+  double crossover_hz = 0.325;
+  double crossover_cv = 0.15;
+  double delay_s = 0.22;
+  double delay_cv = 0.08;
+  double muscle_rad_s = 13.0;
+  double muscle_cv = 0.10;
+  double remnant_ratio = 0.015;
+  double remnant_cv = 0.25;
+  double regression_error_m = 0.028;
+  double regression_cv = 0.15;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    const auto spread = [&](const char* name, auto& value) {
+      visit(name, value, Range{0.0, 0.6}, "[-] standard deviation over mean");
+    };
+    visit(
+        "body_mass_kg", self.body_mass_kg, Range{40.0, 130.0},
+        "[kg] whole subject; trunk 0.40, arm as felt at the hand 0.0147, hand 0.0040 of it, Winter "
+        "(2009) table 4.1");
+    spread("body_mass_cv", self.body_mass_cv);
+    visit("seat_frequency_hz", self.seat_frequency_hz, Range{1.2, 8.0},
+          "[Hz] first lateral mode of the trunk on seat and harness; 1.5 to 4 Hz, Fairley and "
+          "Griffin (1990); calibrated within");
+    spread("seat_frequency_cv", self.seat_frequency_cv);
+    visit("seat_damping_ratio", self.seat_damping_ratio, Range{0.1, 1.0},
+          "[-] of that mode; 0.2 to 0.45, Fairley and Griffin (1990)");
+    spread("seat_damping_cv", self.seat_damping_cv);
+    visit(
+        "shoulder_stiffness_n_m", self.shoulder_stiffness_n_m, Range{200.0, 2500.0},
+        "[N/m] shoulder and elbow felt at the idle hand; Mussa-Ivaldi et al. (1985), Perreault et "
+        "al. (2002); calibrated");
+    spread("shoulder_stiffness_cv", self.shoulder_stiffness_cv);
+    visit("shoulder_damping_ratio", self.shoulder_damping_ratio, Range{0.05, 1.0},
+          "[-] of the arm's mass on it; 0.1 to 0.4, Perreault et al. (2004)");
+    spread("shoulder_damping_cv", self.shoulder_damping_cv);
+    visit("grip_stiffness_n_m", self.grip_stiffness_n_m, Range{500.0, 8000.0},
+          "[N/m] palm and wrist around the handle, idle hand; Hasser and Cutkosky (2002)");
+    spread("grip_stiffness_cv", self.grip_stiffness_cv);
+    visit("grip_damping_ratio", self.grip_damping_ratio, Range{0.02, 1.0},
+          "[-] of the masses of arm and hand on it; 0.1 to 0.3, Hasser and Cutkosky (2002)");
+    spread("grip_damping_cv", self.grip_damping_cv);
+    visit("cocontraction_factor", self.cocontraction_factor, Range{1.0, 3.0},
+          "[-] stiffness of the tracking arm over the idle one's; 1.2 to 2, Gomi and Osu (1998); "
+          "damping goes with its square root");
+    spread("cocontraction_cv", self.cocontraction_cv);
+    visit("crossover_hz", self.crossover_hz, Range{0.08, 0.6},
+          "[Hz] crossover with no fast error; calibrated, README");
+    spread("crossover_cv", self.crossover_cv);
+    visit("delay_s", self.delay_s, Range{0.18, 0.4},
+          "[s] of the whole subject, muscle included; 0.2 to 0.25 s, McRuer and Jex (1967)");
+    spread("delay_cv", self.delay_cv);
+    visit("muscle_rad_s", self.muscle_rad_s, Range{10.0, 25.0},
+          "[rad/s] arm and muscle; 10 to 20 rad/s, McRuer and Jex (1967)");
+    spread("muscle_cv", self.muscle_cv);
+    visit("remnant_ratio", self.remnant_ratio, Range{0.0, 0.05},
+          "[-] noise-to-signal ratio of what is seen; 0.01 to 0.03, Levison, Kleinman and Baron "
+          "(1969); calibrated within");
+    spread("remnant_cv", self.remnant_cv);
+    visit("regression_error_m", self.regression_error_m, Range{0.005, 1.0},
+          "[m] RMS of fast error that halves the crossover; calibrated, README");
+    spread("regression_cv", self.regression_cv);
+  }
+};
+
+/// One simulated subject.
+struct Subject {
+  rig::BodyConfig body;
+  human_operator::CrossoverConfig who;  ///< its seed is the session's to set
+};
+
+/// How a subject who has learnt a stick feels it at the hand: M, B, K of the driving-point
+/// impedance of stick and tracking arm (README of rig, RG-7), least squares over 0.1 to 1 Hz, Eq.
+/// SU-2.
+human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick);
+
+/// The subject that has every quantity's mean.
+Subject mean_subject(const Population& population);
+
+/// Subject `index` of the study with this seed: the same whatever else is drawn, Eq. SU-1.
+/// @throws stillhand::ConfigError when the population's fields are out of range.
+Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index);
+
+}  // namespace stillhand::study

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/study_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <memory>
+
+#include "contract/config_error.hpp"
+#include "experiment/progress.hpp"
+#include "runtime/stop.hpp"
+#include "settings/load.hpp"
+#include "study/output.hpp"
+#include "study/study.hpp"
+
+namespace stillhand::study {
+namespace {
+
+struct Words {
+  std::string conditions = "A,B,C";
+  std::filesystem::path population;
+  std::filesystem::path out;
+};
+
+// The words after the program's name, for the report.
+std::string command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!text.empty()) text.pop_back();
+  std::replace(text.begin(), text.end(), '\0', ' ');
+  const auto space = text.find(' ');
+  return "stillhand" + (space == std::string::npos ? std::string() : text.substr(space));
+}
+
+int run(StudyRecord& record, const Words& words) {
+  runtime::Stop stop;
+  report::StagedFolder folder(words.out);
+  experiment::ProgressLine progress;
+  const auto start = std::chrono::steady_clock::now();
+  record.results = run_study(record.options, [&](std::int64_t done, std::int64_t all) {
+    progress.show("subjects", static_cast<double>(done) / static_cast<double>(all));
+    return !stop.requested();
+  });
+  progress.finish();
+  record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.analysis = analyse(record.results);
+  write_study(record, folder);
+  print_study(record);
+  if (record.options.subjects <= 2) {
+    std::cerr << "stillhand study: " << record.options.subjects
+              << " subject(s): a t-test means little or cannot be made; 12 as in the paper is the "
+                 "default\n";
+  }
+  std::printf("report and figures in %s\n", words.out.string().c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& cli, int& status) {
+  auto record = std::make_shared<StudyRecord>();
+  auto words = std::make_shared<Words>();
+  StudyOptions& options = record->options;
+  options.protocol.identify_s = 120.0;  // paper III-A
+
+  CLI::App* study = cli.add_subcommand(
+      "study",
+      "The paper's experiment with simulated subjects, in one process and as fast as it goes: a "
+      "pegged\n"
+      "identification and one trial a condition each, tables and figures beside the paper's.\n"
+      "Example: stillhand study --subjects 12 --seed 1 --out study1");
+  study->add_option("--subjects", options.subjects, "how many; the paper's are 12")
+      ->capture_default_str();
+  study->add_option("--seed", options.seed, "seed of everything random")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
+  study->add_option("--out", words->out, "folder of report, figures and numbers")->required();
+  study
+      ->add_option("--conditions", words->conditions,
+                   "A stationary, B moving, C moving with cancellation, D filter on the command, "
+                   "E damped stick, F arm rest")
+      ->capture_default_str();
+  study->add_flag("--wrong-models", options.wrong_models,
+                  "C again with another subject's model and with the mean of all others'");
+  study->add_option("--population", words->population,
+                    "file with the population's distributions; deploy/experiments/population.yaml "
+                    "shows every key");
+  study->add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
+      ->capture_default_str();
+  study
+      ->add_option("--identify-seconds", options.protocol.identify_s,
+                   "length of the pegged trial [s]")
+      ->capture_default_str();
+  study
+      ->add_option("--stick-damping", options.damped_stick_n_s_m,
+                   "condition E: damping added to the stick [N s/m]")
+      ->check(CLI::Range(0.0, 49.0))
+      ->capture_default_str();
+  study->add_option("--threads", options.threads, "0: one a core; the result is the same")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  study->callback([record, words, &status] {
+    record->options.protocol.conditions =
+        experiment::parse_conditions(words->conditions, experiment::kStudyConditions);
+    if (!words->population.empty()) {
+      record->options.population = settings::load<Population>(words->population, "population");
+    }
+    record->command_line = command_line();
+    status = run(*record, *words);
+  });
+}
+
+}  // namespace stillhand::study

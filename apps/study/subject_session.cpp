@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/subject_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "contract/config_error.hpp"
+#include "contract/expects.hpp"
+#include "identification/core/identifier.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using experiment::PlannedTrial;
+
+// The paper records at 100 Hz.
+constexpr Tick kKeepEvery = 10;
+const int kOrder = static_cast<int>(identification::Config{}.order);
+// Welch segments of Fig. 4: 5.12 s, 0.2 Hz a line, 45 averages of two minutes.
+constexpr std::size_t kSegmentSamples = 256;
+// What Fig. 7 shows.
+constexpr double kExcerpt_s = 20.0;
+constexpr std::size_t kExcerptStride = 5;
+
+std::uint64_t subject_seed(std::uint64_t seed, std::int64_t index) {
+  std::seed_seq mix{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                    std::uint32_t{0x53756271}, static_cast<std::uint32_t>(index)};
+  std::uint32_t word = 0;
+  mix.generate(&word, &word + 1);
+  return word;
+}
+
+std::vector<PlannedTrial> plan_of(const StudyOptions& options, std::int64_t index) {
+  experiment::ProtocolOptions protocol = options.protocol;
+  protocol.seed = subject_seed(options.seed, index);
+  return experiment::plan(protocol);
+}
+
+// Settings of every core for this subject under a condition.
+experiment::CoreConfigs configs_of(const StudyOptions& options, const Subject& subject,
+                                   char condition) {
+  experiment::CoreConfigs configs;
+  configs.rig.body = subject.body;
+  configs.human_operator = subject.who;
+  if (condition == 'E') configs.rig.stick.viscous_damping_n_s_m += options.damped_stick_n_s_m;
+  if (condition == 'F') {
+    configs.rig.body.arm_rest_stiffness_n_m = options.arm_rest_stiffness_n_m;
+    configs.rig.body.arm_rest_damping_n_s_m = options.arm_rest_damping_n_s_m;
+  }
+  // Each subject practised with the stick as it is in the trial (paper III-C).
+  configs.human_operator.arm = learnt_feel(configs.rig.body, configs.rig.stick);
+  // The command filter can know an average person's arm only.
+  const human_operator::ArmFeel average = mean_subject(options.population).who.arm;
+  configs.command_filter.mass_kg = average.effective_mass_kg;
+  configs.command_filter.damping_n_s_m = average.effective_damping_n_s_m;
+  configs.command_filter.stiffness_n_m = average.effective_stiffness_n_m;
+  return configs;
+}
+
+identification::FeedthroughModel at_control_rate(const signal::DifferenceModel& control) {
+  identification::FeedthroughModel model;
+  model.control = control;
+  return model;
+}
+
+Identification identified(const identification::Record& pegged) {
+  identification::IdentificationSteps steps = identification::identify_stepwise(pegged, {}, true);
+  Identification out;
+  out.paper = std::move(steps.paper);
+  out.refined = std::move(*steps.refined);
+  out.control = std::move(steps.control);
+  out.paper_unusable = std::move(steps.paper_unusable);
+  out.factor = identification::factor_arx(steps.record, kOrder);
+  out.estimate = signal::transfer_estimate(signal::cross_spectra(
+      steps.record.acceleration_m_s2, steps.record.force_n, steps.record.rate_hz, kSegmentSamples));
+  return out;
+}
+
+// A model that the canceller refuses would leave condition C without a motor, unseen.
+void use(experiment::InProcessLoop& loop, const signal::DifferenceModel& control) {
+  const cancellation::Refusal refusal = loop.use_model(at_control_rate(control));
+  if (refusal != cancellation::Refusal::kNone) {
+    throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
+                      "a model that the canceller takes; a longer --identify-seconds helps");
+  }
+}
+
+// One value a second: entry i of a moving average covers the window that starts at second i.
+void thin(std::vector<double>& series, double rate_hz) {
+  std::vector<double> kept;
+  for (std::size_t n = 0; n < series.size(); n += static_cast<std::size_t>(rate_hz)) {
+    kept.push_back(series[n]);
+  }
+  series = std::move(kept);
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+TrackedTrial evaluated(const experiment::TrialSignals& signals, const PlannedTrial& planned) {
+  TrackedTrial out;
+  const auto& record = signals.tracking;
+  const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
+  out.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
+  thin(out.metrics.moving_rms_mm, record.rate_hz);
+  thin(out.metrics.moving_dwell, record.rate_hz);
+  if (planned.cancellation) {
+    out.cancelled_share = experiment::cancelled_share(signals.feedthrough_n, signals.motor_n);
+  }
+  out.feedthrough_rms_n = rms(signals.feedthrough_n);
+  const std::size_t samples = record.target_m.size();
+  const auto excerpt = std::min(samples, static_cast<std::size_t>(kExcerpt_s * record.rate_hz));
+  for (std::size_t n = (samples - excerpt) / 2; n < (samples + excerpt) / 2; n += kExcerptStride) {
+    out.target_m.push_back(record.target_m[n]);
+    out.cursor_m.push_back(record.cursor_m[n]);
+  }
+  return out;
+}
+
+// A stick or a body other than that of A to D needs a rig of its own.
+bool own_rig(char condition) { return condition == 'E' || condition == 'F'; }
+
+}  // namespace
+
+SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
+  SubjectResult result;
+  result.subject = draw_subject(options.population, options.seed, index);
+  const std::vector<PlannedTrial> trials = plan_of(options, index);
+  const std::uint64_t seed = subject_seed(options.seed, index);
+  experiment::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery);
+  for (const PlannedTrial& planned : trials) {
+    if (planned.trial.phase == TrialPhase::kPegged) {
+      result.identification = identified(loop.run(planned).pegged);
+      use(loop, result.identification.control.model);
+      continue;
+    }
+    result.order += planned.label;
+    if (own_rig(planned.label)) {
+      experiment::InProcessLoop other(configs_of(options, result.subject, planned.label), seed,
+                                      kKeepEvery);
+      result.trials[planned.label] = evaluated(other.run(planned), planned);
+    } else {
+      result.trials[planned.label] = evaluated(loop.run(planned), planned);
+    }
+  }
+  return result;
+}
+
+TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
+                            std::int64_t index, const signal::DifferenceModel& control_model) {
+  experiment::InProcessLoop loop(configs_of(options, result.subject, 'C'),
+                                 subject_seed(options.seed, index), kKeepEvery);
+  use(loop, control_model);
+  const std::vector<PlannedTrial> trials = plan_of(options, index);
+  const auto planned = std::find_if(trials.begin(), trials.end(),
+                                    [](const PlannedTrial& t) { return t.label == 'C'; });
+  STILLHAND_EXPECTS(planned != trials.end());
+  return evaluated(loop.run(*planned), *planned);
+}
+
+}  // namespace stillhand::study

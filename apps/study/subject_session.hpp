@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiment/in_process.hpp"
+#include "identification/core/arx.hpp"
+#include "identification/core/output_error.hpp"
+#include "identification/core/rate_conversion.hpp"
+#include "identification/core/tracking_metrics.hpp"
+#include "signal/spectrum.hpp"
+#include "study/population.hpp"
+
+namespace stillhand::study {
+
+/// What a study asks of each subject.
+struct StudyOptions {
+  std::int64_t subjects = 12;
+  std::uint64_t seed = 1;
+  experiment::ProtocolOptions protocol;  ///< conditions and lengths; its seed is the subject's
+  Population population;
+  double damped_stick_n_s_m = 20.0;       ///< condition E, added to the stick's own
+  double arm_rest_stiffness_n_m = 500.0;  ///< condition F
+  double arm_rest_damping_n_s_m = 30.0;   ///< condition F
+  bool wrong_models = false;              ///< C again with other people's models
+  unsigned threads = 0;                   ///< 0: one a core
+};
+
+/// The pegged trial's outcome, paper III-A and IV-A.
+struct Identification {
+  identification::ArxFit paper;            ///< Eqs 3 to 5
+  identification::OutputErrorFit refined;  ///< the same model on its free-run error
+  identification::ArxFactor factor;        ///< for pooled fits
+  signal::TransferEstimate estimate;       ///< Fig. 4's dots, 0 to 25 Hz
+  identification::RateConversion control;  ///< what the canceller runs
+  std::string paper_unusable;  ///< why the refined model runs instead; empty: it does not
+};
+
+/// A tracking trial in what the report shows.
+struct TrackedTrial {
+  identification::TrackingMetrics metrics;  ///< moving averages once a second
+  double cancelled_share = 0.0;             ///< of the feedthrough force; 0 without a motor
+  double feedthrough_rms_n = 0.0;
+  std::vector<double> target_m;  ///< 20 s from the middle, 20 Hz
+  std::vector<double> cursor_m;
+};
+
+/// Everything of one subject.
+struct SubjectResult {
+  Subject subject;
+  Identification identification;
+  std::map<char, TrackedTrial> trials;  ///< by condition
+  std::string order;                    ///< in which the conditions were run
+  std::map<char, TrackedTrial> wrong;  ///< 'O' another subject's model, 'M' the mean of all others'
+};
+
+/// Runs subject `index`: pegged trial, identification, every condition in shuffled order.  The same
+/// numbers whatever else runs.  @throws ConfigError when no usable model comes out.
+SubjectResult run_subject(const StudyOptions& options, std::int64_t index);
+
+/// Condition C, which the options hold, once more: same motion and target, another model.
+TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
+                            std::int64_t index, const signal::DifferenceModel& control_model);
+
+}  // namespace stillhand::study

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "study/output.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using experiment::kMetrics;
+using nlohmann::ordered_json;
+
+// JSON has no NaN: what could not be computed is null.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json number(const std::optional<double>& value) {
+  return value ? number(*value) : ordered_json(nullptr);
+}
+
+ordered_json sample_json(const MetricSample& sample) {
+  ordered_json each = ordered_json::array();
+  for (const double value : sample.per_subject) each.push_back(number(value));
+  return {{"mean", number(sample.mean)},
+          {"std", number(sample.standard_deviation)},
+          {"per_subject", each}};
+}
+
+ordered_json conditions_json(const StudyRecord& record) {
+  ordered_json out = ordered_json::object();
+  for (const auto& [condition, metrics] : record.analysis.conditions) {
+    ordered_json one;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      one[kMetrics[k].key] = sample_json(metrics[k]);
+    }
+    one["crossover_reference_hz"] =
+        sample_json(record.analysis.crossover_reference_hz.at(condition));
+    if (record.analysis.cancelled_share.contains(condition)) {
+      one["cancelled_share"] = sample_json(record.analysis.cancelled_share.at(condition));
+    }
+    out[std::string(1, condition)] = one;
+  }
+  return out;
+}
+
+std::string name_of(const Comparison& comparison) { return {comparison.from, '-', comparison.to}; }
+
+ordered_json p_values_json(const Analysis& analysis) {
+  ordered_json out = ordered_json::object();
+  for (const Comparison& comparison : analysis.comparisons) {
+    ordered_json one;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      const auto& test = comparison.tests[k];
+      one[kMetrics[k].key] = test ? number(test->p) : ordered_json(nullptr);
+    }
+    out[name_of(comparison)] = one;
+  }
+  return out;
+}
+
+ordered_json t_test_details_json(const Analysis& analysis) {
+  ordered_json out = ordered_json::object();
+  for (const Comparison& comparison : analysis.comparisons) {
+    ordered_json one;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      const auto& test = comparison.tests[k];
+      if (!test) continue;
+      one[kMetrics[k].key] = {{"t", number(test->t)},
+                              {"degrees_of_freedom", number(test->degrees_of_freedom)},
+                              {"mean_difference", number(test->mean_difference)},
+                              {"ci95", {number(test->ci_low), number(test->ci_high)}},
+                              {"cohen_dz", number(test->cohen_dz)},
+                              {"hedges_gz", number(test->hedges_gz)}};
+    }
+    out[name_of(comparison)] = one;
+  }
+  return out;
+}
+
+ordered_json effect_json(const statistics::MultivariateTest& effect) {
+  return {{"wilks_lambda", number(effect.wilks_lambda)},
+          {"f", number(effect.wilks.f)},
+          {"numerator_df", number(effect.wilks.numerator_df)},
+          {"denominator_df", number(effect.wilks.denominator_df)},
+          {"p", number(effect.wilks.p)},
+          {"pillai_trace", number(effect.pillai_trace)},
+          {"pillai_p", number(effect.pillai.p)}};
+}
+
+ordered_json manova_json(const MultivariateResult& result, const char* design) {
+  if (!result.manova) return {{"design", design}, {"reason", result.reason}};
+  ordered_json out{{"design", design},
+                   {"condition", effect_json(result.manova->condition)},
+                   {"subject", effect_json(result.manova->subject)},
+                   {"interaction", nullptr}};
+  if (result.manova->interaction) out["interaction"] = effect_json(*result.manova->interaction);
+  return out;
+}
+
+ordered_json restoration_json(const Analysis& analysis) {
+  ordered_json out;
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    out[kMetrics[k].restoration_key] = number(analysis.restoration[k]);
+  }
+  return out;
+}
+
+ordered_json identification_json(const StudyRecord& record) {
+  ordered_json subjects = ordered_json::array();
+  for (const SubjectResult& result : record.results) {
+    const Identification& found = result.identification;
+    subjects.push_back(
+        {{"heldout_vaf_percent", number(found.paper.heldout.free_run_vaf_percent)},
+         {"refined_heldout_vaf_percent", number(found.refined.heldout.free_run_vaf_percent)},
+         {"refined_used", !found.paper_unusable.empty()},
+         {"reason", found.paper_unusable.empty() ? ordered_json(nullptr)
+                                                 : ordered_json(found.paper_unusable)},
+         {"gain_at_0_hz_n_s2_m", number(std::abs(signal::response_at(found.refined.model, 0.0)))}});
+  }
+  return {{"refined_used", record.analysis.refined_used}, {"subjects", subjects}};
+}
+
+ordered_json wrong_json(const Analysis& analysis) {
+  ordered_json out = ordered_json::object();
+  for (const auto& [which, wrong] : analysis.wrong) {
+    ordered_json one;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      one[kMetrics[k].key] = sample_json(wrong.metrics[k]);
+    }
+    one["surviving_share"] = wrong.surviving_share;
+    out[which == 'O' ? "other_subject" : "mean_of_others"] = one;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string summary_json(const StudyRecord& record) {
+  const StudyOptions& options = record.options;
+  ordered_json summary;
+  summary["conditions"] = conditions_json(record);
+  summary["t_tests"] = p_values_json(record.analysis);
+  summary["manova"] = manova_json(record.analysis.main_effects, "main effects, one trial a cell");
+  summary["restoration"] = restoration_json(record.analysis);
+  summary["t_test_details"] = t_test_details_json(record.analysis);
+  summary["manova_thirds"] =
+      manova_json(record.analysis.thirds, "thirds of a trial as replicates; RMS error and dwell");
+  summary["wrong_models"] = wrong_json(record.analysis);
+  summary["identification"] = identification_json(record);
+  summary["subjects"] = options.subjects;
+  summary["seed"] = options.seed;
+  summary["trial_seconds"] = options.protocol.trial_s;
+  summary["identify_seconds"] = options.protocol.identify_s;
+  summary["version"] = STILLHAND_VERSION;
+  return summary.dump(2) + "\n";
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prints a pegged record of a drawn subject at 50 Hz, the paper's fit to it and its response as
+// JSON, for least_squares_test.py to solve once more.
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "experiment/in_process.hpp"
+#include "identification/core/arx.hpp"
+#include "identification/core/paper_preprocessing.hpp"
+#include "study/population.hpp"
+
+int main() {
+  using namespace stillhand;
+  experiment::ProtocolOptions options;
+  options.conditions = experiment::parse_conditions("A");
+  options.identify_s = 120.0;
+  experiment::CoreConfigs configs;
+  configs.rig.body = study::draw_subject({}, 1, 0).body;
+  experiment::InProcessLoop loop(configs, options.seed);
+  const auto record =
+      identification::preprocessed(loop.run(experiment::plan(options).front()).pegged);
+  const auto fit = identification::fit_arx(record, 4);
+  nlohmann::json response = nlohmann::json::array();
+  for (double hz = 0.0; hz <= 25.0; hz += 0.25) {
+    const auto h = signal::response_at(fit.model, hz);
+    response.push_back({hz, h.real(), h.imag()});
+  }
+  std::cout << nlohmann::json{
+      {"rate_hz", record.rate_hz},
+      {"acceleration", record.acceleration_m_s2},
+      {"force", record.force_n},
+      {"numerator", fit.model.numerator},
+      {"denominator", fit.model.denominator},
+      {"response",
+       response}}.dump();
+}

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand study` as a user meets it: files, report, wrong input, a disk that fills, Ctrl-C."""
+import html.parser
+import json
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
+STILLHAND = str(BUILD / "bin" / "stillhand")
+SHORT = ["--subjects", "3", "--trial-seconds", "40", "--identify-seconds", "20", "--seed", "5"]
+
+
+def study(*arguments, **options):
+    return subprocess.run([STILLHAND, "study", *arguments], capture_output=True, text=True, timeout=120, **options)
+
+
+class Tags(html.parser.HTMLParser):
+    """Collects what a page would load."""
+
+    def __init__(self):
+        super().__init__()
+        self.loaded = []
+        self.open = []
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name in ("src", "href", "xlink:href") and value and not value.startswith("#"):
+                self.loaded.append(value)
+
+
+class StudyTest(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def test_writes_report_figures_numbers_and_summary(self):
+        out = self.folder / "study"
+        run = study(*SHORT, "--conditions", "A,B,C,D,E,F", "--wrong-models", "--out", str(out))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        summary = json.loads((out / "summary.json").read_text())
+        for condition in "ABCDEF":
+            for metric in ("rms_error_mm", "dwell_ratio", "crossover_hz"):
+                self.assertEqual(len(summary["conditions"][condition][metric]["per_subject"]), 3)
+                self.assertGreater(summary["conditions"][condition][metric]["mean"], 0.0)
+        self.assertEqual(set(summary["t_tests"]), {"A-B", "B-C", "B-D", "B-E", "B-F"})
+        self.assertLess(summary["t_tests"]["A-B"]["rms_error_mm"], 0.05)
+        self.assertEqual(set(summary["restoration"]), {"rms_error", "dwell_ratio", "crossover"})
+        self.assertEqual(set(summary["wrong_models"]), {"other_subject", "mean_of_others"})
+        figures = {path.stem for path in out.glob("*.svg")}
+        self.assertEqual(figures, {path.stem for path in out.glob("*.png")})
+        self.assertGreaterEqual(len(figures), 10)
+        for name in ("metrics", "subjects", "models", "moving_averages", "open_loop"):
+            lines = (out / f"{name}.csv").read_text().splitlines()
+            self.assertEqual({line.count(",") for line in lines}, {lines[0].count(",")}, name)
+
+    def test_report_needs_no_network(self):
+        out = self.folder / "study"
+        self.assertEqual(study(*SHORT, "--out", str(out)).returncode, 0)
+        text = (out / "report.html").read_text()
+        page = Tags()
+        page.feed(text)
+        self.assertEqual(page.loaded, [])
+        self.assertEqual(re.findall(r"url\((?!#|'#|\"#)[^)]*\)", text), [])
+        self.assertIn("Table I", text)
+        self.assertEqual(text.count("<svg"), len(list(out.glob("*.svg"))))
+
+    def test_the_same_seed_writes_the_same_numbers(self):
+        first, second = self.folder / "first", self.folder / "second"
+        study(*SHORT, "--threads", "1", "--out", str(first))
+        study(*SHORT, "--threads", "3", "--out", str(second))
+        for path in first.glob("*.csv"):
+            self.assertEqual(path.read_text(), (second / path.name).read_text(), path.name)
+        self.assertEqual((first / "summary.json").read_text(), (second / "summary.json").read_text())
+
+    def refused(self, arguments, words, status=2):
+        before = sorted(self.folder.rglob("*"))
+        run = study(*arguments)
+        self.assertEqual(run.returncode, status, run.stderr)
+        self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
+        for word in words:
+            self.assertIn(word, run.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+    def test_wrong_input_is_one_line_and_leaves_nothing(self):
+        out = str(self.folder / "study")
+        people = self.folder / "people.yaml"
+        people.write_text("grip_stiffness_n_m: -2400\n")
+        misspelt = self.folder / "misspelt.yaml"
+        misspelt.write_text("grip_stifness_n_m: 2400\n")
+        cases = [
+            (["--subjects", "0", "--out", out], ["--subjects", "1 to 10000"]),
+            (["--subjects", "-3", "--out", out], ["--subjects"]),
+            (["--subjects", "many", "--out", out], ["--subjects"]),
+            (["--subjects", "3", "--conditions", "A,G", "--out", out], ['"G"', "F (arm rest)"]),
+            (["--subjects", "3", "--population", str(people), "--out", out],
+             ["people.yaml:1", "grip_stiffness_n_m", "500 to 8000"]),
+            (["--subjects", "3", "--population", str(misspelt), "--out", out],
+             ["misspelt.yaml:1", "grip_stifness_n_m", "grip_stiffness_n_m"]),
+            (["--subjects", "3", "--population", str(self.folder / "none.yaml"), "--out", out], ["none.yaml"]),
+            (["--trial-seconds", "2", "--out", out], ["--trial-seconds", "5 to 3600"]),
+            (["--subjects", "1", "--wrong-models", "--out", out], ["--wrong-models"]),
+            (["--conditions", "A,B", "--wrong-models", "--out", out], ["--wrong-models", "C"]),
+            (["--subjects", "3"], ["--out"]),
+        ]
+        for arguments, words in cases:
+            with self.subTest(arguments=arguments):
+                self.refused(arguments, words)
+
+    def test_a_folder_that_cannot_be_is_refused_before_the_work(self):
+        a_file = self.folder / "taken"
+        a_file.write_text("mine")
+        self.refused([*SHORT, "--out", str(a_file / "study")], ["--out", "taken"])
+        self.assertEqual(a_file.read_text(), "mine")
+
+    def test_a_disk_that_fills_leaves_what_was_there(self):
+        out = self.folder / "study"
+        self.assertEqual(study(*SHORT, "--out", str(out)).returncode, 0)
+        before = {path.name: path.read_bytes() for path in out.iterdir()}
+
+        def small_files_only():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (30_000, 30_000))
+
+        run = study(*SHORT, "--seed", "6", "--out", str(out), preexec_fn=small_files_only)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
+        self.assertEqual({path.name: path.read_bytes() for path in out.iterdir()}, before)
+
+    def test_interrupted_it_leaves_nothing(self):
+        out = self.folder / "study"
+        run = subprocess.Popen([STILLHAND, "study", "--subjects", "500", "--out", str(out)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.0)  # anywhere within minutes of work
+        run.send_signal(signal.SIGINT)
+        _, errors = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 1, errors)
+        self.assertIn("stopped", errors)
+        self.assertFalse(out.exists())
+
+    def test_two_subjects_are_told_that_a_test_means_little(self):
+        out = self.folder / "study"
+        run = study("--subjects", "2", "--trial-seconds", "20", "--identify-seconds", "20", "--out", str(out))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("means little", run.stderr)
+        self.assertIn("means little", (out / "report.html").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

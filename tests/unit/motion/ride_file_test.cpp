@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/ride_file.hpp"
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "contract/config_error.hpp"
+#include "idl/control_loop.h"
+#include "idl/topics.hpp"
+#include "recording/core/mcap_writer.hpp"
+#include "recording/core/memory_bytes.hpp"
+
+namespace stillhand::motion {
+namespace {
+
+using testing::DoubleEq;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string file_of(const std::string& name, const std::string& bytes) {
+  const std::string path = testing::TempDir() + name;
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+// As recorded: CDR with its encapsulation header.
+std::vector<std::byte> cdr_of(const stillhand_msgs::Sensed& message) {
+  constexpr std::size_t kHeader_bytes = 4;
+  std::vector<std::byte> bytes(kHeader_bytes +
+                               stillhand_msgs::Sensed::getCdrSerializedSize(message));
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(bytes.data()), bytes.size());
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                             eprosima::fastcdr::Cdr::DDS_CDR);
+  cdr.serialize_encapsulation();
+  message.serialize(cdr);
+  return bytes;
+}
+
+// A session's recording that holds these ticks; the lateral acceleration of each is its number.
+std::string recording_of(const std::string& name, const std::vector<std::int64_t>& ticks) {
+  recording::MemorySink sink;
+  recording::McapWriter writer(sink);
+  const auto schema = writer.add_schema("S", "omgidl", "struct S { octet x; };");
+  const auto channel = writer.add_channel(std::string(topics::kSensed.name), schema, "cdr");
+  for (const std::int64_t tick : ticks) {
+    stillhand_msgs::Sensed message;
+    message.tick(tick);
+    message.accel_y_m_s2(static_cast<double>(tick));
+    EXPECT_TRUE(writer.write(channel, 0, 0, 0, cdr_of(message)).ok());
+  }
+  EXPECT_TRUE(writer.close().ok());
+  const auto bytes = sink.bytes();
+  return file_of(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::string error_of(const std::string& path) {
+  try {
+    (void)read_ride(path);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(RideFileTest, ACsvRideIsItsLateralColumnAtTheFilesRate) {
+  const auto sut =
+      read_ride(file_of("ride.csv", "t [s],a_x [m/s^2],a_y [m/s^2]\n0,9,1\n0.02,9,2\n0.04,9,-3\n"));
+  EXPECT_THAT(sut.accel_m_s2, ElementsAre(1.0, 2.0, -3.0));
+  EXPECT_DOUBLE_EQ(sut.rate_hz, 50.0);
+  EXPECT_DOUBLE_EQ(sut.length_s(), 0.06);
+}
+
+// Steps of 14 and 6 ms are 10 ms on average; a rate from either would stretch the ride.
+TEST(RideFileTest, TheRateOfUnevenRowsIsThatOfTheWholeRide) {
+  EXPECT_DOUBLE_EQ(
+      read_ride(file_of("uneven.csv", "t [s],a_y [m/s^2]\n0,1\n0.014,2\n0.02,3\n0.034,4\n0.04,5\n"))
+          .rate_hz,
+      100.0);
+}
+
+// Halves at 10 and 13 ms: where they meet, rows are 20 times 1.5 ms from the grid of the average.
+TEST(RideFileTest, RowsFarFromAnEvenGridAreRefused) {
+  std::string rows = "t [s],a_y [m/s^2]\n";
+  for (int i = 0; i < 20; ++i) rows += std::to_string(0.010 * i) + ",1\n";
+  for (int i = 0; i < 20; ++i) rows += std::to_string(0.200 + 0.013 * i) + ",1\n";
+  EXPECT_THAT(error_of(file_of("drift.csv", rows)), HasSubstr("not evenly spaced"));
+}
+
+TEST(RideFileTest, ARecordingsRideIsWhatWasSensedAt1Khz) {
+  const auto sut = read_ride(recording_of("whole.mcap", {7, 8, 9, 10}));
+  EXPECT_THAT(sut.accel_m_s2, ElementsAre(7.0, 8.0, 9.0, 10.0));
+  EXPECT_EQ(sut.rate_hz, 1000.0);
+  EXPECT_EQ(sut.bridged_ticks, 0);
+}
+
+TEST(RideFileTest, AFewLostTicksAreBridgedByAStraightLine) {
+  const auto sut = read_ride(recording_of("lost.mcap", {1, 2, 5, 6}));
+  EXPECT_THAT(sut.accel_m_s2, ElementsAre(1.0, 2.0, DoubleEq(3.0), DoubleEq(4.0), 5.0, 6.0));
+  EXPECT_EQ(sut.bridged_ticks, 2);
+  EXPECT_EQ(read_ride(recording_of("ten.mcap", {1, 12})).bridged_ticks, 10);
+}
+
+TEST(RideFileTest, MoreLostTicksThanThatAreRefusedAndNamed) {
+  EXPECT_THAT(error_of(recording_of("gap.mcap", {1, 2, 14})),
+              HasSubstr("gap.mcap: got ticks missing after tick 2"));
+}
+
+TEST(RideFileTest, TicksOutOfOrderAreRefused) {
+  EXPECT_THAT(error_of(recording_of("order.mcap", {1, 3, 2})), HasSubstr("after tick 3"));
+}
+
+TEST(RideFileTest, ARecordingWithoutSensedSamplesIsRefused) {
+  EXPECT_THAT(error_of(recording_of("empty.mcap", {})),
+              HasSubstr("no messages of stillhand/sensed"));
+}
+
+TEST(RideFileTest, WhatIsNoRecordingIsRefused) {
+  EXPECT_THAT(error_of(file_of("text.mcap", "t [s],a_y [m/s^2]\n")), HasSubstr("text.mcap"));
+  EXPECT_THAT(error_of(testing::TempDir() + "nowhere.mcap"), HasSubstr("nowhere.mcap"));
+}
+
+}  // namespace
+}  // namespace stillhand::motion

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Subjects of a study: Eq. SU-1 and SU-2.
+#include "study/population.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "contract/config_error.hpp"
+#include "rig/core/rig.hpp"
+#include "settings/load.hpp"
+#include "statistics/descriptive.hpp"
+
+namespace stillhand::study {
+namespace {
+
+std::vector<double> drawn(const Population& population, int count, double (*of)(const Subject&)) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(of(draw_subject(population, 7, i)));
+  return out;
+}
+
+// 4000 draws: the mean's standard error is cv / 63, the deviation's 1.1 %.  Cutting at 2.5 takes
+// 4.5 % off the deviation and, the lognormal being skewed, cv^2 * 0.04 off the mean.
+TEST(PopulationTest, DrawsHaveTheMeanAndTheSpreadOfTheFile) {
+  Population population;
+  population.grip_stiffness_cv = 0.3;
+  const auto values =
+      drawn(population, 4000, [](const Subject& s) { return s.body.grip_stiffness_n_m; });
+  const double mean = statistics::mean(values);
+  EXPECT_NEAR(mean / population.grip_stiffness_n_m, 1.0, 4.0 * 0.3 / 63.0 + 0.3 * 0.3 * 0.1);
+  EXPECT_NEAR(statistics::standard_deviation(values) / mean, 0.3 * 0.93, 0.3 * 0.07);
+}
+
+TEST(PopulationTest, NothingDrawnIsEverNegativeAndNothingFarOut) {
+  Population population;
+  population.shoulder_stiffness_cv = 0.6;
+  const double s = std::sqrt(std::log1p(0.36));
+  for (const double value :
+       drawn(population, 2000, [](const Subject& a) { return a.body.shoulder_stiffness_n_m; })) {
+    EXPECT_GT(value, population.shoulder_stiffness_n_m * std::exp(-2.5 * s - 0.5 * s * s) * 0.999);
+    EXPECT_LT(value, population.shoulder_stiffness_n_m * std::exp(2.5 * s - 0.5 * s * s) * 1.001);
+  }
+}
+
+TEST(PopulationTest, ASubjectDoesNotDependOnHowManyOthersThereAre) {
+  const Population population;
+  const Subject alone = draw_subject(population, 3, 5);
+  draw_subject(population, 3, 4);
+  const Subject again = draw_subject(population, 3, 5);
+  EXPECT_EQ(alone.body.trunk_mass_kg, again.body.trunk_mass_kg);
+  EXPECT_EQ(alone.who.delay_s, again.who.delay_s);
+  EXPECT_NE(alone.body.trunk_mass_kg, draw_subject(population, 3, 6).body.trunk_mass_kg);
+  EXPECT_NE(alone.body.trunk_mass_kg, draw_subject(population, 4, 5).body.trunk_mass_kg);
+}
+
+TEST(PopulationTest, TheArmIsStifferWhenItTracksThanWhenItIdles) {
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_GT(draw_subject({}, 1, i).body.cocontraction_stiffness_factor, 1.0);
+  }
+}
+
+// Oracle: a constant force on the free stick until it rests.  K of Eq. SU-2 is the series
+// stiffness of seat, shoulder and grip, so x = f / K; Coulomb friction, 0.2 N of 5 N, is off.
+TEST(PopulationTest, TheLearntStiffnessIsWhatTheRigAnswersWith) {
+  const Subject subject = mean_subject({});
+  rig::RigConfig config;
+  config.body = subject.body;
+  config.stick.coulomb_friction_n = 0.0;
+  rig::Rig rig(config);
+  rig::RigInput input;
+  input.command_valid = true;
+  input.operator_valid = true;
+  input.operator_force_n = 5.0;
+  double theta_rad = 0.0;
+  for (int n = 0; n < 10000; ++n) theta_rad = rig.step(input).truth.theta_rad;
+  const double moved_m = theta_rad * config.stick.lever_m;
+  EXPECT_NEAR(5.0 / moved_m, subject.who.arm.effective_stiffness_n_m,
+              1e-4 * subject.who.arm.effective_stiffness_n_m);
+}
+
+TEST(PopulationTest, ANegativeStiffnessIsRefusedByName) {
+  Population population;
+  population.grip_stiffness_n_m = -2400.0;
+  try {
+    draw_subject(population, 1, 0);
+    FAIL() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("population.grip_stiffness_n_m"));
+  }
+}
+
+TEST(PopulationTest, AMisspeltKeyIsNamedWithTheRightOne) {
+  try {
+    settings::load_text<Population>("shoulder_stifness_n_m: 900\n", "population", "people.yaml");
+    FAIL() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("people.yaml:1"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("shoulder_stiffness_n_m"));
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::study
