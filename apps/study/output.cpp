@@ -45,7 +45,7 @@ void print_study(const StudyRecord& record) {
     std::printf("paired t-test %c-%c, p:", comparison.from, comparison.to);
     for (const auto& test : comparison.tests) {
       if (test) {
-        std::printf(" %.3g", test->p);
+        std::printf(test->p > 0.0 ? " %.3g" : " <1e-300", test->p);
       } else {
         std::printf(" -");
       }

@@ -29,6 +29,9 @@ double paper_value(std::size_t metric, char condition) {
   return unit * (condition == 'A' ? what.paper_a : condition == 'B' ? what.paper_b : what.paper_c);
 }
 
+// Beyond a double's range a tail is 0, which no probability is.
+std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰⁰"; }
+
 std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 
 const Comparison* find(const Analysis& analysis, char from, char to) {
@@ -61,7 +64,7 @@ report::Table paper_table(const Analysis& analysis, char from, char to, const ch
       row.emplace_back(number(test->mean_difference, decimals(k)) + " [" +
                        number(test->ci_low, decimals(k)) + ", " +
                        number(test->ci_high, decimals(k)) + "]");
-      row.emplace_back(short_number(test->p), test->p < 0.01 ? Emphasis::kStrong : Emphasis::kNone);
+      row.emplace_back(p_value(test->p), test->p < 0.01 ? Emphasis::kStrong : Emphasis::kNone);
       row.emplace_back(test->hedges_gz ? number(*test->hedges_gz, 2) : "–");
     } else {
       row.insert(row.end(), 3, Cell("–"));
@@ -117,8 +120,7 @@ void add_effect(report::Table& table, const char* name, const statistics::Multiv
   table.rows.push_back(
       {name, short_number(test.wilks_lambda), number(test.wilks.f, 2),
        number(test.wilks.numerator_df, 0) + ", " + number(test.wilks.denominator_df, 1),
-       Cell(short_number(test.wilks.p),
-            test.wilks.p < 0.01 ? Emphasis::kStrong : Emphasis::kNone)});
+       Cell(p_value(test.wilks.p), test.wilks.p < 0.01 ? Emphasis::kStrong : Emphasis::kNone)});
 }
 
 void add_manova(report::Page& page, const MultivariateResult& result, const char* caption) {
@@ -233,7 +235,7 @@ void add_mitigations(report::Page& page, const StudyRecord& record) {
     table.rows.push_back(
         {label_of(condition), mean_and_deviation(metrics[0], 0), mean_and_deviation(metrics[1], 1),
          mean_and_deviation(metrics[2], 2), restored,
-         test != nullptr && test->tests[0] ? short_number(test->tests[0]->p) : std::string("–")});
+         test != nullptr && test->tests[0] ? p_value(test->tests[0]->p) : std::string("–")});
   }
   page.table(table);
 }

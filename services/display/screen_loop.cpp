@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 
 #include "display/view_opencv.hpp"
 #include "display/view_output.hpp"
@@ -94,7 +95,8 @@ void ScreenLoop::run() {
       const runtime::OrdinaryWhile ordinary;
       open = screen->show(shown, due_ns - fresh_ns < kLinkLost_ns);
     }
-    if (!open) return;  // closed: this process ends, and with it the session
+    // This process ends, and with it the session; the experiment quotes the line.
+    if (!open) throw std::runtime_error("the tracking window was closed");
     if (options_.pointer) publish_pointer(shown.tick, screen->pointer_m());
   }
 }

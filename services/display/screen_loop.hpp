@@ -17,7 +17,8 @@ struct ScreenOptions {
 
 /// Draws 60 frames a second from the newest data, in the calling thread, until stopped or the
 /// window is closed.  Of ordinary priority: a slow window or disk costs frames, never samples.
-/// @throws ConfigError when window or file cannot be opened.
+/// @throws ConfigError when window or file cannot be opened; std::runtime_error once the window was
+///         closed.
 class ScreenLoop {
  public:
   ScreenLoop(Shell& shell, ScreenOptions options);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "display/view_output.hpp"
 
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/highgui.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -30,13 +34,17 @@ void check_rate(double rate_hz) {
   }
 }
 
+constexpr const char* kWantedSession =
+    "a graphical session, or no window: frames can go to a video file";
+
+std::string named(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? "" : value;
+}
+
 /// Qt, which draws OpenCV's windows, ends the whole process when it finds no display: ask first.
 void check_display() {
-  const auto named = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return std::string(value == nullptr ? "" : value);
-  };
-  const std::string want = "a graphical session, or no window: frames can go to a video file";
+  const std::string want = kWantedSession;
   const std::string platform = named("QT_QPA_PLATFORM");
   if (platform == "offscreen" || platform == "minimal") return;
   const std::string x11 = named("DISPLAY");
@@ -52,6 +60,34 @@ void check_display() {
     }
   }
 }
+
+/// Whether a display lets this program in is known to Qt alone, which aborts when it does not:
+/// while this lives, an abort is told as the refusal that it is, with the exit status of a
+/// ConfigError.
+class AbortAsRefusal {
+ public:
+  AbortAsRefusal() {
+    const ConfigError refusal(
+        "display.view.window",
+        "DISPLAY=" + named("DISPLAY") + ", which does not let this program in", kWantedSession);
+    std::snprintf(line_, sizeof line_, "stillhand-display: %s\n", refusal.what());
+    before_ = std::signal(SIGABRT, &refuse);
+  }
+  ~AbortAsRefusal() { std::signal(SIGABRT, before_); }
+  AbortAsRefusal(const AbortAsRefusal&) = delete;
+  AbortAsRefusal& operator=(const AbortAsRefusal&) = delete;
+
+ private:
+  using Act = void (*)(int);
+  // Only what a signal may do; hence the line made before, and static.
+  [[noreturn]] static void refuse(int /*signal*/) {
+    constexpr int kRefused = 2;
+    _exit(write(STDERR_FILENO, line_, std::strlen(line_)) < 0 ? 1 : kRefused);
+  }
+
+  static inline char line_[512];
+  Act before_;
+};
 
 }  // namespace
 
@@ -108,14 +144,14 @@ ScreenWindow::ScreenWindow(const std::string& title, const Projection& projectio
     : title_(title), projection_(projection), sized_(full_screen) {
   check_display();
   try {
+    const AbortAsRefusal abort_as_refusal;
     cv::namedWindow(title_, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO | cv::WINDOW_GUI_NORMAL);
     if (full_screen) {
       cv::setWindowProperty(title_, cv::WND_PROP_FULLSCREEN, cv::WINDOW_FULLSCREEN);
     }
     cv::setMouseCallback(title_, &ScreenWindow::on_mouse, this);
   } catch (const cv::Exception& error) {
-    throw ConfigError("display.view.window", error.err,
-                      "a graphical session, or no window: frames can go to a video file");
+    throw ConfigError("display.view.window", error.err, kWantedSession);
   }
 }
 

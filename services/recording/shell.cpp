@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstring>
-#include <iostream>
 
 #include "idl/idl_text.hpp"
 #include "recording/sample_clock.hpp"
@@ -114,9 +113,10 @@ void Shell::write_batch(const Batch& batch) {
                       held.publish_time_ns, {batch.bytes.data() + held.begin, held.size});
     if (!status.ok() && !told_failure_) {
       told_failure_ = true;
-      std::cerr << service_.options().out.string() << ": " << status.text << '\n';
       service_.note_event(stillhand_msgs::EVENT_NOTE,
                           "recording stopped: the file cannot be written");
+      // A trial that nobody keeps is no trial: the process ends, run() says why.
+      service_.stop().request();
     }
   }
 }

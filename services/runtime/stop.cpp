@@ -17,6 +17,7 @@ sigset_t watched_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGHUP);  // the terminal was closed; nohup's own setting stays
   sigaddset(&set, kWakeSignal);
   return set;
 }

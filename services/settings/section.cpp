@@ -24,13 +24,20 @@ std::string place_of(const YAML::Mark& mark, const std::string& source_name) {
   return source_name + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
 }
 
-Entry converted(const YAML::Node& node, const std::string& source_name);
+// Settings are nested three deep and have some tens of keys.  An alias may stand for a part that it
+// is in itself, which has no end, or multiply a part at every level.
+constexpr int kDeepest = 16;
+constexpr std::size_t kMostEntries = 10'000;
 
-void add_children(Entry& map, const YAML::Node& node, const std::string& source_name) {
+Entry converted(const YAML::Node& node, const std::string& source_name, int depth,
+                std::size_t& count);
+
+void add_children(Entry& map, const YAML::Node& node, const std::string& source_name, int depth,
+                  std::size_t& count) {
   for (const auto& pair : node) {
     const std::string place = place_of(pair.first.Mark(), source_name);
     if (!pair.first.IsScalar()) throw ConfigError(place, "a key that is no word", "a plain name");
-    Entry child = converted(pair.second, source_name);
+    Entry child = converted(pair.second, source_name, depth + 1, count);
     child.key = pair.first.Scalar();
     child.key_place = place;
     for (const Entry& sibling : map.children) {
@@ -43,15 +50,21 @@ void add_children(Entry& map, const YAML::Node& node, const std::string& source_
   }
 }
 
-Entry converted(const YAML::Node& node, const std::string& source_name) {
+Entry converted(const YAML::Node& node, const std::string& source_name, int depth,
+                std::size_t& count) {
   Entry entry;
   entry.place = entry.key_place = place_of(node.Mark(), source_name);
+  if (depth > kDeepest || ++count > kMostEntries) {
+    throw ConfigError(entry.place, "settings without end", "no alias inside what it stands for");
+  }
   if (node.IsMap()) {
     entry.kind = Entry::Kind::kMap;
-    add_children(entry, node, source_name);
+    add_children(entry, node, source_name, depth, count);
   } else if (node.IsSequence()) {
     entry.kind = Entry::Kind::kSequence;
-    for (const auto& item : node) entry.children.push_back(converted(item, source_name));
+    for (const auto& item : node) {
+      entry.children.push_back(converted(item, source_name, depth + 1, count));
+    }
   } else if (node.IsScalar()) {
     entry.kind = Entry::Kind::kScalar;
     entry.text = node.Scalar();
@@ -125,7 +138,8 @@ Entry parse_text(const std::string& yaml, const std::string& source_name) {
   } catch (const YAML::Exception& error) {
     throw ConfigError(place_of(error.mark, source_name), error.msg, "well-formed YAML");
   }
-  Entry top = converted(root, source_name);
+  std::size_t count = 0;
+  Entry top = converted(root, source_name, 0, count);
   if (top.kind == Entry::Kind::kNull) top.kind = Entry::Kind::kMap;
   if (top.kind != Entry::Kind::kMap) throw ConfigError(top.place, got_of(top), "a map of settings");
   return top;

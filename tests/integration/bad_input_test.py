@@ -58,9 +58,19 @@ class BadInputTest(LabTestCase):
             (["--identify-seconds", "inf"], ["--identify-seconds", "inf", "5 to 3600"]),
             (["--trial-seconds", "soon"], ["--trial-seconds", "soon"]),
             (["--seed", "-1"], ["--seed", "-1"]),
+            (["--seed", "99999999999999999999"], ["--seed", "99999999999999999999", "9223372036854775807"]),
+            (["--seed", "1.5"], ["--seed", "1.5"]),
             (["--match-seconds", "-1"], ["--match-seconds", "-1"]),
             (["--motion", "train"], ["--motion", "train", "noise", "road", "ride"]),
             (["--motion", "ride"], ["--ride"]),
+            (["--motion", "road", "--road-class", "J"], ["--road-class", '"J"', "A (very good) to H"]),
+            (["--motion", "road", "--road-class", "b"], ["--road-class", '"b"', "A (very good) to H"]),
+            (["--motion", "road", "--speed-m-s", "71"], ["--speed-m-s", "71", "0.5 to 70 m/s"]),
+            (["--motion", "road", "--speed-m-s", "nan"], ["--speed-m-s", "nan", "0.5 to 70 m/s"]),
+            (["--motion", "road", "--speed-m-s", "72km/h"], ["--speed-m-s", "72km/h"]),
+            (["--motion", "road", "--road-class", "F"], ["--road-class", "F at 20 m/s", "less speed"]),
+            (["--road-class", "C"], ["--road-class", "--motion road"]),
+            (["--speed-m-s", "10"], ["--speed-m-s", "--motion road"]),
             (["--operator", "mouse"], ["--headless"]),
             (["--misspelt"], ["--misspelt"]),
         ]
@@ -105,6 +115,17 @@ class BadInputTest(LabTestCase):
         folder = self.settings("cancellation.yaml", "limits:\n  max_force_n: 1000\n")
         self.assert_refused([f"{folder}/cancellation.yaml:2:16", "1000", "60"], "--config", folder)
 
+    def test_settings_that_hold_themselves_are_refused(self):
+        folder = self.settings("rig.yaml", "motor: &motor [*motor]\n")
+        self.assert_refused([f"{folder}/rig.yaml:1:", "settings without end"], "--config", folder)
+
+    def test_settings_that_no_trial_can_have_are_refused_before_the_session(self):
+        folder = self.settings("motion.yaml", "limits:\n  max_position_m: 0.005\n")
+        self.assert_refused(["motion.yaml", "trial 0 (I)", "0.005"], "--config", folder)
+        (folder / "motion.yaml").write_text("")
+        (folder / "display.yaml").write_text("reference_scale_m: 0.4\n")
+        self.assert_refused(["display.reference_scale_m", "0.4", "smaller"], "--config", folder)
+
     def test_missing_settings_folder_is_named(self):
         self.assert_refused([str(self.folder / "nowhere")], "--config", self.folder / "nowhere")
 
@@ -125,6 +146,52 @@ class BadInputTest(LabTestCase):
 
     def test_ride_without_lateral_acceleration_is_refused(self):
         self.assert_ride_refused(["a_y [m/s^2]"], "t [s],a_x [m/s^2]", RIDE_ROWS)
+
+    def test_ride_that_is_no_text_is_refused(self):
+        ride = self.folder / "ride.csv"
+        ride.write_bytes(bytes(range(256)) * 20)
+        self.assert_refused([str(ride), "binary"], "--conditions", "B", "--motion", "ride", "--ride", ride)
+
+    def test_ride_without_motion_or_of_a_slow_device_is_refused_before_the_session(self):
+        self.assert_ride_refused(["no motion"], "t [s],a_y [m/s^2]", [f"{0.01 * i:.2f},1.0" for i in range(1000)])
+        self.assert_ride_refused(["1.000000", "12.0"], "t [s],a_y [m/s^2]", [f"{i},{i % 3}" for i in range(100)])
+
+    def test_ride_with_uneven_times_is_refused(self):
+        rows = [f"{t:.3f},{i % 3}" for i, t in enumerate([0.010 * i for i in range(500)] +
+                                                        [5.0 + 0.013 * i for i in range(500)])]
+        self.assert_ride_refused(["evenly"], "t [s],a_y [m/s^2]", rows)
+
+    def test_ride_that_the_results_would_replace_is_refused_and_kept(self):
+        out = self.folder / "earlier"
+        out.mkdir()
+        ride = out / "session.mcap"
+        ride.write_bytes(b"kept")
+        self.assert_refused([str(ride)], "--motion", "ride", "--ride", ride, out=out)  # no recording
+        ride.unlink()
+        (out / "screen.avi").write_text("\n".join(["t [s],a_y [m/s^2]", *RIDE_ROWS]))
+        self.assert_refused(["--out", str(out), "screen.avi is the ride"], "--trial-seconds", 5, "--motion", "ride",
+                            "--ride", out / "screen.avi", out=out)
+        self.assertTrue((out / "screen.avi").exists())
+
+    def test_folder_that_another_lab_writes_is_refused_and_kept(self):
+        first = self.lab("--conditions", "A")
+        first.wait_for_start()
+        self.assert_refused(["--out", str(first.out), "another lab"], out=first.out)
+        self.assertTrue((first.out / "session.mcap").exists())
+        first.interrupt()
+        self.assertEqual(first.end_status(), 1)
+
+    def test_files_of_others_in_the_folder_are_kept(self):
+        out = self.folder / "mine"
+        (out / "logs").mkdir(parents=True)
+        for name in ("notes.txt", "logs/server.log"):
+            (out / name).write_text("kept")
+        lab = self.lab("--conditions", "A", out=out)
+        lab.wait_for_start()
+        lab.interrupt()
+        self.assertEqual(lab.end_status(), 1)
+        self.assertEqual((out / "notes.txt").read_text(), "kept")
+        self.assertEqual((out / "logs" / "server.log").read_text(), "kept")
 
     def test_ride_shorter_than_the_trial_is_refused_before_the_session(self):
         self.assert_ride_refused([], "t [s],a_y [m/s^2]", RIDE_ROWS[:300])

@@ -3,12 +3,15 @@
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "contract/config_error.hpp"
 #include "experiment/session_recording.hpp"
 
-// inspect_recording FILE LAST_TICKS: what the integration tests ask of a session's recording, as
-// one JSON object; of the rig's truth its last LAST_TICKS samples.  The file may still be growing.
+// inspect_recording FILE LAST_TICKS [signals]: what the integration tests ask of a session's
+// recording, as one JSON object; of the rig's truth its last LAST_TICKS samples, and with `signals`
+// the same of what moves and is tracked.  The file may still be growing.
 // Exit status 2 when the file is no recording.
 
 namespace {
@@ -25,6 +28,46 @@ json trials_of(const stillhand::experiment::SessionRecording& session) {
                       {"ramp_ticks", control.ramp_ticks()}});
   }
   return trials;
+}
+
+template <typename Message>
+std::vector<Message> newest(const std::vector<Message>& stream, std::size_t count) {
+  return {stream.end() - static_cast<std::ptrdiff_t>(std::min(stream.size(), count)), stream.end()};
+}
+
+json signals_of(const stillhand::experiment::SessionRecording& session, std::size_t last_ticks) {
+  json signals{{"truth", json::array()},    {"command", json::array()}, {"sensed", json::array()},
+               {"tracking", json::array()}, {"force", json::array()},   {"pointer", json::array()}};
+  for (const auto& m : newest(session.rig_truths, last_ticks)) {
+    signals["truth"].push_back({m.tick(), m.platform_position_m(), m.platform_acceleration_m_s2(),
+                                m.feedthrough_force_n(), m.volitional_force_n()});
+  }
+  for (const auto& m : newest(session.platform_commands, last_ticks)) {
+    signals["command"].push_back({m.tick(), m.position_m(), m.acceleration_m_s2()});
+  }
+  for (const auto& m : newest(session.sensed, last_ticks)) {
+    signals["sensed"].push_back({m.tick(), m.accel_y_m_s2()});
+  }
+  for (const auto& m : newest(session.tracking_samples, last_ticks)) {
+    signals["tracking"].push_back({m.tick(), m.stamp_ns(), m.target_m(), m.cursor_m()});
+  }
+  for (const auto& m : newest(session.operator_forces, last_ticks)) {
+    signals["force"].push_back({m.tick(), m.force_n()});
+  }
+  for (const auto& m : session.pointers) {
+    if (m.inside_window()) signals["pointer"].push_back({m.tick(), m.position_m()});
+  }
+  return signals;
+}
+
+json notes_of(const stillhand::experiment::SessionRecording& session) {
+  json notes = json::array();
+  for (const auto& event : session.events) {
+    if (event.kind() == stillhand_msgs::EVENT_NOTE) {
+      notes.push_back({event.source().c_str(), event.text().c_str()});
+    }
+  }
+  return notes;
 }
 
 json rig_of(const stillhand::experiment::SessionRecording& session, std::size_t last_ticks) {
@@ -48,20 +91,24 @@ json rig_of(const stillhand::experiment::SessionRecording& session, std::size_t 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::cerr << "usage: inspect_recording FILE LAST_TICKS\n";
+  const bool signals = argc == 4 && std::string(argv[3]) == "signals";
+  if (argc != 3 && !signals) {
+    std::cerr << "usage: inspect_recording FILE LAST_TICKS [signals]\n";
     return 2;
   }
   try {
     const auto session = stillhand::experiment::read_session(argv[1]);
-    const json found{{"messages", session.messages},
-                     {"lost_ticks", session.lost_ticks},
-                     {"damage", session.damage},
-                     {"trials", trials_of(session)},
-                     {"rig", rig_of(session, std::strtoul(argv[2], nullptr, 10))},
-                     {"newest_motor_command_ns", session.motor_commands.empty()
-                                                     ? std::int64_t{-1}
-                                                     : session.motor_commands.back().stamp_ns()}};
+    const std::size_t last_ticks = std::strtoul(argv[2], nullptr, 10);
+    json found{{"messages", session.messages},
+               {"lost_ticks", session.lost_ticks},
+               {"damage", session.damage},
+               {"trials", trials_of(session)},
+               {"rig", rig_of(session, last_ticks)},
+               {"notes", notes_of(session)},
+               {"newest_motor_command_ns", session.motor_commands.empty()
+                                               ? std::int64_t{-1}
+                                               : session.motor_commands.back().stamp_ns()}};
+    if (signals) found["signals"] = signals_of(session, last_ticks);
     std::cout << found << '\n';
     return 0;
   } catch (const stillhand::ConfigError& error) {

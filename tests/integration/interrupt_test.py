@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ctrl-C and kill -9 of the lab at several moments: it ends soon, nobody is left, what was recorded can be read."""
 import os
+import resource
 import signal
 import time
 
@@ -58,6 +59,32 @@ class InterruptTest(LabTestCase):
         self.assertEqual(lab.summary()["conditions"], {})
         self.assertEqual({path.name for path in lab.out.iterdir()},
                          {"session.mcap", "summary.json", "model.json", "logs"})
+
+    # A closed terminal hangs up, an orderly shutdown of the machine terminates.
+    def test_hang_up_and_termination_end_a_session_as_ctrl_c_does(self):
+        for wanted in (signal.SIGHUP, signal.SIGTERM):
+            with self.subTest(wanted.name):
+                lab = self.lab(*quick_session(self.folder / wanted.name), out=self.folder / f"run{wanted}")
+                lab.wait_for_tick(0, 1, TRIAL_LIMIT_S)
+                os.kill(lab.process.pid, wanted)
+                self.assertEqual(lab.end_status(INTERRUPT_LIMIT_S), 1)
+                self.assert_nothing_left(lab)
+                self.assert_recording_holds(lab, 0)
+                self.assert_marked(lab, 0)
+
+    # A limit on the size of files stands in for a full disk: the recorder writes 0.4 MB a second.
+    def test_recording_that_cannot_be_written_ends_the_trial(self):
+        def limit_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # an error of write() instead
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
+        lab = self.lab(*quick_session(self.folder / "config"), before_start=limit_files)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1)
+        self.assert_nothing_left(lab)
+        trial = lab.summary()["trials"][-1]
+        self.assertFalse(trial["completed"])
+        for words in ("recorder", "session.mcap", "File too large"):
+            self.assertIn(words, trial["aborted"])
+        self.assertGreater(lab.recording(1)["messages"]["stillhand/rig_truth"], 1000)
 
     def test_services_of_a_killed_lab_end_by_themselves(self):
         lab = self.start()

@@ -77,17 +77,20 @@ def quick_session(folder):
 class LabProcess:
     """One `stillhand lab`, ended with everything it started by close()."""
 
-    def __init__(self, out, *arguments, domain=None, program=None):
+    def __init__(self, out, *arguments, domain=None, program=None, headless=True, environment=None,
+                 before_start=None):
         self.out = pathlib.Path(out)  # "": none given
         self.domain = next_domain() if domain is None else domain
         self._shared_memory_before = shared_memory()
         self._output = tempfile.TemporaryFile("w+")
         self._errors = tempfile.TemporaryFile("w+")
-        words = [str(program or STILLHAND), "lab", "--headless", "--domain", str(self.domain)]
+        words = [str(program or STILLHAND), "lab", "--domain", str(self.domain)]
+        words += ["--headless"] if headless else []
         words += ["--out", str(out)] if out else []
         # A session of its own: interrupt() reaches the process group, as a terminal's Ctrl-C does.
         self.process = subprocess.Popen(words + [str(word) for word in arguments], stdin=subprocess.DEVNULL,
-                                        stdout=self._output, stderr=self._errors, start_new_session=True)
+                                        stdout=self._output, stderr=self._errors, start_new_session=True,
+                                        env=environment, preexec_fn=before_start)
 
     def pid_of(self, service):
         """Process number of a service, None before it runs."""
@@ -147,13 +150,20 @@ class LabProcess:
     def shared_memory_left(self):
         return shared_memory() - self._shared_memory_before
 
-    def recording(self, last_ticks):
+    def recording(self, last_ticks, *more):
         """The recording as inspect_recording sees it, with the newest `last_ticks` ticks of the rig."""
-        inspected = subprocess.run([str(INSPECT), str(self.out / "session.mcap"), str(last_ticks)],
+        inspected = subprocess.run([str(INSPECT), str(self.out / "session.mcap"), str(last_ticks), *more],
                                    capture_output=True, text=True, check=False)
         if inspected.returncode != 0:  # not there yet, or without a complete record
             return {"messages": {}, "trials": [], "rig": {"tick": []}, "damage": [inspected.stderr]}
         return json.loads(inspected.stdout)
+
+    def measured_signals(self, trial):
+        """Rows of the measured part of a trial, by signal (inspect_recording.cpp); the tick comes first in each."""
+        recording = self.recording(10**9, "signals")
+        entry = next(entry for entry in recording["trials"] if entry["number"] == trial)
+        ticks = range(entry["start_tick"], entry["start_tick"] + entry["duration_ticks"])
+        return {name: [row for row in rows if row[0] in ticks] for name, rows in recording["signals"].items()}
 
     def summary(self):
         return json.loads((self.out / "summary.json").read_text())

@@ -39,9 +39,12 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+// Control characters of a file that is no text would move a terminal's cursor, and split a message.
 std::string quoted(std::string_view text) {
-  if (text.size() <= kQuotedCharacters) return "'" + std::string(text) + "'";
-  return "'" + std::string(text.substr(0, kQuotedCharacters)) + "...'";
+  std::string shown(text.substr(0, kQuotedCharacters));
+  std::ranges::replace_if(
+      shown, [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  return "'" + shown + (text.size() <= kQuotedCharacters ? "'" : "...'");
 }
 
 std::string title(const Column& column) { return column.name + " [" + column.unit + "]"; }
@@ -183,6 +186,9 @@ void parse_row(const CsvText& text, std::string_view line, std::vector<Column>& 
 }  // namespace
 
 Recording parse_csv(std::string_view text, const std::string& source) {
+  if (text.find('\0') != std::string_view::npos) {
+    throw ConfigError(source, "binary data", "CSV text in UTF-8");
+  }
   CsvText csv(text, source);
   std::string_view line;
   if (!csv.next_line(line) || trimmed(line).empty()) {

@@ -145,5 +145,12 @@ TEST(CsvTest, ReadsAMillionRows) {
               took.count());
 }
 
+TEST(CsvTest, WhatIsNoTextIsRefusedInOneLine) {
+  EXPECT_THAT(error_of(std::string_view("t\0 [\0s\0]\0", 9)), HasSubstr("got binary data"));
+  const std::string error = error_of("\x89M\rC\nt [s],f [N]\n");
+  EXPECT_THAT(error, HasSubstr("M?C'"));
+  EXPECT_EQ(error.find_first_of("\r\n\x1b"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace stillhand::recording

@@ -113,6 +113,19 @@ TEST(LoadTest, ADuplicateKeyIsRefusedWithBothPlaces) {
             "rig.yaml:1:1");
 }
 
+// Not a crash, and not a machine that is busy for ever.
+TEST(LoadTest, AliasesWithoutEndAreRefused) {
+  EXPECT_THAT(message_of("body: &b [*b]\n"), HasSubstr("settings without end"));
+  std::string laughs = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 10; ++i) {
+    const std::string before = "*a" + std::to_string(i - 1);
+    laughs += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + before;
+    for (int k = 1; k < 10; ++k) laughs += ", " + before;
+    laughs += "]\n";
+  }
+  EXPECT_THAT(message_of(laughs), HasSubstr("settings without end"));
+}
+
 TEST(LoadTest, MalformedYamlIsRefusedWithItsPlace) {
   EXPECT_THAT(message_of("mass_kg: [1, 2\nname: a\n"), HasSubstr("want well-formed YAML"));
   EXPECT_THAT(message_of("mass_kg: 1\n\tname: a\n"), HasSubstr("rig.yaml:2:"));
