@@ -44,10 +44,12 @@ void print_study(const StudyRecord& record) {
   for (const Comparison& comparison : analysis.comparisons) {
     std::printf("paired t-test %c-%c, p:", comparison.from, comparison.to);
     for (const auto& test : comparison.tests) {
-      if (test) {
-        std::printf(test->p > 0.0 ? " %.3g" : " <1e-300", test->p);
-      } else {
+      if (!test) {
         std::printf(" -");
+      } else if (test->p > 0.0) {
+        std::printf(" %.3g", test->p);
+      } else {
+        std::printf(" <1e-300");
       }
     }
     std::printf("\n");
