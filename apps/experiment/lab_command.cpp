@@ -2,8 +2,6 @@
 #include "experiment/lab_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -31,16 +29,6 @@ void take_road(const Words& words, ProtocolOptions& protocol) {
   }
   protocol.road_class = words.road_class.value_or(protocol.road_class);
   protocol.road_speed_m_s = words.road_speed_m_s.value_or(protocol.road_speed_m_s);
-}
-
-// A larger number would be taken for the largest there is.
-std::string check_seed(const std::string& word) {
-  std::int64_t seed = -1;
-  const char* end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data(), end, seed);
-  if (error == std::errc() && rest == end && seed >= 0) return {};
-  return "got " + word + ", want a whole number from 0 to " +
-         std::to_string(std::numeric_limits<std::int64_t>::max());
 }
 
 // Where this program and the files it needs are: build tree, or an installed prefix.

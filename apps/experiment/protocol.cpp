@@ -2,6 +2,8 @@
 #include "experiment/protocol.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <random>
 #include <sstream>
 
@@ -95,6 +97,15 @@ PlannedTrial identification(const ProtocolOptions& options) {
 }
 
 }  // namespace
+
+std::string check_seed(const std::string& word) {
+  std::int64_t seed = -1;
+  const char* end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, seed);
+  if (error == std::errc() && rest == end && seed >= 0) return {};
+  return "got " + word + ", want a whole number from 0 to " +
+         std::to_string(std::numeric_limits<std::int64_t>::max());
+}
 
 const char* condition_name(Condition condition) {
   switch (condition) {

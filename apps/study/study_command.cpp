@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <limits>
 #include <memory>
 
 #include "contract/config_error.hpp"
@@ -77,7 +76,7 @@ void add_study_command(CLI::App& cli, int& status) {
   study->add_option("--subjects", options.subjects, "how many; the paper's are 12")
       ->capture_default_str();
   study->add_option("--seed", options.seed, "seed of everything random")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->check(experiment::check_seed)
       ->capture_default_str();
   study->add_option("--out", words->out, "folder of report, figures and numbers")->required();
   study

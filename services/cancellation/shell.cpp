@@ -26,9 +26,13 @@ Shell::Shell(runtime::Service& service)
 }
 
 void Shell::note_when_armed() {
-  if (assignment_ && assignment_->trial() == service_.trial().number) {
-    service_.note_armed(service_.trial().number);
+  if (!assignment_ || assignment_->trial() != service_.trial().number) return;
+  // A trial that is to be cancelled and is not would pass for one that was.
+  if (assignment_->cancellation() && !core_.has_model()) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE, why_no_model_);
+    return;
   }
+  service_.note_armed(service_.trial().number);
 }
 
 void Shell::on_model(const stillhand_msgs::FeedthroughModel& message) {
@@ -37,9 +41,11 @@ void Shell::on_model(const stillhand_msgs::FeedthroughModel& message) {
   if (refusal == Refusal::kNone) {
     model_ = message.model();
     service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");
+    note_when_armed();
   } else {
-    service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED,
-                        std::string(describe(refusal)).c_str());
+    // The texts are literals: they outlive the note.
+    why_no_model_ = describe(refusal).data();
+    service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, why_no_model_);
   }
 }
 

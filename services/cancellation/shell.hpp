@@ -28,6 +28,7 @@ class Shell {
   runtime::Interlock interlock_;
   bool told_latch_ = false;
   std::int32_t model_ = -1;
+  const char* why_no_model_ = "no model has come";  ///< a literal
   std::optional<stillhand_msgs::TrialAssignment> assignment_;
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
 };

@@ -196,6 +196,15 @@ class BadInputTest(LabTestCase):
     def test_ride_shorter_than_the_trial_is_refused_before_the_session(self):
         self.assert_ride_refused([], "t [s],a_y [m/s^2]", RIDE_ROWS[:300])
 
+    def test_a_model_that_the_canceller_refuses_ends_the_session_before_the_trial(self):
+        arguments = lab_process.quick_session(self.folder / "config")
+        (self.folder / "config" / "cancellation.yaml").write_text("max_model_gain_n_s2_m: 1\n")
+        lab = self.lab(*arguments)
+        self.assertEqual(lab.end_status(90), 1)
+        self.assertIn("cancellation was not prepared", lab.errors()[-1])
+        self.assertIn("model gain is above the bound", lab.errors()[-1])
+        self.assertFalse(lab.summary()["trials"][-1]["completed"])
+
     def test_second_lab_on_a_domain_is_refused_and_the_first_goes_on(self):
         first = self.lab("--conditions", "A")
         first.wait_for_start()
