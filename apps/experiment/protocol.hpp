@@ -54,8 +54,8 @@ struct PlannedTrial {
   bool command_filter;  ///< in process only
 };
 
-/// For CLI11: what is wrong with the word of a --seed, or nothing.  (CLI11 itself would take a larger
-/// number for the largest there is.)
+/// For CLI11: what is wrong with the word of a --seed, or nothing.  (CLI11 itself would take a
+/// larger number for the largest there is.)
 std::string check_seed(const std::string& word);
 
 /// In a few words, as reports say it.

@@ -71,6 +71,11 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
 
 }  // namespace
 
+void require_gnuplot() {
+  const GnuplotJob nothing{"exit\n", 0};
+  run_gnuplot({&nothing, 1});
+}
+
 std::vector<Drawing> draw(std::span<const Figure> figures) {
   std::set<std::string_view> names;
   for (const Figure& figure : figures) STILLHAND_EXPECTS(names.insert(figure.name).second);

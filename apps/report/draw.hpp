@@ -19,6 +19,10 @@ struct Drawing {
   std::string png;  ///< twice the figure's pixels, on white
 };
 
+/// Starts gnuplot and lets it end: for before the work whose figures it is to draw.
+/// @throws as draw()
+void require_gnuplot();
+
 /// Draws figures with gnuplot, in two processes at the same time when there are two or more.
 /// The same figures give the same bytes.  Names must differ.
 /// @throws ConfigError         when gnuplot is not installed

@@ -121,6 +121,7 @@ struct Panel {
   std::vector<Note> notes = {};
   bool equal_aspect = false;  ///< one unit is as long on x as on y; linear axes only
   Legend legend = Legend::kAbove;
+  bool blank = false;  ///< nothing is drawn: a place that a row leaves empty
 };
 
 /// Panels fill rows from the left; plots of one column are aligned, all are equally high.

@@ -92,6 +92,7 @@ std::string lettering_commands(const Panel& panel, const PanelLayout& layout,
 
 void add_panel(FigureScript& script, const Panel& panel, const PanelLayout& layout,
                const Canvas& canvas, const std::string& block) {
+  if (panel.blank) return;
   std::string clauses;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const SeriesScript series =

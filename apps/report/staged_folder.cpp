@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/staged_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
 #include <system_error>
@@ -13,63 +18,97 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The outermost folder on the way to `path` that is not there yet.
-fs::path first_missing(const fs::path& path) {
+constexpr const char* kStagingPrefix = ".unfinished-";
+
+// The outermost folder on the way to `path`, absolute, that is not there yet; empty: it is there.
+fs::path first_missing(fs::path path) {
   fs::path missing;
   std::error_code ignored;
-  for (fs::path at = fs::absolute(path).lexically_normal(); !fs::exists(at, ignored);
-       at = at.parent_path()) {
-    if (at == at.parent_path()) break;
-    missing = at;
-  }
+  for (; !fs::exists(fs::symlink_status(path, ignored)); path = path.parent_path()) missing = path;
   return missing;
+}
+
+fs::path made_absolute(const fs::path& path) {
+  std::error_code error;
+  fs::path out = fs::absolute(path, error).lexically_normal();
+  if (!out.has_filename()) out = out.parent_path();  // a slash at the end
+  if (path.empty() || error) {
+    throw ConfigError("--out", "\"" + path.string() + "\"", "a folder that can be made");
+  }
+  return out;
 }
 
 }  // namespace
 
-StagedFolder::StagedFolder(const fs::path& out) : out_(out) {
-  if (out.empty()) throw ConfigError("--out", "\"\"", "a folder");
-  const fs::path missing = first_missing(out);
-  std::error_code error;
-  fs::create_directories(out, error);
-  made_ = error ? fs::path() : missing;
-  if (!error && !fs::is_directory(out, error))
-    error = std::make_error_code(std::errc::not_a_directory);
-  std::string name = (out / ".unfinished-XXXXXX").string();
-  if (!error && mkdtemp(name.data()) == nullptr) error = {errno, std::generic_category()};
-  if (error) {
-    std::error_code ignored;
-    if (!made_.empty()) fs::remove_all(made_, ignored);
-    throw ConfigError("--out", out.string() + " (" + error.message() + ")",
+StagedFolder::StagedFolder(const fs::path& out) : out_(made_absolute(out)) {
+  try {
+    make();
+    lock();
+    std::string name = (out_ / kStagingPrefix).string() + "XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category());
+    staging_ = name;
+  } catch (const std::system_error& error) {
+    clear_away();
+    throw ConfigError("--out", out_.string() + " (" + error.code().message() + ")",
                       "a folder that can be made and written");
+  } catch (...) {
+    clear_away();
+    throw;
   }
-  staging_ = name;
 }
 
-StagedFolder::~StagedFolder() {
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
-  if (made_.empty()) return;
-  // Published, or somebody else's files came: it stays.
-  for (fs::path at = out_; fs::is_empty(at, ignored) && fs::remove(at, ignored);
-       at = at.parent_path()) {
-    if (fs::equivalent(at, made_, ignored) || fs::absolute(at) == made_) break;
+StagedFolder::~StagedFolder() { clear_away(); }
+
+void StagedFolder::make() {
+  made_ = first_missing(out_);
+  fs::create_directories(out_);
+  if (!fs::is_directory(out_)) {
+    throw std::system_error(std::make_error_code(std::errc::not_a_directory));
   }
+}
+
+void StagedFolder::lock() {
+  descriptor_ = open(out_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category());
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    made_.clear();
+    throw ConfigError("--out", out_.string() + ", in which another run is writing",
+                      "a folder of its own for each run");
+  }
+  // Whoever made such a folder and left it was killed: it would hold the lock otherwise.
+  for (const fs::directory_entry& entry : fs::directory_iterator(out_)) {
+    if (entry.path().filename().string().starts_with(kStagingPrefix)) fs::remove_all(entry.path());
+  }
+}
+
+void StagedFolder::clear_away() noexcept {
+  std::error_code ignored;
+  if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  // Folders made here, from the inside, as long as nobody put anything into them.
+  if (!made_.empty()) {
+    for (fs::path at = out_; fs::remove(at, ignored) && at != made_;) at = at.parent_path();
+  }
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 void StagedFolder::write(const std::string& name, const std::string& text) const {
-  const std::string path = (staging_ / name).string();
-  const recording::Status status = recording::write_file_atomically(path, text);
+  const recording::Status status =
+      recording::write_file_atomically((staging_ / name).string(), text);
   if (!status.ok()) throw std::runtime_error((out_ / name).string() + ": " + status.text);
 }
 
-void StagedFolder::publish() {
+void StagedFolder::publish(const std::vector<std::string>& own) {
   for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
-    std::error_code error;
-    fs::rename(file.path(), out_ / file.path().filename(), error);
-    if (error) {
-      throw std::runtime_error((out_ / file.path().filename()).string() + ": " + error.message());
+    const fs::path target = out_ / file.path().filename();
+    if (fs::is_directory(target)) {
+      throw std::runtime_error(target.string() + ": a folder stands where a file is to be");
     }
+  }
+  for (const std::string& name : own) {
+    if (!fs::exists(staging_ / name) && !fs::is_directory(out_ / name)) fs::remove(out_ / name);
+  }
+  for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
+    fs::rename(file.path(), out_ / file.path().filename());
   }
   made_.clear();
 }

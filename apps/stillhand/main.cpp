@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <iostream>
 
 #include "contract/config_error.hpp"
 #include "experiment/conductor.hpp"
 #include "experiment/lab_command.hpp"
 #include "study/study_command.hpp"
+
+namespace {
+
+// What could not be printed was not told.
+int told(int status) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0) return status;
+  std::cerr << "stillhand: standard output: it cannot be written, want one that can\n";
+  return status == 0 ? 1 : status;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
@@ -19,9 +32,9 @@ int main(int argc, char** argv) {
   stillhand::study::add_study_command(cli, status);
   try {
     cli.parse(argc, argv);
-    return status;
+    return told(status);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return told(cli.exit(error));  // --help, --version
     std::cerr << "stillhand: " << error.what() << "; `stillhand <verb> --help` tells\n";
     return 2;
   } catch (const stillhand::ConfigError& error) {

@@ -16,6 +16,9 @@ using experiment::kMetrics;
 
 constexpr const char* kPaperConditions = "ABC";
 constexpr Eigen::Index kThirds = 3;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+// A quotient of gains means nothing where there is no gain.
+constexpr double kLeastGain = 0.05;
 constexpr std::size_t kWindow_s = 10;  // of the moving averages, which have one value a second
 
 bool has(const Analysis& analysis, char condition) {
@@ -129,17 +132,26 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
     wrong.surviving_share = over_subjects(results, [&](const SubjectResult& result) {
       const double b = result.trials.at('B').metrics.rms_error_mm;
       const double c = result.trials.at('C').metrics.rms_error_mm;
+      if (!(b - c > kLeastGain * b)) return kNan;
       return (b - result.wrong.at(which).metrics.rms_error_mm) / (b - c);
     });
   }
 }
 
+// Eq. SU-5: of the means over those subjects whose metric was found in all three conditions.
 void add_restoration(Analysis& analysis) {
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const double a = analysis.conditions.at('A')[k].mean;
-    const double b = analysis.conditions.at('B')[k].mean;
-    const double c = analysis.conditions.at('C')[k].mean;
-    analysis.restoration[k] = (b - c) / (b - a);
+    const auto& a = analysis.conditions.at('A')[k].per_subject;
+    const auto& b = analysis.conditions.at('B')[k].per_subject;
+    const auto& c = analysis.conditions.at('C')[k].per_subject;
+    double gained = 0.0;
+    double lost = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (!std::isfinite(a[i] + b[i] + c[i])) continue;
+      gained += b[i] - c[i];
+      lost += b[i] - a[i];
+    }
+    if (lost != 0.0) analysis.restoration[k] = gained / lost;
   }
 }
 
@@ -155,6 +167,7 @@ MetricSample summarised(std::vector<double> values) {
     out.mean = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
+  out.known = known.size();
   out.mean = statistics::mean(known);
   if (known.size() > 1) out.standard_deviation = statistics::standard_deviation(known);
   out.box = statistics::box_plot(known);

@@ -25,6 +25,7 @@ struct MetricSample {
   double mean = 0.0;
   std::optional<double> standard_deviation;  ///< needs two subjects
   statistics::BoxPlot box;
+  std::size_t known = 0;  ///< subjects that the three above are over: a crossover may not be found
 };
 
 /// Two conditions, all metrics.
@@ -51,7 +52,8 @@ struct PooledLine {
 /// One wrong model, over the subjects.
 struct WrongModel {
   std::array<MetricSample, kMetricCount> metrics;
-  /// Share of the own model's gain that survives, Eq. SU-4, by RMS error, per subject [-].
+  /// Share of the own model's gain that survives, Eq. SU-4, by RMS error, per subject [-]; NaN
+  /// where the own model gains less than a twentieth of B's error.
   std::vector<double> surviving_share;
 };
 
@@ -64,7 +66,7 @@ struct Analysis {
   std::vector<Comparison> comparisons;
   MultivariateResult main_effects;  ///< A, B, C with one trial a cell: no interaction
   MultivariateResult thirds;        ///< with the thirds of a trial as replicates: RMS error, dwell
-  std::array<std::optional<double>, kMetricCount> restoration;  ///< (B - C) / (B - A) of means
+  std::array<std::optional<double>, kMetricCount> restoration;  ///< Eq. SU-5
   std::map<char, WrongModel> wrong;
   std::int64_t refined_used = 0;  ///< subjects whose paper's fit could not cancel
 };

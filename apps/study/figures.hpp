@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,18 @@ namespace stillhand::study {
 /// Fig. 7 to 13 (figures_tracking.cpp), and what the paper has no figure of: mitigations and wrong
 /// models.  A figure whose conditions were not run is left out.
 std::vector<report::Figure> study_figures(const StudyRecord& record);
+
+/// Names of all figures that study_figures() can make.
+inline constexpr std::array<const char*, 10> kFigureNames{"fig04_feedthrough_estimate",
+                                                          "fig06_feedthrough_models",
+                                                          "fig07_traces",
+                                                          "fig08_moving_rms",
+                                                          "fig09_moving_dwell",
+                                                          "fig10_rms_error",
+                                                          "fig11_dwell_ratio",
+                                                          "fig12_open_loop",
+                                                          "fig13_crossover",
+                                                          "wrong_models"};
 
 /// Parts of study_figures().
 report::Figure figure_estimate(const StudyRecord& record);                 ///< Fig. 4

@@ -153,6 +153,7 @@ report::Figure figure_models(const StudyRecord& record) {
       Panel magnitude = bode_panel("", i == first ? "|F'/A| [dB]" : "", Scale::kLinear);
       Panel phase = bode_panel("", i == first ? "phase [°]" : "", Scale::kDegrees);
       if (i < shown) magnitude.title = "subject " + std::to_string(i + 1);
+      magnitude.blank = phase.blank = i >= shown;
       magnitude.legend = phase.legend = report::Legend::kNone;
       magnitude.x.label = "";
       magnitude.y.low = -20.0;

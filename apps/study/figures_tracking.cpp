@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "experiment/protocol.hpp"
@@ -121,19 +122,26 @@ void add_open_loop(Panel& magnitude, Panel& phase, const identification::Trackin
 
 report::Figure figure_traces(const StudyRecord& record) {
   const std::size_t typical = typical_subject(record);
-  report::Figure figure{.name = "fig07_traces",
-                        .caption =
-                            "The paper's Fig. 7: twenty seconds from the middle of the trials "
-                            "of subject " +
-                            std::to_string(typical + 1) + ".",
-                        .panels = {},
-                        .columns = 1,
-                        .width_px = 980,
-                        .height_px = 780};
+  report::Figure figure{
+      .name = "fig07_traces",
+      .caption =
+          "The paper's Fig. 7: up to twenty seconds from the middle of the trials "
+          "of subject " +
+          std::to_string(typical + 1) + ".",
+      .panels = {},
+      .columns = 1,
+      .width_px = 980,
+      .height_px = 780};
+  double farthest_mm = 0.0;
   for (const char condition : conditions_run(record, kPaperConditions)) {
     figure.panels.push_back(trace_panel(record.results[typical].trials.at(condition), condition));
-    figure.panels.back().y.low = -200.0;
-    figure.panels.back().y.high = 200.0;
+    for (const Series& series : figure.panels.back().series) {
+      for (const double y : series.y) farthest_mm = std::max(farthest_mm, std::abs(y));
+    }
+  }
+  for (Panel& panel : figure.panels) {  // one scale for all
+    panel.y.low = -1.05 * farthest_mm;
+    panel.y.high = 1.05 * farthest_mm;
   }
   return figure;
 }
@@ -180,14 +188,17 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
     }
     place += 1.0;
   }
-  panel.series.push_back(paper);
+  const bool has_paper = !paper.x.empty();
+  if (has_paper) panel.series.push_back(paper);
   panel.x.low = 0.4;
   panel.x.high = place - 0.4;
   return {.name = kNames[metric],
           .caption = std::string("The paper's ") + kNumbers[metric] + ": " + what.title +
                      " over the subjects; box from quartile to quartile with the median, whiskers "
-                     "over the whole range. Squares: the paper's means" +
-                     (metric == 0 ? ", at 5.5 mm a unit." : "."),
+                     "over the whole range." +
+                     (!has_paper    ? ""
+                      : metric == 0 ? " Squares: the paper's means, at 5.5 mm a unit."
+                                    : " Squares: the paper's means."),
           .panels = {panel},
           .columns = 1,
           .width_px = 760,
@@ -241,7 +252,8 @@ report::Figure figure_wrong_models(const StudyRecord& record) {
     Series series{.label = which == 'O' ? "another subject's model" : "mean model of all others",
                   .kind = Kind::kLineAndPoints,
                   .colour = which == 'O' ? Colour::kWarning : Colour::kModel};
-    series.y = wrong.surviving_share;
+    std::copy_if(wrong.surviving_share.begin(), wrong.surviving_share.end(),
+                 std::back_inserter(series.y), [](double share) { return std::isfinite(share); });
     std::sort(series.y.begin(), series.y.end());
     for (std::size_t i = 0; i < series.y.size(); ++i) {
       series.x.push_back(static_cast<double>(i + 1));

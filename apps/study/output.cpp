@@ -2,19 +2,35 @@
 #include "study/output.hpp"
 
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "report/draw.hpp"
 #include "study/figures.hpp"
 #include "study/study_report.hpp"
 
 namespace stillhand::study {
+namespace {
+
+// Every file that any study writes.
+std::vector<std::string> every_name() {
+  std::vector<std::string> names{"report.html",  "summary.json", "metrics.csv",
+                                 "subjects.csv", "models.csv",   "moving_averages.csv",
+                                 "open_loop.csv"};
+  for (const char* figure : kFigureNames) {
+    for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
+  }
+  return names;
+}
+
+}  // namespace
 
 void write_study(const StudyRecord& record, report::StagedFolder& folder) {
   for (const CsvFile& file : csv_files(record)) folder.write(file.name, file.text);
   const auto drawings = report::render(study_figures(record), folder.path());
   study_report(record, drawings).write(folder.path() / "report.html");
   folder.write("summary.json", summary_json(record));
-  folder.publish();
+  folder.publish(every_name());
 }
 
 void print_study(const StudyRecord& record) {
@@ -37,10 +53,10 @@ void print_study(const StudyRecord& record) {
     std::printf("   %.2f, %.2f, %.2f, %.0f %%\n", unit * metric.paper_a, unit * metric.paper_b,
                 unit * metric.paper_c, metric.paper_restored_percent);
   }
-  std::printf(
-      "The paper's RMS error has no unit: taken as %.1f mm a unit. A and B were calibrated "
-      "on, C is a prediction.\n",
-      kPaperUnit_mm);
+  std::printf("The paper's RMS error has no unit: taken as %.1f mm a unit.%s\n", kPaperUnit_mm,
+              is_calibrated(record.options)
+                  ? " A and B were calibrated on, C is a prediction."
+                  : " Not the population and lengths that A and B were calibrated with.");
   for (const Comparison& comparison : analysis.comparisons) {
     std::printf("paired t-test %c-%c, p:", comparison.from, comparison.to);
     for (const auto& test : comparison.tests) {

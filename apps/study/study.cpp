@@ -113,6 +113,8 @@ std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgre
                       "1 to " + std::to_string(kMaxSubjects));
   }
   check_wrong_models(options);
+  experiment::plan(options.protocol);  // checks the lengths
+  for (std::int64_t index = 0; index < options.subjects; ++index) check_subject(options, index);
   const std::int64_t count = options.subjects;
   const std::int64_t all = options.wrong_models ? 2 * count : count;
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());

@@ -12,6 +12,7 @@
 
 #include "contract/config_error.hpp"
 #include "experiment/progress.hpp"
+#include "report/draw.hpp"
 #include "runtime/stop.hpp"
 #include "settings/load.hpp"
 #include "study/output.hpp"
@@ -39,6 +40,7 @@ std::string command_line() {
 int run(StudyRecord& record, const Words& words) {
   runtime::Stop stop;
   report::StagedFolder folder(words.out);
+  report::require_gnuplot();
   experiment::ProgressLine progress;
   const auto start = std::chrono::steady_clock::now();
   record.results = run_study(record.options, [&](std::int64_t done, std::int64_t all) {
@@ -48,6 +50,7 @@ int run(StudyRecord& record, const Words& words) {
   progress.finish();
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.analysis = analyse(record.results);
+  if (stop.requested()) throw Interrupted();
   write_study(record, folder);
   print_study(record);
   if (record.options.subjects <= 2) {
@@ -106,6 +109,9 @@ void add_study_command(CLI::App& cli, int& status) {
   study->callback([record, words, &status] {
     record->options.protocol.conditions =
         experiment::parse_conditions(words->conditions, experiment::kStudyConditions);
+    // The set of conditions makes the study, not the order in which they were named.
+    std::sort(record->options.protocol.conditions.begin(),
+              record->options.protocol.conditions.end());
     if (!words->population.empty()) {
       record->options.population = settings::load<Population>(words->population, "population");
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "report/text.hpp"
 #include "statistics/power.hpp"
@@ -42,9 +43,13 @@ const Comparison* find(const Analysis& analysis, char from, char to) {
 }
 
 std::string mean_and_deviation(const MetricSample& sample, std::size_t metric) {
-  const std::string mean = number(sample.mean, decimals(metric));
-  if (!sample.standard_deviation) return mean;
-  return mean + " ± " + number(*sample.standard_deviation, decimals(metric));
+  std::string out = number(sample.mean, decimals(metric));
+  if (sample.standard_deviation) {
+    out += " ± " + number(*sample.standard_deviation, decimals(metric));
+  }
+  if (sample.known < sample.per_subject.size())
+    out += " (n = " + std::to_string(sample.known) + ")";
+  return out;
 }
 
 // Tables I and II of the paper: two conditions, their difference, its significance.
@@ -54,7 +59,7 @@ report::Table paper_table(const Analysis& analysis, char from, char to, const ch
   table.caption = title;
   const std::string letters = {from, ',', ' ', to};
   table.header = {"metric", std::string(1, from), std::string(1, to), "change [95 % CI]", "p",
-                  "g",      "paper " + letters,   "paper p"};
+                  "g_z",    "paper " + letters,   "paper p"};
   const Comparison* comparison = find(analysis, from, to);
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     std::vector<Cell> row{kMetrics[k].title, mean_and_deviation(analysis.conditions.at(from)[k], k),
@@ -78,29 +83,35 @@ report::Table paper_table(const Analysis& analysis, char from, char to, const ch
   return table;
 }
 
-report::Table calibration_table(const Analysis& analysis) {
+report::Table calibration_table(const Analysis& analysis, bool is_default) {
   report::Table table;
   table.caption =
-      "How close the population comes to the paper. A and B were calibrated on; C was not.";
+      is_default
+          ? "How close the population comes to the paper. A and B were calibrated on, RMS error "
+            "through a unit that was itself inferred from the dwell ratios; C was not."
+          : "How close this study comes to the paper. Its population or its lengths are not "
+            "those that A and B were calibrated with.";
   table.header = {"metric", "condition", "study", "paper", "study / paper", "role"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     for (const char condition : {'A', 'B', 'C'}) {
       const double mean = analysis.conditions.at(condition)[k].mean;
       const double paper = paper_value(k, condition);
       const double ratio = mean / paper;
-      const bool calibrated = condition != 'C';
+      const bool calibrated = is_default && condition != 'C';
       table.rows.push_back(
           {kMetrics[k].title, std::string(1, condition), number(mean, decimals(k)),
            number(paper, decimals(k)),
            Cell(number(ratio, 2),
                 calibrated && std::abs(ratio - 1.0) > 0.1 ? Emphasis::kBad : Emphasis::kNone),
-           calibrated ? "calibrated" : "predicted"});
+           calibrated   ? "calibrated"
+           : is_default ? "predicted"
+                        : "–"});
     }
   }
   const double ours = analysis.conditions.at('B')[0].mean / analysis.conditions.at('A')[0].mean;
   const double theirs = kMetrics[0].paper_b / kMetrics[0].paper_a;
   table.rows.push_back({"RMS error, B / A (no unit needed)", "", number(ours, 2), number(theirs, 2),
-                        number(ours / theirs, 2), "calibrated"});
+                        number(ours / theirs, 2), is_default ? "calibrated" : "–"});
   return table;
 }
 
@@ -114,6 +125,27 @@ report::Table restoration_table(const Analysis& analysis) {
          Cell(percent(kMetrics[k].paper_restored_percent / 100.0), Emphasis::kFaint)});
   }
   return table;
+}
+
+void add_outcome(report::Page& page, const Analysis& analysis) {
+  const double restored = analysis.restoration[0].value_or(NAN);
+  const double paper = kMetrics[0].paper_restored_percent / 100.0;
+  std::string text = "The motor cancels " + percent(analysis.cancelled_share.at('C').mean) +
+                     " of the feedthrough force, and " + percent(restored) +
+                     " of the RMS error comes back. ";
+  if (restored > paper) {
+    text +=
+        "That is more than the paper's: between peg and tracking these subjects differ in one "
+        "thing "
+        "only, the stiffness of a co-contracted arm. Real ones also change posture and grip over "
+        "minutes, adapt to the motor, and are disturbed by the motion itself, not only through the "
+        "hand.";
+  } else {
+    text +=
+        "That is less than the paper's: this population's tracking arms differ more from the "
+        "idle ones that were identified, or its feedthrough from the model.";
+  }
+  page.paragraph(text);
 }
 
 void add_effect(report::Table& table, const char* name, const statistics::MultivariateTest& test) {
@@ -144,8 +176,10 @@ void add_statistics(report::Page& page, const Analysis& analysis) {
       "All three metrics, one trial a cell: main effects only, an interaction cannot be told "
       "from the error.");
   add_manova(page, analysis.thirds,
-             "RMS error and dwell ratio with the thirds of each trial as replicates, so that the "
-             "interaction of condition and subject can be tested. Crossover needs a whole trial.");
+             "RMS error and dwell ratio with the thirds of each trial (whole windows of 10 s) as "
+             "replicates, so that the "
+             "interaction of condition and subject can be tested. Thirds of one trial are not "
+             "independent, so these p-values are too small. Crossover needs a whole trial.");
   const Comparison* test = find(analysis, 'B', 'C');
   if (test == nullptr) return;
   report::Table table;
@@ -171,7 +205,8 @@ void add_open_loop(report::Page& page, const Analysis& analysis) {
       "(mean of "
       "20 "
       "log|X_p/X_e|), the one through the reference (|mean X_p/X_r| / |mean X_e/X_r|), which the "
-      "remnant does not bias, and the remnant's median share of the error's power at the line.";
+      "remnant does not bias, and the median share of what is not the target's response (remnant, "
+      "in B and C also the platform's motion) of the error's power at the line.";
   table.header = {"f [Hz]"};
   std::map<char, std::vector<PooledLine>> shown;
   for (const auto& [condition, lines] : analysis.open_loop) {
@@ -215,7 +250,7 @@ void add_mitigations(report::Page& page, const StudyRecord& record) {
       "What the paper names as future work, all with the motor off. D takes the predicted "
       "displacement off the command instead of pushing the hand; it knows an average person's arm "
       "only. E adds " +
-      number(record.options.damped_stick_n_s_m, 0) +
+      short_number(record.options.damped_stick_n_s_m) +
       " N s/m to the stick. F rests the forearm on a pad of " +
       number(record.options.arm_rest_stiffness_n_m, 0) + " N/m and " +
       number(record.options.arm_rest_damping_n_s_m, 0) +
@@ -246,14 +281,18 @@ void add_wrong_models(report::Page& page, const Analysis& analysis) {
   report::Table table;
   table.caption =
       "Condition C with the wrong model, same motion and target; share of the own "
-      "model's gain in RMS error that survives.";
-  table.header = {"model", "RMS error [mm]", "surviving, mean", "median", "worst subject"};
+      "model's gain in RMS error that survives, over subjects whose own model gains.";
+  table.header = {"model", "RMS error [mm]", "surviving, median", "worst subject", "subjects"};
   for (const auto& [which, wrong] : analysis.wrong) {
+    std::vector<double> shares;
+    std::copy_if(wrong.surviving_share.begin(), wrong.surviving_share.end(),
+                 std::back_inserter(shares), [](double share) { return std::isfinite(share); });
+    const bool any = !shares.empty();
     table.rows.push_back(
         {which == 'O' ? "another subject's" : "mean of all others",
-         mean_and_deviation(wrong.metrics[0], 0), percent(statistics::mean(wrong.surviving_share)),
-         percent(statistics::median(wrong.surviving_share)),
-         percent(*std::min_element(wrong.surviving_share.begin(), wrong.surviving_share.end()))});
+         mean_and_deviation(wrong.metrics[0], 0), percent(any ? statistics::median(shares) : NAN),
+         percent(any ? *std::min_element(shares.begin(), shares.end()) : NAN),
+         std::to_string(shares.size()) + " of " + std::to_string(wrong.surviving_share.size())});
   }
   page.table(table);
   page.paragraph(
@@ -294,7 +333,7 @@ void add_open_questions(report::Page& page, const StudyRecord& record) {
        "X_p/X_e is biased by the remnant in a closed loop: both estimates are given.",
        record.options.protocol.trial_s == 180.0
            ? "Trials last the paper's 180 s, so the fifteen frequencies are the printed ones."
-           : "Trials of " + number(record.options.protocol.trial_s, 0) +
+           : "Trials of " + short_number(record.options.protocol.trial_s) +
                  " s cannot hold whole cycles of 1/180 Hz: the fifteen frequencies sit on "
                  "harmonics of the trial's own length."});
 }
@@ -303,8 +342,8 @@ void add_lead_facts(report::Page& page, const StudyRecord& record) {
   const StudyOptions& options = record.options;
   page.facts({{"subjects", std::to_string(options.subjects)},
               {"seed", std::to_string(options.seed)},
-              {"trial", number(options.protocol.trial_s, 0) + " s"},
-              {"pegged trial", number(options.protocol.identify_s, 0) + " s"},
+              {"trial", short_number(options.protocol.trial_s) + " s"},
+              {"pegged trial", short_number(options.protocol.identify_s) + " s"},
               {"computed in", number(record.wall_s, 1) + " s"},
               {"version", STILLHAND_VERSION},
               {"command line", record.command_line}});
@@ -341,15 +380,8 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
                            "Table II: the motor begins to cancel. Columns as in Table I.",
                            kPaperBToC));
     page.table(restoration_table(analysis));
-    page.paragraph(
-        "The prediction for C is better than the paper's result because these subjects differ "
-        "between peg and tracking in one thing only, the stiffness of a co-contracted arm: the "
-        "motor "
-        "cancels " +
-        percent(analysis.cancelled_share.at('C').mean) +
-        " of the feedthrough force. Real ones also change posture and grip over minutes, adapt to "
-        "the motor, and are disturbed by the motion itself, not only through the hand.");
-    page.table(calibration_table(analysis));
+    add_outcome(page, analysis);
+    page.table(calibration_table(analysis, is_calibrated(record.options)));
   }
   page.section("Identification");
   add_identification(page, record);

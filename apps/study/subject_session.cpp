@@ -2,12 +2,14 @@
 #include "study/subject_session.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "contract/config_error.hpp"
 #include "contract/expects.hpp"
 #include "identification/core/identifier.hpp"
+#include "settings/describe.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -17,7 +19,8 @@ using experiment::PlannedTrial;
 // The paper records at 100 Hz.
 constexpr Tick kKeepEvery = 10;
 const int kOrder = static_cast<int>(identification::Config{}.order);
-// Welch segments of Fig. 4: 5.12 s, 0.2 Hz a line, 45 averages of two minutes.
+// Welch segments of Fig. 4: 5.12 s, 0.2 Hz a line, 45 averages of two minutes; shorter for a record
+// that would not hold four of them.
 constexpr std::size_t kSegmentSamples = 256;
 // What Fig. 7 shows.
 constexpr double kExcerpt_s = 20.0;
@@ -26,9 +29,9 @@ constexpr std::size_t kExcerptStride = 5;
 std::uint64_t subject_seed(std::uint64_t seed, std::int64_t index) {
   std::seed_seq mix{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                     std::uint32_t{0x53756271}, static_cast<std::uint32_t>(index)};
-  std::uint32_t word = 0;
-  mix.generate(&word, &word + 1);
-  return word;
+  std::array<std::uint32_t, 2> words{};
+  mix.generate(words.begin(), words.end());
+  return std::uint64_t{words[1]} << 32 | words[0];
 }
 
 std::vector<PlannedTrial> plan_of(const StudyOptions& options, std::int64_t index) {
@@ -125,6 +128,25 @@ TrackedTrial evaluated(const experiment::TrialSignals& signals, const PlannedTri
 bool own_rig(char condition) { return condition == 'E' || condition == 'F'; }
 
 }  // namespace
+
+bool is_calibrated(const StudyOptions& options) {
+  return settings::describe(options.population) == settings::describe(Population{}) &&
+         options.protocol.trial_s == 180.0 && options.protocol.identify_s == 120.0;
+}
+
+void check_subject(const StudyOptions& options, std::int64_t index) {
+  const Subject subject = draw_subject(options.population, options.seed, index);
+  try {
+    for (const auto condition : options.protocol.conditions) {
+      const auto configs = configs_of(options, subject, static_cast<char>(condition));
+      const experiment::InProcessLoop loop(configs, 0);
+    }
+  } catch (const ConfigError& error) {
+    throw ConfigError("population",
+                      "subject " + std::to_string(index + 1) + " of it with " + error.what(),
+                      "means nearer the defaults or smaller spreads");
+  }
+}
 
 SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   SubjectResult result;

@@ -29,6 +29,9 @@ struct StudyOptions {
   unsigned threads = 0;                   ///< 0: one a core
 };
 
+/// True for the population and the lengths of trials that conditions A and B were calibrated with.
+bool is_calibrated(const StudyOptions& options);
+
 /// The pegged trial's outcome, paper III-A and IV-A.
 struct Identification {
   identification::ArxFit paper;            ///< Eqs 3 to 5
@@ -56,6 +59,10 @@ struct SubjectResult {
   std::string order;                    ///< in which the conditions were run
   std::map<char, TrackedTrial> wrong;  ///< 'O' another subject's model, 'M' the mean of all others'
 };
+
+/// Draws subject `index` and makes a rig of it for every condition, as a check.
+/// @throws ConfigError "population" with the subject's number and what is out of range.
+void check_subject(const StudyOptions& options, std::int64_t index);
 
 /// Runs subject `index`: pegged trial, identification, every condition in shuffled order.  The same
 /// numbers whatever else runs.  @throws ConfigError when no usable model comes out.

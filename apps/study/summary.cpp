@@ -128,7 +128,9 @@ ordered_json wrong_json(const Analysis& analysis) {
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       one[kMetrics[k].key] = sample_json(wrong.metrics[k]);
     }
-    one["surviving_share"] = wrong.surviving_share;
+    one["surviving_share"] = ordered_json::array();
+    for (const double share : wrong.surviving_share)
+      one["surviving_share"].push_back(number(share));
     out[which == 'O' ? "other_subject" : "mean_of_others"] = one;
   }
   return out;

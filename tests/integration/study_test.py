@@ -146,6 +146,47 @@ class StudyTest(unittest.TestCase):
         self.assertIn("stopped", errors)
         self.assertFalse(out.exists())
 
+    def test_the_next_study_leaves_nothing_of_the_last_and_nothing_of_others_is_touched(self):
+        out = self.folder / "study"
+        out.mkdir()
+        (out / "notes.txt").write_text("mine")
+        study(*SHORT, "--wrong-models", "--out", str(out))
+        self.assertTrue((out / "fig07_traces.svg").exists())
+        self.assertEqual(study(*SHORT, "--conditions", "D,E", "--out", str(out)).returncode, 0)
+        self.assertFalse((out / "fig07_traces.svg").exists())
+        self.assertFalse((out / "wrong_models.png").exists())
+        self.assertEqual((out / "notes.txt").read_text(), "mine")
+
+    def test_a_folder_in_the_way_of_a_file_leaves_what_was_there(self):
+        out = self.folder / "study"
+        (out / "metrics.csv").mkdir(parents=True)
+        run = study(*SHORT, "--out", str(out))
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertIn("metrics.csv", run.stderr)
+        self.assertEqual([path.name for path in out.iterdir()], ["metrics.csv"])
+
+    def test_folders_of_others_on_the_way_survive_a_failure(self):
+        (self.folder / "mine").mkdir()
+        for out in ("./mine/deep/study", "../" + self.folder.name + "/mine/study", "mine/x/../study/"):
+            run = study("--subjects", "2", "--identify-seconds", "5", "--trial-seconds", "5", "--out", out,
+                        cwd=self.folder, env={**os.environ, "PATH": "/nowhere"})  # no gnuplot
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn("gnuplot-nox", run.stderr)
+            self.assertEqual([path.name for path in self.folder.rglob("*")], ["mine"], out)
+
+    def test_a_subject_that_no_rig_takes_is_told_before_the_study(self):
+        people = self.folder / "people.yaml"
+        people.write_text("seat_frequency_hz: 8\n")
+        self.refused(["--subjects", "500", "--population", str(people), "--out", str(self.folder / "study")],
+                     ["population", "subject", "seat_stiffness_n_m"])
+
+    def test_an_output_that_cannot_be_written_is_told(self):
+        with open("/dev/full", "w") as full:
+            run = subprocess.run([STILLHAND, "study", *SHORT, "--out", str(self.folder / "study")], stdout=full,
+                                 stderr=subprocess.PIPE, text=True, timeout=120)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("standard output", run.stderr)
+
     def test_two_subjects_are_told_that_a_test_means_little(self):
         out = self.folder / "study"
         run = study("--subjects", "2", "--trial-seconds", "20", "--identify-seconds", "20", "--out", str(out))
