@@ -14,20 +14,6 @@ CoreConfigs seeded(CoreConfigs configs, std::uint64_t seed) {
   return configs;
 }
 
-motion::MotionProfile profile_of(const PlannedTrial& planned) {
-  motion::MotionProfile profile;
-  profile.kind = planned.moving ? motion::MotionKind::kBandNoise : motion::MotionKind::kStill;
-  profile.band_low_hz = planned.band_low_hz;
-  profile.band_high_hz = planned.band_high_hz;
-  profile.band_order = planned.band_order;
-  profile.rms_m_s2 = planned.rms_m_s2;
-  profile.peak_m_s2 = planned.peak_m_s2;
-  profile.seed = planned.motion_seed;
-  profile.duration_ticks = planned.trial.duration_ticks;
-  profile.ramp_ticks = planned.trial.ramp_ticks;
-  return profile;
-}
-
 sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
   return {tick,          raw.accel_x_v,   raw.accel_y_v,
           raw.accel_z_v, raw.load_cell_v, raw.encoder_counts,
@@ -63,7 +49,8 @@ cancellation::Refusal InProcessLoop::use_model(const identification::Feedthrough
 }
 
 void InProcessLoop::arm(const PlannedTrial& planned) {
-  motion_.arm(motion::MotionTrajectory(profile_of(planned), configs_.motion.limits), planned.trial);
+  motion_.arm(motion::MotionTrajectory(motion_profile(planned), configs_.motion.limits),
+              planned.trial);
   if (planned.trial.phase == TrialPhase::kTracking) {
     display_.arm(planned.trial, planned.reference_seed);
   } else {

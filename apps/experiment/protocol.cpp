@@ -174,4 +174,30 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   return trials;
 }
 
+motion::MotionProfile motion_profile(const PlannedTrial& planned) {
+  motion::MotionProfile profile;
+  if (planned.moving) {
+    switch (planned.motion) {
+      case Motion::kBandNoise:
+        profile.kind = motion::MotionKind::kBandNoise;
+        break;
+      case Motion::kRoad:
+        profile.kind = motion::MotionKind::kRoad;
+        break;
+      case Motion::kRide:
+        profile.kind = motion::MotionKind::kRide;
+        break;
+    }
+  }
+  profile.band_low_hz = planned.band_low_hz;
+  profile.band_high_hz = planned.band_high_hz;
+  profile.band_order = planned.band_order;
+  profile.rms_m_s2 = planned.rms_m_s2;
+  profile.peak_m_s2 = planned.peak_m_s2;
+  profile.seed = planned.motion_seed;
+  profile.duration_ticks = planned.trial.duration_ticks;
+  profile.ramp_ticks = planned.trial.ramp_ticks;
+  return profile;
+}
+
 }  // namespace stillhand::experiment

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contract/trial.hpp"
+#include "motion/core/motion_profile.hpp"
 
 namespace stillhand::experiment {
 
@@ -72,5 +73,8 @@ std::vector<Condition> parse_conditions(const std::string& text,
 /// does
 ///         not know or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
+
+/// What a planned trial asks of the platform; road and ride want their own data besides.
+motion::MotionProfile motion_profile(const PlannedTrial& planned);
 
 }  // namespace stillhand::experiment

@@ -14,30 +14,11 @@ namespace {
 
 motion::MotionProfile profile_of(const PlannedTrial& planned, const ProtocolOptions& options,
                                  const motion::RideRecord& ride) {
-  motion::MotionProfile profile;
-  switch (planned.motion) {
-    case Motion::kBandNoise:
-      profile.kind = motion::MotionKind::kBandNoise;
-      break;
-    case Motion::kRoad:
-      profile.kind = motion::MotionKind::kRoad;
-      profile.road_class = options.road_class;
-      profile.road_speed_m_s = options.road_speed_m_s;
-      break;
-    case Motion::kRide:
-      profile.kind = motion::MotionKind::kRide;
-      profile.ride_rate_hz = ride.rate_hz;
-      profile.ride_accel_m_s2 = ride.accel_m_s2;
-      break;
-  }
-  profile.band_low_hz = planned.band_low_hz;
-  profile.band_high_hz = planned.band_high_hz;
-  profile.band_order = planned.band_order;
-  profile.rms_m_s2 = planned.rms_m_s2;
-  profile.peak_m_s2 = planned.peak_m_s2;
-  profile.seed = planned.motion_seed;
-  profile.duration_ticks = planned.trial.duration_ticks;
-  profile.ramp_ticks = planned.trial.ramp_ticks;
+  motion::MotionProfile profile = motion_profile(planned);
+  profile.road_class = options.road_class;
+  profile.road_speed_m_s = options.road_speed_m_s;
+  profile.ride_rate_hz = ride.rate_hz;
+  profile.ride_accel_m_s2 = ride.accel_m_s2;
   return profile;
 }
 

@@ -18,9 +18,7 @@ int told(int status) {
   return status == 0 ? 1 : status;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
   cli.name("stillhand");
   cli.set_version_flag("--version", STILLHAND_VERSION);
@@ -46,5 +44,15 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "stillhand: " << error.what() << '\n';
     return 1;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (...) {
+    return 1;  // nothing is left that could be told
   }
 }

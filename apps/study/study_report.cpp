@@ -315,6 +315,8 @@ void add_identification(report::Page& page, const StudyRecord& record) {
 
 void add_open_questions(report::Page& page, const StudyRecord& record) {
   page.section("What the paper leaves open");
+  // Sentences go over several lines: no comma is missing.
+  // NOLINTBEGIN(bugprone-suspicious-missing-comma)
   page.list(
       {"The RMS error has no unit. With a box of ±15 mm and a Gaussian error the dwell ratios give "
        "23.3, 51.3 and 37.6 mm for A, B, C: 5.8, 5.3 and 5.4 mm a unit. This report uses 5.5 mm "
@@ -336,6 +338,7 @@ void add_open_questions(report::Page& page, const StudyRecord& record) {
            : "Trials of " + short_number(record.options.protocol.trial_s) +
                  " s cannot hold whole cycles of 1/180 Hz: the fifteen frequencies sit on "
                  "harmonics of the trial's own length."});
+  // NOLINTEND(bugprone-suspicious-missing-comma)
 }
 
 void add_lead_facts(report::Page& page, const StudyRecord& record) {
