@@ -375,10 +375,12 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
   };
   if (whole) {
     page.section("Tables I and II of the paper");
-    page.table(paper_table(analysis, 'A', 'B',
-                           "Table I: the platform begins to move. Mean ± SD over the subjects; g "
-                           "is Hedges' corrected effect size.",
-                           kPaperAToB));
+    page.table(
+        paper_table(analysis, 'A', 'B',
+                    "Table I: the platform begins to move. Mean ± SD over the "
+                    "subjects; g_z is Hedges' corrected effect size of the differences; p is "
+                    "not adjusted for three metrics.",
+                    kPaperAToB));
     page.table(paper_table(analysis, 'B', 'C',
                            "Table II: the motor begins to cancel. Columns as in Table I.",
                            kPaperBToC));
