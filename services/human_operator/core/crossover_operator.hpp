@@ -4,11 +4,11 @@
 #include "contract/trial.hpp"
 #include "human_operator/core/crossover_config.hpp"
 #include "human_operator/core/fast_error.hpp"
-#include "signal/second_order_lag.hpp"
 #include "human_operator/core/operator_io.hpp"
 #include "human_operator/core/remnant.hpp"
 #include "signal/delay_line.hpp"
 #include "signal/force_envelope.hpp"
+#include "signal/second_order_lag.hpp"
 
 namespace stillhand::human_operator {
 

@@ -3,9 +3,9 @@
 
 #include "contract/trial.hpp"
 #include "human_operator/core/arm_feel.hpp"
-#include "signal/second_order_lag.hpp"
 #include "human_operator/core/operator_io.hpp"
 #include "signal/force_envelope.hpp"
+#include "signal/second_order_lag.hpp"
 
 namespace stillhand::human_operator {
 

@@ -15,7 +15,8 @@ namespace stillhand::recording {
 
 /// Settings of a writer.
 struct McapWriterOptions {
-  std::size_t chunk_bytes = std::size_t{256} * 1024;  ///< [B] records gathered before a chunk is written
+  std::size_t chunk_bytes =
+      std::size_t{256} * 1024;  ///< [B] records gathered before a chunk is written
   Compression compression = Compression::kZstd;
   std::string library = "stillhand";
   std::string profile = kProfile;
