@@ -160,11 +160,11 @@ Status McapWriter::flush_chunk() {
   return emit();
 }
 
-Status McapWriter::add_metadata(std::string name, const TextMap& texts) {
+Status McapWriter::add_metadata(const std::string& name, const TextMap& texts) {
   if (!status_.ok()) return status_;
   if (closed_) return Status::failure(StatusKind::kClosed, "recording is closed");
   put_metadata(out_, name, texts);
-  metadata_places_.push_back({std::move(name), {position_, out_.size()}});
+  metadata_places_.push_back({name, {position_, out_.size()}});
   ++statistics_.metadata_count;
   return emit();
 }

@@ -53,7 +53,7 @@ class McapWriter {
   Status flush_chunk();
 
   /// Writes a metadata record now, outside the chunks; names need not be unique.
-  Status add_metadata(std::string name, const TextMap& texts);
+  Status add_metadata(const std::string& name, const TextMap& texts);
 
   /// Writes the open chunk, data end, summary and footer, and flushes the sink.  Once only.
   Status close();
