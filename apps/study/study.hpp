@@ -22,7 +22,7 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("stopped before the end; nothing was written") {}
 };
 
-/// Most subjects of one study: their results take about 70 kB each.
+/// Most subjects of one study: their results take about 55 kB each.
 inline constexpr std::int64_t kMaxSubjects = 10000;
 
 }  // namespace stillhand::study

@@ -75,8 +75,9 @@ Identification identified(const identification::Record& pegged) {
   out.control = std::move(steps.control);
   out.paper_unusable = std::move(steps.paper_unusable);
   out.factor = identification::factor_arx(steps.record, kOrder);
+  const std::size_t segment = std::min(kSegmentSamples, steps.record.size() / 8 * 2);
   out.estimate = signal::transfer_estimate(signal::cross_spectra(
-      steps.record.acceleration_m_s2, steps.record.force_n, steps.record.rate_hz, kSegmentSamples));
+      steps.record.acceleration_m_s2, steps.record.force_n, steps.record.rate_hz, segment));
   return out;
 }
 

@@ -139,7 +139,10 @@ class StudyTest(unittest.TestCase):
         out = self.folder / "study"
         run = subprocess.Popen([STILLHAND, "study", "--subjects", "500", "--out", str(out)],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(1.0)  # anywhere within minutes of work
+        limit = time.monotonic() + 30.0
+        while not list(out.glob(".unfinished-*")):  # the work, of minutes, has begun
+            self.assertLess(time.monotonic(), limit)
+            time.sleep(0.01)
         run.send_signal(signal.SIGINT)
         _, errors = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1, errors)

@@ -68,12 +68,13 @@ double roll_off(const MotionProfile& profile, double f_hz) {
                          (1.0 + std::pow(f_hz / profile.band_high_hz, power)));
 }
 
-// The band out to where an edge has fallen to -40 dB.
+// The band out to where an edge has fallen to -40 dB, inside what a profile may name as its band:
+// a message must not make the grid any larger.
 MotionProfile with_skirts(MotionProfile profile) {
   if (profile.band_order == 0) return profile;
   const double reach = std::pow(100.0, 1.0 / static_cast<double>(profile.band_order));
-  profile.band_low_hz /= reach;
-  profile.band_high_hz *= reach;
+  profile.band_low_hz = std::max(profile.band_low_hz / reach, kLowestBand_hz);
+  profile.band_high_hz = std::min(profile.band_high_hz * reach, kHighestBand_hz);
   return profile;
 }
 

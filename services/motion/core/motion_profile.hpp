@@ -26,6 +26,10 @@ std::string_view to_string(MotionKind kind) noexcept;
 /// @throws stillhand::ConfigError for any other word.
 MotionKind motion_kind_from(const std::string& word);
 
+/// What a band may hold, skirts included [Hz].
+inline constexpr double kLowestBand_hz = 0.02;
+inline constexpr double kHighestBand_hz = 40.0;
+
 /// What a trial asks of the platform.  Settings that a kind does not use are named so below.
 struct MotionProfile {
   MotionKind kind = MotionKind::kStill;
@@ -45,9 +49,9 @@ struct MotionProfile {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("band_low_hz", self.band_low_hz, Range{0.02, 40.0},
+    visit("band_low_hz", self.band_low_hz, Range{kLowestBand_hz, kHighestBand_hz},
           "[Hz] lower edge; ride: lowest corner tried; paper III-A, 0.7 Hz");
-    visit("band_high_hz", self.band_high_hz, Range{0.02, 40.0},
+    visit("band_high_hz", self.band_high_hz, Range{kLowestBand_hz, kHighestBand_hz},
           "[Hz] upper edge; paper III-A 4 Hz, III-C 2 Hz");
     visit("band_order", self.band_order, Range{0.0, 8.0},
           "[-] Butterworth order of each edge of band noise, down to -40 dB; 0: an abrupt end");

@@ -33,6 +33,34 @@ TEST(BandNoiseTest, AllHarmonicsOfTheBandAndNoOthersAreExcitedEqually) {
   for (const auto& c : sut.accel_m_s2) ASSERT_NEAR(std::abs(c), amplitude, 1e-14);
 }
 
+// Eq. MO-11 with n = 4 on 0.7 to 4 Hz: at twice the upper edge (1 + 2^8)^-1/2 of the middle, where
+// the lower edge leaves (1 + (0.7/2)^8)^-1/2 and the upper (1 + (2/4)^8)^-1/2.
+TEST(BandNoiseTest, ItsEdgesRollOffAsAButterworthFilterToFortyDecibels) {
+  auto profile = profile_of(MotionKind::kBandNoise);
+  profile.band_high_hz = 4.0;
+  profile.band_order = 4;
+  const auto sut = band_noise(profile);
+  const auto amplitude = [&](double hz) {
+    const auto line = static_cast<std::int64_t>(std::llround(hz * sut.period_s));
+    return std::abs(sut.accel_m_s2[static_cast<std::size_t>(line - sut.first)]);
+  };
+  const double middle = 1.0 / std::sqrt((1.0 + std::pow(0.35, 8)) * (1.0 + std::pow(0.5, 8)));
+  const double twice = 1.0 / std::sqrt((1.0 + std::pow(0.7 / 8.0, 8)) * (1.0 + 256.0));
+  EXPECT_NEAR(amplitude(8.0) / amplitude(2.0), twice / middle, 1e-9);
+  EXPECT_NEAR(static_cast<double>(last_of(sut)) / sut.period_s, 4.0 * std::sqrt(10.0), 0.01);
+  EXPECT_NEAR(sut.rms_m_s2(), profile.rms_m_s2, 1e-12);
+}
+
+// Whatever a message asks for, the grid stays that of the widest band.
+TEST(BandNoiseTest, ItsSkirtsEndWhereABandMustEnd) {
+  auto profile = profile_of(MotionKind::kBandNoise);
+  profile.band_high_hz = 30.0;
+  profile.band_order = 1;
+  const auto sut = band_noise(profile);
+  EXPECT_EQ(last_of(sut), static_cast<std::int64_t>(kHighestBand_hz * 180.0));
+  EXPECT_GE(static_cast<double>(sut.first), kLowestBand_hz * 180.0);
+}
+
 TEST(BandNoiseTest, TheSeedDecidesEveryBit) {
   auto profile = profile_of(MotionKind::kBandNoise);
   const auto one = band_noise(profile);

@@ -151,6 +151,12 @@ TEST(StudyTest, EveryMitigationHelpsAgainstMotionAlone) {
   }
 }
 
+// The shortest trials that the options allow: fewer samples than a segment of Fig. 4.
+TEST(StudyTest, TheShortestTrialsThereAreGiveAStudy) {
+  const auto results = run_study(study_of(2, 5.0, 5.0), kNoProgress);
+  EXPECT_FALSE(results.front().identification.estimate.frequency_hz.empty());
+}
+
 TEST(StudyTest, OneSubjectGivesMeansAndNoTests) {
   const Analysis analysis = analyse(run_study(study_of(1, 20.0, 20.0), kNoProgress));
   EXPECT_FALSE(analysis.conditions.at('A')[0].standard_deviation.has_value());
