@@ -1,69 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "identification/model_file.hpp"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "contract/config_error.hpp"
 #include "contract/tick.hpp"
+#include "settings/json_entry.hpp"
 
 namespace stillhand::identification {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = settings::JsonEntry::Json;
 constexpr const char* kFormat = "stillhand model";
 constexpr std::size_t kMostCoefficients = 13;
-
-// An entry of the file, with the path to it for messages.
-class Entry {
- public:
-  Entry(const Json& json, std::string path) : json_(json), path_(std::move(path)) {}
-
-  [[nodiscard]] Entry at(const std::string& key) const {
-    if (!json_.is_object()) refuse("an object");
-    const auto found = json_.find(key);
-    if (found == json_.end()) throw ConfigError(path_ + "." + key, "no such entry", "one");
-    return {*found, path_ + "." + key};
-  }
-  [[nodiscard]] double number() const {
-    if (!json_.is_number()) refuse("a number");
-    const auto value = json_.get<double>();
-    if (!std::isfinite(value)) refuse("a finite number");
-    return value;
-  }
-  [[nodiscard]] std::size_t count() const {
-    if (!json_.is_number_unsigned()) refuse("a whole number from 0");
-    return json_.get<std::size_t>();
-  }
-  [[nodiscard]] bool boolean() const {
-    if (!json_.is_boolean()) refuse("true or false");
-    return json_.get<bool>();
-  }
-  [[nodiscard]] std::string text() const {
-    if (!json_.is_string()) refuse("a text");
-    return json_.get<std::string>();
-  }
-  [[nodiscard]] std::vector<double> numbers() const {
-    if (!json_.is_array() || json_.empty() || json_.size() > kMostCoefficients) {
-      refuse("an array of 1 to " + std::to_string(kMostCoefficients) + " numbers");
-    }
-    std::vector<double> out;
-    for (std::size_t i = 0; i < json_.size(); ++i) {
-      out.push_back(Entry(json_[i], path_ + "[" + std::to_string(i) + "]").number());
-    }
-    return out;
-  }
-  [[noreturn]] void refuse(const std::string& want) const {
-    constexpr std::size_t kMostShown = 60;
-    std::string got = json_.dump(-1, ' ', true, Json::error_handler_t::replace);
-    if (got.size() > kMostShown) got = got.substr(0, kMostShown) + "...";
-    throw ConfigError(path_, got, want);
-  }
-
- private:
-  const Json& json_;
-  std::string path_;
-};
 
 void check(const DifferenceModel& model, const std::string& path) {
   if (model.numerator.size() != model.denominator.size()) {
@@ -85,9 +32,10 @@ Json json_of(const DifferenceModel& model) {
           {"denominator", model.denominator}};
 }
 
-DifferenceModel model_of(const Entry& entry) {
-  DifferenceModel model{entry.at("rate_hz").number(), entry.at("numerator").numbers(),
-                        entry.at("denominator").numbers()};
+DifferenceModel model_of(const settings::JsonEntry& entry) {
+  DifferenceModel model{entry.at("rate_hz").number(),
+                        entry.at("numerator").numbers(1, kMostCoefficients),
+                        entry.at("denominator").numbers(1, kMostCoefficients)};
   return model;
 }
 
@@ -100,7 +48,7 @@ void check(const FeedthroughModel& model, const std::string& origin) {
   }
 }
 
-FitQuality quality_of(const Entry& entry) {
+FitQuality quality_of(const settings::JsonEntry& entry) {
   FitQuality quality;
   quality.one_step_rms_n = entry.at("one_step_rms_n").number();
   quality.one_step_vaf_percent = entry.at("one_step_vaf_percent").number();
@@ -108,15 +56,6 @@ FitQuality quality_of(const Entry& entry) {
   quality.free_run_vaf_percent = entry.at("free_run_vaf_percent").number();
   quality.samples = entry.at("samples").count();
   return quality;
-}
-
-Json parsed(std::string_view json, const std::string& origin) {
-  try {
-    return Json::parse(json);
-  } catch (const Json::exception& error) {
-    // The library's text names line and column, or the number that does not fit a double.
-    throw ConfigError(origin, error.what(), "JSON of a stillhand model");
-  }
 }
 
 }  // namespace
@@ -143,8 +82,8 @@ std::string model_json(const FeedthroughModel& model) {
 }
 
 FeedthroughModel parse_model(std::string_view json, const std::string& origin) {
-  const Json whole = parsed(json, origin);
-  const Entry top(whole, origin);
+  const Json whole = settings::parsed_json(json, origin, "JSON of a stillhand model");
+  const settings::JsonEntry top(whole, origin);
   if (top.at("format").text() != kFormat) top.at("format").refuse("\"stillhand model\"");
   if (top.at("version").count() != kModelFormatVersion) {
     top.at("version").refuse("1: a newer stillhand wrote this file");

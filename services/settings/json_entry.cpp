@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "settings/json_entry.hpp"
+
+#include <cmath>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::settings {
+
+JsonEntry JsonEntry::at(const std::string& key) const {
+  if (!json_.is_object()) refuse("an object");
+  const auto found = json_.find(key);
+  if (found == json_.end()) throw ConfigError(path_ + "." + key, "no such entry", "one");
+  return {*found, path_ + "." + key};
+}
+
+double JsonEntry::number() const {
+  if (!json_.is_number()) refuse("a number");
+  const auto value = json_.get<double>();
+  if (!std::isfinite(value)) refuse("a finite number");
+  return value;
+}
+
+std::size_t JsonEntry::count() const {
+  if (!json_.is_number_unsigned()) refuse("a whole number from 0");
+  return json_.get<std::size_t>();
+}
+
+bool JsonEntry::boolean() const {
+  if (!json_.is_boolean()) refuse("true or false");
+  return json_.get<bool>();
+}
+
+std::string JsonEntry::text() const {
+  if (!json_.is_string()) refuse("a text");
+  return json_.get<std::string>();
+}
+
+std::vector<JsonEntry> JsonEntry::entries(std::size_t least, std::size_t most) const {
+  if (!json_.is_array() || json_.size() < least || json_.size() > most) {
+    refuse("an array of " + std::to_string(least) + " to " + std::to_string(most) + " entries");
+  }
+  std::vector<JsonEntry> all;
+  for (std::size_t i = 0; i < json_.size(); ++i) {
+    all.emplace_back(json_[i], path_ + "[" + std::to_string(i) + "]");
+  }
+  return all;
+}
+
+std::vector<double> JsonEntry::numbers(std::size_t least, std::size_t most) const {
+  if (!json_.is_array() || json_.size() < least || json_.size() > most) {
+    refuse("an array of " + std::to_string(least) + " to " + std::to_string(most) + " numbers");
+  }
+  std::vector<double> all;
+  for (const JsonEntry& entry : entries(least, most)) all.push_back(entry.number());
+  return all;
+}
+
+void JsonEntry::refuse(const std::string& want) const {
+  constexpr std::size_t kMostShown = 60;
+  std::string got = json_.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (got.size() > kMostShown) got = got.substr(0, kMostShown) + "...";
+  throw ConfigError(path_, got, want);
+}
+
+JsonEntry::Json parsed_json(std::string_view json, const std::string& origin,
+                            const std::string& want) {
+  try {
+    return JsonEntry::Json::parse(json);
+  } catch (const JsonEntry::Json::exception& error) {
+    // The library's text names line and column, or the number that does not fit a double.
+    throw ConfigError(origin, error.what(), want);
+  }
+}
+
+}  // namespace stillhand::settings
