@@ -181,5 +181,32 @@ p <- c(0.012, 1e-12, 0.04, 0.04, 0.0047, 4.05e-6, 0.73, 1, 0, 0.03, 5.67e-7, 0.5
 array("kRaw", p)
 array("kHolm", p.adjust(p, "holm"))
 array("kBenjaminiHochberg", p.adjust(p, "BH"))
+
+# Wilcoxon's signed-rank test, one-sided: wilcox.test with zeros left out beforehand.  Exact up to 25 differences
+# without ties, else the normal approximation; `count` differences a row, the rest of the row filled with zeros.
+longest <- 60
+say("struct SignedRankRow {")
+say("  int count; double p; double differences[", longest, "];")
+say("};")
+heavy <- with(trials$Replicated, metric_3[condition == 1] - metric_3[condition == 4])
+heavy <- c(heavy, with(trials$Replicated, metric_4[condition == 2] - metric_4[condition == 5] + 4),
+           with(trials$Replicated, metric_1[condition == 3] - metric_1[condition == 6]))
+paired <- function(set, a, b, metric) {
+  y <- metrics_of(trials[[set]])[, metric]
+  y[trials[[set]]$condition == a] - y[trials[[set]]$condition == b]
+}
+signed_rank_row <- function(d) {
+  kept <- d[d != 0]
+  ties <- any(duplicated(abs(kept)))
+  r <- wilcox.test(kept, alternative = "greater", exact = length(kept) <= 25 && !ties, correct = TRUE)
+  say("    {", length(d), ", ", number(r$p.value), ", ", row_text(c(d, rep(0, longest - length(d)))), "},")
+}
+say("inline constexpr SignedRankRow kSignedRanks[] = {")
+for (d in list(3, -3, c(1, 2, 3, 4, 5), c(-1, -2, -3, -4, -5), paired(1, 2, 1, 1), paired(1, 1, 2, 1), paired(1, 2, 3, 2),
+               paired(2, 1, 2, 2), heavy[1:10], heavy[1:25], c(heavy[1:12], 0, 0, heavy[13:20], 0), heavy[1:26],
+               c(heavy[1:25], 0, 0), heavy[1:60], -heavy[1:60], abs(heavy[1:60]),
+               round(paired(1, 2, 1, 1)), round(heavy[1:25], 0), round(heavy[1:60] / 2), rep(c(1, -1), c(8, 3))))
+  signed_rank_row(d)
+say("};")
 say("}  // namespace stillhand::golden::statistics")
 writeLines(out, "expected.hpp")
