@@ -36,8 +36,9 @@ void estimate_timing(Recording& recording) {
   recording.gaps.clear();
   for (std::size_t i = 0; i < steps_s.size(); ++i) {
     if (steps_s[i] > 1.5 * period_s) {
-      recording.gaps.push_back(
-          {i, static_cast<std::int64_t>(std::llround(steps_s[i] / period_s)) - 1});
+      // 2^53: any finite time may follow any other, and so many periods no integer need hold.
+      const double periods = std::min(std::round(steps_s[i] / period_s), 0x1p53);
+      recording.gaps.push_back({i, static_cast<std::int64_t>(periods) - 1});
     }
   }
 }

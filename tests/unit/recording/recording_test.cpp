@@ -57,5 +57,12 @@ TEST(RecordingTest, GapsMoreThanHalfTheTimeDoNotBendTheRate) {
   EXPECT_EQ(sut.gaps[0].missing_rows, 4990);  // 4.991 s
 }
 
+TEST(RecordingTest, AGapOfMorePeriodsThanAnIntegerCountsIsStillAGap) {
+  const Recording sut = at({0.0, 1e-3, 2e-3, 1e300});
+  ASSERT_EQ(sut.gaps.size(), 1u);
+  EXPECT_EQ(sut.gaps[0].after_row, 2u);
+  EXPECT_EQ(sut.gaps[0].missing_rows, (std::int64_t{1} << 53) - 1);
+}
+
 }  // namespace
 }  // namespace stillhand::recording

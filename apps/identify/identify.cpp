@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identify/identify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "contract/config_error.hpp"
+#include "identification/core/excitation_check.hpp"
+#include "identification/core/paper_preprocessing.hpp"
+
+namespace stillhand::identify {
+namespace {
+
+using diagnosis::Channel;
+using diagnosis::Measurement;
+using diagnosis::Stretch;
+
+std::string count(std::size_t samples) { return std::to_string(samples) + " samples"; }
+
+// Frequencies of the model's response: from a seventh of the excited band's lower edge to twice the
+// preprocessing filter's.
+constexpr double kLowestHz = 0.1;
+constexpr double kHighestHz = 20.0;
+constexpr int kResponsePoints = 120;
+// Two neighbours of the search for a notch are 0.2 % apart.
+constexpr int kNotchPoints = 2000;
+constexpr double kNotchLowestHz = 0.5;
+constexpr double kNotchHighestHz = 10.0;  // the preprocessing filter's edge
+// Less is a ripple that the random error of a fit makes too.
+constexpr double kNotchDepth_db = 1.0;
+// At 50 Hz 5 s: lines of 0.2 Hz resolve the excited band's lower edge.
+constexpr std::size_t kSegmentSamples = 256;
+
+const Channel& channel_of(const Measurement& measurement, const std::string& option,
+                          const std::string& name) {
+  const Channel* channel = measurement.find(name);
+  if (channel != nullptr) return *channel;
+  std::string names;
+  for (const Channel& there : measurement.channels) {
+    names += (names.empty() ? "" : ", ") + there.name;
+  }
+  throw ConfigError(option, "'" + name + "'", "one of " + names + " in " + measurement.source);
+}
+
+const Stretch& longest(const std::vector<Stretch>& stretches) {
+  return *std::ranges::max_element(stretches, {}, [](const Stretch& s) { return s.end - s.first; });
+}
+
+std::vector<double> cut(const Channel& channel, const Stretch& stretch) {
+  const auto begin = channel.values.begin();
+  return {begin + static_cast<std::ptrdiff_t>(stretch.first),
+          begin + static_cast<std::ptrdiff_t>(stretch.end)};
+}
+
+double mean_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  return mean;
+}
+
+double rms_about_mean(const std::vector<double>& values) {
+  const double mean = mean_of(values);
+  double squares = 0.0;
+  for (const double value : values) {
+    squares += (value - mean) * (value - mean) / static_cast<double>(values.size());
+  }
+  return std::sqrt(squares);
+}
+
+// What divides the input before the fit.
+double scale_of(const Channel& input, const std::vector<double>& values) {
+  if (input.unit == "m/s^2") return 1.0;
+  const double rms = rms_about_mean(values);
+  return std::isnormal(rms) && std::isnormal(1.0 / rms) ? rms : 1.0;
+}
+
+void divide(std::vector<double>& values, double scale) {
+  for (double& value : values) value /= scale;
+}
+
+identification::Record record_of(const Measurement& measurement, const Channel& input,
+                                 const Channel& output, const Stretch& stretch) {
+  if (measurement.rate_hz < identification::kRecordingRateHz * (1.0 - 1e-6)) {
+    char rate[32];
+    std::snprintf(rate, sizeof(rate), "%.6g Hz", measurement.rate_hz);
+    throw ConfigError(measurement.source, rate, "100 Hz or more, the paper's recording rate");
+  }
+  const std::size_t samples = stretch.end - stretch.first;
+  if (static_cast<double>(samples) < measurement.rate_hz) {
+    throw ConfigError(measurement.source, "no more than " + count(samples) + " without a long gap",
+                      "a second or more");
+  }
+  return {measurement.rate_hz, cut(input, stretch), cut(output, stretch)};
+}
+
+// Seen before the filters: their start would make a step of it.
+void check_moves(const Channel& channel, const std::vector<double>& values,
+                 const std::string& source) {
+  const auto [low, high] = std::ranges::minmax(values);
+  if (low < high) return;
+  char value[32];
+  std::snprintf(value, sizeof(value), "%g ", low);
+  throw ConfigError(source + ", channel " + channel.name, value + channel.unit + " throughout",
+                    "a channel that moves");
+}
+
+// The chain's own messages don't know the file.
+void check_excitation(const identification::Record& fitted, const IdentifyOptions& options,
+                      const std::string& source) {
+  const auto excitation =
+      identification::check_excitation(fitted, static_cast<int>(options.config.order));
+  if (!excitation.sufficient) {
+    throw ConfigError(source + ", " + options.input + " to " + options.output, excitation.verdict,
+                      "a recording that excites what is to be identified");
+  }
+}
+
+std::optional<Notch> notch_of(const signal::DifferenceModel& model) {
+  const auto points = identification::frequency_response(
+      model, identification::log_spaced_hz(kNotchLowestHz, kNotchHighestHz, kNotchPoints));
+  const auto lower = [](const auto& a, const auto& b) { return a.magnitude_db < b.magnitude_db; };
+  for (auto at = points.begin() + 1; at + 1 < points.end(); ++at) {
+    if (!lower(*at, *(at - 1)) || lower(*(at + 1), *at)) continue;
+    const double wall = at->magnitude_db + kNotchDepth_db;
+    const double before = std::max_element(points.begin(), at, lower)->magnitude_db;
+    const double after = std::max_element(at, points.end(), lower)->magnitude_db;
+    if (before >= wall && after >= wall) return Notch{at->frequency_hz, at->magnitude_db};
+  }
+  return {};
+}
+
+// The chain, and what is left of it where no filter for the canceller comes out.
+void fit(const identification::Record& recorded, const identification::Record& fitted,
+         const identification::Config& config, IdentifyResult& out) {
+  const auto paper = identification::fit_arx(fitted, static_cast<int>(config.order));
+  out.model.condition_number = paper.condition_number;
+  try {
+    const auto steps = identification::identify_stepwise(recorded, config, false);
+    out.model.control = steps.control.model;
+    out.model.conversion_error = steps.control.max_error;
+    out.model.refined = steps.refined_used;
+    out.why_refined = steps.refined_used && config.refine ? "as asked for" : steps.paper_unusable;
+  } catch (const ConfigError& error) {
+    out.unusable = error.what();
+    out.model.refined = config.refine || !paper.stable;
+    if (out.model.refined) out.why_refined = config.refine ? "as asked for" : "unstable";
+  }
+  if (out.model.refined) {
+    const auto refined = identification::refine_output_error(fitted, paper.model);
+    out.model.fit = refined.model;
+    out.model.heldout = refined.heldout;
+  } else {
+    out.model.fit = paper.model;
+    out.model.heldout = paper.heldout;
+  }
+}
+
+// Eq. ID-1 has no constant.
+void note_offset(const Channel& channel, const std::vector<double>& values,
+                 std::vector<std::string>& notes) {
+  const double mean = mean_of(values);
+  if (std::abs(mean) <= rms_about_mean(values)) return;
+  char text[160];
+  std::snprintf(text, sizeof(text), " has a mean of %.4g ", mean);
+  notes.push_back(channel.name + text + channel.unit +
+                  ", more than it moves; the paper's model has no offset and bends to it.");
+}
+
+void note_what_was_used(const Measurement& measurement, const Stretch& used,
+                        std::vector<std::string>& notes) {
+  if (measurement.stretches.size() > 1) {
+    notes.push_back("The longest of " + std::to_string(measurement.stretches.size()) +
+                    " stretches is used, " + count(used.end - used.first) + " of " +
+                    count(measurement.size()) + ".");
+  }
+}
+
+}  // namespace
+
+IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& options) {
+  const Channel& input = channel_of(measurement, "--input", options.input);
+  const Channel& output = channel_of(measurement, "--output", options.output);
+  if (&input == &output) {
+    throw ConfigError("--output", "'" + output.name + "', the input",
+                      "another channel than --input");
+  }
+  const Stretch& used = longest(measurement.stretches);
+  identification::Record recorded = record_of(measurement, input, output, used);
+  check_moves(input, recorded.acceleration_m_s2, measurement.source);
+  check_moves(output, recorded.force_n, measurement.source);
+  IdentifyResult out;
+  out.source = measurement.source;
+  out.input = input.name;
+  out.input_unit = input.unit;
+  out.output = output.name;
+  out.output_unit = output.unit;
+  out.rate_hz = measurement.rate_hz;
+  out.samples = recorded.size();
+  out.notes = measurement.notes;
+  note_what_was_used(measurement, used, out.notes);
+  note_offset(input, recorded.acceleration_m_s2, out.notes);
+  note_offset(output, recorded.force_n, out.notes);
+  const double scale = scale_of(input, recorded.acceleration_m_s2);
+  divide(recorded.acceleration_m_s2, scale);
+  identification::Record fitted = identification::preprocessed(recorded);
+  check_excitation(fitted, options, measurement.source);
+  fit(recorded, fitted, options.config, out);
+  divide(out.model.fit.numerator, scale);
+  divide(out.model.control.numerator, scale);
+  for (double& value : fitted.acceleration_m_s2) value *= scale;
+  out.response = identification::frequency_response(
+      out.model.fit, identification::log_spaced_hz(kLowestHz, kHighestHz, kResponsePoints));
+  out.dc_gain_db = identification::frequency_response(out.model.fit, {0.0}).front().magnitude_db;
+  out.notch = notch_of(out.model.fit);
+  const std::size_t segment = std::min(kSegmentSamples, fitted.size() / 8 * 2);
+  out.measured = signal::transfer_estimate(
+      signal::cross_spectra(fitted.acceleration_m_s2, fitted.force_n, fitted.rate_hz, segment));
+  return out;
+}
+
+}  // namespace stillhand::identify

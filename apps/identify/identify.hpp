@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/core/measurement.hpp"
+#include "identification/core/frequency_response.hpp"
+#include "identification/core/identifier.hpp"
+#include "signal/spectrum.hpp"
+
+namespace stillhand::identify {
+
+struct IdentifyOptions {
+  std::string input = "a_y";
+  std::string output = "f";
+  identification::Config config;
+};
+
+/// Lowest minimum in frequency, 0.5 to 10 Hz, from which the gain rises by 1 dB to either side.
+struct Notch {
+  double frequency_hz;
+  double magnitude_db;
+};
+
+/// The paper's fit of one recording, and what there is to say about it.  Coefficients and
+/// magnitudes in the output's unit per input's.
+struct IdentifyResult {
+  std::string source;
+  std::string input, input_unit;
+  std::string output, output_unit;
+  double rate_hz = 0.0;     ///< [Hz] of the recording
+  std::size_t samples = 0;  ///< [-] of it that were used
+  std::vector<std::string> notes;
+  /// `control` is empty where `unusable` says why.
+  identification::FeedthroughModel model;
+  std::string why_refined;  ///< why it isn't the paper's least squares; empty: it is
+  std::string unusable;     ///< why no filter for the canceller comes out; empty: one does
+  double dc_gain_db = 0.0;
+  std::optional<Notch> notch;
+  std::vector<identification::ResponsePoint> response;  ///< of the model, at its own rate
+  signal::TransferEstimate measured;                    ///< of the record that was fitted
+};
+
+/// Runs the chain of paper III-A on the longest stretch of a recording.  An input in another unit
+/// than m/s^2 is scaled to an RMS of 1 for the fit, since the check for excitation knows
+/// accelerations; the model comes back in the input's own unit.  Pure.
+/// @throws stillhand::ConfigError naming the recording, when a channel is not there or nothing can
+///         be identified from it.
+IdentifyResult identify(const diagnosis::Measurement& measurement, const IdentifyOptions& options);
+
+}  // namespace stillhand::identify

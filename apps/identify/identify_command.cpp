@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identify/identify_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "contract/config_error.hpp"
+#include "identification/model_file.hpp"
+#include "identify/identify.hpp"
+#include "identify/identify_output.hpp"
+#include "measurement/read.hpp"
+#include "report/result_files.hpp"
+
+namespace stillhand::identify {
+namespace {
+
+struct Words {
+  std::string recording;
+  measurement::ReadOptions read;
+  IdentifyOptions identify;
+  std::filesystem::path save;
+  std::filesystem::path json;
+};
+
+int run(const Words& words) {
+  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}}, {words.recording});
+  const IdentifyResult result =
+      identify(measurement::read_measurement(words.recording, words.read), words.identify);
+  if (files.wants("--save")) {
+    if (!result.unusable.empty()) {
+      throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
+                        "it without --save, or another --order");
+    }
+    files.set("--save", identification::model_json(result.model));
+  }
+  if (files.wants("--json")) files.set("--json", result_json(result));
+  files.publish();
+  std::fputs(result_table(result).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void add_identify_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = cli.add_subcommand(
+      "identify",
+      "The paper's fit of one recording: difference model by least squares at 50 Hz, its "
+      "frequency\n"
+      "response beside the measured one, its error on the quarter that the fit did not see.\n"
+      "REC: CSV with columns 'name [unit]', 't [s]' first, at 100 Hz or more; or the MCAP file of "
+      "a\n"
+      "session. Files of earlier results are replaced; they appear together or not at all.\n"
+      "Example: stillhand identify demo/session.mcap --save model.json --json out.json");
+  verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
+  verb->add_option("--order", words->identify.config.order, "order of the model, 1 to 12")
+      ->check(CLI::Range(1, 12))
+      ->capture_default_str();
+  verb->add_flag(
+      "--refine", words->identify.config.refine,
+      "refine the least squares on its free-run error; done anyway where it is unstable");
+  verb->add_option("--input", words->identify.input, "channel that drives")->capture_default_str();
+  verb->add_option("--output", words->identify.output, "channel that answers")
+      ->capture_default_str();
+  verb->add_option(
+      "--trial", words->read.trial,
+      "of a session: number, or letter of its condition (I, A, B, C) [identification]");
+  verb->add_option("--save", words->save, "file of the model, as the cancellation reads it");
+  verb->add_option("--json", words->json, "file of everything that was found");
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::identify

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measurement/grid.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <span>
+#include <string>
+
+#include "contract/config_error.hpp"
+#include "measurement/bridge.hpp"
+#include "measurement/row_clock.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+using diagnosis::Measurement;
+
+constexpr double kLeastStretch_s = 1.0;
+constexpr std::size_t kLeastStretch_samples = 20;
+
+// "1 row", "2 rows"
+std::string counted(double count, const std::string& what) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.15g ", count);
+  return text + what + (count == 1.0 ? "" : "s");
+}
+std::string counted(std::size_t count, const std::string& what) {
+  return counted(static_cast<double>(count), what);
+}
+
+std::string figure(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return text;
+}
+
+// A stretch of less than 20 samples says nothing, one of less than a second hardly anything beside
+// a longer one.
+void leave_out_short(RowPlaces& places, std::vector<std::string>& notes) {
+  std::size_t longest = 0;
+  for (const RowStretch& stretch : places.stretches) {
+    longest = std::max(longest, stretch.grid_samples);
+  }
+  const double second = kLeastStretch_s * places.rate_hz;
+  const double least = static_cast<double>(longest) >= second
+                           ? std::max(second, static_cast<double>(kLeastStretch_samples))
+                           : static_cast<double>(kLeastStretch_samples);
+  std::size_t rows = 0;
+  std::erase_if(places.stretches, [&](const RowStretch& stretch) {
+    const bool is_short = static_cast<double>(stretch.grid_samples) < least;
+    if (is_short) rows += stretch.end_row - stretch.first_row;
+    return is_short;
+  });
+  if (rows > 0) {
+    notes.push_back(counted(rows, "row") + " left out, in stretches shorter than " +
+                    figure(least / places.rate_hz) + " s.");
+  }
+}
+
+std::size_t grid_size(const RowPlaces& places) {
+  std::size_t samples = 0;
+  for (const RowStretch& stretch : places.stretches) samples += stretch.grid_samples;
+  return samples;
+}
+
+void check_size(const recording::Recording& rows, std::size_t samples, std::size_t most_values) {
+  if (samples > most_values / rows.columns.size()) {
+    throw ConfigError(rows.source,
+                      counted(samples, "sample") + " of " + counted(rows.columns.size(), "channel"),
+                      "at most " + std::to_string(most_values) +
+                          " values: a part of it, fewer channels or a lower rate");
+  }
+}
+
+void note_what_happened(const RowPlaces& places, std::size_t long_gaps, std::size_t filled,
+                        std::vector<std::string>& notes) {
+  const std::string bridge_ms =
+      figure(1e3 * static_cast<double>(longest_bridge(places.rate_hz)) / places.rate_hz);
+  if (places.as_stamped) {
+    notes.push_back("The time stamps lie off an even grid, by " +
+                    figure(100.0 * places.jitter_periods) +
+                    " % of a period in the median: resampled to " + figure(places.rate_hz) +
+                    " Hz by cubic interpolation.");
+  }
+  if (filled > 0) {
+    notes.push_back(counted(filled, "row") + " missing in gaps of at most " + bridge_ms +
+                    " ms: filled in by cubic interpolation, and not counted.");
+  }
+  if (long_gaps > 0) {
+    notes.push_back(counted(places.lost_between, "row") + " missing in " +
+                    counted(long_gaps, "gap") + " longer than " + bridge_ms +
+                    " ms: what follows is a new stretch.");
+  }
+}
+
+void fill(Measurement& out, recording::Recording& rows, const RowPlaces& places) {
+  const std::size_t samples = grid_size(places);
+  const auto of_stretch = [&](const std::vector<double>& of_rows, const RowStretch& stretch) {
+    return std::span(of_rows).subspan(stretch.first_row, stretch.end_row - stretch.first_row);
+  };
+  out.weight.reserve(samples);
+  for (const RowStretch& stretch : places.stretches) {
+    const std::size_t first = out.weight.size();
+    append_weights(of_stretch(places.places, stretch), stretch.grid_samples, out.weight);
+    out.stretches.push_back({first, out.weight.size(), stretch.start_s});
+  }
+  const bool as_it_is = !places.as_stamped && places.stretches.size() == 1 &&
+                        samples == rows.row_count() &&
+                        places.stretches.front().end_row == rows.row_count();
+  for (recording::Column& column : rows.columns) {
+    diagnosis::Channel channel{std::move(column.name), std::move(column.unit), {}};
+    if (as_it_is) {
+      channel.values = std::move(column.values);
+    } else {
+      channel.values.reserve(samples);
+      for (const RowStretch& stretch : places.stretches) {
+        append_on_grid(of_stretch(places.places, stretch), of_stretch(column.values, stretch),
+                       stretch.grid_samples, channel.values);
+      }
+      column.values = {};
+    }
+    out.channels.push_back(std::move(channel));
+  }
+}
+
+void check_use(const Measurement& measurement, std::size_t rows, double rate_hz) {
+  const auto measured = static_cast<std::size_t>(std::ranges::count(measurement.weight, 1.0));
+  if (measured < kLeastSamples) {
+    throw ConfigError(measurement.source,
+                      counted(measured, "usable sample") + " in " + counted(rows, "row") + " at " +
+                          figure(rate_hz) + " Hz",
+                      "at least " + std::to_string(kLeastSamples) +
+                          ", in stretches of 20 and more without a long gap");
+  }
+  if (measurement.size() - measured > measured) {
+    throw ConfigError(measurement.source,
+                      "more rows missing than there are, at " + figure(rate_hz) + " Hz",
+                      "rows in even steps of time, most of them present");
+  }
+}
+
+}  // namespace
+
+Measurement on_grid(recording::Recording rows, std::size_t most_values) {
+  const std::size_t row_count = rows.row_count();
+  RowPlaces places = place_rows(rows);
+  rows.time_s = {};
+  Measurement out;
+  out.source = rows.source;
+  out.rate_hz = places.rate_hz;
+  const std::size_t long_gaps = places.stretches.size() - 1;
+  std::vector<std::string> left_out;
+  leave_out_short(places, left_out);
+  check_size(rows, grid_size(places), most_values);
+  fill(out, rows, places);
+  check_use(out, row_count, places.rate_hz);
+  const auto filled = static_cast<std::size_t>(std::ranges::count(out.weight, 0.0));
+  note_what_happened(places, long_gaps, filled, out.notes);
+  out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
+  return out;
+}
+
+}  // namespace stillhand::measurement

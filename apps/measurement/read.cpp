@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measurement/read.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "contract/config_error.hpp"
+#include "measurement/grid.hpp"
+#include "measurement/session.hpp"
+#include "recording/core/csv.hpp"
+#include "recording/file_io.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+// A table of small numbers has fewer bytes than its doubles; one of 20 digits has more.  2 GiB of
+// text hold 60 million of those.
+constexpr std::uint64_t kMostCsv_bytes = std::uint64_t{2} << 30;
+
+bool is_mcap(const std::string& path) {
+  // MCAP specification, "Magic"; the rest of its eight bytes may be cut off.
+  constexpr std::array<std::byte, 5> kMagic{std::byte{0x89}, std::byte{'M'}, std::byte{'C'},
+                                            std::byte{'A'}, std::byte{'P'}};
+  recording::FileSource file(path);
+  if (file.size() < kMagic.size()) return false;
+  std::array<std::byte, kMagic.size()> begin{};
+  const recording::Status status = file.read_at(0, begin);
+  if (!status.ok()) throw ConfigError(path, status.text, "a file that can be read");
+  return begin == kMagic;
+}
+
+// Before the table is built: what it will hold.
+void check_table_size(const std::string& path, const std::string& text, std::size_t most_values) {
+  const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+  const std::size_t rows = std::max<std::size_t>(lines, 1) - 1;  // without the header
+  const auto header =
+      text.begin() + static_cast<std::ptrdiff_t>(std::min(text.find('\n'), text.size()));
+  const auto columns = static_cast<std::size_t>(std::count(text.begin(), header, ','));
+  if (columns > 0 && rows > most_values / columns) {
+    throw ConfigError(path,
+                      std::to_string(rows) + " rows of " + std::to_string(columns) + " channels",
+                      "at most " + std::to_string(most_values) +
+                          " values: a part of the file, fewer columns or a lower rate");
+  }
+}
+
+recording::Recording read_table(const std::string& path, std::size_t most_values) {
+  const std::uint64_t bytes = recording::FileSource(path).size();
+  if (bytes > kMostCsv_bytes) {
+    throw ConfigError(path, std::to_string(bytes >> 20) + " MiB",
+                      "at most " + std::to_string(kMostCsv_bytes >> 20) +
+                          " MiB: a part of the file, fewer columns or a lower rate");
+  }
+  const std::string text = recording::read_file(path);
+  check_table_size(path, text, most_values);
+  return recording::parse_csv(text, path);
+}
+
+}  // namespace
+
+diagnosis::Measurement read_measurement(const std::string& path, const ReadOptions& options) {
+  if (!is_mcap(path)) {
+    if (!options.trial.empty()) {
+      throw ConfigError("--trial", options.trial + " with the table " + path,
+                        "the recording of a session (MCAP), or none");
+    }
+    return on_grid(read_table(path, options.most_values), options.most_values);
+  }
+  SessionRows session = read_session_rows(path, options.trial);
+  diagnosis::Measurement out = on_grid(std::move(session.rows), options.most_values);
+  out.notes.insert(out.notes.begin(), session.notes.begin(), session.notes.end());
+  return out;
+}
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measurement/session.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "contract/config_error.hpp"
+#include "contract/flag.hpp"
+#include "idl/cdr.hpp"
+#include "idl/control_loop.h"
+#include "idl/topics.hpp"
+#include "measurement/session_trials.hpp"
+#include "recording/core/mcap_reader.hpp"
+#include "recording/file_io.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+// A channel of the tracking topic that is there for fewer of the ticks would make most of them
+// missing rows.
+constexpr double kLeastShare = 0.9;
+
+// Samples of one topic in a trial, in tick order, columns first.
+template <std::size_t columns>
+struct Stream {
+  std::vector<Tick> ticks;
+  std::array<std::vector<double>, columns> values;
+  std::int64_t invalid = 0;  ///< samples without a valid value
+
+  void take(Tick tick, const std::array<double, columns>& sample) {
+    if (!ticks.empty() && tick <= ticks.back()) return;  // delivered twice, or late
+    if (!std::ranges::all_of(sample, [](double value) { return std::isfinite(value); })) {
+      ++invalid;
+      return;
+    }
+    ticks.push_back(tick);
+    for (std::size_t i = 0; i < columns; ++i) values[i].push_back(sample[i]);
+  }
+};
+
+struct TrialStreams {
+  Stream<7> sensed;
+  Stream<2> tracking;
+};
+
+// What a sample with such a flag says was held from an earlier one.
+constexpr Flags kNotMeasured = Flag::kInputInvalid | Flag::kFault;
+
+void take_sensed(const stillhand_msgs::Sensed& m, Stream<7>& stream) {
+  if ((m.flags() & kNotMeasured) != 0) {
+    ++stream.invalid;
+    return;
+  }
+  stream.take(m.tick(), {m.accel_x_m_s2(), m.accel_y_m_s2(), m.accel_z_m_s2(), m.roll_rad(),
+                         m.theta_rad(), m.omega_rad_s(), m.force_n()});
+}
+
+TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& chosen,
+                          std::uint32_t rig) {
+  TrialStreams streams;
+  recording::MessageFilter filter;
+  filter.topics = {std::string(topics::kSensed.name)};
+  const bool tracking = chosen.trial.phase == TrialPhase::kTracking;
+  if (tracking) filter.topics.emplace_back(topics::kTrackingSample.name);
+  const recording::Status status =
+      reader.for_each_message(filter, [&](const recording::MessageView& view) {
+        if (view.channel.topic == topics::kSensed.name) {
+          stillhand_msgs::Sensed m;
+          if (from_cdr(view.bytes, m) && m.rig() == rig && chosen.holds(m.tick())) {
+            take_sensed(m, streams.sensed);
+          }
+          return true;
+        }
+        stillhand_msgs::TrackingSample m;
+        if (from_cdr(view.bytes, m) && m.rig() == rig && chosen.holds(m.tick())) {
+          streams.tracking.take(m.tick(), {m.target_m(), m.cursor_m()});
+        }
+        return true;
+      });
+  // What failed here failed in the first pass too, and is in the notes.
+  (void)status;
+  return streams;
+}
+
+// Keeps the entries at these places, which are in order.
+void keep(std::vector<double>& values, const std::vector<std::size_t>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i) values[i] = values[places[i]];
+  values.resize(places.size());
+}
+
+// The ticks that both streams have.
+void match(TrialStreams& streams) {
+  std::vector<std::size_t> of_sensed;
+  std::vector<std::size_t> of_tracking;
+  std::vector<Tick>& ticks = streams.sensed.ticks;
+  const std::vector<Tick>& others = streams.tracking.ticks;
+  for (std::size_t i = 0, j = 0; i < ticks.size(); ++i) {
+    while (j < others.size() && others[j] < ticks[i]) ++j;
+    if (j == others.size()) break;
+    if (others[j] != ticks[i]) continue;
+    of_sensed.push_back(i);
+    of_tracking.push_back(j);
+  }
+  for (std::size_t i = 0; i < of_sensed.size(); ++i) ticks[i] = ticks[of_sensed[i]];
+  ticks.resize(of_sensed.size());
+  for (auto& values : streams.sensed.values) keep(values, of_sensed);
+  for (auto& values : streams.tracking.values) keep(values, of_tracking);
+}
+
+recording::Recording table_of(TrialStreams streams, bool with_tracking) {
+  // design.md section 3.
+  constexpr std::array<std::array<const char*, 2>, 7> kSensed{{{"a_x", "m/s^2"},
+                                                               {"a_y", "m/s^2"},
+                                                               {"a_z", "m/s^2"},
+                                                               {"roll", "rad"},
+                                                               {"theta", "rad"},
+                                                               {"omega", "rad/s"},
+                                                               {"f", "N"}}};
+  constexpr std::array<std::array<const char*, 2>, 2> kTracking{{{"x_r", "m"}, {"x_p", "m"}}};
+  recording::Recording rows;
+  for (const Tick tick : streams.sensed.ticks) {
+    rows.time_s.push_back(static_cast<double>(tick) / kControlRateHz);
+  }
+  for (std::size_t i = 0; i < kSensed.size(); ++i) {
+    rows.columns.push_back({kSensed[i][0], kSensed[i][1], std::move(streams.sensed.values[i])});
+  }
+  for (std::size_t i = 0; with_tracking && i < kTracking.size(); ++i) {
+    rows.columns.push_back(
+        {kTracking[i][0], kTracking[i][1], std::move(streams.tracking.values[i])});
+  }
+  return rows;
+}
+
+}  // namespace
+
+SessionRows read_session_rows(const std::string& path, const std::string& trial) {
+  recording::FileSource file(path);
+  recording::McapReader reader(file);
+  if (!reader.status().ok()) {
+    throw ConfigError(path, reader.status().text, "an MCAP recording of a session, or CSV");
+  }
+  const SessionTrials trials = find_trials(reader, path);
+  const SessionTrial& chosen = choose(trials, trial, path);
+  SessionRows out;
+  out.notes = notes_of(trials, chosen);
+  TrialStreams streams = read_streams(reader, chosen, trials.rig);
+  const auto sensed = static_cast<double>(streams.sensed.ticks.size());
+  const auto tracking = static_cast<double>(streams.tracking.ticks.size());
+  const bool with_tracking = tracking > 0.0 && tracking >= kLeastShare * sensed;
+  if (streams.sensed.invalid > 0) {
+    const auto invalid = streams.sensed.invalid;
+    out.notes.push_back(std::to_string(invalid) + (invalid == 1 ? " sample" : " samples") +
+                        " without a valid reading taken as missing.");
+  }
+  if (with_tracking) {
+    match(streams);
+  } else if (tracking > 0.0) {
+    out.notes.push_back("x_r and x_p left out: most of their samples are missing.");
+  }
+  out.rows = table_of(std::move(streams), with_tracking);
+  out.rows.source = path;
+  if (out.rows.row_count() < 2) {
+    throw ConfigError(path + ", trial " + chosen.name(),
+                      std::to_string(out.rows.row_count()) + " samples",
+                      "a trial that was recorded");
+  }
+  recording::estimate_timing(out.rows);
+  // A damaged file says so once for each chunk that was lost.
+  constexpr std::size_t kMostDamage = 3;
+  const auto& damage = reader.damage();
+  for (std::size_t i = 0; i < std::min(damage.size(), kMostDamage); ++i) {
+    out.notes.push_back("Damaged file: " + damage[i].text + ".");
+  }
+  if (damage.size() > kMostDamage) {
+    out.notes.push_back("Damaged file: " + std::to_string(damage.size() - kMostDamage) +
+                        " findings more.");
+  }
+  return out;
+}
+
+}  // namespace stillhand::measurement

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/result_files.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "contract/config_error.hpp"
+#include "contract/expects.hpp"
+
+namespace stillhand::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+// Where a name leads, also when nothing is there yet.
+fs::path followed(const fs::path& path) {
+  std::error_code error;
+  fs::path place = fs::weakly_canonical(fs::absolute(path), error);
+  return error ? path : place;
+}
+
+void check_place(const ResultFile& file, const fs::path& place) {
+  const std::string name = file.path.string();
+  std::error_code error;
+  if (fs::is_directory(place, error)) {
+    throw ConfigError(file.option, name + ", a folder", "the name of a file");
+  }
+  if (fs::exists(place, error)) {
+    if (::access(place.c_str(), W_OK) != 0) {
+      throw ConfigError(file.option, name + ": " + reason(errno), "a file that can be written");
+    }
+    if (!fs::is_regular_file(place, error)) return;
+  }
+  const fs::path folder = place.parent_path();
+  if (!place.has_filename() || !fs::is_directory(folder, error)) {
+    throw ConfigError(file.option, name, "a file in a folder that is there");
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw ConfigError(file.option, folder.string() + ": " + reason(errno),
+                      "a folder that can be written");
+  }
+}
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream stream(path, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw std::runtime_error(path.string() + ": cannot be written: " + reason(errno));
+}
+
+// Removes what was not moved.
+struct Beside {
+  std::vector<fs::path> paths;
+  ~Beside() {
+    for (const fs::path& path : paths) ::unlink(path.c_str());
+  }
+};
+
+}  // namespace
+
+ResultFiles::ResultFiles(const std::vector<ResultFile>& files,
+                         const std::vector<fs::path>& inputs) {
+  for (const ResultFile& file : files) {
+    if (file.path.empty()) continue;
+    Entry entry{file, followed(file.path), true, {}};
+    check_place(file, entry.place);
+    std::error_code error;
+    entry.plain = !fs::exists(entry.place, error) || fs::is_regular_file(entry.place, error);
+    for (const fs::path& input : inputs) {
+      if (followed(input) == entry.place || fs::equivalent(input, entry.place, error)) {
+        throw ConfigError(file.option, file.path.string(),
+                          "another file than " + input.string() + ", which is read");
+      }
+    }
+    for (const Entry& other : entries_) {
+      if (other.plain && other.place == entry.place) {
+        throw ConfigError(file.option, file.path.string(),
+                          "another file than " + other.file.option + " has");
+      }
+    }
+    entries_.push_back(std::move(entry));
+  }
+}
+
+bool ResultFiles::wants(const std::string& option) const {
+  return std::ranges::any_of(entries_, [&](const Entry& e) { return e.file.option == option; });
+}
+
+void ResultFiles::set(const std::string& option, std::string text) {
+  const auto entry =
+      std::ranges::find_if(entries_, [&](const Entry& e) { return e.file.option == option; });
+  STILLHAND_EXPECTS(entry != entries_.end());
+  entry->text = std::move(text);
+}
+
+void ResultFiles::publish() {
+  Beside beside;
+  for (const Entry& entry : entries_) {
+    if (!entry.plain) continue;
+    // The process number keeps two runs apart.
+    fs::path staged = entry.place;
+    staged += ".new-" + std::to_string(::getpid());
+    beside.paths.push_back(staged);
+    write(staged, entry.text);
+  }
+  std::size_t next = 0;
+  for (const Entry& entry : entries_) {
+    if (!entry.plain) {
+      write(entry.place, entry.text);
+    } else if (std::rename(beside.paths[next++].c_str(), entry.place.c_str()) != 0) {
+      throw std::runtime_error(entry.file.path.string() + ": cannot be replaced: " + reason(errno));
+    }
+  }
+}
+
+}  // namespace stillhand::report

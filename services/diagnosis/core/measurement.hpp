@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stillhand::diagnosis {
+
+/// One measured signal.
+struct Channel {
+  std::string name;            ///< without its unit, for example "a_y"
+  std::string unit;            ///< for example "m/s^2"
+  std::vector<double> values;  ///< one a sample, finite
+};
+
+/// Samples [first, end) that follow each other without a gap; nothing is known of what went before.
+struct Stretch {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  double start_s = 0.0;  ///< [s] time of `first`
+};
+
+/// What was measured: channels on one uniform grid, a stretch for every run without a long gap.
+/// Samples of a short gap are filled in by interpolation, so that a simulation can run through, and
+/// count nothing: their weight is 0.
+struct Measurement {
+  std::string source;  ///< for messages and reports, usually the file
+  double rate_hz = 0.0;
+  std::vector<Channel> channels;   ///< each of size() values
+  std::vector<Stretch> stretches;  ///< in order, not overlapping, together all samples
+  std::vector<double> weight;      ///< [-] 1: measured, 0: filled in; size()
+  std::vector<std::string> notes;  ///< what the reader did, a sentence each (gaps, resampling, ...)
+
+  [[nodiscard]] std::size_t size() const noexcept { return weight.size(); }
+  /// Channel of that name, or nullptr.
+  [[nodiscard]] const Channel* find(std::string_view name) const noexcept;
+  /// [s] time of a sample.
+  [[nodiscard]] std::vector<double> time_s() const;
+};
+
+/// @throws stillhand::ConfigError when sizes disagree, a value isn't finite (channel and sample are
+/// named), the rate isn't positive or the stretches don't cover the samples.
+void check(const Measurement& measurement);
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "idl/control_loop.h"
+#include "idl/session.h"
+#include "idl/topics.hpp"
+#include "recording/core/mcap_writer.hpp"
+#include "recording/core/memory_bytes.hpp"
+
+namespace stillhand::tests {
+
+/// A message's bytes as recorded: CDR with its encapsulation header.
+template <typename Message>
+std::vector<std::byte> cdr_of(const Message& message) {
+  constexpr std::size_t kHeader_bytes = 4;
+  std::vector<std::byte> bytes(kHeader_bytes + Message::getCdrSerializedSize(message));
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(bytes.data()), bytes.size());
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                             eprosima::fastcdr::Cdr::DDS_CDR);
+  cdr.serialize_encapsulation();
+  message.serialize(cdr);
+  return bytes;
+}
+
+/// A session's recording in memory, message by message, 1 ms apart.
+class SessionFile {
+ public:
+  explicit SessionFile(std::size_t chunk_bytes = std::size_t{256} << 10,
+                       recording::Compression compression = recording::Compression::kZstd)
+      : writer_(sink_, {chunk_bytes, compression, "stillhand-test"}) {}
+
+  template <typename Message>
+  void add(const topics::Topic& topic, const Message& message) {
+    auto [channel, fresh] = channels_.try_emplace(std::string(topic.name), 0);
+    if (fresh) {
+      const auto schema = writer_.add_schema(std::string(topic.type), "omgidl", "struct S {};");
+      channel->second = writer_.add_channel(std::string(topic.name), schema, "cdr");
+    }
+    time_ns_ += 1'000'000;
+    ok_ = ok_ && writer_.write(channel->second, 0, time_ns_, time_ns_, cdr_of(message)).ok();
+  }
+
+  /// A trial begins; number -1: none runs any more.
+  void control(std::int32_t number, stillhand_msgs::Phase phase = stillhand_msgs::PHASE_IDLE,
+               std::int64_t start_tick = 0, std::int64_t duration_ticks = 0) {
+    stillhand_msgs::TrialControl message;
+    message.session(stillhand_msgs::SESSION_RUNNING);
+    message.trial(number);
+    message.phase(phase);
+    message.start_tick(start_tick);
+    message.duration_ticks(duration_ticks);
+    add(topics::kTrialControl, message);
+  }
+
+  /// The blinded part of it.
+  void assignment(std::int32_t number, stillhand_msgs::MotionKind motion, bool cancellation) {
+    stillhand_msgs::TrialAssignment message;
+    message.trial(number);
+    message.motion(motion);
+    message.cancellation(cancellation);
+    add(topics::kTrialAssignment, message);
+  }
+
+  /// Every field another function of the tick: n/1000 times 1, 2, ... in the order of the message.
+  void sensed(std::int64_t tick, std::uint32_t flags = 0, std::uint32_t rig = 0) {
+    const double t = static_cast<double>(tick) / 1000.0;
+    stillhand_msgs::Sensed message;
+    message.rig(rig);
+    message.tick(tick);
+    message.accel_x_m_s2(t);
+    message.accel_y_m_s2(2.0 * t);
+    message.accel_z_m_s2(3.0 * t);
+    message.roll_rad(4.0 * t);
+    message.force_n(5.0 * t);
+    message.theta_rad(6.0 * t);
+    message.omega_rad_s(7.0 * t);
+    message.flags(flags);
+    add(topics::kSensed, message);
+  }
+
+  void tracking(std::int64_t tick) {
+    const double t = static_cast<double>(tick) / 1000.0;
+    stillhand_msgs::TrackingSample message;
+    message.tick(tick);
+    message.target_m(8.0 * t);
+    message.cursor_m(9.0 * t);
+    add(topics::kTrackingSample, message);
+  }
+
+  /// Ends the file.  @return its bytes, or nothing when writing failed
+  std::vector<std::byte> close() {
+    ok_ = ok_ && writer_.close().ok();
+    return ok_ ? sink_.bytes() : std::vector<std::byte>{};
+  }
+
+ private:
+  recording::MemorySink sink_;
+  recording::McapWriter writer_;
+  std::map<std::string, recording::ChannelId> channels_;
+  std::uint64_t time_ns_ = 0;
+  bool ok_ = true;
+};
+
+}  // namespace stillhand::tests

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identify/identify.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contract/config_error.hpp"
+#include "rig/core/body.hpp"
+#include "rig/core/body_response.hpp"
+#include "support/feedthrough_records.hpp"
+
+namespace stillhand::identify {
+namespace {
+
+using diagnosis::Measurement;
+using testing::Contains;
+using testing::HasSubstr;
+
+Measurement measured(double rate_hz, std::vector<double> input, std::vector<double> output) {
+  Measurement out;
+  out.source = "pegged.csv";
+  out.rate_hz = rate_hz;
+  out.weight.assign(input.size(), 1.0);
+  out.stretches = {{0, input.size(), 0.0}};
+  out.channels = {{"a_y", "m/s^2", std::move(input)}, {"f", "N", std::move(output)}};
+  return out;
+}
+
+// Forty seconds of the simulated body with the stick pegged, 0.05 N of noise, 1 kHz.
+Measurement pegged_body() {
+  rig::Body body{rig::BodyConfig{}, rig::StickConfig{}};
+  const auto accel = support::band_noise(40'000, 1000.0, 0.7, 4.0, 1.6, 1);
+  auto force = support::white_noise(accel.size(), 0.05, 2);
+  for (std::size_t n = 0; n < accel.size(); ++n) {
+    force[n] += body.step({accel[n], 0.0, 0.0, true}).hand_force_n;
+  }
+  return measured(1000.0, accel, force);
+}
+
+std::string error_of(const Measurement& measurement, const IdentifyOptions& options = {}) {
+  try {
+    (void)identify(measurement, options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(IdentifyTest, TheBodysResponseIsFoundAndItsNotch) {
+  const IdentifyResult sut = identify(pegged_body(), {});
+  EXPECT_EQ(sut.model.fit.order(), 4u);
+  EXPECT_TRUE(sut.unusable.empty());
+  EXPECT_GT(sut.model.heldout.free_run_vaf_percent, 99.0);
+  const auto truth = [](double f) {
+    return rig::feedthrough_response(rig::BodyConfig{}, rig::StickConfig{}, true, f);
+  };
+  // As the identification's own test: within 1 % where the motion excites.
+  for (const auto& point : sut.response) {
+    if (point.frequency_hz < 0.7 || point.frequency_hz > 4.0) continue;
+    const auto found = std::polar(std::pow(10.0, point.magnitude_db / 20.0),
+                                  point.phase_deg * 3.14159265358979 / 180.0);
+    EXPECT_LT(std::abs(found - truth(point.frequency_hz)), 0.01 * 3.2) << point.frequency_hz;
+  }
+  EXPECT_NEAR(sut.dc_gain_db, 20.0 * std::log10(std::abs(truth(0.01))), 0.2);
+  // The body's own notch, by search; the motion hardly reaches it.
+  double notch_hz = 4.0;
+  for (double f = 4.0; f < 9.0; f += 0.01) {
+    if (std::abs(truth(f)) < std::abs(truth(notch_hz))) notch_hz = f;
+  }
+  ASSERT_TRUE(sut.notch.has_value());
+  EXPECT_NEAR(sut.notch->frequency_hz, notch_hz, 0.3);
+}
+
+TEST(IdentifyTest, TheMeasuredResponseStandsBesideTheModels) {
+  const IdentifyResult sut = identify(pegged_body(), {});
+  for (std::size_t k = 0; k < sut.measured.frequency_hz.size(); ++k) {
+    const double f = sut.measured.frequency_hz[k];
+    if (f < 1.0 || f > 3.5) continue;
+    EXPECT_GT(sut.measured.coherence[k], 0.95) << f;
+    const auto model = signal::response_at(sut.model.fit, f);
+    // Leakage between lines of 0.2 Hz beside a resonance 0.5 Hz wide: a few percent.
+    EXPECT_LT(std::abs(sut.measured.response[k] - model), 0.1 * std::abs(model)) << f;
+  }
+}
+
+TEST(IdentifyTest, AModelWithoutANotchHasNone) {
+  const auto low_pass = signal::DifferenceModel{50.0, {0.2, 0.0}, {1.0, -0.8}};
+  auto record = support::record_of(low_pass, support::white_noise(6000, 1.0, 3));
+  // Held for two samples: 100 Hz, which the chain takes down to 50 Hz again.
+  std::vector<double> input;
+  std::vector<double> output;
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    input.insert(input.end(), 2, record.acceleration_m_s2[n]);
+    output.insert(output.end(), 2, record.force_n[n]);
+  }
+  IdentifyOptions options;
+  options.config.order = 1;
+  EXPECT_FALSE(identify(measured(100.0, input, output), options).notch.has_value());
+}
+
+// The check for excitation knows m/s^2: 5 mV would be none.
+TEST(IdentifyTest, AnInputInAnotherUnitIsJudgedByItsShapeAlone) {
+  const Measurement plain = pegged_body();
+  Measurement volts = plain;
+  volts.channels[0].name = "drive";
+  volts.channels[0].unit = "V";
+  for (double& value : volts.channels[0].values) value *= 1e-3;
+  IdentifyOptions options;
+  options.input = "drive";
+  const IdentifyResult sut = identify(volts, options);
+  const IdentifyResult in_m_s2 = identify(plain, {});
+  EXPECT_NEAR(sut.dc_gain_db, in_m_s2.dc_gain_db + 60.0, 1e-6);
+  for (std::size_t i = 0; i <= 4; ++i) {
+    // A scaled column rounds differently: 1e-16 times the condition number of 1e3.
+    EXPECT_NEAR(sut.model.fit.numerator[i], 1e3 * in_m_s2.model.fit.numerator[i], 1e-7);
+    EXPECT_NEAR(sut.model.control.numerator[i], 1e3 * in_m_s2.model.control.numerator[i], 1e-4);
+  }
+  EXPECT_NEAR(std::abs(sut.measured.response[12]), 1e3 * std::abs(in_m_s2.measured.response[12]),
+              1e-6);
+}
+
+TEST(IdentifyTest, OfSeveralStretchesTheLongestIsUsed) {
+  Measurement sut = pegged_body();
+  sut.stretches = {{0, 8000, 0.0}, {8000, 30'000, 20.0}, {30'000, 40'000, 60.0}};
+  const IdentifyResult result = identify(sut, {});
+  EXPECT_EQ(result.samples, 22'000u);
+  EXPECT_THAT(result.notes, Contains("The longest of 3 stretches is used, 22000 samples of 40000 "
+                                     "samples."));
+}
+
+TEST(IdentifyTest, AChannelThatIsNotThereIsRefusedWithThoseThatAre) {
+  IdentifyOptions options;
+  options.output = "force";
+  EXPECT_THAT(error_of(pegged_body(), options),
+              HasSubstr("--output: got 'force', want one of a_y, f in pegged.csv"));
+}
+
+TEST(IdentifyTest, AnOutputThatIsTheInputIsRefused) {
+  IdentifyOptions options;
+  options.output = "a_y";
+  EXPECT_THAT(error_of(pegged_body(), options), HasSubstr("--output: got 'a_y', the input"));
+}
+
+TEST(IdentifyTest, ASlowRecordingIsRefused) {
+  const auto noise = support::white_noise(3000, 1.0, 4);
+  EXPECT_THAT(error_of(measured(60.0, noise, noise)),
+              HasSubstr("pegged.csv: got 60 Hz, want 100 Hz or more"));
+}
+
+TEST(IdentifyTest, LessThanASecondIsRefused) {
+  const auto noise = support::white_noise(900, 1.0, 4);
+  EXPECT_THAT(error_of(measured(1000.0, noise, noise)), HasSubstr("900 samples"));
+}
+
+TEST(IdentifyTest, ConstantChannelsAreRefused) {
+  const auto noise = support::white_noise(3000, 1.0, 4);
+  const std::vector<double> constant(3000, 0.7);
+  EXPECT_THAT(error_of(measured(100.0, constant, noise)),
+              HasSubstr("pegged.csv, channel a_y: got 0.7 m/s^2 throughout"));
+  EXPECT_THAT(error_of(measured(100.0, noise, constant)),
+              HasSubstr("pegged.csv, channel f: got 0.7 N throughout"));
+}
+
+TEST(IdentifyTest, TooLittleMotionIsRefused) {
+  EXPECT_THAT(error_of(measured(100.0, support::white_noise(3000, 0.01, 4),
+                                support::white_noise(3000, 1.0, 5))),
+              HasSubstr("pegged.csv, a_y to f: got no excitation"));
+}
+
+TEST(IdentifyTest, AnOffsetLargerThanTheMotionIsPointedOut) {
+  Measurement sut = pegged_body();
+  EXPECT_TRUE(identify(sut, {}).notes.empty());
+  for (double& value : sut.channels[1].values) value += 40.0;
+  EXPECT_THAT(identify(sut, {}).notes, Contains(HasSubstr("f has a mean of 40")));
+}
+
+TEST(IdentifyTest, ASingleSineIsRefused) {
+  std::vector<double> sine;
+  for (int n = 0; n < 6000; ++n) sine.push_back(std::sin(0.1 * n));
+  EXPECT_THAT(error_of(measured(100.0, sine, sine)), HasSubstr("independent components"));
+}
+
+TEST(IdentifyTest, TheLargestNumbersAreRefusedOrIdentifiedButNothingElse) {
+  for (const double size : {1e150, 1e308}) {
+    auto output = support::white_noise(3000, 1.0, 5);
+    for (double& value : output) value = std::clamp(value, -1.7, 1.7) * size;
+    const std::string error = error_of(measured(100.0, support::white_noise(3000, 1.0, 4), output));
+    EXPECT_FALSE(error.empty());
+  }
+}
+
+// A pole of 16 s: no filter that the canceller would take settles so slowly.
+TEST(IdentifyTest, WithoutAFilterForTheCancellerTheFitIsStillGiven) {
+  const signal::DifferenceModel slow{100.0, {0.0, 0.01}, {1.0, -0.9994}};
+  const auto record = support::record_of(slow, support::white_noise(12'000, 1.0, 6));
+  IdentifyOptions options;
+  options.config.order = 1;
+  const IdentifyResult sut =
+      identify(measured(100.0, record.acceleration_m_s2, record.force_n), options);
+  EXPECT_THAT(sut.unusable, HasSubstr("rate_conversion"));
+  EXPECT_TRUE(signal::is_stable(sut.model.fit));
+  EXPECT_GT(sut.model.heldout.one_step_vaf_percent, 90.0);
+}
+
+}  // namespace
+}  // namespace stillhand::identify

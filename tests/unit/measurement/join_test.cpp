@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "contract/config_error.hpp"
+#include "measurement/read.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+using diagnosis::Measurement;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Measurement part(const std::string& source, double start_s, double value) {
+  Measurement sut;
+  sut.source = source;
+  sut.rate_hz = 10.0;
+  sut.channels = {{"a_y", "m/s^2", {value, value + 1.0}}, {"f", "N", {-value, -value - 1.0}}};
+  sut.weight = {1.0, 0.0};
+  sut.stretches = {{0, 2, start_s}};
+  sut.notes = {"1 row missing."};
+  return sut;
+}
+
+std::string error_of(const Measurement& one, const Measurement& other) {
+  try {
+    (void)join({one, other});
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(JoinTest, OneRecordingStaysAsItIs) {
+  const Measurement sut = join({part("a.csv", 5.0, 1.0)});
+  EXPECT_EQ(sut.source, "a.csv");
+  EXPECT_THAT(sut.notes, ElementsAre("1 row missing."));
+  EXPECT_EQ(sut.stretches[0].start_s, 5.0);
+}
+
+TEST(JoinTest, EveryRecordingIsAStretchAndTimeGoesOn) {
+  Measurement second = part("b.csv", 100.0, 10.0);
+  second.channels[0].values = {10.0, 11.0, 12.0};
+  second.channels[1].values = {1.0, 2.0, 3.0};
+  second.weight = {1.0, 1.0, 1.0};
+  second.stretches = {{0, 1, 100.0}, {1, 3, 107.0}};
+  const Measurement sut = join({part("a.csv", 5.0, 1.0), second});
+  check(sut);
+  EXPECT_EQ(sut.source, "a.csv, b.csv");
+  EXPECT_THAT(sut.find("a_y")->values, ElementsAre(1.0, 2.0, 10.0, 11.0, 12.0));
+  EXPECT_THAT(sut.weight, ElementsAre(1.0, 0.0, 1.0, 1.0, 1.0));
+  ASSERT_EQ(sut.stretches.size(), 3u);
+  EXPECT_EQ(sut.stretches[1].first, 2u);
+  EXPECT_DOUBLE_EQ(sut.stretches[1].start_s, 5.2);
+  EXPECT_DOUBLE_EQ(sut.stretches[2].start_s, 12.2);  // 7 s later, as in its own file
+  EXPECT_THAT(sut.notes, ElementsAre("a.csv: 1 row missing.", "b.csv: 1 row missing."));
+}
+
+TEST(JoinTest, ColumnsInAnotherOrderFindTheirChannel) {
+  Measurement second = part("b.csv", 0.0, 10.0);
+  std::swap(second.channels[0], second.channels[1]);
+  const Measurement sut = join({part("a.csv", 0.0, 1.0), second});
+  EXPECT_THAT(sut.find("f")->values, ElementsAre(-1.0, -2.0, -10.0, -11.0));
+}
+
+TEST(JoinTest, AThousandthOfTheRateIsTheSameRate) {
+  Measurement second = part("b.csv", 0.0, 10.0);
+  second.rate_hz = 10.009;
+  EXPECT_EQ(error_of(part("a.csv", 0.0, 1.0), second), "no error");
+  second.rate_hz = 10.02;
+  EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), second),
+              HasSubstr("b.csv: got 10.020000 Hz, want 10.000000 Hz as a.csv has"));
+}
+
+TEST(JoinTest, ChannelsThatDifferAreNamed) {
+  Measurement renamed = part("b.csv", 0.0, 10.0);
+  renamed.channels[1].name = "force";
+  EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), renamed),
+              HasSubstr("channels a_y [m/s^2], force [N], want f [N] too, as a.csv has"));
+  Measurement other_unit = part("b.csv", 0.0, 10.0);
+  other_unit.channels[1].unit = "lbf";
+  EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), other_unit),
+              HasSubstr("b.csv: got f [lbf], want f [N] as a.csv has"));
+  Measurement more = part("b.csv", 0.0, 10.0);
+  more.channels.push_back({"roll", "rad", {0.0, 0.0}});
+  EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), more), HasSubstr("roll [rad] besides"));
+}
+
+TEST(JoinTest, NothingIsRefused) { EXPECT_THROW((void)join({}), ConfigError); }
+
+}  // namespace
+}  // namespace stillhand::measurement

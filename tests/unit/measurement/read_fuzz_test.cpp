@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <random>
+
+#include "contract/config_error.hpp"
+#include "measurement/read.hpp"
+#include "support/session_file.hpp"
+
+// Valid files, spoilt by a seeded generator: each is read into a measurement that check() accepts,
+// or refused with a ConfigError of one line.
+
+namespace stillhand::measurement {
+namespace {
+
+using Random = std::mt19937;
+
+std::size_t below(Random& random, std::size_t limit) {
+  return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
+}
+
+std::string good_table() {
+  std::string text = "t [s],a_y [m/s^2],f [N]\n";
+  for (int i = 0; i < 150; ++i) {
+    if (i == 50 || i == 51 || (i > 70 && i < 80)) continue;
+    char row[64];
+    std::snprintf(row, sizeof(row), "%.3f,%.3f,%.3f\n", i * 0.01, 0.1 * (i % 7), 0.2 * (i % 5));
+    text += row;
+  }
+  return text;
+}
+
+std::string good_session() {
+  tests::SessionFile file(2048, recording::Compression::kNone);
+  file.assignment(0, stillhand_msgs::MOTION_BAND_NOISE, false);
+  file.control(0, stillhand_msgs::PHASE_PEGGED, 10, 80);
+  for (int tick = 0; tick < 100; ++tick) file.sensed(tick);
+  file.assignment(1, stillhand_msgs::MOTION_STILL, true);
+  file.control(1, stillhand_msgs::PHASE_TRACKING, 100, 60);
+  for (int tick = 100; tick < 160; ++tick) {
+    file.sensed(tick);
+    file.tracking(tick);
+  }
+  const auto bytes = file.close();
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// [begin, end) of a line.
+std::pair<std::size_t, std::size_t> line_of(const std::string& text, std::size_t at) {
+  const std::size_t before = text.rfind('\n', at == 0 ? 0 : at - 1);
+  const std::size_t begin = before == std::string::npos || at == 0 ? 0 : before + 1;
+  const std::size_t end = std::min(text.find('\n', at), text.size());
+  return {std::min(begin, end), end};
+}
+
+void swap_lines(std::string& text, Random& random) {
+  const auto one = line_of(text, below(random, text.size()));
+  const auto other = line_of(text, below(random, text.size()));
+  const std::string a = text.substr(one.first, one.second - one.first);
+  const std::string b = text.substr(other.first, other.second - other.first);
+  const bool one_first = one.first < other.first;
+  const auto& late = one_first ? other : one;
+  const auto& early = one_first ? one : other;
+  if (early.second > late.first) return;
+  text.replace(late.first, late.second - late.first, one_first ? a : b);
+  text.replace(early.first, early.second - early.first, one_first ? b : a);
+}
+
+void replace_cell(std::string& text, Random& random) {
+  constexpr std::array<const char*, 20> kCells{"1e308",  "-1e308", "1.7976931348623157e308",
+                                               "5e-324", "1e-300", "9223372036854775808",
+                                               "-0",     "",       "nan",
+                                               "inf",    "1e999",  "0x10",
+                                               "1,2",    "\"",     "1e18",
+                                               "1e15",   "-1e15",  "1e5",
+                                               "99",     "+-1"};
+  const std::size_t at = below(random, text.size());
+  const std::size_t begin = text.find_last_of(",\n", at);
+  const std::size_t end = std::min(text.find_first_of(",\n", at + 1), text.size());
+  const std::size_t first = begin == std::string::npos ? 0 : begin + 1;
+  if (first >= end) return;
+  text.replace(first, end - first, kCells[below(random, kCells.size())]);
+}
+
+void flip_byte(std::string& bytes, Random& random) {
+  bytes[below(random, bytes.size())] ^= static_cast<char>(1u << below(random, 8));
+}
+
+// Cut off, or a piece taken out or doubled.
+void cut(std::string& bytes, Random& random) {
+  const std::size_t at = below(random, bytes.size());
+  const std::size_t length = below(random, std::min<std::size_t>(bytes.size() - at, 300)) + 1;
+  switch (below(random, 3)) {
+    case 0:
+      bytes.resize(at);
+      break;
+    case 1:
+      bytes.erase(at, length);
+      break;
+    default:
+      bytes.insert(below(random, bytes.size()), bytes.substr(at, length));
+  }
+}
+
+// Eight bytes of a length, a tick or a number become an extreme one.
+void plant_number(std::string& bytes, Random& random) {
+  constexpr std::array<std::uint64_t, 7> kNumbers{0,
+                                                  0x7fffffffffffffff,
+                                                  0x8000000000000000,
+                                                  0xffffffffffffffff,
+                                                  0x7ff0000000000000,  // infinity
+                                                  0x7fefffffffffffff,  // largest double
+                                                  0x0000000100000000};
+  if (bytes.size() < 8) return;
+  const std::uint64_t number = kNumbers[below(random, kNumbers.size())];
+  for (std::size_t i = 0, at = below(random, bytes.size() - 7); i < 8; ++i) {
+    bytes[at + i] = static_cast<char>(number >> (8 * i));
+  }
+}
+
+struct Count {
+  int read = 0;
+  int refused = 0;
+};
+
+void try_to_read(const std::string& path, const std::string& bytes, Count& count) {
+  // A new file each time: rewriting one waits for the disk.
+  std::remove(path.c_str());
+  std::ofstream(path, std::ios::binary) << bytes;
+  try {
+    check(read_measurement(path));
+    ++count.read;
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    ++count.refused;
+  }
+}
+
+TEST(ReadFuzzTest, ASpoiltTableIsReadOrRefused) {
+  const std::string good = good_table();
+  const std::string path = testing::TempDir() + "fuzz.csv";
+  Random random(20240601);
+  Count count;
+  for (int run = 0; run < 4000; ++run) {
+    std::string text = good;
+    for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !text.empty(); --spoils) {
+      switch (below(random, 5)) {
+        case 0:
+          flip_byte(text, random);
+          break;
+        case 1:
+          cut(text, random);
+          break;
+        case 2:
+          swap_lines(text, random);
+          break;
+        default:
+          replace_cell(text, random);
+      }
+    }
+    SCOPED_TRACE("run " + std::to_string(run));
+    ASSERT_NO_THROW(try_to_read(path, text, count));
+  }
+  // Both ends are reached, or the generator spoils too little or too much.
+  EXPECT_GT(count.read, 400);
+  EXPECT_GT(count.refused, 400);
+}
+
+TEST(ReadFuzzTest, ASpoiltSessionIsReadOrRefused) {
+  const std::string good = good_session();
+  ASSERT_FALSE(good.empty());
+  const std::string path = testing::TempDir() + "fuzz.mcap";
+  Random random(20240602);
+  Count count;
+  for (int run = 0; run < 3000; ++run) {
+    std::string bytes = good;
+    for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !bytes.empty(); --spoils) {
+      switch (below(random, 4)) {
+        case 0:
+          cut(bytes, random);
+          break;
+        case 1:
+          plant_number(bytes, random);
+          break;
+        default:
+          flip_byte(bytes, random);
+      }
+    }
+    SCOPED_TRACE("run " + std::to_string(run));
+    ASSERT_NO_THROW(try_to_read(path, bytes, count));
+  }
+  EXPECT_GT(count.read, 300);
+  EXPECT_GT(count.refused, 300);
+}
+
+}  // namespace
+}  // namespace stillhand::measurement

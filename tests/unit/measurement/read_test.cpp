@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measurement/read.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+using diagnosis::Measurement;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string file_of(const std::string& text) {
+  const std::string path =
+      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
+  std::ofstream(path, std::ios::binary) << text;
+  return path;
+}
+
+std::string error_of(const std::string& path, const ReadOptions& options = {}) {
+  try {
+    (void)read_measurement(path, options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// What is wrong with a table, without its path.
+std::string complaint(const std::string& text) {
+  const std::string path = file_of(text);
+  const std::string error = error_of(path);
+  return error.starts_with(path) ? error.substr(path.size()) : error;
+}
+
+// `count` good rows at 100 Hz, each passed through `change` with its number.
+std::string table(
+    int count, const std::function<std::string(int, std::string)>& change =
+                   [](int, std::string row) { return row; }) {
+  std::string text = "t [s],a_y [m/s^2],f [N],temp [degC]\n";
+  for (int i = 0; i < count; ++i) {
+    char row[80];
+    std::snprintf(row, sizeof(row), "%.2f,%.4f,%.4f,21.5", i * 0.01, 0.1 * (i % 17),
+                  -0.3 * (i % 13));
+    text += change(i, row) + "\n";
+  }
+  return text;
+}
+
+TEST(ReadTest, ATableIsReadWithEveryChannelAndUnit) {
+  const Measurement sut = read_measurement(file_of(table(100)));
+  check(sut);
+  EXPECT_EQ(sut.rate_hz, 100.0);
+  EXPECT_EQ(sut.size(), 100u);
+  ASSERT_EQ(sut.channels.size(), 3u);
+  EXPECT_EQ(sut.channels[2].name, "temp");
+  EXPECT_EQ(sut.channels[2].unit, "degC");
+  EXPECT_DOUBLE_EQ(sut.find("f")->values[20], -0.3 * 7);
+}
+
+TEST(ReadTest, TheKindIsToldByTheContentNotTheName) {
+  const std::string path = testing::TempDir() + "table.mcap";
+  std::ofstream(path) << table(100);
+  EXPECT_EQ(read_measurement(path).size(), 100u);
+}
+
+TEST(ReadTest, ATrialOfATableIsRefused) {
+  EXPECT_THAT(error_of(file_of(table(100)), {"B"}), HasSubstr("--trial: got B with the table"));
+}
+
+TEST(ReadTest, AFileThatIsNotThereIsRefused) {
+  EXPECT_THAT(error_of("/nowhere/ride.csv"), StartsWith("/nowhere/ride.csv: got No such file"));
+  EXPECT_THAT(error_of(testing::TempDir()), HasSubstr("no regular file"));
+}
+
+TEST(ReadTest, AnEmptyFileIsRefused) {
+  EXPECT_THAT(complaint(""), StartsWith(":1:1: got an empty first line"));
+}
+
+TEST(ReadTest, OneColumnIsRefused) {
+  EXPECT_THAT(complaint("t [s]\n0\n0.01\n0.02\n"),
+              StartsWith(":1:1: got no column beside the time"));
+  EXPECT_THAT(complaint("f [N]\n0\n0.01\n0.02\n"),
+              StartsWith(":1:1: got the first column 'f [N]'"));
+}
+
+TEST(ReadTest, AHeaderWithoutRowsIsRefused) {
+  EXPECT_THAT(complaint("t [s],f [N]\n"), StartsWith(": got 0 rows, want at least 2"));
+}
+
+TEST(ReadTest, TenRowsAreRefused) {
+  EXPECT_THAT(complaint(table(10)), StartsWith(": got 0 usable samples in 10 rows at 100 Hz"));
+}
+
+TEST(ReadTest, ATimeThatIsRepeatedIsRefusedWithItsLine) {
+  const auto repeat = [](int i, std::string row) { return i == 40 ? "0.39" + row.substr(4) : row; };
+  EXPECT_THAT(complaint(table(100, repeat)),
+              StartsWith(":42:1: got time 0.39 s, want more than 0.39 s"));
+}
+
+TEST(ReadTest, TimeRunningBackwardsIsRefusedWithItsLine) {
+  const auto back = [](int i, std::string row) { return i == 60 ? "0.12" + row.substr(4) : row; };
+  EXPECT_THAT(complaint(table(100, back)),
+              StartsWith(":62:1: got time 0.12 s, want more than 0.59 s"));
+}
+
+TEST(ReadTest, NotANumberAndInfinityAreRefusedWithLineAndColumn) {
+  for (const std::string cell : {"nan", "NaN", "inf", "-Inf", "1e999", "1.#IND", "None"}) {
+    const auto spoil = [&](int i, std::string row) {
+      return i == 70 ? "0.70," + cell + ",1,21.5" : row;
+    };
+    EXPECT_THAT(complaint(table(100, spoil)), StartsWith(":72:6: got '" + cell + "'"));
+  }
+}
+
+TEST(ReadTest, AnEmptyCellIsRefusedWithWhatToDo) {
+  const auto spoil = [](int i, std::string row) { return i == 3 ? "0.03,,1,21.5" : row; };
+  EXPECT_THAT(complaint(table(100, spoil)), HasSubstr("leave out rows without a value"));
+}
+
+TEST(ReadTest, AKnownNameInAnotherUnitIsRefused) {
+  EXPECT_THAT(complaint("t [s],a_y [g],f [N]\n0,1,2\n"),
+              StartsWith(":1:7: got 'a_y [g]', want 'a_y [m/s^2]'"));
+  EXPECT_THAT(complaint("t [ms],f [N]\n0,1\n"), StartsWith(":1:1: got the first column 't [ms]'"));
+}
+
+TEST(ReadTest, ATextIsRefused) {
+  EXPECT_THAT(complaint("Dear reader,\n\nthis is a letter.\n"), StartsWith(":1:1: got the column"));
+}
+
+TEST(ReadTest, BinaryContentIsRefused) {
+  EXPECT_THAT(complaint(std::string("\x7f"
+                                    "ELF\0\1\2\3",
+                                    8)),
+              StartsWith(": got binary data"));
+}
+
+TEST(ReadTest, MoreThanAskedForIsRefusedBeforeItIsParsed) {
+  ReadOptions options;
+  options.most_values = 299;
+  EXPECT_THAT(error_of(file_of(table(100)), options),
+              HasSubstr("got 100 rows of 3 channels, want at most 299 values"));
+}
+
+}  // namespace
+}  // namespace stillhand::measurement

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "measurement/row_clock.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contract/config_error.hpp"
+#include "signal/random.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+recording::Recording at(std::vector<double> time_s) {
+  recording::Recording rows;
+  rows.source = "ride.csv";
+  rows.columns = {{"f", "N", std::vector<double>(time_s.size())}};
+  rows.time_s = std::move(time_s);
+  estimate_timing(rows);
+  return rows;
+}
+
+// Times of `count` samples at a rate, as a program prints them with so many digits.
+std::vector<double> printed(double rate_hz, int count, double resolution_s) {
+  std::vector<double> time_s;
+  for (int i = 0; i < count; ++i) {
+    time_s.push_back(std::round(i / rate_hz / resolution_s) * resolution_s);
+  }
+  return time_s;
+}
+
+std::vector<double> jittered(double rate_hz, int count, double jitter_periods) {
+  signal::Gaussian random(7, 0);
+  std::vector<double> time_s;
+  for (int i = 0; i < count; ++i) {
+    time_s.push_back((i + jitter_periods * (2.0 * random.uniform() - 1.0)) / rate_hz);
+  }
+  return time_s;
+}
+
+TEST(RowClockTest, EvenStampsGiveTheirRateAndWholePlaces) {
+  const RowPlaces sut = place_rows(at(printed(100.0, 1000, 1e-6)));
+  EXPECT_EQ(sut.rate_hz, 100.0);
+  EXPECT_FALSE(sut.as_stamped);
+  ASSERT_EQ(sut.stretches.size(), 1u);
+  EXPECT_EQ(sut.stretches[0].grid_samples, 1000u);
+  EXPECT_EQ(sut.places.front(), 0.0);
+  EXPECT_EQ(sut.places.back(), 999.0);
+}
+
+// 128 Hz in whole ms: half of the rows are more than 3 % of a period off, and yet on the grid.
+TEST(RowClockTest, RoundedStampsStayOnTheGrid) {
+  const RowPlaces sut = place_rows(at(printed(128.0, 2000, 1e-3)));
+  EXPECT_GT(sut.jitter_periods, 0.02);
+  EXPECT_FALSE(sut.as_stamped);
+  EXPECT_EQ(sut.rate_hz, 128.0);
+  EXPECT_EQ(sut.places.back(), 1999.0);
+}
+
+// 700 Hz in whole ms comes in steps of 1 and 2 ms.
+TEST(RowClockTest, StampsAsCoarseAsThePeriodStillCount) {
+  const RowPlaces sut = place_rows(at(printed(700.0, 5000, 1e-3)));
+  EXPECT_EQ(sut.rate_hz, 700.0);
+  EXPECT_EQ(sut.places.back(), 4999.0);
+  EXPECT_FALSE(sut.as_stamped);
+}
+
+// Ticks of 1 ms have a resolution of one period too; here the steps of two are gaps.
+TEST(RowClockTest, RowsMissingFromTicksAreGaps) {
+  for (const int every : {60, 7}) {
+    signal::Gaussian random(9, 0);
+    std::vector<double> time_s;
+    for (int i = 0; i < 3000; ++i) {
+      if (i == 0 || random.uniform() * every > 1.0) time_s.push_back(i * 1e-3);
+    }
+    const RowPlaces sut = place_rows(at(time_s));
+    EXPECT_EQ(sut.rate_hz, 1000.0);
+    EXPECT_FALSE(sut.as_stamped);
+    EXPECT_EQ(sut.places.back(), std::round(time_s.back() * 1000.0));
+  }
+}
+
+TEST(RowClockTest, ARateThatIsNoWholeNumberIsFoundToTheStampsResolution) {
+  // A microsecond over 20,000 periods of 1.6384 ms is 3e-8.
+  const RowPlaces sut = place_rows(at(printed(610.3515625, 20'000, 1e-6)));
+  EXPECT_NEAR(sut.rate_hz, 610.3515625, 610.0 * 3e-8);
+  EXPECT_FALSE(sut.as_stamped);
+}
+
+// 700.3 Hz in whole ms, 5000 rows: the slope is good to 1 ms / 5000^1.5, 2e-6 of the period, and
+// 0.3 Hz are 4e-4.
+TEST(RowClockTest, ARateBesideAWholeNumberIsNotRoundedToIt) {
+  const RowPlaces sut = place_rows(at(printed(700.3, 5000, 1e-3)));
+  EXPECT_NEAR(sut.rate_hz, 700.3, 0.01);
+}
+
+TEST(RowClockTest, TimesSince1970KeepTheirPlaces) {
+  std::vector<double> time_s = printed(1000.0, 3000, 1e-3);
+  for (double& t : time_s) t += 1.7e9;
+  const RowPlaces sut = place_rows(at(time_s));
+  EXPECT_EQ(sut.rate_hz, 1000.0);
+  EXPECT_FALSE(sut.as_stamped);
+  EXPECT_EQ(sut.places.back(), 2999.0);
+}
+
+// Uniform jitter of +-j periods has a median magnitude of j/2.
+TEST(RowClockTest, JitterBelowTwoPercentIsIgnoredAndAboveItIsBelieved) {
+  const RowPlaces small = place_rows(at(jittered(100.0, 4000, 0.03)));
+  EXPECT_FALSE(small.as_stamped);
+  EXPECT_NEAR(small.jitter_periods, 0.015, 0.002);
+  const RowPlaces large = place_rows(at(jittered(100.0, 4000, 0.10)));
+  EXPECT_TRUE(large.as_stamped);
+  EXPECT_NEAR(large.jitter_periods, 0.05, 0.005);
+  EXPECT_EQ(large.rate_hz, 100.0);
+  EXPECT_NEAR(large.places[2000], 2000.0, 0.2);
+  EXPECT_NE(large.places[2000], 2000.0);
+}
+
+// Two rows then lie in one period of the grid: counting them would move all that follow.
+TEST(RowClockTest, OneLateRowDoesNotMoveTheOthers) {
+  std::vector<double> time_s = printed(100.0, 400, 1e-3);
+  time_s[200] += 0.007;
+  const RowPlaces sut = place_rows(at(time_s));
+  EXPECT_NEAR(sut.places[200], 200.7, 1e-6);
+  EXPECT_NEAR(sut.places[399], 399.0, 1e-6);
+  EXPECT_EQ(sut.stretches[0].grid_samples, 400u);
+}
+
+// 100 ppm more for the second half: 25 periods off the best straight line after 10^6 rows.
+TEST(RowClockTest, AClockThatWandersIsFollowed) {
+  std::vector<double> time_s{0.0};
+  for (int i = 1; i < 1'000'000; ++i)
+    time_s.push_back(time_s.back() + (i < 500'000 ? 1.0 : 1.0001) * 1e-3);
+  const RowPlaces sut = place_rows(at(time_s));
+  EXPECT_TRUE(sut.as_stamped);
+  EXPECT_EQ(sut.stretches.size(), 1u);
+  // The mean rate: as many samples as rows, to a sample.
+  EXPECT_NEAR(static_cast<double>(sut.stretches[0].grid_samples), 1e6, 60.0);
+}
+
+TEST(RowClockTest, AShortGapIsCountedAndALongOneCuts) {
+  std::vector<double> time_s;
+  for (int i = 0; i < 1000; ++i) {
+    const bool short_gap = i >= 300 && i < 305;  // 5 rows, the longest bridge at 100 Hz
+    const bool long_gap = i >= 600 && i < 606;
+    if (!short_gap && !long_gap) time_s.push_back(i * 0.01);
+  }
+  const RowPlaces sut = place_rows(at(time_s));
+  ASSERT_EQ(sut.stretches.size(), 2u);
+  EXPECT_EQ(sut.stretches[0].grid_samples, 600u);
+  EXPECT_EQ(sut.stretches[0].end_row, 595u);
+  EXPECT_EQ(sut.places[299], 299.0);
+  EXPECT_EQ(sut.places[300], 305.0);
+  EXPECT_DOUBLE_EQ(sut.stretches[1].start_s, 6.06);
+  EXPECT_EQ(sut.lost_between, 6.0);
+  EXPECT_FALSE(sut.as_stamped);
+}
+
+TEST(RowClockTest, TheLongestBridgeIsThreeRowsOrFiftyMilliseconds) {
+  EXPECT_EQ(longest_bridge(1.0), 3);
+  EXPECT_EQ(longest_bridge(60.0), 3);
+  EXPECT_EQ(longest_bridge(100.0), 5);
+  EXPECT_EQ(longest_bridge(1000.0), 50);
+  EXPECT_EQ(longest_bridge(1e9), 1000);
+}
+
+// After a restart in the middle of a period the rows lie between the samples.
+TEST(RowClockTest, AGapOfHalfAPeriodMoreMakesTheGridMissTheRows) {
+  std::vector<double> time_s;
+  for (int i = 0; i < 1000; ++i) time_s.push_back(i * 0.01 + (i < 500 ? 0.0 : 0.025));
+  const RowPlaces sut = place_rows(at(time_s));
+  EXPECT_TRUE(sut.as_stamped);
+  ASSERT_EQ(sut.stretches.size(), 1u);
+  EXPECT_EQ(sut.rate_hz, 100.0);
+  EXPECT_NEAR(sut.places.back(), 1001.5, 1e-6);
+}
+
+TEST(RowClockTest, TimesWithoutARateAreRefused) {
+  EXPECT_THROW((void)place_rows(at({-1.7e308, 0.0, 1.7e308})), ConfigError);
+  EXPECT_THROW((void)place_rows(at({0.0, 5e-324, 1e-323})), ConfigError);
+  EXPECT_THROW((void)place_rows(at({0.0, 1e-310, 2e-310})), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::measurement

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/result_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::report {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class ResultFilesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  [[nodiscard]] fs::path at(const std::string& name) const { return folder_ / name; }
+  static std::string text_of(const fs::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      out.push_back(entry.path().filename());
+    }
+    return out;
+  }
+  static std::string error_of(const std::vector<ResultFile>& files,
+                              const std::vector<fs::path>& inputs = {}) {
+    try {
+      const ResultFiles sut(files, inputs);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ResultFilesTest, FilesAppearWhenTheyArePublishedAndNotBefore) {
+  ResultFiles sut({{"--save", at("a")}, {"--json", at("b")}}, {});
+  sut.set("--save", "one");
+  sut.set("--json", "two");
+  EXPECT_TRUE(names().empty());
+  sut.publish();
+  EXPECT_EQ(text_of(at("a")), "one");
+  EXPECT_EQ(text_of(at("b")), "two");
+  EXPECT_EQ(names().size(), 2u);
+}
+
+TEST_F(ResultFilesTest, OnlyWhatWasAskedForIsWanted) {
+  const ResultFiles sut({{"--save", ""}, {"--json", at("b")}}, {});
+  EXPECT_FALSE(sut.wants("--save"));
+  EXPECT_TRUE(sut.wants("--json"));
+}
+
+TEST_F(ResultFilesTest, AnEarlierFileIsReplacedThroughItsLink) {
+  std::ofstream(at("there")) << "earlier";
+  fs::create_symlink(at("there"), at("link"));
+  ResultFiles sut({{"--save", at("link")}}, {});
+  sut.set("--save", "new");
+  sut.publish();
+  EXPECT_TRUE(fs::is_symlink(at("link")));
+  EXPECT_EQ(text_of(at("there")), "new");
+}
+
+// The second can't be made any more: the first stays as it was.
+TEST_F(ResultFilesTest, WhenOneCannotBeWrittenNoneIs) {
+  std::ofstream(at("a")) << "earlier";
+  fs::create_directory(at("gone"));
+  ResultFiles sut({{"--save", at("a")}, {"--json", at("gone") / "b"}}, {});
+  fs::remove(at("gone"));
+  EXPECT_THROW(sut.publish(), std::runtime_error);
+  EXPECT_EQ(text_of(at("a")), "earlier");
+  EXPECT_THAT(names(), testing::ElementsAre("a"));
+}
+
+TEST_F(ResultFilesTest, ADeviceIsWrittenToAndStaysADevice) {
+  ResultFiles sut({{"--save", "/dev/null"}, {"--json", "/dev/null"}}, {});
+  sut.set("--save", "text");
+  sut.publish();
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(ResultFilesTest, PlacesThatCannotBeAreRefused) {
+  EXPECT_THAT(error_of({{"--save", folder_}}), HasSubstr("a folder, want the name of a file"));
+  EXPECT_THAT(error_of({{"--save", at("no") / "a"}}), HasSubstr("a folder that is there"));
+  EXPECT_THAT(error_of({{"--save", at("a")}, {"--json", folder_ / "." / "a"}}),
+              HasSubstr("--json: got"));
+}
+
+TEST_F(ResultFilesTest, AnInputIsNotWrittenOver) {
+  std::ofstream(at("ride.csv")) << "t [s]";
+  fs::create_hard_link(at("ride.csv"), at("twin"));
+  EXPECT_THAT(error_of({{"--save", at("ride.csv")}}, {at("ride.csv")}), HasSubstr("which is read"));
+  EXPECT_THAT(error_of({{"--save", at("twin")}}, {at("ride.csv")}), HasSubstr("which is read"));
+}
+
+}  // namespace
+}  // namespace stillhand::report
