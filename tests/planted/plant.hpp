@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "planted/body.hpp"
+#include "planted/scene.hpp"
+
+namespace stillhand::planted {
+
+/// Changes a signal over the whole grid, in place.
+using Stage = std::function<void(const Scene& scene, Series& values)>;
+
+/// From the recorded acceleration to the recorded force, in the order in which nature and the
+/// electronics act.
+struct Plant {
+  Body body;
+  bool body_altered = false;         ///< otherwise the untouched body's force can be taken again
+  std::vector<Stage> drive{};        ///< recorded command -> acceleration that acts
+  std::vector<Stage> sensitivity{};  ///< gain of the force
+  std::vector<Stage> added{};        ///< forces that other causes add
+  std::vector<Stage> reading{};      ///< limits of the load cell, on the recording's samples
+  double force_delay_s = 0.0;
+  double force_clock_error = 0.0;  ///< e: the sample stamped t is taken at t (1 + e)
+};
+
+/// Force of the body on the grid, before any output stage.
+Motion body_force(const Scene& scene, const Plant& plant);
+/// From there to the recorded samples: gain, added forces, the force's own clock and delay, the
+/// noise that arises before the reading (one value a sample, or none), reading.
+Series recorded_force(const Scene& scene, const Plant& plant, Series body_force_n,
+                      const Series& early_noise_n = {});
+
+}  // namespace stillhand::planted
