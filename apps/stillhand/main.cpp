@@ -4,8 +4,11 @@
 #include <iostream>
 
 #include "contract/config_error.hpp"
+#include "diagnose/diagnose_command.hpp"
 #include "experiment/conductor.hpp"
 #include "experiment/lab_command.hpp"
+#include "identify/identify_command.hpp"
+#include "predict/predict_command.hpp"
 #include "study/study_command.hpp"
 
 namespace {
@@ -28,6 +31,9 @@ int run(int argc, char** argv) {
   int status = 0;
   stillhand::experiment::add_lab_command(cli, status);
   stillhand::study::add_study_command(cli, status);
+  stillhand::identify::add_identify_command(cli, status);
+  stillhand::diagnose::add_diagnose_command(cli, status);
+  stillhand::predict::add_predict_command(cli, status);
   try {
     cli.parse(argc, argv);
     return told(status);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnose/diagnose_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "contract/config_error.hpp"
+#include "diagnose/diagnosis_json.hpp"
+#include "diagnose/diagnosis_report.hpp"
+#include "diagnosis/core/diagnose.hpp"
+#include "diagnosis/model_file.hpp"
+#include "experiment/progress.hpp"
+#include "measurement/read.hpp"
+#include "report/draw.hpp"
+#include "report/result_files.hpp"
+#include "report/staged_folder.hpp"
+#include "runtime/stop.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+struct Words {
+  std::vector<std::string> recordings;
+  measurement::ReadOptions read;
+  std::vector<std::string> inputs{"a_y"};
+  std::string output = "f";
+  std::string model = "auto";
+  int order = 4;
+  std::filesystem::path save;
+  std::filesystem::path json;
+  std::filesystem::path report;
+};
+
+// On every core at once; the first exception is thrown again here.
+void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& task) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (std::size_t i = 0; (i = next++) < count && !failed;) {
+      try {
+        task(i);
+      } catch (...) {
+        if (!failed.exchange(true)) error = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::jthread> others;
+  const unsigned cores = std::max(std::thread::hardware_concurrency(), 1U);
+  for (unsigned i = 1; i < std::min<std::size_t>(cores, count); ++i) others.emplace_back(work);
+  work();
+  others.clear();
+  if (error) std::rethrow_exception(error);
+}
+
+diagnosis::Measurement read_all(const Words& words) {
+  std::vector<diagnosis::Measurement> parts;
+  for (const std::string& path : words.recordings) {
+    parts.push_back(measurement::read_measurement(path, words.read));
+  }
+  return parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
+}
+
+int run(const Words& words) {
+  runtime::Stop stop;
+  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
+                            {words.recordings.begin(), words.recordings.end()});
+  std::optional<report::StagedFolder> folder;
+  if (!words.report.empty()) {
+    report::require_gnuplot();
+    folder.emplace(words.report);
+  }
+  const diagnosis::Measurement measurement = read_all(words);
+  experiment::ProgressLine progress;
+  diagnosis::DiagnoseOptions options;
+  options.inputs = words.inputs;
+  options.output = words.output;
+  options.order = words.order;
+  if (words.model == "arx") options.model = diagnosis::ModelClass::kArx;
+  if (words.model == "linear") options.model = diagnosis::ModelClass::kLinear;
+  options.for_each = on_all_cores;
+  double done = 0.0;
+  options.progress = [&](const std::string& step) {
+    progress.show(step, done);
+    done += 0.5 * (1.0 - done);  // how many effects there are isn't known before
+    return !stop.requested();
+  };
+  const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
+  progress.finish();
+  if (files.wants("--save")) files.set("--save", diagnosis::model_json(result.model));
+  if (files.wants("--json")) files.set("--json", diagnosis_json(result));
+  if (folder) write_report(result, measurement, words.recordings.front(), *folder);
+  files.publish();
+  std::fputs(diagnosis_table(result).c_str(), stdout);
+  if (folder) std::printf("report in %s\n", words.report.string().c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_diagnose_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = cli.add_subcommand(
+      "diagnose",
+      "What does the model lack? Fits a linear model of the recording, looks at what its free run\n"
+      "leaves on samples it has not seen, traces that to an effect, adds it, and tells the error\n"
+      "before and after. It knows 18 kinds of effect; services/diagnosis/README.md lists them.\n"
+      "REC: CSV with columns 'name [unit]', 't [s]' first; or the MCAP file of a session. Several\n"
+      "recordings of one rig are taken together.\n"
+      "Example: stillhand diagnose ride.csv --input a_y --output f --json out.json --report DIR");
+  verb->add_option("REC", words->recordings, "recording(s), CSV or MCAP")->required();
+  verb->add_option("--input", words->inputs, "what drives the model: channel(s), comma-separated")
+      ->delimiter(',')
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->capture_default_str();
+  verb->add_option("--output", words->output, "channel that the model is to predict")
+      ->capture_default_str();
+  verb->add_option("--model", words->model,
+                   "baseline: arx (the paper's difference model, refined on its free-run error),\n"
+                   "linear (static in the inputs: inverse dynamics), auto (whichever fits)")
+      ->check(CLI::IsMember({"auto", "arx", "linear"}))
+      ->capture_default_str();
+  verb->add_option("--order", words->order, "order of the difference model, 1 to 12")
+      ->check(CLI::Range(1, 12))
+      ->capture_default_str();
+  verb->add_option("--trial", words->read.trial,
+                   "of a session's recording: number of the trial, or its condition's letter");
+  verb->add_option("--save", words->save, "file for the augmented model, for `stillhand predict`");
+  verb->add_option("--json", words->json, "file for the verdict");
+  verb->add_option("--report", words->report, "folder for a page with figures");
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::diagnose

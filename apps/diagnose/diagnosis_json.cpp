@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnose/diagnosis_json.hpp"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+using diagnosis::Diagnosis;
+using diagnosis::FoundEffect;
+using nlohmann::ordered_json;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json with_unit(double value, const std::string& unit) {
+  return {{"value", number(value)}, {"unit", unit}};
+}
+
+// Nonlinear parameters by name; linear ones of effects beside the body, whose number says a force.
+ordered_json parameters_json(const Diagnosis& diagnosis, const FoundEffect& found) {
+  ordered_json json = ordered_json::object();
+  for (const diagnosis::Parameter& parameter : found.effect.parameters) {
+    json[parameter.name] = with_unit(parameter.value, parameter.unit);
+  }
+  const auto& effect = found.effect;
+  const auto& kind = diagnosis::effect_kind(effect.kind);
+  if (kind.stage(effect) == diagnosis::Stage::kTerm && !kind.through_body(effect)) {
+    for (std::size_t i = 0; i < effect.coefficients.size(); ++i) {
+      const std::string name =
+          effect.coefficients.size() == 1 ? "coefficient" : "coefficient_" + std::to_string(i + 1);
+      json[name] =
+          with_unit(effect.coefficients[i], diagnosis.output_unit + " per unit of the term");
+    }
+  }
+  return json;
+}
+
+ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
+  return {{"kind", found.effect.kind},
+          {"channel", found.channel.empty() ? ordered_json(nullptr) : ordered_json(found.channel)},
+          {"parameters", parameters_json(diagnosis, found)},
+          {"heldout_rmse_before", found.before.rmse},
+          {"heldout_rmse_after", found.after.rmse},
+          {"ci95", {found.after.low, found.after.high}},
+          {"evidence", found.evidence},
+          {"form", found.effect.form},
+          {"signals", found.effect.channels},
+          {"p", found.p},
+          {"ties", found.ties}};
+}
+
+ordered_json baseline_json(const Diagnosis& diagnosis) {
+  const auto& body = diagnosis.baseline.model.body;
+  ordered_json json{{"model", diagnosis.model_class},
+                    {"heldout_rmse", diagnosis.baseline_error.rmse},
+                    {"vaf_percent", diagnosis.baseline_error.vaf_percent},
+                    {"ci95", {diagnosis.baseline_error.low, diagnosis.baseline_error.high}},
+                    {"order", body.order()},
+                    {"equation_error_rmse", number(diagnosis.baseline.equation_error_rmse)},
+                    {"impulse_response_rmse", number(diagnosis.baseline.impulse_response_rmse)}};
+  return json;
+}
+
+ordered_json body_json(const diagnosis::Model& model) {
+  ordered_json numerators = ordered_json::object();
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    numerators[model.inputs[k]] = model.body.numerators[k];
+  }
+  return {{"numerators", numerators},
+          {"denominator", model.body.denominator},
+          {"offset", model.body.offset},
+          {"rate_hz", model.rate_hz}};
+}
+
+[[gnu::format(printf, 2, 3)]] void print(std::string& text, const char* format, ...) {
+  char line[600];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof(line), format, arguments);
+  va_end(arguments);
+  text += line;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const Diagnosis& diagnosis) {
+  ordered_json effects = ordered_json::array();
+  for (const FoundEffect& found : diagnosis.effects) {
+    effects.push_back(effect_json(diagnosis, found));
+  }
+  ordered_json unexplained = nullptr;
+  if (diagnosis.unexplained) {
+    unexplained = {{"what", diagnosis.unexplained->what},
+                   {"band_hz", diagnosis.unexplained->band_hz},
+                   {"times_s", diagnosis.unexplained->times_s},
+                   {"channels", diagnosis.unexplained->channels}};
+  }
+  const ordered_json json{{"input", joined(diagnosis.options.inputs)},
+                          {"output", diagnosis.options.output},
+                          {"output_unit", diagnosis.output_unit},
+                          {"sample_rate_hz", diagnosis.sample_rate_hz},
+                          {"baseline", baseline_json(diagnosis)},
+                          {"noise_floor_rmse", diagnosis.noise_floor.rmse},
+                          {"noise_floor",
+                           {{"low", diagnosis.noise_floor.low},
+                            {"high", diagnosis.noise_floor.high},
+                            {"method", diagnosis.noise_floor.method}}},
+                          {"verdict", diagnosis.verdict()},
+                          {"effects", effects},
+                          {"final",
+                           {{"heldout_rmse", diagnosis.final_error.rmse},
+                            {"vaf_percent", diagnosis.final_error.vaf_percent},
+                            {"ci95", {diagnosis.final_error.low, diagnosis.final_error.high}}}},
+                          {"unexplained", unexplained},
+                          {"body", body_json(diagnosis.model)},
+                          {"notes", diagnosis.notes}};
+  return json.dump(2) + "\n";
+}
+
+std::string diagnosis_table(const Diagnosis& diagnosis) {
+  const std::string& unit = diagnosis.output_unit;
+  std::string text;
+  print(text, "verdict       %s\n", diagnosis.verdict().c_str());
+  print(text, "model         %s from %s to %s, order %zu, at %.4g Hz\n",
+        diagnosis.model_class.c_str(), joined(diagnosis.options.inputs).c_str(),
+        diagnosis.options.output.c_str(), diagnosis.baseline.model.body.order(),
+        diagnosis.sample_rate_hz);
+  print(text, "baseline      RMS error %.4g %s, VAF %.2f %% (free run, held out)\n",
+        diagnosis.baseline_error.rmse, unit.c_str(), diagnosis.baseline_error.vaf_percent);
+  for (std::size_t e = 0; e < diagnosis.effects.size(); ++e) {
+    const FoundEffect& found = diagnosis.effects[e];
+    print(text, "effect %zu      %s%s: %.4g -> %.4g %s (95 %%: %.4g to %.4g)\n              %s\n",
+          e + 1, found.effect.kind.c_str(),
+          found.channel.empty() ? "" : (" (" + found.channel + ")").c_str(), found.before.rmse,
+          found.after.rmse, unit.c_str(), found.after.low, found.after.high,
+          found.evidence.c_str());
+  }
+  print(text, "final         RMS error %.4g %s, VAF %.2f %%\n", diagnosis.final_error.rmse,
+        unit.c_str(), diagnosis.final_error.vaf_percent);
+  print(text, "noise floor   %.4g %s (%.4g to %.4g)\n", diagnosis.noise_floor.rmse, unit.c_str(),
+        diagnosis.noise_floor.low, diagnosis.noise_floor.high);
+  if (diagnosis.unexplained) print(text, "unexplained   %s\n", diagnosis.unexplained->what.c_str());
+  for (const std::string& note : diagnosis.notes) print(text, "note          %s\n", note.c_str());
+  return text;
+}
+
+}  // namespace stillhand::diagnose

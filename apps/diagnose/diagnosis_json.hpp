@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "diagnosis/core/diagnose.hpp"
+
+namespace stillhand::diagnose {
+
+/// The contract's out.json (design section 4), and beside it the baseline's parameters, the
+/// interval of the noise floor, ties and notes.
+std::string diagnosis_json(const diagnosis::Diagnosis& diagnosis);
+
+/// The same for people: a short table.
+std::string diagnosis_table(const diagnosis::Diagnosis& diagnosis);
+
+}  // namespace stillhand::diagnose

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/core/diagnose.hpp"
+#include "diagnosis/core/measurement.hpp"
+#include "report/page.hpp"
+#include "report/staged_folder.hpp"
+
+namespace stillhand::diagnose {
+
+struct Evidence;
+
+/// The page: verdict in words, errors, figures, effects and their numbers, what was tried, what was
+/// asked, what is left.  @param drawings  of diagnosis_figures()
+report::Page diagnosis_page(const Evidence& evidence, const std::string& recording_name,
+                            const std::vector<report::Drawing>& drawings);
+
+/// Runs the models again on what the engine worked on, draws, and publishes the folder:
+/// report.html, and every figure as SVG and PNG.
+/// @param measurement  what was diagnosed, as it was read
+/// @throws ConfigError without gnuplot, std::runtime_error when a file can't be written
+void write_report(const diagnosis::Diagnosis& found, const diagnosis::Measurement& measurement,
+                  const std::string& recording_name, report::StagedFolder& folder);
+
+}  // namespace stillhand::diagnose

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "predict/predict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "contract/config_error.hpp"
+#include "diagnosis/core/effect_kind.hpp"
+#include "diagnosis/core/evaluation.hpp"
+#include "diagnosis/core/working_set.hpp"
+
+namespace stillhand::predict {
+namespace {
+
+using diagnosis::Measurement;
+
+constexpr double kSameRate = 1e-3;
+
+// How many samples of the recording are one of the model's.
+std::size_t rate_factor(const diagnosis::Model& model, const Measurement& measurement) {
+  const double ratio = measurement.rate_hz / model.rate_hz;
+  const double whole = std::round(ratio);
+  if (whole < 1.0 || std::abs(ratio - whole) > kSameRate * whole) {
+    throw ConfigError(
+        measurement.source, "samples at " + std::to_string(measurement.rate_hz) + " Hz",
+        "the model's rate, " + std::to_string(model.rate_hz) + " Hz, or a whole multiple of it");
+  }
+  return static_cast<std::size_t>(whole);
+}
+
+// Cubic through the four nearest (Catmull and Rom); the ends are held.
+std::vector<double> spread_out(const std::vector<double>& x, const Measurement& from,
+                               const Measurement& to, std::size_t factor) {
+  if (factor == 1) return x;
+  std::vector<double> y;
+  for (std::size_t s = 0; s < to.stretches.size(); ++s) {
+    const auto first = static_cast<std::ptrdiff_t>(from.stretches[s].first);
+    const auto last = static_cast<std::ptrdiff_t>(from.stretches[s].end) - 1;
+    const auto at = [&](std::ptrdiff_t n) {
+      return x[static_cast<std::size_t>(std::clamp(n, first, last))];
+    };
+    const std::size_t length = to.stretches[s].end - to.stretches[s].first;
+    for (std::size_t n = 0; n < length; ++n) {
+      const auto k = first + static_cast<std::ptrdiff_t>(n / factor);
+      const double t = static_cast<double>(n % factor) / static_cast<double>(factor);
+      const double slope0 = 0.5 * (at(k + 1) - at(k - 1));
+      const double slope1 = 0.5 * (at(k + 2) - at(k));
+      const double rise = at(k + 1) - at(k);
+      y.push_back(at(k) + t * (slope0 + t * (3.0 * rise - 2.0 * slope0 - slope1 +
+                                             t * (slope0 + slope1 - 2.0 * rise))));
+    }
+  }
+  return y;
+}
+
+void add_notes(const diagnosis::Model& model, Prediction& prediction) {
+  for (const diagnosis::Effect& effect : model.effects) {
+    const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
+    if (!kind.time_only(effect)) continue;
+    const bool gain = kind.stage(effect) == diagnosis::Stage::kGain;
+    prediction.notes.push_back(effect.kind +
+                               (gain ? ": taken at the gain's mean, time alone can't tell more"
+                                     : ": left out, no input can tell it"));
+  }
+}
+
+}  // namespace
+
+Prediction predict(const diagnosis::Model& model, const Measurement& measurement) {
+  Measurement whole = measurement;
+  if (whole.find(model.output) == nullptr) {
+    whole.channels.push_back(
+        {model.output, model.output_unit, std::vector<double>(whole.size(), 0.0)});
+  }
+  const std::size_t factor = rate_factor(model, whole);
+  const Measurement working = factor == 1 ? whole : diagnosis::decimated(whole, factor);
+  const diagnosis::Signals signals(working, model.inputs, model.output);
+  diagnosis::FreeRun run;
+  try {
+    run = diagnosis::free_run(model, signals, false);
+  } catch (const std::out_of_range&) {
+    throw ConfigError("model", "an effect without all of its channels, parameters or coefficients",
+                      "a model as `stillhand diagnose --save` writes");
+  }
+  if (!run.finite) {
+    throw ConfigError(whole.source, "inputs on which the model runs away",
+                      "inputs like those that the model was fitted to");
+  }
+  Prediction prediction;
+  prediction.notes = measurement.notes;
+  add_notes(model, prediction);
+  const auto values = spread_out(run.prediction, working, whole, factor);
+  const std::vector<double> time_s = whole.time_s();
+  recording::Column column{model.output + "_model", model.output_unit, {}};
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    if (whole.weight[n] <= 0.0) continue;
+    prediction.table.time_s.push_back(time_s[n]);
+    column.values.push_back(values[n]);
+  }
+  prediction.table.columns.push_back(std::move(column));
+  return prediction;
+}
+
+}  // namespace stillhand::predict

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "predict/predict_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "diagnosis/model_file.hpp"
+#include "measurement/read.hpp"
+#include "predict/predict.hpp"
+#include "recording/core/csv.hpp"
+#include "recording/file_io.hpp"
+#include "report/result_files.hpp"
+
+namespace stillhand::predict {
+namespace {
+
+struct Words {
+  std::filesystem::path model;
+  std::string recording;
+  measurement::ReadOptions read;
+  std::filesystem::path out;
+};
+
+int run(const Words& words) {
+  report::ResultFiles files({{"--out", words.out}}, {words.model, words.recording});
+  const diagnosis::Model model =
+      diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
+  const Prediction prediction =
+      predict(model, measurement::read_measurement(words.recording, words.read));
+  files.set("--out", recording::to_csv(prediction.table));
+  files.publish();
+  std::printf("%zu samples of %s from", prediction.table.row_count(), model.output.c_str());
+  for (const std::string& input : model.inputs) std::printf(" %s", input.c_str());
+  std::printf(" in %s\n", words.out.string().c_str());
+  for (const std::string& note : prediction.notes) std::printf("note: %s\n", note.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_predict_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = cli.add_subcommand(
+      "predict",
+      "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\n"
+      "The recording need not hold the output. What no input can tell (a tone's phase, a drift, a\n"
+      "burst) is left out, a changing gain is taken at its mean; both are said.\n"
+      "Example: stillhand predict model.json ride.csv --out prediction.csv");
+  verb->add_option("MODEL", words->model, "model file")->required();
+  verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
+  verb->add_option("--trial", words->read.trial,
+                   "of a session's recording: number of the trial, or its condition's letter");
+  verb->add_option("--out", words->out, "CSV file of the prediction")->required();
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::predict

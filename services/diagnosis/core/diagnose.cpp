@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/diagnose.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "contract/config_error.hpp"
+#include "diagnosis/core/working_set.hpp"
+#include "signal/spectrum.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+// A static model that is hardly worse is preferred to a dynamic one.
+constexpr double kStaticIsEnough = 1.02;
+constexpr double kSameChannel = 0.95;
+
+HeldOutError held_out_error(const HeldOut& held_out, double variance) {
+  HeldOutError error;
+  std::vector<double> squares;
+  for (std::size_t b = 0; b < held_out.squares.size(); ++b) {
+    if (held_out.weights[b] >= 1.0) squares.push_back(held_out.squares[b] / held_out.weights[b]);
+  }
+  error.rmse = held_out.rmse();
+  const auto count = static_cast<double>(squares.size());
+  const double mean = std::accumulate(squares.begin(), squares.end(), 0.0) / count;
+  double square = 0.0;
+  for (const double each : squares) square += (each - mean) * (each - mean);
+  const double standard_error = std::sqrt(square / (count - 1.0) / count);
+  const double t = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975);
+  error.low = std::sqrt(std::max(error.rmse * error.rmse - t * standard_error, 0.0));
+  error.high = std::sqrt(error.rmse * error.rmse + t * standard_error);
+  error.vaf_percent = 100.0 * (1.0 - error.rmse * error.rmse / std::max(variance, 1e-300));
+  return error;
+}
+
+double correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  const Eigen::Map<const Eigen::VectorXd> a(x.data(), static_cast<Eigen::Index>(x.size()));
+  const Eigen::Map<const Eigen::VectorXd> b(y.data(), static_cast<Eigen::Index>(y.size()));
+  const Eigen::VectorXd left = a.array() - a.mean();
+  const Eigen::VectorXd right = b.array() - b.mean();
+  return left.dot(right) / std::max(left.norm() * right.norm(), 1e-300);
+}
+
+void check_excitation(const Signals& signals) {
+  const auto constant = [](const Signal& signal) {
+    return !(signal.deviation > 1e-12 * (std::abs(signal.mean) + 1e-300));
+  };
+  if (constant(signals.output())) {
+    throw ConfigError("output '" + signals.output().name + "'", "a constant signal",
+                      "one that moves");
+  }
+  for (const Signal& input : signals.inputs()) {
+    if (constant(input)) {
+      throw ConfigError("input '" + input.name + "'", "a constant signal",
+                        "one that moves: without excitation there is nothing to fit");
+    }
+    if (std::abs(correlation(input.values, signals.output().values)) > 1.0 - 1e-12) {
+      throw ConfigError("output '" + signals.output().name + "'",
+                        "the input '" + input.name + "' itself, scaled", "a measured answer to it");
+    }
+  }
+}
+
+// Inverse dynamics: one input is the rate of another.
+bool related(const Signals& signals) {
+  const auto& inputs = signals.inputs();
+  for (const Signal& one : inputs) {
+    const std::vector<double> rate = differenced(one.values, signals.stretches());
+    for (const Signal& other : inputs) {
+      if (&other != &one && correlation(rate, other.values) > kSameChannel) return true;
+    }
+  }
+  return false;
+}
+
+Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
+                         const DiagnoseOptions& options, std::string& name) {
+  if (options.model == ModelClass::kArx) {
+    name = "arx";
+    return fit_baseline(signals, blocks, options.order);
+  }
+  Baseline linear = fit_baseline(signals, blocks, 0);
+  name = "linear";
+  if (options.model == ModelClass::kLinear || related(signals)) return linear;
+  Baseline arx = fit_baseline(signals, blocks, options.order);
+  const double static_rmse = held_out(linear.model, signals, blocks).rmse();
+  if (static_rmse <= kStaticIsEnough * held_out(arx.model, signals, blocks).rmse()) return linear;
+  name = "arx";
+  return arx;
+}
+
+std::string measured_channel(const Effect& effect, const Signals& signals,
+                             const std::vector<std::string>& inputs) {
+  // Of several channels the one that isn't the input says more.
+  std::string channel;
+  for (const std::string& name : effect.channels) {
+    const std::string source = signals.at(name).source;
+    const bool is_input = std::ranges::find(inputs, source) != inputs.end();
+    if (channel.empty() || !is_input) channel = source;
+    if (!is_input) break;
+  }
+  return channel;
+}
+
+// The band that holds the middle 80 % of a residual's power.
+std::array<double, 2> band_of(const Eigen::VectorXd& residual, double rate_hz) {
+  const std::vector<double> r(residual.data(), residual.data() + residual.size());
+  std::size_t segment = 1024;
+  while (segment > r.size()) segment /= 2;
+  const signal::CrossSpectra spectra = signal::cross_spectra(r, r, rate_hz, segment);
+  const double total = std::accumulate(spectra.s_xx.begin(), spectra.s_xx.end(), 0.0);
+  std::array<double, 2> band{0.0, 0.5 * rate_hz};
+  double sum = 0.0;
+  for (std::size_t k = 0; k < spectra.s_xx.size(); ++k) {
+    if (sum < 0.1 * total && sum + spectra.s_xx[k] >= 0.1 * total) {
+      band[0] = spectra.frequency_hz[k];
+    }
+    if (sum < 0.9 * total && sum + spectra.s_xx[k] >= 0.9 * total) {
+      band[1] = spectra.frequency_hz[k];
+    }
+    sum += spectra.s_xx[k];
+  }
+  return band;
+}
+
+std::optional<Unexplained> unexplained_of(const DetectionResult& detections,
+                                          const Screening& screening) {
+  Unexplained left;
+  std::string what;
+  for (const Detection& detection : detections.detections) {
+    if (!detection.found) continue;
+    if (what.empty()) {
+      what = "the residual still depends on: " + detection.question + " " + detection.channel +
+             " (" + std::to_string(static_cast<int>(std::lround(100.0 * detection.share))) +
+             " % of its power, held out), which no kind of effect explains";
+    }
+    if (screening.signals().size() > 0 && !detection.channel.empty() && left.channels.size() < 3) {
+      left.channels.push_back(detection.channel);
+    }
+  }
+  if (what.empty()) return {};
+  left.what = what;
+  left.band_hz = band_of(screening.residual(), screening.signals().rate_hz());
+  std::vector<std::size_t> order(detections.spread.rms.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+    return detections.spread.rms[a] > detections.spread.rms[b];
+  });
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
+    left.times_s.push_back(detections.spread.time_s[order[i]]);
+  }
+  std::ranges::sort(left.times_s);
+  return left;
+}
+
+// What noise amounts to: the final residual less what any question still explains of it, below
+// what linear models of any order leave.
+NoiseFloor noise_floor_of(const Diagnosis& diagnosis, const Screening& screening) {
+  double share = 0.0;
+  for (const Detection& detection : diagnosis.after.detections) {
+    if (detection.found) share = std::max(share, detection.share);
+  }
+  double weight = 0.0;
+  for (const double each : screening.weight()) weight += each;
+  const auto numbers = static_cast<double>(complexity(diagnosis.model));
+  NoiseFloor floor;
+  // Freed of the numbers that were fitted to it.
+  const double own = screening.rmse() * std::sqrt(weight / std::max(weight - numbers, 1.0));
+  floor.rmse = own * std::sqrt(1.0 - share);
+  floor.low = std::min(floor.rmse, diagnosis.final_error.low);
+  floor.high = diagnosis.final_error.high;
+  if (diagnosis.baseline.impulse_response_rmse > 0.0) {
+    floor.high =
+        std::min(floor.high, std::max(diagnosis.baseline.impulse_response_rmse, floor.rmse));
+  }
+  floor.method =
+      "residual of the final model, freed of its fitted numbers and of what any question about "
+      "channels, state and time still explains of it; low: of the held-out blocks' interval; high: "
+      "what a long impulse response leaves, or that interval's end";
+  return floor;
+}
+
+// Errors of the models with the first effect, the first two, and so on.
+std::vector<HeldOut> chain(const Diagnosis& diagnosis, const Signals& signals,
+                           const Blocks& blocks) {
+  const auto& additions = diagnosis.search.additions;
+  std::vector<HeldOut> errors{held_out(diagnosis.baseline.model, signals, blocks)};
+  for (std::size_t e = 0; e < additions.size(); ++e) {
+    if (diagnosis.search.removed == 0) {
+      errors.push_back(additions[e].after);
+      continue;
+    }
+    Model model = diagnosis.model;
+    model.effects.resize(e + 1);
+    fit(model, signals, blocks, {});
+    errors.push_back(held_out(model, signals, blocks));
+  }
+  return errors;
+}
+
+void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks,
+                 double variance) {
+  const std::vector<HeldOut> errors = chain(diagnosis, signals, blocks);
+  diagnosis.baseline_error = held_out_error(errors.front(), variance);
+  for (std::size_t e = 0; e < diagnosis.model.effects.size(); ++e) {
+    const Effect& effect = diagnosis.model.effects[e];
+    FoundEffect found;
+    found.effect = effect;
+    found.channel = measured_channel(effect, signals, diagnosis.options.inputs);
+    found.before = held_out_error(errors[e], variance);
+    found.after = held_out_error(errors[e + 1], variance);
+    found.p = compared(errors[e], errors[e + 1]).p;
+    found.evidence = effect_kind(effect.kind).evidence(effect);
+    found.ties = diagnosis.search.additions[e].ties;
+    if (!found.ties.empty()) {
+      found.evidence += "; as good an explanation:";
+      for (const std::string& kind : found.ties) found.evidence += " " + kind;
+    }
+    diagnosis.effects.push_back(std::move(found));
+  }
+  diagnosis.final_error = held_out_error(errors.back(), variance);
+}
+
+}  // namespace
+
+std::string Diagnosis::verdict() const {
+  if (!effects.empty()) return "effects found";
+  return unexplained ? "unexplained residual" : "nothing missing";
+}
+
+Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& options) {
+  const auto step = [&options](const std::string& name) {
+    if (!options.progress(name)) throw Interrupted();
+  };
+  Diagnosis diagnosis;
+  diagnosis.options = options;
+  check(measurement);
+  step("preparing");
+  const Measurement working = working_set(measurement, options.inputs);
+  diagnosis.notes = working.notes;
+  diagnosis.sample_rate_hz = working.rate_hz;
+  const Signals signals(working, options.inputs, options.output);
+  diagnosis.output_unit = signals.output().unit;
+  check_excitation(signals);
+  const Blocks blocks = make_blocks(signals);
+  step("baseline");
+  diagnosis.baseline = chosen_baseline(signals, blocks, options, diagnosis.model_class);
+  const ImpulseResponse impulse_response = fit_impulse_response(signals);
+  {
+    const Screening screening(diagnosis.baseline.model, signals, blocks, impulse_response);
+    diagnosis.before = detected(screening);
+  }
+  diagnosis.search = search(diagnosis.baseline, signals, blocks, options.search, options.for_each,
+                            [&step](const std::string& name) {
+                              step(name);
+                              return true;
+                            });
+  step("judging");
+  diagnosis.model = diagnosis.search.model;
+  const double variance = signals.output().deviation * signals.output().deviation;
+  add_effects(diagnosis, signals, blocks, variance);
+  const Screening screening(diagnosis.model, signals, blocks, impulse_response);
+  diagnosis.after = detected(screening);
+  diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
+  diagnosis.noise_floor = noise_floor_of(diagnosis, screening);
+  for (const Signal& signal : signals.all()) {
+    if (!signal.derived) continue;
+    const bool used = std::ranges::any_of(diagnosis.model.effects, [&](const Effect& effect) {
+      return std::ranges::find(effect.channels, signal.name) != effect.channels.end();
+    });
+    if (used) diagnosis.notes.push_back("'" + signal.name + "' was made from " + signal.source);
+  }
+  return diagnosis;
+}
+
+}  // namespace stillhand::diagnosis

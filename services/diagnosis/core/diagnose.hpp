@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/core/detection.hpp"
+#include "diagnosis/core/search.hpp"
+
+namespace stillhand::diagnosis {
+
+/// Which baseline: the paper's difference model, static in the inputs, or whichever fits the data.
+enum class ModelClass { kAuto, kArx, kLinear };
+
+/// What to diagnose, and how.
+struct DiagnoseOptions {
+  std::vector<std::string> inputs{"a_y"};
+  std::string output = "f";
+  ModelClass model = ModelClass::kAuto;
+  int order = 4;  ///< of the difference model; paper III-A
+  SearchOptions search;
+  ForEach for_each = in_order;
+  /// Called before each longer step with its name; false ends the diagnosis (Interrupted).
+  std::function<bool(const std::string&)> progress = [](const std::string&) { return true; };
+};
+
+/// Thrown when progress() said no.
+struct Interrupted : std::exception {
+  [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
+};
+
+/// An error on samples that the fit has not seen, with its interval of 95 % over the blocks.
+struct HeldOutError {
+  double rmse = 0.0;  ///< [unit of the output]
+  double low = 0.0;
+  double high = 0.0;
+  double vaf_percent = 0.0;  ///< [%] of the output's variance
+};
+
+/// One effect of the verdict.
+struct FoundEffect {
+  Effect effect;
+  std::string channel;  ///< measured channel that it hangs on; empty: none
+  HeldOutError before;
+  HeldOutError after;
+  double p = 1.0;                 ///< [-] of the improvement by chance
+  std::string evidence;           ///< one sentence
+  std::vector<std::string> ties;  ///< kinds that explain the data as well
+};
+
+/// What noise amounts to, README "Noise floor".
+struct NoiseFloor {
+  double rmse = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+  std::string method;
+};
+
+/// What is left and not explained.
+struct Unexplained {
+  std::string what;  ///< one sentence
+  std::array<double, 2> band_hz{};
+  std::vector<double> times_s;  ///< [s] where it is strongest
+  std::vector<std::string> channels;
+};
+
+/// The verdict and everything that it rests on.
+struct Diagnosis {
+  DiagnoseOptions options;
+  std::string model_class;  ///< "arx" or "linear"
+  std::string output_unit;
+  double sample_rate_hz = 0.0;
+  std::vector<std::string> notes;
+  Baseline baseline;
+  HeldOutError baseline_error;
+  NoiseFloor noise_floor;
+  std::vector<FoundEffect> effects;
+  HeldOutError final_error;
+  std::optional<Unexplained> unexplained;
+  Model model;             ///< baseline and effects, fitted together to all samples
+  DetectionResult before;  ///< of the baseline's residual
+  DetectionResult after;   ///< of the final model's
+  SearchResult search;     ///< what was tried
+
+  [[nodiscard]] std::string verdict() const;
+};
+
+/// The residual engine, design section 4: fits the baseline, looks for what it lacks, adds it, and
+/// judges on held-out blocks.  Pure; deterministic.
+/// @throws stillhand::ConfigError when the recording can't be diagnosed: channels that aren't
+/// there,
+///         no excitation, too few samples.
+Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& options);
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stillhand::diagnosis {
+
+/// Where in the model an effect acts, README "The model", in the order of the signal's way.
+enum class Stage {
+  kInputTime,    ///< when the input reaches the body, Eq. DG-2
+  kInputValue,   ///< a memoryless map of the input, Eq. DG-3
+  kFeedback,     ///< a nonlinearity inside the body, Eq. DG-4
+  kGain,         ///< a factor on the body's output, Eq. DG-5
+  kTerm,         ///< a sum of terms beside the body or through it, Eq. DG-6
+  kOutputValue,  ///< a memoryless map of the output, Eq. DG-7
+  kWeight,       ///< samples that the model doesn't claim to explain
+};
+
+/// A number of an effect on which the prediction depends nonlinearly.
+struct Parameter {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  bool fitted = true;  ///< false: found by search, held fixed in the joint fit
+};
+
+/// One effect of a model: plain numbers, which its kind gives meaning to (effect_kind.hpp).
+struct Effect {
+  std::string kind;                   ///< name in effect_kinds(), for example "delay"
+  std::string form;                   ///< which of the kind's forms, for example "through the body"
+  std::vector<std::string> channels;  ///< signals that it reads, as Signals names them
+  std::vector<Parameter> parameters;  ///< nonlinear ones
+  std::vector<double> coefficients;   ///< linear ones, of the terms or of the feedback path
+
+  [[nodiscard]] double value(std::size_t i) const { return parameters.at(i).value; }
+};
+
+/// A number that the effect was built with, no result: a channel's mean to count from.
+Parameter constant(std::string name, std::string unit, double value);
+
+/// Number of numbers that the data chose.
+std::size_t complexity(const Effect& effect) noexcept;
+
+}  // namespace stillhand::diagnosis

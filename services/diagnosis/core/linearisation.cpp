@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/core/effect_kind.hpp"
+#include "diagnosis/core/evaluation.hpp"
+#include "diagnosis/core/model_run.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+// The numbers whose columns come from forward differences: those of nonlinear parameters, and with
+// feedback those of the whole body.
+std::vector<bool> by_differences(const Model& model, bool feedback) {
+  std::vector<bool> which{false};
+  std::size_t body = model.body.order();
+  for (const auto& numerator : model.body.numerators) body += numerator.size();
+  which.insert(which.end(), body, feedback);
+  for (const Effect& effect : model.effects) {
+    which.insert(which.end(), effect.coefficients.size(), acts_at(effect, Stage::kFeedback));
+    for (const Parameter& parameter : effect.parameters) {
+      if (parameter.fitted) which.push_back(true);
+    }
+  }
+  return which;
+}
+
+// Fills columns one after the other, multiplied by slope and weight.
+class ColumnWriter {
+ public:
+  ColumnWriter(Eigen::MatrixXd& jacobian, const FreeRun& run) : jacobian_(jacobian), run_(run) {}
+  void write(const std::vector<double>& x, double factor, const std::vector<double>* gain) {
+    double* column = jacobian_.col(next_++).data();
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      const double scale = factor * run_.output_slope[n] * run_.weight[n];
+      column[n] = scale * x[n] * (gain == nullptr ? 1.0 : (*gain)[n]);
+    }
+  }
+  void skip(std::size_t count) { next_ += static_cast<Eigen::Index>(count); }
+
+ private:
+  Eigen::MatrixXd& jacobian_;
+  const FreeRun& run_;
+  Eigen::Index next_ = 0;
+};
+
+// q^-1 x / A
+std::vector<double> late_through_poles(const std::vector<double>& x, const Model& model,
+                                       const std::vector<Stretch>& stretches) {
+  std::vector<double> late = through_poles(x, model.body.denominator, stretches);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.end; n-- > stretch.first + 1;) late[n] = late[n - 1];
+    late[stretch.first] = 0.0;
+  }
+  return late;
+}
+
+void write_body_columns(const Model& model, const Signals& signals, const ModelRun& run,
+                        ColumnWriter& writer) {
+  const auto& stretches = signals.stretches();
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    std::vector<double> x = run.filtered_inputs[k];
+    for (std::size_t i = 0; i < model.body.numerators[k].size(); ++i) {
+      if (i > 0) x = differenced(x, stretches);
+      writer.write(x, 1.0, &run.gain);
+    }
+  }
+  // d/dg_i of B u / A with A = 1 + q^-1 sum g_i D^i: -q^-1 D^i y / A, behind which comes the gain;
+  // terms that pass the body do so without it.
+  std::vector<double> late = late_through_poles(run.free.body, model, stretches);
+  std::vector<double> terms;
+  if (run.passes_terms) terms = late_through_poles(run.through_body, model, stretches);
+  for (std::size_t i = 0; i < model.body.order(); ++i) {
+    if (i > 0) late = differenced(late, stretches);
+    if (i > 0 && run.passes_terms) terms = differenced(terms, stretches);
+    std::vector<double> both(late.size());
+    for (std::size_t n = 0; n < both.size(); ++n) {
+      both[n] = run.gain[n] * late[n] + (run.passes_terms ? terms[n] : 0.0);
+    }
+    writer.write(both, -1.0, nullptr);
+  }
+}
+
+void write_exact_columns(const Model& model, const Signals& signals, const ModelRun& run,
+                         bool feedback, Eigen::MatrixXd& jacobian) {
+  ColumnWriter writer(jacobian, run.free);
+  writer.write(std::vector<double>(signals.size(), 1.0), 1.0, nullptr);
+  if (feedback) {
+    std::size_t body = model.body.order();
+    for (const auto& numerator : model.body.numerators) body += numerator.size();
+    writer.skip(body);
+  } else {
+    write_body_columns(model, signals, run, writer);
+  }
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    const Effect& effect = model.effects[e];
+    if (run.term_columns[e].empty()) {
+      writer.skip(effect.coefficients.size());
+    } else {
+      for (const auto& column : run.term_columns[e]) writer.write(column, 1.0, nullptr);
+    }
+    for (const Parameter& parameter : effect.parameters) writer.skip(parameter.fitted ? 1 : 0);
+  }
+}
+
+// Forward differences; the step is a millionth of the number, or of its neighbours' size.
+void write_difference_columns(const Model& model, const Signals& signals, const ModelRun& run,
+                              const std::vector<bool>& which, Eigen::MatrixXd& jacobian) {
+  const Eigen::VectorXd numbers = packed(model);
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    if (!which[static_cast<std::size_t>(i)]) continue;
+    double size = std::abs(numbers[i]);
+    for (Eigen::Index j = std::max<Eigen::Index>(i - 1, 0);
+         j <= std::min(i + 1, numbers.size() - 1); ++j) {
+      size = std::max(size, 1e-3 * std::abs(numbers[j]));
+    }
+    const double step = 1e-6 * (size > 0.0 ? size : 1.0);
+    Model moved = model;
+    double change = 0.0;
+    // A parameter at its upper bound can only go down.
+    for (const double direction : {step, -step}) {
+      Eigen::VectorXd changed = numbers;
+      changed[i] += direction;
+      unpack(changed, moved);
+      change = packed(moved)[i] - numbers[i];
+      if (std::abs(change) > 0.5 * step) break;
+    }
+    if (change == 0.0) continue;  // pinned: the column stays 0
+    ModelRun other;
+    run_all(moved, signals, other);
+    const double inverse = 1.0 / change;
+    double* column = jacobian.col(i).data();
+    for (std::size_t n = 0; n < signals.size(); ++n) {
+      column[n] =
+          run.free.weight[n] * (other.free.prediction[n] - run.free.prediction[n]) * inverse;
+    }
+  }
+}
+
+}  // namespace
+
+Linearisation linearised(const Model& model, const Signals& signals) {
+  Linearisation result;
+  ModelRun run;
+  run_all(model, signals, run);
+  result.residual = weighted_error(run.free, signals);
+  result.finite = run.free.finite;
+  if (result.finite) {
+    const bool feedback = std::ranges::any_of(
+        model.effects, [](const Effect& effect) { return acts_at(effect, Stage::kFeedback); });
+    const std::vector<bool> which = by_differences(model, feedback);
+    result.jacobian.setZero(static_cast<Eigen::Index>(signals.size()),
+                            static_cast<Eigen::Index>(which.size()));
+    write_exact_columns(model, signals, run, feedback, result.jacobian);
+    write_difference_columns(model, signals, run, which, result.jacobian);
+    const InitialStates initial(model.body, signals, run.free.weight);
+    initial.remove_from(result.jacobian);
+    Eigen::Ref<Eigen::MatrixXd> view(result.residual);
+    initial.remove_from(view);
+  }
+  result.run = std::move(run.free);
+  return result;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/signals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <unsupported/Eigen/FFT>
+
+#include "contract/config_error.hpp"
+#include "signal/butterworth.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kSameSignalCorrelation = 0.95;
+constexpr double kUnjudged_s = 1.0;
+constexpr double kUnjudgedShare = 0.1;  // of a stretch
+constexpr double kIntegralHighPassHz = 0.1;
+
+std::vector<double> central_difference(const std::vector<double>& x, double rate_hz,
+                                       const std::vector<Stretch>& stretches) {
+  std::vector<double> rate(x.size(), 0.0);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      const std::size_t before = n > stretch.first ? n - 1 : n;
+      const std::size_t after = n + 1 < stretch.end ? n + 1 : n;
+      if (after > before) {
+        rate[n] = (x[after] - x[before]) * rate_hz / static_cast<double>(after - before);
+      }
+    }
+  }
+  return rate;
+}
+
+std::vector<double> trapezoidal_sum(const std::vector<double>& x, double rate_hz,
+                                    const std::vector<Stretch>& stretches) {
+  std::vector<double> sum(x.size(), 0.0);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.first + 1; n < stretch.end; ++n) {
+      sum[n] = sum[n - 1] + 0.5 * (x[n - 1] + x[n]) / rate_hz;
+    }
+  }
+  return sum;
+}
+
+void set_moments(Signal& signal) {
+  const auto count = static_cast<double>(signal.values.size());
+  double sum = 0.0;
+  for (const double x : signal.values) sum += x;
+  signal.mean = sum / count;
+  double square = 0.0;
+  for (const double x : signal.values) square += (x - signal.mean) * (x - signal.mean);
+  signal.deviation = std::sqrt(square / count);
+}
+
+double correlation(const Signal& left, const std::vector<double>& values) {
+  Signal right;
+  right.values = values;
+  set_moments(right);
+  if (left.deviation <= 0.0 || right.deviation <= 0.0) return 0.0;
+  double sum = 0.0;
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    sum += (left.values[n] - left.mean) * (values[n] - right.mean);
+  }
+  return sum / (static_cast<double>(values.size()) * left.deviation * right.deviation);
+}
+
+Signal from_channel(const Channel& channel) {
+  Signal signal{channel.name, channel.name,  channel.unit, quantity_of(channel.unit),
+                false,        channel.values};
+  set_moments(signal);
+  return signal;
+}
+
+const Channel& find_channel(const Measurement& measurement, const std::string& name,
+                            const std::string& role) {
+  const Channel* channel = measurement.find(name);
+  if (channel != nullptr) return *channel;
+  std::string names;
+  for (const Channel& each : measurement.channels) names += (names.empty() ? "" : ", ") + each.name;
+  throw ConfigError(measurement.source + ": " + role, "'" + name + "', which isn't there",
+                    "one of " + names);
+}
+
+}  // namespace
+
+Quantity quantity_of(std::string_view unit) noexcept {
+  constexpr std::array<std::string_view, 5> kPositions{"m", "mm", "cm", "rad", "deg"};
+  for (const std::string_view position : kPositions) {
+    if (unit == position) return Quantity::kPosition;
+    if (!unit.starts_with(position)) continue;
+    const std::string_view rest = unit.substr(position.size());
+    if (rest == "/s") return Quantity::kRate;
+    if (rest == "/s^2") return Quantity::kAcceleration;
+  }
+  return Quantity::kOther;
+}
+
+Signals::Signals(const Measurement& measurement, const std::vector<std::string>& inputs,
+                 const std::string& output)
+    : rate_hz_((check(measurement), measurement.rate_hz)),
+      stretches_(measurement.stretches),
+      weight_(measurement.weight),
+      time_s_(measurement.time_s()) {
+  if (inputs.empty()) throw ConfigError("input", "none", "at least one channel");
+  output_ = from_channel(find_channel(measurement, output, "output"));
+  for (const std::string& name : inputs) {
+    if (name == output) throw ConfigError("input", "'" + name + "', the output", "another channel");
+    if (is_input(name)) throw ConfigError("input", "'" + name + "' twice", "each channel once");
+    inputs_.push_back(from_channel(find_channel(measurement, name, "input")));
+  }
+  all_ = inputs_;
+  for (const Channel& channel : measurement.channels) {
+    if (channel.name == output || is_input(channel.name)) continue;
+    Signal signal = from_channel(channel);
+    if (signal.deviation > 0.0) all_.push_back(std::move(signal));  // a constant explains nothing
+  }
+  for (const Stretch& stretch : stretches_) {
+    const auto length = static_cast<double>(stretch.end - stretch.first);
+    const auto unjudged =
+        static_cast<std::size_t>(std::min(kUnjudged_s * rate_hz_, kUnjudgedShare * length));
+    std::fill_n(weight_.begin() + static_cast<std::ptrdiff_t>(stretch.first), unjudged, 0.0);
+  }
+  add_derived();
+  find_excited_band();
+}
+
+void Signals::find_excited_band() {
+  constexpr double kOutside = 0.01;
+  lowest_excited_hz_ = 0.5 * rate_hz_;
+  for (const Signal& input : inputs_) {
+    std::vector<double> x = input.values;
+    for (double& value : x) value -= input.mean;
+    x.resize(std::bit_ceil(x.size()), 0.0);
+    std::vector<std::complex<double>> spectrum;
+    Eigen::FFT<double> transform;
+    transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    transform.fwd(spectrum, x);
+    double total = 0.0;
+    for (const auto& line : spectrum) total += std::norm(line);
+    const double line_hz = rate_hz_ / static_cast<double>(x.size());
+    double sum = 0.0;
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+      const double before = sum;
+      sum += std::norm(spectrum[k]);
+      const double at_hz = line_hz * static_cast<double>(k);
+      if (before < kOutside * total && sum >= kOutside * total) {
+        lowest_excited_hz_ = std::min(lowest_excited_hz_, at_hz);
+      }
+      if (before < (1.0 - kOutside) * total && sum >= (1.0 - kOutside) * total) {
+        highest_excited_hz_ = std::max(highest_excited_hz_, at_hz);
+      }
+    }
+  }
+}
+
+void Signals::add_derived() {
+  const std::size_t measured = all_.size();
+  for (std::size_t i = 0; i < measured; ++i) {
+    const Signal& from = all_[i];
+    Signal made{"", from.source, from.unit, Quantity::kOther, true, {}};
+    Quantity sibling = Quantity::kOther;
+    if (from.quantity == Quantity::kPosition) {
+      made.name = "rate of " + from.name;
+      made.unit = from.unit + "/s";
+      made.quantity = sibling = Quantity::kRate;
+      made.values = central_difference(from.values, rate_hz_, stretches_);
+    } else if (from.quantity == Quantity::kRate) {
+      made.name = "position of " + from.name;
+      made.unit = from.unit.substr(0, from.unit.size() - 2);
+      made.quantity = sibling = Quantity::kPosition;
+      made.values = trapezoidal_sum(from.values, rate_hz_, stretches_);
+    } else if (from.quantity == Quantity::kAcceleration) {
+      made.name = "rate of " + from.name;
+      made.unit = from.unit.substr(0, from.unit.size() - 2);
+      made.quantity = sibling = Quantity::kRate;
+      const signal::Butterworth high_pass(2, kIntegralHighPassHz, rate_hz_,
+                                          signal::Passband::kHigh);
+      made.values = signal::filtered(high_pass, trapezoidal_sum(from.values, rate_hz_, stretches_));
+    } else {
+      continue;
+    }
+    // An integral's constant is unknown, so positions are compared by their rates.
+    const auto is_it = [&](const Signal& each) {
+      if (each.quantity != sibling || each.derived) return false;
+      if (sibling == Quantity::kPosition) {
+        const auto rate = central_difference(each.values, rate_hz_, stretches_);
+        return correlation(from, rate) > kSameSignalCorrelation;
+      }
+      return correlation(each, made.values) > kSameSignalCorrelation;
+    };
+    if (std::any_of(all_.begin(), all_.begin() + static_cast<std::ptrdiff_t>(measured), is_it)) {
+      continue;
+    }
+    set_moments(made);
+    if (made.deviation > 0.0) all_.push_back(std::move(made));
+  }
+}
+
+const Signal& Signals::at(std::string_view name) const {
+  const auto found = std::ranges::find(all_, name, &Signal::name);
+  if (found == all_.end()) {
+    throw ConfigError("channel", "'" + std::string(name) + "', which isn't there",
+                      "a channel of the recording");
+  }
+  return *found;
+}
+
+bool Signals::is_input(std::string_view name) const noexcept {
+  return std::ranges::find(inputs_, name, &Signal::name) != inputs_.end();
+}
+
+const Signal* Signals::rate_of(const Signal& position) const noexcept {
+  const auto difference = central_difference(position.values, rate_hz_, stretches_);
+  for (const Signal& each : all_) {
+    if (each.quantity != Quantity::kRate) continue;
+    if (correlation(each, difference) > kSameSignalCorrelation) return &each;
+  }
+  return nullptr;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/core/measurement.hpp"
+
+namespace stillhand::diagnosis {
+
+/// Signals by column, each as long as the measurement.
+using Columns = std::vector<std::vector<double>>;
+
+/// What a channel's unit says it is.
+enum class Quantity { kPosition, kRate, kAcceleration, kOther };
+
+/// A channel that may explain something: measured, or made from a measured one.
+struct Signal {
+  std::string name;    ///< the channel's, or for example "rate of theta"
+  std::string source;  ///< the measured channel
+  std::string unit;
+  Quantity quantity = Quantity::kOther;
+  bool derived = false;
+  std::vector<double> values;
+  double mean = 0.0;
+  double deviation = 0.0;  ///< standard deviation, same unit
+};
+
+/// A measurement as the engine sees it: inputs, output, and every channel that may explain
+/// something.  A rate implies its position and a position its rate:
+///
+///   rate of x        central difference over two samples
+///   position of v    trapezoidal sum within a stretch, from 0
+///   rate of a        the same, then a high-pass of second order (Butterworth) at 0.1 Hz
+///
+/// unless a measured channel already is that (its correlation with it above 0.95).
+class Signals {
+ public:
+  /// @throws stillhand::ConfigError for a channel that isn't there, an input that is the output, or
+  /// what check() refuses.
+  Signals(const Measurement& measurement, const std::vector<std::string>& inputs,
+          const std::string& output);
+
+  [[nodiscard]] std::size_t size() const noexcept { return output_.values.size(); }
+  [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }
+  [[nodiscard]] const std::vector<Stretch>& stretches() const noexcept { return stretches_; }
+  /// The measurement's, and 0 in a stretch's first second (at most a tenth of it): there the
+  /// unknown past has its say, beyond what a fitted initial state follows.
+  [[nodiscard]] const std::vector<double>& weight() const noexcept { return weight_; }
+  [[nodiscard]] const std::vector<double>& time_s() const noexcept { return time_s_; }
+  /// [s] from the first to the last sample.
+  [[nodiscard]] double duration_s() const noexcept { return time_s_.back() - time_s_.front(); }
+  [[nodiscard]] const Signal& output() const noexcept { return output_; }
+  [[nodiscard]] const std::vector<Signal>& inputs() const noexcept { return inputs_; }
+  /// Inputs, other channels and what was made of them; never the output.
+  [[nodiscard]] const std::vector<Signal>& all() const noexcept { return all_; }
+  /// @throws stillhand::ConfigError when there is none of that name.
+  [[nodiscard]] const Signal& at(std::string_view name) const;
+  [[nodiscard]] bool is_input(std::string_view name) const noexcept;
+  /// [Hz] below it lies a hundredth of the inputs' power, the one with the lowest counts.
+  [[nodiscard]] double lowest_excited_hz() const noexcept { return lowest_excited_hz_; }
+  /// [Hz] above it lies a hundredth of the inputs' power, the one with the highest counts.
+  [[nodiscard]] double highest_excited_hz() const noexcept { return highest_excited_hz_; }
+  /// The measured or derived signal that is the rate of this position, if any.
+  [[nodiscard]] const Signal* rate_of(const Signal& position) const noexcept;
+
+ private:
+  void add_derived();
+  void find_excited_band();
+
+  double rate_hz_;
+  std::vector<Stretch> stretches_;
+  std::vector<double> weight_;
+  std::vector<double> time_s_;
+  Signal output_;
+  std::vector<Signal> inputs_;
+  std::vector<Signal> all_;
+  double lowest_excited_hz_ = 0.0;
+  double highest_excited_hz_ = 0.0;
+};
+
+/// Quantity of a unit: m, mm, cm, rad, deg are positions; with "/s" rates, with "/s^2"
+/// accelerations.
+Quantity quantity_of(std::string_view unit) noexcept;
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/bilinear.hpp"
+
+#include <algorithm>
+
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kLargest = 10.0;  // [-] of the gain, per standard deviation of the channel
+
+class Bilinear final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "bilinear"; }
+  [[nodiscard]] Stage stage(const Effect& effect) const override {
+    return effect.form == "gain of the body" ? Stage::kGain : Stage::kTerm;
+  }
+  void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const override {
+    const Signal& signal = signals.at(effect.channels.at(0));
+    for (std::size_t n = 0; n < gain.size(); ++n) {
+      gain[n] *= 1.0 + effect.value(0) * (signal.values[n] - effect.value(1));
+    }
+  }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const Signal& left = signals.at(effect.channels.at(0));
+    const Signal& right = signals.at(effect.channels.at(1));
+    std::vector<double> product(signals.size());
+    for (std::size_t n = 0; n < product.size(); ++n) {
+      product[n] = (left.values[n] - effect.value(0)) * (right.values[n] - effect.value(1));
+    }
+    columns.push_back(std::move(product));
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    if (stage(effect) == Stage::kGain) return "the body's gain follows " + effect.channels.at(0);
+    return "the residual follows the product of " + effect.channels.at(0) + " and " +
+           effect.channels.at(1) + ", " + effect.form;
+  }
+};
+
+std::vector<Proposal> Bilinear::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  std::vector<Proposal> gains;
+  std::vector<Proposal> products;
+  std::vector<const Signal*> measured;
+  for (const Signal& signal : signals.all()) {
+    if (!signal.derived) measured.push_back(&signal);
+  }
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const Signal& signal = *measured[i];
+    if (!signals.is_input(signal.name)) {
+      std::vector<double> column = screening.body_output();
+      for (std::size_t n = 0; n < column.size(); ++n) {
+        column[n] *= signal.values[n] - signal.mean;
+      }
+      const ScreenedGain found = screening.gain({column});
+      const double bound = kLargest / signal.deviation;
+      gains.push_back({{"bilinear",
+                        "gain of the body",
+                        {signal.name},
+                        {{"sensitivity", "1/(" + signal.unit + ")",
+                          std::clamp(found.coefficients[0], -bound, bound), -bound, bound},
+                         constant("centre", signal.unit, signal.mean)},
+                        {}},
+                       found.share,
+                       {}});
+    }
+    for (std::size_t j = i + 1; j < measured.size(); ++j) {
+      const Signal& other = *measured[j];
+      for (const char* form : {"beside the body", "through the body"}) {
+        if (screening.model().body.order() == 0 && form[0] == 't') continue;
+        auto [effect, gain] =
+            screening.with_coefficients({"bilinear",
+                                         form,
+                                         {signal.name, other.name},
+                                         {constant("centre_1", signal.unit, signal.mean),
+                                          constant("centre_2", other.unit, other.mean)},
+                                         {}});
+        products.push_back({std::move(effect), gain, {}});
+      }
+    }
+  }
+  std::vector<Proposal> all = best_of(std::move(products), 2);
+  for (Proposal& each : best_of(std::move(gains), 1)) all.push_back(std::move(each));
+  return all;
+}
+
+}  // namespace
+
+const EffectKind& bilinear_kind() {
+  static const Bilinear kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// A force with the sign of a rate, README Eq. DG-23.
+const EffectKind& coulomb_friction_kind();
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/coupled_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kStartLag_s[] = {0.05, 0.2, 0.8};
+
+std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals& signals) {
+  const double keep = std::exp(-1.0 / (lag_s * signals.rate_hz()));
+  std::vector<double> y(signal.values.size());
+  for (const Stretch& stretch : signals.stretches()) {
+    double state = signal.values[stretch.first];  // settled on its first value
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      state += (1.0 - keep) * (signal.values[n] - state);
+      y[n] = state;
+    }
+  }
+  return y;
+}
+
+class CoupledInput final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "coupled_input"; }
+  [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    for (const std::string& channel : effect.channels) {
+      const Signal& signal = signals.at(channel);
+      if (effect.form == "lagged") {
+        columns.push_back(low_passed(signal, effect.value(0), signals));
+        continue;
+      }
+      columns.push_back(signal.values);
+    }
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    const std::string& channel = effect.channels.front();
+    if (effect.form == "static") {
+      return "the residual follows " + channel + " with a gain of " +
+             with_unit(effect.coefficients.at(0), "(output unit per channel unit)");
+    }
+    return "the residual follows " + channel + ", path " + effect.form;
+  }
+};
+
+std::vector<Proposal> CoupledInput::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  const bool dynamic = screening.model().body.order() > 0;
+  std::vector<Proposal> all;
+  for (const Signal& signal : signals.all()) {
+    if (signals.is_input(signal.source)) continue;
+    // Of derived signals a rate is offered alone, too: damping.
+    std::vector<Effect> forms;
+    if (!signal.derived) {
+      forms.push_back({"coupled_input", "static", {signal.name}, {}, {}});
+      for (const double lag_s : kStartLag_s) {
+        forms.push_back({"coupled_input",
+                         "lagged",
+                         {signal.name},
+                         {{"lag", "s", lag_s, 0.5 / signals.rate_hz(), 0.1 * signals.duration_s()}},
+                         {}});
+      }
+      if (dynamic) forms.push_back({"coupled_input", "through the body", {signal.name}, {}, {}});
+      if (const Signal* rate = signals.rate_of(signal); rate != nullptr && rate != &signal) {
+        forms.push_back({"coupled_input", "static with rate", {signal.name, rate->name}, {}, {}});
+      }
+    } else if (signal.quantity == Quantity::kRate && signal.name.starts_with("rate of")) {
+      forms.push_back({"coupled_input", "static", {signal.name}, {}, {}});
+    }
+    std::vector<Proposal> proposals;
+    for (Effect& form : forms) {
+      auto [effect, gain] = screening.with_coefficients(std::move(form));
+      proposals.push_back({std::move(effect), gain, {}});
+    }
+    // The simplest form as well as the best: the joint fits decide.
+    if (proposals.empty()) continue;
+    all.push_back(proposals.front());
+    for (Proposal& each : best_of(std::move(proposals), 1)) {
+      if (each.effect.form != "static") all.push_back(std::move(each));
+    }
+  }
+  return best_of(std::move(all), 4);
+}
+
+}  // namespace
+
+const EffectKind& coupled_input_kind() {
+  static const CoupledInput kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/dead_zone.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kTriedWidths[] = {0.1, 0.2, 0.4, 0.8};  // [standard deviations]
+
+double without_play(double x, double half_width) {
+  return x - std::clamp(x, -half_width, half_width);
+}
+
+class DeadZone final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "dead_zone"; }
+  [[nodiscard]] Stage stage(const Effect& effect) const override {
+    if (effect.form == "at the input") return Stage::kInputValue;
+    if (effect.form == "at the output") return Stage::kOutputValue;
+    return effect.channels.empty() ? Stage::kFeedback : Stage::kTerm;
+  }
+  [[nodiscard]] double mapped(const Effect& effect, double value) const override {
+    return without_play(value, effect.value(0));
+  }
+  [[nodiscard]] double slope(const Effect& effect, double value) const override {
+    return std::abs(value) > effect.value(0) ? 1.0 : 0.0;
+  }
+  // A linear spring with play is the spring less a spring that stops at the play's ends.
+  double feedback(const Effect& effect, double z, LoopMemory& /*memory*/) const override {
+    return std::clamp(in_thresholds(effect, z), -1.0, 1.0);
+  }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const Signal& position = signals.at(effect.channels.at(0));
+    columns.push_back(position.values);
+    for (double& x : columns.back()) x = without_play(x - effect.value(1), effect.value(0));
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    if (effect.parameters.empty()) return "nothing happens within a range: play " + effect.form;
+    return "nothing happens within +-" + with_unit(effect.value(0), effect.parameters[0].unit) +
+           ": play " + effect.form +
+           (effect.channels.empty() ? std::string() : " (" + effect.channels.front() + ")");
+  }
+};
+
+std::vector<Proposal> DeadZone::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  std::vector<Proposal> proposals;
+  const auto add = [&proposals](std::vector<Proposal> more) {
+    for (Proposal& each : more) proposals.push_back(std::move(each));
+  };
+  add(loop_proposals(
+      screening, "dead_zone", "play",
+      [](double z, LoopMemory& /*memory*/) { return std::clamp(z, -1.0, 1.0); }, false));
+  const auto widths = [](double deviation) {
+    std::vector<double> values;
+    for (const double width : kTriedWidths) values.push_back(width * deviation);
+    return values;
+  };
+  const auto lost = [](double x, double width) { return -std::clamp(x, -width, width); };
+  const Signal& input = signals.inputs().front();
+  add(input_map_proposals(screening,
+                          {"dead_zone",
+                           "at the input",
+                           {input.name},
+                           {{"half_width", input.unit, 0.0, 0.0, 3.0 * input.deviation}},
+                           {}},
+                          widths(input.deviation), lost));
+  const double deviation = signals.output().deviation;
+  add(output_map_proposals(screening,
+                           {"dead_zone",
+                            "at the output",
+                            {},
+                            {{"half_width", signals.output().unit, 0.0, 0.0, 3.0 * deviation}},
+                            {}},
+                           widths(deviation), lost));
+  std::vector<Proposal> of_channels;
+  for (const Signal& signal : signals.all()) {
+    if (signal.quantity != Quantity::kPosition || signal.derived) continue;
+    for (const double width : widths(signal.deviation)) {
+      auto [effect, gain] = screening.with_coefficients(
+          {"dead_zone",
+           "beside the body",
+           {signal.name},
+           {{"half_width", signal.unit, width, 0.0, 3.0 * signal.deviation},
+            constant("centre", signal.unit, signal.mean)},
+           {}});
+      of_channels.push_back({std::move(effect), gain, {}});
+    }
+  }
+  add(best_of(std::move(of_channels), 1));
+  return proposals;
+}
+
+}  // namespace
+
+const EffectKind& dead_zone_kind() {
+  static const DeadZone kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// Play: nothing happens within a range, README Eq. DG-27.
+const EffectKind& dead_zone_kind();
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/drift.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kTriedTimeConstants[] = {0.1, 0.25, 0.5};  // [record lengths]
+
+// Slow noise is no drift: the lowest half-cosines must stand out from those that follow, README
+// Eq. DG-32.  For a spectrum like 1/f the ratio is about 5, for 1/f^2 about 25.
+constexpr int kSlowest = 3;
+constexpr int kFollowing = 15;
+constexpr double kLeastRatio = 12.0;
+
+double slow_power_ratio(const Screening& screening) {
+  const Signals& signals = screening.signals();
+  std::array<double, kFollowing> power{};
+  for (int k = 1; k <= kFollowing; ++k) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < signals.size(); ++n) {
+      const double t = (signals.time_s()[n] - signals.time_s().front()) / signals.duration_s();
+      sum +=
+          screening.residual()[static_cast<Eigen::Index>(n)] * std::cos(std::numbers::pi * k * t);
+    }
+    power[static_cast<std::size_t>(k - 1)] = sum * sum;
+  }
+  const double slow = std::accumulate(power.begin(), power.begin() + kSlowest, 0.0) / kSlowest;
+  const double rest =
+      std::accumulate(power.begin() + kSlowest, power.end(), 0.0) / (kFollowing - kSlowest);
+  return slow / std::max(rest, 1e-300);
+}
+
+class Drift final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "drift"; }
+  [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
+  [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const auto column = [&](auto&& of_share) {
+      std::vector<double> x(signals.size());
+      for (std::size_t n = 0; n < x.size(); ++n) {
+        const double t_s = signals.time_s()[n] - signals.time_s().front();
+        x[n] = of_share(t_s);
+      }
+      columns.push_back(std::move(x));
+    };
+    const double length_s = signals.duration_s();
+    if (effect.form == "linear") {
+      column([&](double t_s) { return t_s / length_s - 0.5; });
+    } else if (effect.form == "exponential") {
+      column([&](double t_s) { return std::exp(-t_s / effect.value(0)); });
+    } else {
+      for (int k = 1; k <= 3; ++k) {
+        column([&](double t_s) { return std::cos(std::numbers::pi * k * t_s / length_s); });
+      }
+    }
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override {
+    if (slow_power_ratio(screening) < kLeastRatio) return {};
+    std::vector<Effect> forms{{"drift", "linear", {}, {}, {}},
+                              {"drift", "slow cosines", {}, {}, {}}};
+    const double length_s = screening.signals().duration_s();
+    for (const double share : kTriedTimeConstants) {
+      forms.push_back({"drift",
+                       "exponential",
+                       {},
+                       {{"time_constant", "s", share * length_s, 0.01 * length_s, 2.0 * length_s}},
+                       {}});
+    }
+    std::vector<Proposal> proposals;
+    for (Effect& form : forms) {
+      auto [effect, gain] = screening.with_coefficients(std::move(form));
+      proposals.push_back({std::move(effect), gain, {}});
+    }
+    return best_of(std::move(proposals), 3);
+  }
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    if (effect.form == "linear") {
+      return "the residual rises by " + with_unit(effect.coefficients.at(0), "(output unit)") +
+             " over the record";
+    }
+    return "the residual changes slowly with time alone, " + effect.form;
+  }
+};
+
+}  // namespace
+
+const EffectKind& drift_kind() {
+  static const Drift kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/effect_kind.hpp"
+#include "diagnosis/effects/asymmetry.hpp"
+#include "diagnosis/effects/bilinear.hpp"
+#include "diagnosis/effects/clock_drift.hpp"
+#include "diagnosis/effects/coulomb_friction.hpp"
+#include "diagnosis/effects/coupled_input.hpp"
+#include "diagnosis/effects/dead_zone.hpp"
+#include "diagnosis/effects/delay.hpp"
+#include "diagnosis/effects/drift.hpp"
+#include "diagnosis/effects/hysteresis.hpp"
+#include "diagnosis/effects/input_saturation.hpp"
+#include "diagnosis/effects/nonlinear_stiffness.hpp"
+#include "diagnosis/effects/output_saturation.hpp"
+#include "diagnosis/effects/position_ripple.hpp"
+#include "diagnosis/effects/regime_change.hpp"
+#include "diagnosis/effects/resonance.hpp"
+#include "diagnosis/effects/time_varying_gain.hpp"
+#include "diagnosis/effects/tone.hpp"
+#include "diagnosis/effects/transients.hpp"
+
+namespace stillhand::diagnosis {
+
+// The one list: a new kind adds its line here.  Of two that explain exactly as
+// much with as many numbers, the earlier is named.
+const std::vector<const EffectKind*>& effect_kinds() {
+  static const std::vector<const EffectKind*> kKinds{&delay_kind(),
+                                                     &resonance_kind(),
+                                                     &coupled_input_kind(),
+                                                     &coulomb_friction_kind(),
+                                                     &nonlinear_stiffness_kind(),
+                                                     &asymmetry_kind(),
+                                                     &hysteresis_kind(),
+                                                     &dead_zone_kind(),
+                                                     &output_saturation_kind(),
+                                                     &input_saturation_kind(),
+                                                     &position_ripple_kind(),
+                                                     &tone_kind(),
+                                                     &drift_kind(),
+                                                     &time_varying_gain_kind(),
+                                                     &regime_change_kind(),
+                                                     &clock_drift_kind(),
+                                                     &bilinear_kind(),
+                                                     &transients_kind()};
+  return kKinds;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/hysteresis.hpp"
+
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kTriedThresholds[] = {0.2, 0.5, 1.0};  // [standard deviations]
+
+bool smooth(const Effect& effect) { return effect.form.starts_with("smooth"); }
+
+double operated(const Effect& effect, double z, LoopMemory& memory) {
+  return smooth(effect) ? dahl_operator(z, memory) : stop_operator(z, memory);
+}
+
+class Hysteresis final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "hysteresis"; }
+  [[nodiscard]] Stage stage(const Effect& effect) const override {
+    return effect.channels.empty() ? Stage::kFeedback : Stage::kTerm;
+  }
+  double feedback(const Effect& effect, double z, LoopMemory& memory) const override {
+    return operated(effect, in_thresholds(effect, z), memory);
+  }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const Signal& position = signals.at(effect.channels.at(0));
+    std::vector<double> state(signals.size());
+    std::vector<double> linear(signals.size());
+    for (const Stretch& stretch : signals.stretches()) {
+      LoopMemory memory;
+      for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+        state[n] = operated(effect, position.values[n] / effect.value(0), memory);
+        linear[n] = position.values[n];
+      }
+    }
+    columns.push_back(std::move(state));
+    if (!signals.is_input(effect.channels[0])) columns.push_back(std::move(linear));
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    const std::string element =
+        smooth(effect) ? "Dahl's state" : "an elastic, perfectly plastic state";
+    if (effect.channels.empty())
+      return "the response depends on its past: " + element + ", " + effect.form;
+    return "the residual follows " + element + " of " + effect.channels.front() +
+           ", yielding after " + with_unit(effect.value(0), effect.parameters[0].unit);
+  }
+};
+
+std::vector<Proposal> Hysteresis::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  std::vector<Proposal> proposals;
+  const auto add = [&proposals](std::vector<Proposal> more) {
+    for (Proposal& each : more) proposals.push_back(std::move(each));
+  };
+  add(loop_proposals(screening, "hysteresis", "elastic-plastic", stop_operator, false));
+  add(loop_proposals(screening, "hysteresis", "smooth", dahl_operator, false));
+  std::vector<Proposal> of_channels;
+  for (const Signal& signal : signals.all()) {
+    if (signal.quantity != Quantity::kPosition) continue;
+    for (const char* form : {"elastic-plastic, beside the body", "smooth, beside the body"}) {
+      for (const double threshold : kTriedThresholds) {
+        auto [effect, gain] =
+            screening.with_coefficients({"hysteresis",
+                                         form,
+                                         {signal.name},
+                                         {{"threshold", signal.unit, threshold * signal.deviation,
+                                           1e-3 * signal.deviation, 5.0 * signal.deviation}},
+                                         {}});
+        of_channels.push_back({std::move(effect), gain, {}});
+      }
+    }
+  }
+  add(best_of(std::move(of_channels), 1));
+  return best_of(std::move(proposals), 4);
+}
+
+}  // namespace
+
+const EffectKind& hysteresis_kind() {
+  static const Hysteresis kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

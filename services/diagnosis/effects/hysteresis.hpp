@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// A force that depends on where a displacement came from, README Eq. DG-26.
+const EffectKind& hysteresis_kind();
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/nonlinear_stiffness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+double cube(double z) { return z * z * z; }
+
+// Cubic for small, linear for large z: hardening and softening springs that don't run away.
+double bent(double z) { return cube(z) / (1.0 + z * z); }
+
+class NonlinearStiffness final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "nonlinear_stiffness"; }
+  [[nodiscard]] Stage stage(const Effect& effect) const override {
+    if (effect.form == "at the output") return Stage::kOutputValue;
+    return effect.channels.empty() ? Stage::kFeedback : Stage::kTerm;
+  }
+  // y + kappa y^3 while it rises, then level.
+  [[nodiscard]] double mapped(const Effect& effect, double y) const override {
+    const double kappa = effect.value(0);
+    const double end = turning_point(kappa);
+    const double inside = std::clamp(y, -end, end);
+    return inside + kappa * cube(inside);
+  }
+  [[nodiscard]] double slope(const Effect& effect, double y) const override {
+    const double kappa = effect.value(0);
+    return std::abs(y) < turning_point(kappa) ? 1.0 + 3.0 * kappa * y * y : 0.0;
+  }
+  double feedback(const Effect& effect, double z, LoopMemory& /*memory*/) const override {
+    const double x = in_thresholds(effect, z);
+    return effect.form.starts_with("cubic") ? cube(x) : bent(x);
+  }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const Signal& position = signals.at(effect.channels.at(0));
+    std::vector<double> linear(signals.size());
+    std::vector<double> cubic(signals.size());
+    for (std::size_t n = 0; n < linear.size(); ++n) {
+      linear[n] = position.values[n] - effect.value(0);
+      cubic[n] = cube(linear[n]);
+    }
+    columns.push_back(std::move(linear));
+    columns.push_back(std::move(cubic));
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    if (!effect.channels.empty()) {
+      return "the residual has a cubic part in " + effect.channels.front();
+    }
+    return "the response changes with its own amplitude, oddly: a spring, " + effect.form;
+  }
+
+ private:
+  static double turning_point(double kappa) {
+    return kappa < 0.0 ? 1.0 / std::sqrt(-3.0 * kappa) : HUGE_VAL;
+  }
+};
+
+std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  std::vector<Proposal> proposals = loop_proposals(
+      screening, "nonlinear_stiffness", "bent",
+      [](double z, LoopMemory& /*memory*/) { return bent(z); }, false);
+  for (Proposal& each : loop_proposals(
+           screening, "nonlinear_stiffness", "cubic",
+           [](double z, LoopMemory& /*memory*/) { return cube(z); }, true)) {
+    proposals.push_back(std::move(each));
+  }
+  const double square = std::pow(deviation_of(screening.prediction()), 2);
+  const double limit = 0.3 / square;
+  const ScreenedGain cubic = [&] {
+    std::vector<double> column = screening.prediction();
+    for (double& y : column) y = cube(y);
+    return screening.gain({column});
+  }();
+  proposals.push_back(
+      {{"nonlinear_stiffness",
+        "at the output",
+        {},
+        {{"cubic", "1/" + signals.output().unit + "^2",
+          std::clamp(cubic.coefficients[0], -0.3 * limit, 0.3 * limit), -limit, limit}},
+        {}},
+       cubic.share,
+       {}});
+  std::vector<Proposal> of_channels;
+  for (const Signal& signal : signals.all()) {
+    if (signal.quantity != Quantity::kPosition || signal.derived) continue;
+    auto [effect, gain] =
+        screening.with_coefficients({"nonlinear_stiffness",
+                                     "cubic, beside the body",
+                                     {signal.name},
+                                     {constant("centre", signal.unit, signal.mean)},
+                                     {}});
+    of_channels.push_back({std::move(effect), gain, {}});
+  }
+  for (Proposal& each : best_of(std::move(of_channels), 1)) proposals.push_back(std::move(each));
+  return proposals;
+}
+
+}  // namespace
+
+const EffectKind& nonlinear_stiffness_kind() {
+  static const NonlinearStiffness kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/effects/position_ripple.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "diagnosis/core/line_search.hpp"
+#include "diagnosis/effects/parts.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kFewestPeriods = 1.5;  // within the range of the position
+constexpr double kMostPeriods = 4000.0;
+constexpr double kSamplesPerPeriod = 3.0;  // at the median speed
+constexpr std::size_t kLines = 4;
+
+class PositionRipple final : public EffectKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "position_ripple"; }
+  [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
+  void terms(const Effect& effect, const Signals& signals,
+             const std::vector<double>& /*body_output*/, Columns& columns) const override {
+    const Signal& position = signals.at(effect.channels.at(0));
+    const int harmonics = effect.form == "two harmonics" ? 2 : 1;
+    for (int h = 1; h <= harmonics; ++h) {
+      std::vector<double> sine(signals.size());
+      std::vector<double> cosine(signals.size());
+      for (std::size_t n = 0; n < sine.size(); ++n) {
+        const double turn = 2.0 * std::numbers::pi * h * position.values[n] * effect.value(0);
+        sine[n] = std::sin(turn);
+        cosine[n] = std::cos(turn);
+      }
+      columns.push_back(std::move(sine));
+      columns.push_back(std::move(cosine));
+    }
+  }
+  // A position summed up from a rate begins anywhere: the ripple's phase is the recording's own.
+  [[nodiscard]] bool time_only(const Effect& effect) const override {
+    return effect.channels.at(0).starts_with("position of ");
+  }
+  [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
+  [[nodiscard]] std::string evidence(const Effect& effect) const override {
+    return "the residual repeats every " + with_unit(1.0 / effect.value(0), period_unit(effect)) +
+           " of " + effect.channels.at(0) + ", amplitude " +
+           with_unit(std::hypot(effect.coefficients.at(0), effect.coefficients.at(1)),
+                     "(output unit)");
+  }
+
+ private:
+  static std::string period_unit(const Effect& effect) {
+    return effect.parameters[0].unit.substr(2);  // behind "1/"
+  }
+};
+
+std::vector<Proposal> PositionRipple::proposed(const Screening& screening) const {
+  const Signals& signals = screening.signals();
+  const Eigen::VectorXd& r = screening.residual();
+  const std::vector<double> residual(r.data(), r.data() + r.size());
+  std::vector<Proposal> proposals;
+  for (const Signal& signal : signals.all()) {
+    if (signal.quantity != Quantity::kPosition) continue;
+    const auto [low, high] = std::ranges::minmax(signal.values);
+    const double range = high - low;
+    std::vector<double> steps;
+    for (std::size_t n = 1; n < signal.values.size(); ++n) {
+      steps.push_back(std::abs(signal.values[n] - signal.values[n - 1]));
+    }
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    if (!(range > 0.0) || !(*middle > 0.0)) continue;
+    const double highest = std::min(kMostPeriods / range, 1.0 / (kSamplesPerPeriod * *middle));
+    for (const Line& line :
+         strongest_lines(signal.values, residual, kFewestPeriods / range, highest, kLines)) {
+      const auto propose = [&](const char* form, double frequency) {
+        auto [effect, gain] =
+            screening.with_coefficients({"position_ripple",
+                                         form,
+                                         {signal.name},
+                                         {{"spatial_frequency", "1/" + signal.unit, frequency,
+                                           frequency - 0.5 / range, frequency + 0.5 / range}},
+                                         {}});
+        proposals.push_back({std::move(effect), gain, {}});
+      };
+      propose("one harmonic", line.frequency);
+      // The strongest line may be the first harmonic or the second.
+      propose("two harmonics", line.frequency);
+      if (0.5 * line.frequency > 0.8 / range) propose("two harmonics", 0.5 * line.frequency);
+    }
+  }
+  return best_of(std::move(proposals), 3);
+}
+
+}  // namespace
+
+const EffectKind& position_ripple_kind() {
+  static const PositionRipple kKind;
+  return kKind;
+}
+
+}  // namespace stillhand::diagnosis

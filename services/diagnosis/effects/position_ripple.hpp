@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// A force periodic in a position, README Eq. DG-30.
+const EffectKind& position_ripple_kind();
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// A gain that changes at one moment, README Eq. DG-34.
+const EffectKind& regime_change_kind();
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// A sinusoid in time that no channel has, README Eq. DG-31.
+const EffectKind& tone_kind();
+
+}  // namespace stillhand::diagnosis

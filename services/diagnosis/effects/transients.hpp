@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "diagnosis/core/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+
+/// Isolated bursts, README Eq. DG-37.
+const EffectKind& transients_kind();
+
+}  // namespace stillhand::diagnosis

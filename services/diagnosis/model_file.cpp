@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/model_file.hpp"
+
+#include <algorithm>
+
+#include "contract/config_error.hpp"
+#include "diagnosis/core/effect_kind.hpp"
+#include "diagnosis/core/loop.hpp"
+#include "settings/json_entry.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using Json = settings::JsonEntry::Json;
+using Entry = settings::JsonEntry;
+
+constexpr const char* kFormat = "stillhand augmented model";
+constexpr std::size_t kMostOrder = 12;
+constexpr std::size_t kMostInputs = 16;
+constexpr std::size_t kMostEffects = 16;
+constexpr std::size_t kMostNumbers = 200;
+
+Json json_of(const Effect& effect) {
+  Json parameters = Json::array();
+  for (const Parameter& p : effect.parameters) {
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"value", p.value},
+                          {"lower", p.lower},
+                          {"upper", p.upper},
+                          {"fitted", p.fitted}});
+  }
+  return {{"kind", effect.kind},
+          {"form", effect.form},
+          {"channels", effect.channels},
+          {"parameters", parameters},
+          {"coefficients", effect.coefficients}};
+}
+
+Parameter parameter_of(const Entry& entry) {
+  Parameter parameter{entry.at("name").text(),    entry.at("unit").text(),
+                      entry.at("value").number(), entry.at("lower").number(),
+                      entry.at("upper").number(), entry.at("fitted").boolean()};
+  if (parameter.value < parameter.lower || parameter.value > parameter.upper) {
+    entry.at("value").refuse("a number from lower to upper");
+  }
+  return parameter;
+}
+
+Effect effect_of(const Entry& entry, std::size_t order) {
+  Effect effect;
+  effect.kind = entry.at("kind").text();
+  const auto& kinds = effect_kinds();
+  const auto known = std::ranges::find_if(
+      kinds, [&](const EffectKind* kind) { return kind->name() == effect.kind; });
+  if (known == kinds.end()) entry.at("kind").refuse("a kind that this version knows");
+  effect.form = entry.at("form").text();
+  for (const Entry& channel : entry.at("channels").entries(0, 2)) {
+    effect.channels.push_back(channel.text());
+  }
+  for (const Entry& parameter : entry.at("parameters").entries(0, kMostNumbers)) {
+    effect.parameters.push_back(parameter_of(parameter));
+  }
+  effect.coefficients = entry.at("coefficients").numbers(0, kMostNumbers);
+  if ((*known)->stage(effect) == Stage::kFeedback) {
+    const std::size_t count = effect.coefficients.size();
+    if (count != loop_coefficients(true, order) && count != loop_coefficients(false, order)) {
+      entry.at("coefficients").refuse("as many as the body's order asks for");
+    }
+  }
+  return effect;
+}
+
+Body body_of(const Entry& entry) {
+  Body body;
+  body.largest_radius = 1.0;  // the fit's own bound depended on the record's length
+  body.denominator = entry.at("denominator").numbers(1, kMostOrder + 1);
+  for (const Entry& numerator : entry.at("numerators").entries(1, kMostInputs)) {
+    body.numerators.push_back(numerator.numbers(1, kMostOrder + 1));
+    if (body.numerators.back().size() != body.denominator.size()) {
+      numerator.refuse(std::to_string(body.denominator.size()) + " numbers as the denominator");
+    }
+  }
+  body.offset = entry.at("offset").number();
+  if (body.denominator.front() != 1.0) entry.at("denominator").refuse("1 first");
+  if (!is_stable(body)) entry.at("denominator").refuse("every pole inside the unit circle");
+  return body;
+}
+
+}  // namespace
+
+std::string model_json(const Model& model) {
+  Json effects = Json::array();
+  for (const Effect& effect : model.effects) effects.push_back(json_of(effect));
+  const Json json{{"format", kFormat},
+                  {"version", kModelFormatVersion},
+                  {"rate_hz", model.rate_hz},
+                  {"inputs", model.inputs},
+                  {"output", model.output},
+                  {"output_unit", model.output_unit},
+                  {"body",
+                   {{"numerators", model.body.numerators},
+                    {"denominator", model.body.denominator},
+                    {"offset", model.body.offset}}},
+                  {"effects", effects}};
+  std::string text = json.dump(2) + "\n";
+  // A number that isn't finite would be written as null: what can't be read isn't written.
+  static_cast<void>(parse_model(text, "model"));
+  return text;
+}
+
+Model parse_model(std::string_view json, const std::string& origin) {
+  const Json whole = settings::parsed_json(json, origin, "JSON of a stillhand augmented model");
+  const Entry top(whole, origin);
+  if (top.at("format").text() != kFormat) {
+    top.at("format").refuse("\"stillhand augmented model\", as `stillhand diagnose --save` writes");
+  }
+  if (top.at("version").count() != kModelFormatVersion) {
+    top.at("version").refuse("1: a newer stillhand wrote this file");
+  }
+  Model model;
+  model.rate_hz = top.at("rate_hz").number();
+  if (!(model.rate_hz > 0.0)) top.at("rate_hz").refuse("a number above 0");
+  for (const Entry& input : top.at("inputs").entries(1, kMostInputs)) {
+    model.inputs.push_back(input.text());
+  }
+  model.output = top.at("output").text();
+  model.output_unit = top.at("output_unit").text();
+  model.body = body_of(top.at("body"));
+  if (model.body.numerators.size() != model.inputs.size()) {
+    top.at("body").at("numerators").refuse("one an input");
+  }
+  for (const Entry& effect : top.at("effects").entries(0, kMostEffects)) {
+    model.effects.push_back(effect_of(effect, model.body.order()));
+  }
+  return model;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand diagnose` and `stillhand predict` as a user meets them: a planted effect named and carried to the recording's
+own inputs, the report, wrong input."""
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
+STILLHAND = str(BUILD / "bin" / "stillhand")
+PLANTED = str(BUILD / "bin" / "planted_recordings")
+
+
+def stillhand(*arguments):
+    return subprocess.run([STILLHAND, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+def columns(path):
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    return {title.split(" [")[0]: [float(row[i]) for row in rows[1:]] for i, title in enumerate(rows[0])}
+
+
+class DiagnoseTest(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def planted(self, kind):
+        subprocess.run([PLANTED, "--out", str(self.folder / kind), "--count", "1", "--seed", "7", "--kind", kind,
+                        "--strength", "0.25", "--snr", "40", "--length", "60"], check=True, capture_output=True, timeout=120)
+        return next((self.folder / kind).glob("*.csv"))
+
+    def refused(self, *arguments):
+        run = stillhand(*arguments)
+        self.assertEqual(run.returncode, 2, run.stderr + run.stdout)
+        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+        return run.stderr
+
+    def test_a_planted_effect_is_named_saved_and_predicted(self):
+        recording = self.planted("coupled_input")
+        out, model, report = self.folder / "out.json", self.folder / "model.json", self.folder / "report"
+        run = stillhand("diagnose", recording, "--json", out, "--save", model, "--report", report)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        verdict = json.loads(out.read_text())
+        self.assertEqual(verdict["verdict"], "effects found")
+        self.assertEqual(verdict["effects"][0]["kind"], "coupled_input")
+        self.assertIsNotNone(verdict["effects"][0]["channel"])
+        self.assertLess(verdict["effects"][0]["heldout_rmse_after"], verdict["effects"][0]["heldout_rmse_before"])
+        low, high = verdict["effects"][0]["ci95"]
+        self.assertLess(low, high)
+        self.assertTrue(list(report.glob("*.html")))
+        prediction = self.folder / "pred.csv"
+        run = stillhand("predict", model, recording, "--out", prediction)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        measured, predicted = columns(recording), columns(prediction)
+        force = dict(zip(measured["t"], measured["f"]))
+        self.assertEqual(list(predicted), ["t", "f_model"])
+        # The first five seconds carry the start from rest.
+        errors = [f - force[t] for t, f in zip(predicted["t"], predicted["f_model"]) if t > 5.0 and t in force]
+        self.assertGreater(len(errors), 5000)
+        rms = math.sqrt(sum(e * e for e in errors) / len(errors))
+        self.assertLess(rms, 1.1 * verdict["final"]["heldout_rmse"])
+
+    def test_nothing_planted_nothing_found(self):
+        out = self.folder / "out.json"
+        run = stillhand("diagnose", self.planted("none"), "--json", out)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        verdict = json.loads(out.read_text())
+        self.assertEqual((verdict["verdict"], verdict["effects"], verdict["unexplained"]), ("nothing missing", [], None))
+
+    def test_what_cannot_be_diagnosed_is_refused_in_one_line(self):
+        rows = [(n / 100, math.sin(n * 0.37), math.cos(n * 0.11)) for n in range(3000)]
+        texts = {
+            "empty": ("", "want"),
+            "one_column": ("t [s]\n0\n0.01\n", "t [s]"),
+            "text": ("dear sir or madam\n", "want"),
+            "constant": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},1,{f}\n" for t, _, f in rows), "constant"),
+            "output_is_input": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},{2 * a}\n" for t, a, _ in rows), "itself"),
+            "ten_rows": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},{f}\n" for t, a, f in rows[:10]), "want"),
+            "backwards": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.02,1,3\n0.01,2,2\n", ":4:"),
+            "not_a_number": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,nan,2\n", ":3:"),
+        }
+        for name, (text, said) in texts.items():
+            with self.subTest(name):
+                path = self.folder / f"{name}.csv"
+                path.write_text(text)
+                out = self.folder / f"{name}.json"
+                self.assertIn(said, self.refused("diagnose", path, "--json", out))
+                self.assertFalse(out.exists())
+
+    def test_wrong_channels_and_models_are_refused(self):
+        recording = self.planted("none")
+        self.assertIn("a_q", self.refused("diagnose", recording, "--input", "a_q"))
+        self.assertIn("the output", self.refused("diagnose", recording, "--input", "f"))
+        for name, text in {"broken.json": "{", "other.json": '{"format": "stillhand model"}', "list.json": "[]"}.items():
+            with self.subTest(name):
+                (self.folder / name).write_text(text)
+                self.refused("predict", self.folder / name, recording, "--out", self.folder / "p.csv")
+                self.assertFalse((self.folder / "p.csv").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

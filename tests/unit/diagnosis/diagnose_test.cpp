@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/diagnose.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contract/config_error.hpp"
+#include "unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr std::size_t kCount = 3000;
+
+DiagnoseOptions options_of(ModelClass model = ModelClass::kArx, int order = 2) {
+  DiagnoseOptions options;
+  options.inputs = {"u"};
+  options.output = "y";
+  options.model = model;
+  options.order = order;
+  return options;
+}
+
+// Body, 5 % of noise and a share of another channel.
+Measurement recording(double of_v = 0.0) {
+  const auto u = made::ride(kCount, 1);
+  const auto v = made::ride(kCount, 2);
+  const auto noise = made::white(kCount, 3);
+  const Body body = made::two_pole_body();
+  auto y = made::answer(body.numerators[0], body.denominator, u);
+  for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.02 * noise[n] + of_v * v[n];
+  return made::measurement_of({{"u", "V", u}, {"a_x", "m/s^2", v}, {"y", "N", y}});
+}
+
+std::string error_of(const Measurement& measurement, const DiagnoseOptions& options) {
+  try {
+    diagnose(measurement, options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(DiagnoseTest, WhatIsMissingIsNamedWithItsErrorBeforeAndAfter) {
+  const Diagnosis sut = diagnose(recording(0.15), options_of());
+  EXPECT_EQ(sut.verdict(), "effects found");
+  ASSERT_EQ(sut.effects.size(), 1u);
+  const FoundEffect& found = sut.effects[0];
+  EXPECT_EQ(found.effect.kind, "coupled_input");
+  EXPECT_EQ(found.channel, "a_x");
+  EXPECT_NEAR(found.before.rmse, std::hypot(0.15, 0.02), 0.015);
+  // Noise of 2900 samples is known to 1.3 %, its numbers cost less.
+  EXPECT_NEAR(found.after.rmse, 0.02, 0.002);
+  EXPECT_LT(found.after.high, found.before.low);
+  EXPECT_LT(found.p, 1e-3);
+  EXPECT_LE(found.after.low, found.after.rmse);
+  EXPECT_GE(found.after.high, found.after.rmse);
+  EXPECT_FALSE(found.evidence.empty());
+  EXPECT_EQ(sut.baseline_error.rmse, found.before.rmse);
+  EXPECT_EQ(sut.final_error.rmse, found.after.rmse);
+  // 1 - (0.02 / rms y)^2.
+  EXPECT_GT(sut.final_error.vaf_percent, 97.0);
+  EXPECT_LT(sut.baseline_error.vaf_percent, sut.final_error.vaf_percent);
+  EXPECT_NEAR(sut.noise_floor.rmse, 0.02, 0.002);
+  EXPECT_LE(sut.noise_floor.low, sut.noise_floor.rmse);
+  EXPECT_GE(sut.noise_floor.high, sut.noise_floor.rmse);
+  EXPECT_FALSE(sut.unexplained.has_value());
+  EXPECT_EQ(sut.model_class, "arx");
+  EXPECT_EQ(sut.output_unit, "N");
+  EXPECT_DOUBLE_EQ(sut.sample_rate_hz, 100.0);
+  // Before there was something to be seen, and behind it there isn't.
+  EXPECT_TRUE(std::ranges::any_of(sut.before.detections, &Detection::found));
+  EXPECT_FALSE(std::ranges::any_of(sut.after.detections, &Detection::found));
+}
+
+TEST(DiagnoseTest, WhereNothingIsMissingTheVerdictSaysSo) {
+  const Diagnosis sut = diagnose(recording(), options_of());
+  EXPECT_EQ(sut.verdict(), "nothing missing");
+  EXPECT_TRUE(sut.effects.empty());
+  EXPECT_FALSE(sut.unexplained.has_value());
+  EXPECT_EQ(sut.final_error.rmse, sut.baseline_error.rmse);
+  EXPECT_NEAR(sut.final_error.rmse, 0.02, 0.002);
+  EXPECT_TRUE(sut.model.effects.empty());
+}
+
+TEST(DiagnoseTest, TheResultDoesNotDependOnTheOrderOfTheWork) {
+  const Diagnosis one = diagnose(recording(0.15), options_of());
+  DiagnoseOptions backwards = options_of();
+  backwards.for_each = [](std::size_t count, const std::function<void(std::size_t)>& task) {
+    for (std::size_t i = count; i-- > 0;) task(i);
+  };
+  const Diagnosis other = diagnose(recording(0.15), backwards);
+  EXPECT_EQ(packed(one.model), packed(other.model));
+  EXPECT_EQ(one.final_error.rmse, other.final_error.rmse);
+  ASSERT_EQ(one.search.additions.size(), other.search.additions.size());
+  ASSERT_EQ(one.search.additions[0].tried.size(), other.search.additions[0].tried.size());
+  for (std::size_t i = 0; i < one.search.additions[0].tried.size(); ++i) {
+    EXPECT_EQ(one.search.additions[0].tried[i].rmse, other.search.additions[0].tried[i].rmse);
+  }
+}
+
+// y = 2 u + noise.
+Measurement static_recording() {
+  const auto u = made::ride(kCount, 1);
+  std::vector<double> y = made::white(kCount, 3);
+  for (std::size_t n = 0; n < kCount; ++n) y[n] = 2.0 * u[n] + 0.1 * y[n];
+  return made::measurement_of({{"u", "V", u}, {"y", "N", y}});
+}
+
+// A static relation: the dynamic baseline is no better than 2 %, so the static one is taken.
+TEST(DiagnoseTest, AStaticRelationIsGivenAStaticBaseline) {
+  EXPECT_EQ(diagnose(static_recording(), options_of(ModelClass::kAuto, 4)).model_class, "linear");
+  EXPECT_EQ(diagnose(recording(), options_of(ModelClass::kAuto)).model_class, "arx");
+}
+
+TEST(DiagnoseTest, ProgressIsToldAndMayStopIt) {
+  std::vector<std::string> steps;
+  DiagnoseOptions options = options_of(ModelClass::kLinear);
+  options.progress = [&](const std::string& step) {
+    steps.push_back(step);
+    return true;
+  };
+  diagnose(static_recording(), options);
+  EXPECT_THAT(steps, ElementsAre("preparing", "baseline", "effect 1", "judging"));
+  for (const std::string& last : steps) {
+    options.progress = [&](const std::string& step) { return step != last; };
+    EXPECT_THROW(diagnose(static_recording(), options), Interrupted) << last;
+  }
+}
+
+TEST(DiagnoseTest, AConstantSignalIsRefusedByName) {
+  for (const double level : {0.0, 3.7}) {
+    Measurement measurement = recording();
+    std::ranges::fill(measurement.channels[0].values, level);
+    EXPECT_THAT(error_of(measurement, options_of()), HasSubstr("input 'u': got a constant signal"));
+    measurement = recording();
+    std::ranges::fill(measurement.channels[2].values, level);
+    EXPECT_THAT(error_of(measurement, options_of()),
+                HasSubstr("output 'y': got a constant signal"));
+  }
+}
+
+TEST(DiagnoseTest, AnOutputThatIsTheInputIsRefused) {
+  Measurement measurement = recording();
+  for (const double factor : {1.0, -3.2}) {
+    for (std::size_t n = 0; n < kCount; ++n) {
+      measurement.channels[2].values[n] = factor * measurement.channels[0].values[n] + 0.5;
+    }
+    EXPECT_THAT(error_of(measurement, options_of()), HasSubstr("the input 'u' itself, scaled"));
+  }
+  DiagnoseOptions same = options_of();
+  same.output = "u";
+  EXPECT_THAT(error_of(recording(), same), HasSubstr("'u', the output"));
+}
+
+TEST(DiagnoseTest, ARecordTooShortIsRefused) {
+  for (const std::size_t count : {1u, 7u, 10u, 49u}) {
+    Measurement measurement = recording();
+    for (Channel& channel : measurement.channels) channel.values.resize(count);
+    measurement.weight.resize(count);
+    measurement.stretches = {{0, count, 0.0}};
+    EXPECT_NE(error_of(measurement, options_of()), "no error") << count;
+  }
+}
+
+TEST(DiagnoseTest, AnUnknownChannelIsRefusedWithWhatThereIs) {
+  DiagnoseOptions options = options_of();
+  options.inputs = {"a_y"};
+  EXPECT_THAT(error_of(recording(), options),
+              HasSubstr("'a_y', which isn't there, want one of u, a_x, y"));
+  options = options_of();
+  options.output = "f";
+  EXPECT_THAT(error_of(recording(), options), HasSubstr("output: got 'f'"));
+}
+
+TEST(DiagnoseTest, AnOrderOutOfRangeIsRefused) {
+  EXPECT_THAT(error_of(recording(), options_of(ModelClass::kArx, 13)), HasSubstr("order: got 13"));
+}
+
+TEST(DiagnoseTest, AMeasurementThatIsNoneIsRefusedBeforeItIsRead) {
+  Measurement measurement = recording();
+  measurement.channels[1].values.resize(10);
+  EXPECT_THAT(error_of(measurement, options_of()), HasSubstr("channel a_x: got 10 samples"));
+  measurement = recording();
+  measurement.channels[2].values[5] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(error_of(measurement, options_of()), HasSubstr("channel y, sample 5"));
+  measurement = recording();
+  std::ranges::fill(measurement.weight, 0.0);
+  EXPECT_NE(error_of(measurement, options_of()), "no error");
+}
+
+// An input of nothing but noise, an output of its own noise: no answer, no effect.
+TEST(DiagnoseTest, SignalsThatHaveNothingToDoWithEachOtherGiveNoEffect) {
+  Measurement measurement = recording();
+  measurement.channels[2].values = made::white(kCount, 8);
+  const Diagnosis sut = diagnose(measurement, options_of());
+  EXPECT_TRUE(sut.effects.empty());
+  EXPECT_LT(sut.final_error.vaf_percent, 5.0);
+}
+
+TEST(DiagnoseTest, ASignalThatWasMadeIsTold) {
+  Measurement measurement = recording();
+  const auto theta = made::ride(kCount, 5, 0.2, 1.0);
+  for (std::size_t n = 1; n + 1 < kCount; ++n) {
+    const double rate = 50.0 * (theta[n + 1] - theta[n - 1]);
+    measurement.channels[2].values[n] += rate > 0.0 ? -0.15 : 0.15;
+  }
+  measurement.channels[1] = {"theta", "rad", theta};
+  const Diagnosis sut = diagnose(measurement, options_of());
+  ASSERT_FALSE(sut.effects.empty());
+  EXPECT_EQ(sut.effects[0].effect.kind, "coulomb_friction");
+  EXPECT_EQ(sut.effects[0].channel, "theta");
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("'rate of theta' was made from theta")));
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis

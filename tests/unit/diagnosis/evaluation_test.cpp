@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/evaluation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Pointwise;
+
+constexpr std::size_t kCount = 2000;
+constexpr std::size_t kCut = 1200;
+
+Signals signals_of(const std::vector<double>& u, const std::vector<double>& y) {
+  Measurement measurement = made::measurement_of({{"u", "V", u}, {"y", "N", y}});
+  return {made::cut_in_two(std::move(measurement), kCut, 5.0), {"u"}, "y"};
+}
+
+TEST(EvaluationTest, ThroughPolesIsTheRecursionOfEveryStretch) {
+  const std::vector<Stretch> stretches{{0, 3, 0.0}, {3, 6, 9.0}};
+  // y(n) = x(n) + y(n-1)/2 - y(n-2)/4: dyadic, so exact.
+  EXPECT_THAT(through_poles({1.0, 0.0, 2.0, 4.0, 0.0, 0.0}, {1.0, -0.5, 0.25}, stretches),
+              ElementsAre(1.0, 0.5, 2.0, 4.0, 2.0, 0.0));
+  EXPECT_THAT(through_poles({1.0, 5.0, 2.0}, {1.0}, {{0, 3, 0.0}}), ElementsAre(1.0, 5.0, 2.0));
+}
+
+TEST(EvaluationTest, DifferencesStartFromRestInEveryStretch) {
+  EXPECT_THAT(differenced({1.0, 3.0, 2.0, 7.0, 7.0}, {{0, 3, 0.0}, {3, 5, 9.0}}),
+              ElementsAre(1.0, 2.0, -1.0, 7.0, 0.0));
+}
+
+// What the body does on its own from any past, y(n) = -sum a_j y(n-j).
+std::vector<double> free_response(const std::vector<double>& a, const std::vector<double>& before,
+                                  std::size_t count) {
+  std::vector<double> y = before;
+  for (std::size_t n = before.size(); n < before.size() + count; ++n) {
+    double next = 0.0;
+    for (std::size_t j = 1; j < a.size(); ++j) next -= a[j] * y[n - j];
+    y.push_back(next);
+  }
+  return {y.begin() + static_cast<std::ptrdiff_t>(before.size()), y.end()};
+}
+
+Eigen::MatrixXd as_column(const std::vector<double>& x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+// The free response counts until the pulse response has decayed to a thousandth of its peak; the
+// slowest mode, 2.5 Hz with ratio 0.35, forgets with 5.5/s: within 1.3 s or 130 samples.  What is
+// left there is below a few thousandths of the start.
+TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
+  const Body body = made::four_pole_body();
+  const Signals signals = signals_of(made::white(kCount, 1), made::white(kCount, 2));
+  const InitialStates sut(body, signals, std::vector<double>(kCount, 1.0));
+  std::vector<double> column = free_response(body.denominator, {1.0, -2.0, 0.5, 3.0}, kCut);
+  const auto second = free_response(body.denominator, {-0.4, 0.3, 2.0, -1.0}, kCount - kCut);
+  column.insert(column.end(), second.begin(), second.end());
+  const double size = as_column(column).norm();
+  Eigen::MatrixXd removed = as_column(column);
+  sut.remove_from(removed);
+  EXPECT_LT(removed.norm(), 1e-2 * size);
+  // Within the window to rounding: 100 samples are well inside it.
+  EXPECT_LT(removed.middleRows(0, 100).norm(), 1e-12 * size);
+  EXPECT_LT(removed.middleRows(kCut, 100).norm(), 1e-12 * size);
+  // Nothing is touched from 2 s after a start on.
+  const std::vector<double> noise = made::white(kCount, 3);
+  Eigen::MatrixXd touched = as_column(noise);
+  sut.remove_from(touched);
+  for (Eigen::Index n = 200; n < static_cast<Eigen::Index>(kCount); ++n) {
+    if (n >= static_cast<Eigen::Index>(kCut) && n < static_cast<Eigen::Index>(kCut) + 200) continue;
+    ASSERT_EQ(touched(n, 0), noise[static_cast<std::size_t>(n)]) << n;
+  }
+  // White noise loses four of its directions a stretch: 8 of 2000, chi-squared within 8 +- 4
+  // sqrt 16.
+  const double taken = as_column(noise).squaredNorm() - touched.squaredNorm();
+  EXPECT_GT(taken, 0.5);
+  EXPECT_LT(taken, 24.0);
+}
+
+TEST(EvaluationTest, InitialStatesAreAProjection) {
+  const Signals signals = signals_of(made::white(kCount, 1), made::white(kCount, 2));
+  const InitialStates sut(made::four_pole_body(), signals, signals.weight());
+  const Eigen::VectorXd column = as_column(made::white(kCount, 4));
+  Eigen::MatrixXd once = column;
+  sut.remove_from(once);
+  Eigen::MatrixXd twice = once;
+  sut.remove_from(twice);
+  EXPECT_LT((twice - once).norm(), 1e-13 * column.norm());
+  EXPECT_LT((once + sut.part_of(column) - column).norm(), 1e-13 * column.norm());
+  EXPECT_NEAR(sut.part_of(column).dot(once.col(0)), 0.0, 1e-12 * column.squaredNorm());
+}
+
+// Weighted samples: the free response is weighted as the column is, so it goes all the same.
+TEST(EvaluationTest, InitialStatesCountOnlyWhatWeighs) {
+  const Body body = made::two_pole_body();
+  const Signals signals = signals_of(made::white(kCount, 1), made::white(kCount, 2));
+  std::vector<double> weight(kCount, 1.0);
+  for (std::size_t n = 0; n < kCount; n += 3) weight[n] = 0.0;
+  const InitialStates sut(body, signals, weight);
+  std::vector<double> column = free_response(body.denominator, {1.0, -2.0}, kCut);
+  column.resize(kCount, 0.0);
+  for (std::size_t n = 0; n < kCount; ++n) column[n] *= weight[n];
+  Eigen::MatrixXd removed = as_column(column);
+  sut.remove_from(removed);
+  EXPECT_LT(removed.middleRows(0, 80).norm(), 1e-12 * as_column(column).norm());
+}
+
+TEST(EvaluationTest, AStaticBodyHasNoInitialState) {
+  const Signals signals = signals_of(made::white(kCount, 1), made::white(kCount, 2));
+  const InitialStates sut({{{1.0}}, {1.0}, 0.0}, signals, signals.weight());
+  EXPECT_EQ(sut.part_of(as_column(made::white(kCount, 4))).norm(), 0.0);
+}
+
+// The answer of a body that was moving before the record began: the residual from rest is the free
+// response, and the model that made it leaves nothing.
+TEST(EvaluationTest, TheResidualOfTheTrueModelIsNothingWhateverThePast) {
+  const Body body = made::two_pole_body();
+  const std::size_t before = 300;
+  const auto u = made::white(before + kCount, 5);
+  const auto y = made::answer(body.numerators[0], body.denominator, u);
+  const auto tail = [&](const std::vector<double>& x) {
+    return std::vector<double>(x.begin() + before, x.end());
+  };
+  // One stretch, so that the past is unknown once.
+  const Signals signals(made::measurement_of({{"u", "V", tail(u)}, {"y", "N", tail(y)}}), {"u"},
+                        "y");
+  FreeRun run;
+  const Eigen::VectorXd sut = residual_of(made::model_of(body), signals, run);
+  // Before the first second nothing is judged; behind it the response is fitted where it is above a
+  // thousandth of its peak, and e^(-5.65 t) of it is left: 0.0035 at 1 s.
+  EXPECT_LT(sut.cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT(sut.tail(kCount - 300).cwiseAbs().maxCoeff(), 1e-6);
+  // From rest it is not nothing: the first second shows it, were it judged.
+  EXPECT_GT(std::abs(run.prediction[0] - tail(y)[0]), 0.1);
+}
+
+TEST(EvaluationTest, WhatIsNotTheBodysIsTakenOffTheOutput) {
+  const auto u = made::white(kCount, 1);
+  const auto v = made::white(kCount, 2);
+  const Body body = made::two_pole_body();
+  Measurement measurement =
+      made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", made::white(kCount, 3)}});
+  const Signals signals(measurement, {"u"}, "y");
+  Model model = made::model_of(
+      body, {{"input_saturation", "hard", {"u"}, {{"limit", "V", 0.5, 0.0, 9.0}}, {}},
+             {"bilinear",
+              "gain of the body",
+              {"v"},
+              {{"sensitivity", "1/V", 0.1, -1.0, 1.0}, constant("centre", "V", 0.0)},
+              {}},
+             {"coupled_input", "static", {"v"}, {}, {1.5}}});
+  model.body.offset = 0.7;
+  std::vector<double> output = free_run(model, signals).prediction;
+  std::vector<std::vector<double>> inputs;
+  ASSERT_TRUE(without_effects(model, signals, inputs, output));
+  std::vector<double> limited = u;
+  for (double& x : limited) x = std::clamp(x, -0.5, 0.5);
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0], limited);
+  // Left: body and offset / gain, gain at least 0.05.
+  const auto y = made::answer(body.numerators[0], body.denominator, limited);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    ASSERT_NEAR(output[n], y[n] + 0.7 / (1.0 + 0.1 * v[n]), 1e-11) << n;
+  }
+  model.effects.push_back({"output_saturation", "hard", {}, {{"limit", "N", 1.0, 0.0, 9.0}}, {}});
+  EXPECT_FALSE(without_effects(model, signals, inputs, output));
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis

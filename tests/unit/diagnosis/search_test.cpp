@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/search.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using testing::ElementsAre;
+
+HeldOut of_squares(std::vector<double> squares, double weight = 2.0) {
+  HeldOut result;
+  result.finite = true;
+  result.weights.assign(squares.size(), weight);
+  result.squares = std::move(squares);
+  return result;
+}
+
+// Mean squares 2 4 6 8 and 1 3 5 9: differences 1 1 1 -1, mean 0.5, deviation 1, standard error
+// 0.5.
+TEST(SearchTest, ModelsAreComparedBlockByBlock) {
+  const Comparison sut =
+      compared(of_squares({4.0, 8.0, 12.0, 16.0}), of_squares({2.0, 6.0, 10.0, 18.0}));
+  EXPECT_DOUBLE_EQ(sut.rmse_ratio, std::sqrt(18.0 / 20.0));
+  EXPECT_DOUBLE_EQ(sut.t, 1.0);
+  EXPECT_DOUBLE_EQ(sut.share_better, 0.75);
+  // Four ties of rank 2.5: W = 7.5 of a mean of 5, variance 4 5 9/24 - 60/48 = 6.25; (7.5 - 5 -
+  // 0.5)/2.5 = 0.8.
+  EXPECT_NEAR(sut.p, 0.5 * std::erfc(0.8 / std::sqrt(2.0)), 1e-12);
+}
+
+TEST(SearchTest, AnImprovementInEveryBlockIsAsUnlikelyAsItsSigns) {
+  std::vector<double> before(20);
+  std::vector<double> after(20);
+  for (std::size_t b = 0; b < 20; ++b) {
+    before[b] = 10.0 + static_cast<double>(b);
+    after[b] = before[b] - 1.0 - 0.1 * static_cast<double>(b);
+  }
+  const Comparison better = compared(of_squares(before), of_squares(after));
+  EXPECT_DOUBLE_EQ(better.p, std::ldexp(1.0, -20));
+  EXPECT_DOUBLE_EQ(better.share_better, 1.0);
+  EXPECT_GT(better.t, 0.0);
+  const Comparison worse = compared(of_squares(after), of_squares(before));
+  EXPECT_EQ(worse.p, 1.0);
+  EXPECT_EQ(worse.t, -better.t);
+  EXPECT_GT(worse.rmse_ratio, 1.0);
+}
+
+TEST(SearchTest, BlocksThatWeighNothingDoNotCount) {
+  HeldOut before = of_squares({4.0, 8.0, 12.0, 16.0, 1e6});
+  HeldOut after = of_squares({2.0, 6.0, 10.0, 18.0, 1.0});
+  before.weights[4] = after.weights[4] = 0.0;
+  EXPECT_DOUBLE_EQ(compared(before, after).rmse_ratio, std::sqrt(18.0 / 20.0));
+}
+
+TEST(SearchTest, TooFewBlocksSayNothing) {
+  const Comparison sut = compared(of_squares({4.0, 8.0}), of_squares({1.0, 1.0}));
+  EXPECT_EQ(sut.p, 1.0);
+  EXPECT_EQ(sut.t, 0.0);
+  EXPECT_EQ(sut.rmse_ratio, 1.0);
+}
+
+TEST(SearchTest, TasksAreDoneInOrder) {
+  std::vector<std::size_t> done;
+  in_order(3, [&](std::size_t i) { done.push_back(i); });
+  EXPECT_THAT(done, ElementsAre(0u, 1u, 2u));
+}
+
+// Static and short, so that a whole search takes little: y = 2 u + 0.5 v + 0.25 w + noise.
+struct Searched {
+  explicit Searched(double of_v, double of_w, SearchOptions options = {}) {
+    constexpr std::size_t kCount = 3000;
+    const auto u = made::ride(kCount, 1);
+    const auto v = made::ride(kCount, 2);
+    const auto w = made::ride(kCount, 3);
+    std::vector<double> y = made::white(kCount, 4);
+    for (std::size_t n = 0; n < kCount; ++n) {
+      y[n] = 0.1 * y[n] + 2.0 * u[n] + of_v * v[n] + of_w * w[n];
+    }
+    const Signals signals(
+        made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"w", "V", w}, {"y", "N", y}}), {"u"},
+        "y");
+    const Blocks blocks = make_blocks(signals);
+    const Baseline baseline = fit_baseline(signals, blocks, 0);
+    result = search(baseline, signals, blocks, options, in_order, [this](const std::string& step) {
+      steps.push_back(step);
+      return true;
+    });
+  }
+  SearchResult result;
+  std::vector<std::string> steps;
+};
+
+TEST(SearchTest, EffectsAreAddedStrongestFirst) {
+  const Searched sut(0.25, 0.5);
+  ASSERT_EQ(sut.result.model.effects.size(), 2u);
+  EXPECT_EQ(sut.result.model.effects[0].kind, "coupled_input");
+  EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
+  EXPECT_THAT(sut.result.model.effects[1].channels, ElementsAre("v"));
+  // The simplest form of several that can do the same.
+  EXPECT_EQ(sut.result.model.effects[0].form, "static");
+  // 0.1/sqrt(2900) = 0.002 each.
+  EXPECT_NEAR(sut.result.model.effects[0].coefficients[0], 0.5, 0.01);
+  EXPECT_NEAR(sut.result.model.effects[1].coefficients[0], 0.25, 0.01);
+  ASSERT_EQ(sut.result.additions.size(), 2u);
+  EXPECT_NEAR(sut.result.additions[0].before.rmse(), std::hypot(0.5, 0.25, 0.1), 0.03);
+  EXPECT_NEAR(sut.result.additions[1].after.rmse(), 0.1, 0.01);
+  EXPECT_EQ(sut.result.removed, 0u);
+  EXPECT_FALSE(sut.result.last_tried.empty()) << "what was rejected is told";
+  EXPECT_THAT(sut.steps, ElementsAre("effect 1", "effect 2", "effect 3"));
+}
+
+// A ramp with a small bend, 0.02 RMS beside noise of 0.1: three cosines leave 2 % less than a
+// straight line.  Within 3 % the form with fewer numbers has the name.
+TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
+  constexpr std::size_t kCount = 6000;
+  const auto u = made::ride(kCount, 1);
+  std::vector<double> y = made::white(kCount, 4);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    const double t = static_cast<double>(n) / kCount;
+    y[n] = 0.1 * y[n] + 2.0 * u[n] + 0.5 * t + 0.03 * std::cos(2.0 * std::numbers::pi * t);
+  }
+  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y");
+  const Blocks blocks = make_blocks(signals);
+  SearchOptions options;
+  options.most_effects = 1;
+  const SearchResult sut = search(fit_baseline(signals, blocks, 0), signals, blocks, options,
+                                  in_order, [](const std::string&) { return true; });
+  ASSERT_EQ(sut.additions.size(), 1u);
+  const Addition& first = sut.additions.front();
+  EXPECT_EQ(first.tried.front().model.effects[0].form, "slow cosines") << "nothing is tested";
+  EXPECT_GT(first.chosen, 0u);
+  EXPECT_EQ(first.tried[first.chosen].model.effects[0].form, "linear");
+  EXPECT_EQ(sut.model.effects[0].form, "linear");
+}
+
+TEST(SearchTest, WhereNothingIsMissingNothingIsAdded) {
+  const Searched sut(0.0, 0.0);
+  EXPECT_TRUE(sut.result.model.effects.empty());
+  EXPECT_TRUE(sut.result.additions.empty());
+}
+
+TEST(SearchTest, NoMoreIsAddedThanAskedFor) {
+  SearchOptions options;
+  options.most_effects = 1;
+  const Searched sut(0.25, 0.5, options);
+  ASSERT_EQ(sut.result.model.effects.size(), 1u);
+  EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
