@@ -15,7 +15,6 @@ namespace {
 
 using diagnosis::Effect;
 using report::Kind;
-using report::Panel;
 using report::Series;
 
 constexpr double kWidestLag_s = 0.6;
