@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "diagnosis/core/diagnose.hpp"
+#include "planted/recording.hpp"
+#include "planted/to_measurement.hpp"
+
+// Recordings of a simulator that shares nothing with the engine, a few that are beyond doubt: 40 s,
+// an effect of a quarter of the force, noise of a hundredth.  How often the engine is right is the
+// benchmark's to tell (tests/benchmark/planted_effects.cpp).
+namespace stillhand::diagnosis {
+namespace {
+
+Diagnosis diagnosis_of(std::uint64_t seed, std::vector<planted::Kind> kinds) {
+  planted::Spec spec;
+  spec.kinds = std::move(kinds);
+  spec.strengths = {0.25};
+  spec.snr_db = 40.0;
+  spec.least_evidence = spec.kinds.empty() ? 0.0 : 1000.0;
+  spec.length_s = 40.0;
+  return diagnose(planted::to_measurement(planted::draw(seed, spec).recording), {});
+}
+
+TEST(PlantedTest, AStrongEffectIsNamedFirst) {
+  for (const planted::Kind kind : {planted::Kind::kCoupledInput, planted::Kind::kCoulombFriction}) {
+    SCOPED_TRACE(planted::name_of(kind));
+    const Diagnosis sut = diagnosis_of(1, {kind});
+    ASSERT_FALSE(sut.effects.empty());
+    EXPECT_EQ(sut.effects[0].effect.kind, planted::name_of(kind));
+    EXPECT_LT(sut.final_error.rmse, 0.5 * sut.baseline_error.rmse);
+  }
+}
+
+TEST(PlantedTest, WhereNothingIsPlantedNothingIsFound) {
+  const Diagnosis sut = diagnosis_of(1, {});
+  EXPECT_EQ(sut.verdict(), "nothing missing");
+  // Noise of -40 dB: 1e-4 of the variance.
+  EXPECT_GT(sut.final_error.vaf_percent, 99.9);
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
