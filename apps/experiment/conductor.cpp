@@ -139,6 +139,11 @@ bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done)
   }
 }
 
+void Conductor::throw_trouble() const {
+  if (mendable_) throw RefusedByProcess(trouble_);
+  if (!trouble_.empty()) throw std::runtime_error(trouble_);
+}
+
 std::vector<std::string> Conductor::absent(const Seen& seen) const {
   std::vector<std::string> absent;
   for (const std::string_view service : topics::kServices) {
@@ -168,8 +173,7 @@ void Conductor::await_everybody(double limit_s) {
                              ": another lab runs; choose another --domain or --rig");
   }
   if (complete) return;
-  if (mendable_) throw RefusedByProcess(trouble_);
-  if (!trouble_.empty()) throw std::runtime_error(trouble_);
+  throw_trouble();
   if (interrupted()) return;
   const std::lock_guard lock(mutex_);
   auto missing = absent(seen_);
@@ -226,9 +230,9 @@ void Conductor::begin_session() {
              entry.first == "identification" || entry.second.tick() >= 0;
     });
   });
+  throw_trouble();
   if (!ticking && !interrupted()) {
-    throw std::runtime_error(trouble_.empty() ? "the sample clock did not start within 5 s"
-                                              : trouble_);
+    throw std::runtime_error("the sample clock did not start within 5 s");
   }
 }
 

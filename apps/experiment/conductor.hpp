@@ -93,6 +93,8 @@ class Conductor {
   void announce(const PlannedTrial* planned, stillhand_msgs::SessionState session);
   void assign(const PlannedTrial& planned);
   [[nodiscard]] Tick newest_tick();
+  /// @throws RefusedByProcess or std::runtime_error when a process ended.
+  void throw_trouble() const;
   [[nodiscard]] std::vector<std::string> absent(const Seen& seen) const;
   bool await_armed(const PlannedTrial& planned, TrialOutcome& outcome);
   [[nodiscard]] static std::string why_not_armed(const Seen& seen, std::string_view service);

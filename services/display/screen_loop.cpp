@@ -31,8 +31,10 @@ ViewStatus status_of(const Shown& shown, bool fresh) {
   return status;
 }
 
+}  // namespace
+
 /// View, file and window together; drawn and shown with ordinary priority.
-class Screen {
+class ScreenLoop::Screen {
  public:
   Screen(Shell& shell, const ScreenOptions& options)
       : shell_(shell), view_(shell.config(), kColumns, kRows) {
@@ -61,25 +63,24 @@ class Screen {
   std::optional<ScreenWindow> window_;
 };
 
-}  // namespace
-
 ScreenLoop::ScreenLoop(Shell& shell, ScreenOptions options)
     : shell_(shell),
       options_(std::move(options)),
-      pointer_(shell.service().bus().publisher<stillhand_msgs::Pointer>(topics::kPointer)) {}
+      pointer_(shell.service().bus().publisher<stillhand_msgs::Pointer>(topics::kPointer)) {
+  if (!options_.window && options_.video.empty()) return;
+  const runtime::OrdinaryWhile ordinary;  // OpenCV's own threads inherit it
+  screen_ = std::make_unique<Screen>(shell_, options_);
+}
+
+ScreenLoop::~ScreenLoop() = default;
 
 void ScreenLoop::run() {
   runtime::Stop& stop = shell_.service().stop();
-  if (!options_.window && options_.video.empty()) {
+  if (!screen_) {
     stop.wait();
     return;
   }
   runtime::become_background();
-  std::optional<Screen> screen;
-  {
-    const runtime::OrdinaryWhile ordinary;  // OpenCV's own threads inherit it
-    screen.emplace(shell_, options_);
-  }
   constexpr auto kPeriod_ns = static_cast<std::int64_t>(1e9 / kRate_hz);
   std::int64_t due_ns = runtime::monotonic_ns();
   Tick last_tick = -1;
@@ -93,11 +94,11 @@ void ScreenLoop::run() {
     bool open = true;
     {
       const runtime::OrdinaryWhile ordinary;
-      open = screen->show(shown, due_ns - fresh_ns < kLinkLost_ns);
+      open = screen_->show(shown, due_ns - fresh_ns < kLinkLost_ns);
     }
     // This process ends, and with it the session; the experiment quotes the line.
     if (!open) throw std::runtime_error("the tracking window was closed");
-    if (options_.pointer) publish_pointer(shown.tick, screen->pointer_m());
+    if (options_.pointer) publish_pointer(shown.tick, screen_->pointer_m());
   }
 }
 

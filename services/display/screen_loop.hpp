@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "display/shell.hpp"
@@ -17,19 +18,29 @@ struct ScreenOptions {
 
 /// Draws 60 frames a second from the newest data, in the calling thread, until stopped or the
 /// window is closed.  Of ordinary priority: a slow window or disk costs frames, never samples.
-/// @throws ConfigError when window or file cannot be opened; std::runtime_error once the window was
-///         closed.
+/// Window and file are opened by the constructor, before the service says that it is ready: one
+/// that cannot be had refuses the session, and doesn't break it off.
 class ScreenLoop {
  public:
+  /// @throws ConfigError when window or file cannot be opened.
   ScreenLoop(Shell& shell, ScreenOptions options);
+  ~ScreenLoop();
+  ScreenLoop(const ScreenLoop&) = delete;
+  ScreenLoop& operator=(const ScreenLoop&) = delete;
+
+  /// In the constructor's thread.
+  /// @throws std::runtime_error once the window was closed.
   void run();
 
  private:
+  class Screen;
+
   void publish_pointer(Tick tick, std::optional<double> position_m);
 
   Shell& shell_;
   ScreenOptions options_;
   runtime::Publisher<stillhand_msgs::Pointer> pointer_;
+  std::unique_ptr<Screen> screen_;  ///< null when nobody looks
 };
 
 }  // namespace stillhand::display
