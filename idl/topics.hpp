@@ -132,8 +132,30 @@ inline constexpr std::array<const Topic*, 13> kCatalogue{
     &kTrackingSample,   &kOperatorForce, &kPointer,      &kTrialControl, &kTrialAssignment,
     &kFeedthroughModel, &kEvent,         &kServiceStatus};
 
-/// Catalogue row by topic name, or nullptr.
+/// Remote control of `stillhand record` and `stillhand replay`: outside of every session, so that
+/// no process waits for them.
+inline constexpr Topic kRecorderCommand{
+    "stillhand/recorder_command", "stillhand_msgs::RecorderCommand", Pattern::kEvent, 0.0, {}, {}};
+inline constexpr Topic kRecorderStatus{"stillhand/recorder_status",
+                                       "stillhand_msgs::RecorderStatus",
+                                       Pattern::kStreamSlow,
+                                       10.0,
+                                       {},
+                                       {}};
+inline constexpr Topic kReplayCommand{
+    "stillhand/replay_command", "stillhand_msgs::ReplayCommand", Pattern::kEvent, 0.0, {}, {}};
+inline constexpr Topic kReplayStatus{
+    "stillhand/replay_status", "stillhand_msgs::ReplayStatus", Pattern::kStreamSlow, 10.0, {}, {}};
+
+/// The second table of idl/README.md.
+inline constexpr std::array<const Topic*, 4> kRemoteControl{&kRecorderCommand, &kRecorderStatus,
+                                                            &kReplayCommand, &kReplayStatus};
+
+/// Row of either table by topic name, or nullptr.
 constexpr const Topic* find(std::string_view name) {
+  for (const Topic* topic : kRemoteControl) {
+    if (topic->name == name) return topic;
+  }
   for (const Topic* topic : kCatalogue) {
     if (topic->name == name) return topic;
   }

@@ -20,7 +20,8 @@ struct ReadOptions {
 
 /// Reads a recording of either kind, told apart by its first bytes: an MCAP file of a session, or
 /// CSV (design: "Recordings as CSV").  On a uniform grid afterwards; what was done to get there is
-/// in the notes.
+/// in the notes.  What a damaged or cut-off session's recording has lost is told on standard error,
+/// in one line, and the rest is used.
 /// @throws stillhand::ConfigError when the file can't be read or holds nothing useful: of CSV with
 ///         line and column, of a session with the trials there are.
 diagnosis::Measurement read_measurement(const std::string& path, const ReadOptions& options = {});

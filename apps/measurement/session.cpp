@@ -13,6 +13,7 @@
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
 #include "measurement/session_trials.hpp"
+#include "recording/core/mcap_loss.hpp"
 #include "recording/core/mcap_reader.hpp"
 #include "recording/file_io.hpp"
 
@@ -168,6 +169,7 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial)
                       "a trial that was recorded");
   }
   recording::estimate_timing(out.rows);
+  out.loss = recording::loss_line(path, reader, std::nullopt, file.being_written());
   // A damaged file says so once for each chunk that was lost.
   constexpr std::size_t kMostDamage = 3;
   const auto& damage = reader.damage();

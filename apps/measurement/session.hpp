@@ -12,6 +12,7 @@ namespace stillhand::measurement {
 struct SessionRows {
   recording::Recording rows;
   std::vector<std::string> notes;
+  std::string loss;  ///< one line on what the file has lost; empty: it is whole
 };
 
 /// Reads the measured ticks of one trial from `stillhand/sensed` (a_x, a_y, a_z, roll, theta,

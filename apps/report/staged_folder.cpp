@@ -28,19 +28,20 @@ fs::path first_missing(fs::path path) {
   return missing;
 }
 
-fs::path made_absolute(const fs::path& path) {
+fs::path made_absolute(const fs::path& path, const std::string& option) {
   std::error_code error;
   fs::path out = fs::absolute(path, error).lexically_normal();
   if (!out.has_filename()) out = out.parent_path();  // a slash at the end
   if (path.empty() || error) {
-    throw ConfigError("--out", "\"" + path.string() + "\"", "a folder that can be made");
+    throw ConfigError(option, "\"" + path.string() + "\"", "a folder that can be made");
   }
   return out;
 }
 
 }  // namespace
 
-StagedFolder::StagedFolder(const fs::path& out) : out_(made_absolute(out)) {
+StagedFolder::StagedFolder(const fs::path& out, std::string option)
+    : option_(std::move(option)), out_(made_absolute(out, option_)) {
   try {
     make();
     lock();
@@ -49,7 +50,7 @@ StagedFolder::StagedFolder(const fs::path& out) : out_(made_absolute(out)) {
     staging_ = name;
   } catch (const std::system_error& error) {
     clear_away();
-    throw ConfigError("--out", out_.string() + " (" + error.code().message() + ")",
+    throw ConfigError(option_, out_.string() + " (" + error.code().message() + ")",
                       "a folder that can be made and written");
   } catch (...) {
     clear_away();
@@ -72,7 +73,7 @@ void StagedFolder::lock() {
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category());
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     made_.clear();
-    throw ConfigError("--out", out_.string() + ", in which another run is writing",
+    throw ConfigError(option_, out_.string() + ", in which another run is writing",
                       "a folder of its own for each run");
   }
   // Whoever made such a folder and left it was killed: it would hold the lock otherwise.

@@ -13,8 +13,9 @@ namespace stillhand::report {
 class StagedFolder {
  public:
   /// Makes both, so that what cannot be written is known before the work.
-  /// @throws ConfigError "--out" when the folder cannot be made or written, or is locked.
-  explicit StagedFolder(const std::filesystem::path& out);
+  /// @param option  that named the folder, for messages
+  /// @throws ConfigError naming the option when the folder cannot be made or written, or is locked.
+  explicit StagedFolder(const std::filesystem::path& out, std::string option = "--out");
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
@@ -34,6 +35,7 @@ class StagedFolder {
   void lock();
   void clear_away() noexcept;
 
+  std::string option_;
   std::filesystem::path out_;  ///< absolute
   std::filesystem::path staging_;
   std::filesystem::path made_;  ///< outermost folder that was made here; empty: none

@@ -9,6 +9,9 @@
 #include "experiment/lab_command.hpp"
 #include "identify/identify_command.hpp"
 #include "predict/predict_command.hpp"
+#include "record/record_command.hpp"
+#include "recorder/recorder_commands.hpp"
+#include "replayer/replay_command.hpp"
 #include "study/study_command.hpp"
 
 namespace {
@@ -34,6 +37,9 @@ int run(int argc, char** argv) {
   stillhand::identify::add_identify_command(cli, status);
   stillhand::diagnose::add_diagnose_command(cli, status);
   stillhand::predict::add_predict_command(cli, status);
+  stillhand::recorder::add_file_commands(cli, status);
+  stillhand::record::add_record_command(cli, status);
+  stillhand::replayer::add_replay_command(cli, status);
   try {
     cli.parse(argc, argv);
     return told(status);

@@ -55,7 +55,9 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   if (interlock_.latched(trial) != told_latch_) {
     told_latch_ = !told_latch_;
     if (told_latch_) {
-      service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, "a process is missing");
+      service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().replay_present()
+                                                                      ? "a replay is on the bus"
+                                                                      : "a process is missing");
     }
   }
   const bool enabled = assignment_ && assignment_->trial() == trial.number &&

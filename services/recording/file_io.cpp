@@ -2,6 +2,7 @@
 #include "recording/file_io.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -40,8 +41,9 @@ Status write_all(int descriptor, const std::string& path, std::span<const std::b
 
 }  // namespace
 
-FileSink::FileSink(const std::string& path, Existing existing)
+FileSink::FileSink(const std::string& path, Existing existing, Durability durability)
     : path_(path),
+      durability_(durability),
       descriptor_(::open(
           path.c_str(),
           O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::kRefuse ? O_EXCL : O_TRUNC),
@@ -50,12 +52,15 @@ FileSink::FileSink(const std::string& path, Existing existing)
     throw ConfigError(path, reason(errno),
                       errno == EEXIST ? "a name that is not taken" : "a file that can be made");
   }
+  // A file system without locks only takes the readers' notice away, so a failure is none.
+  (void)::flock(descriptor_, LOCK_EX | LOCK_NB);
 }
 
 FileSink::~FileSink() { ::close(descriptor_); }
 
 Status FileSink::write(std::span<const std::byte> bytes) {
-  return write_all(descriptor_, path_, bytes, size_);
+  const Status written = write_all(descriptor_, path_, bytes, size_);
+  return written.ok() && durability_ == Durability::kPower ? flush() : written;
 }
 
 Status FileSink::flush() {
@@ -78,6 +83,16 @@ FileSource::FileSource(const std::string& path)
 }
 
 FileSource::~FileSource() { ::close(descriptor_); }
+
+bool FileSource::being_written() const {
+  struct stat facts {};
+  if (::fstat(descriptor_, &facts) == 0 && static_cast<std::uint64_t>(facts.st_size) > size_) {
+    return true;
+  }
+  if (::flock(descriptor_, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
+  (void)::flock(descriptor_, LOCK_UN);
+  return false;
+}
 
 Status FileSource::read_at(std::uint64_t offset, std::span<std::byte> into) {
   while (!into.empty()) {

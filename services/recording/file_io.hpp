@@ -14,12 +14,20 @@ namespace stillhand::recording {
 /// What to do about a file that is already there.
 enum class Existing { kRefuse, kReplace };
 
+/// What write() to a file waits for.
+enum class Durability {
+  kProcess,  ///< the system has it: it survives the end of the process
+  kPower     ///< the disk has it (fdatasync): it survives a loss of power, as far as the disk does
+};
+
 /// Sink on a file.  Unbuffered: what write() accepted survives the end of the process; flush()
-/// makes it survive a loss of power (fdatasync).  Thread-compatible.
+/// makes it survive a loss of power (fdatasync).  Holds an advisory lock (flock) as long as it
+/// lives, by which readers know that the file is still being written.  Thread-compatible.
 class FileSink : public ByteSink {
  public:
   /// @throws ConfigError when the file cannot be made, with the system's reason.
-  explicit FileSink(const std::string& path, Existing existing = Existing::kRefuse);
+  explicit FileSink(const std::string& path, Existing existing = Existing::kRefuse,
+                    Durability durability = Durability::kProcess);
   ~FileSink() override;
   FileSink(const FileSink&) = delete;
   FileSink& operator=(const FileSink&) = delete;
@@ -30,11 +38,13 @@ class FileSink : public ByteSink {
 
  private:
   std::string path_;
+  Durability durability_;
   int descriptor_;
   std::uint64_t size_ = 0;
 };
 
-/// Source on a file; its size is taken once, at opening.  Thread-compatible.
+/// Source on a file; its size is taken once, at opening: what is appended later is not seen.
+/// Thread-compatible.
 class FileSource : public ByteSource {
  public:
   /// @throws ConfigError when the file cannot be opened or is no regular file.
@@ -45,6 +55,8 @@ class FileSource : public ByteSource {
 
   Status read_at(std::uint64_t offset, std::span<std::byte> into) override;
   [[nodiscard]] std::uint64_t size() const override { return size_; }
+  /// A FileSink has it open at this moment, or it grew since it was opened here.
+  [[nodiscard]] bool being_written() const;
 
  private:
   std::string path_;

@@ -3,11 +3,15 @@
 
 int main(int argc, char** argv) {
   using namespace stillhand;
+  recording::KeepOptions keep;
   return runtime::run_service(
       "recorder", argc, argv,
-      [](runtime::Service& service) {
-        recording::Shell shell(service);
+      [&](runtime::Service& service) {
+        recording::Shell shell(service, keep);
         shell.run();
       },
-      [](CLI::App&, runtime::ServiceOptions& options) { options.serialized = true; });
+      [&](CLI::App& cli, runtime::ServiceOptions& options) {
+        options.serialized = true;
+        recording::add_keep_options(cli, keep);
+      });
 }

@@ -13,8 +13,6 @@
 namespace stillhand::recording {
 namespace {
 
-// At most this much is lost when the process is killed.
-constexpr std::chrono::milliseconds kFlushInterval{500};
 constexpr std::chrono::milliseconds kWriteInterval{50};
 
 std::string_view idl_of(std::string_view type) {
@@ -31,10 +29,19 @@ std::string host_name() {
   return gethostname(name, sizeof(name) - 1) == 0 ? name : "unknown";
 }
 
+McapWriterOptions writer_options(const KeepOptions& keep) {
+  McapWriterOptions options;
+  options.compression = keep.compression;
+  return options;
+}
+
 }  // namespace
 
-Shell::Shell(runtime::Service& service)
-    : service_(service), file_(service.options().out.string()), writer_(file_) {
+Shell::Shell(runtime::Service& service, const KeepOptions& keep)
+    : service_(service),
+      flush_interval_(keep.flush_interval),
+      file_(service.options().out.string(), Existing::kRefuse, keep.durability),
+      writer_(file_, writer_options(keep)) {
   TextMap session{{"host", host_name()},
                   {"rig", std::to_string(service.options().rig)},
                   {"domain", std::to_string(service.options().domain)},
@@ -98,7 +105,7 @@ void Shell::write_batches(const std::stop_token& stop) {
       std::swap(batch, filling_);
     }
     write_batch(batch);
-    if (std::chrono::steady_clock::now() - flushed > kFlushInterval) {
+    if (std::chrono::steady_clock::now() - flushed > flush_interval_) {
       flushed = std::chrono::steady_clock::now();
       // A failure shows in writer_.status(), which write_batch() reports.
       static_cast<void>(writer_.flush_chunk());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <map>
@@ -11,6 +12,7 @@
 
 #include "recording/core/mcap_writer.hpp"
 #include "recording/file_io.hpp"
+#include "recording/keep_options.hpp"
 #include "runtime/service.hpp"
 
 namespace stillhand::recording {
@@ -19,7 +21,7 @@ namespace stillhand::recording {
 /// receiving thread only copies bytes into a queue; a thread of ordinary priority writes the file.
 class Shell {
  public:
-  explicit Shell(runtime::Service& service);
+  Shell(runtime::Service& service, const KeepOptions& keep);
   void run();
 
  private:
@@ -41,6 +43,7 @@ class Shell {
   void write_counts();
 
   runtime::Service& service_;
+  std::chrono::milliseconds flush_interval_;
   FileSink file_;
   McapWriter writer_;
   std::map<std::string, SchemaId> schemas_;

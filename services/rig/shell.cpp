@@ -107,7 +107,9 @@ void Shell::tell_interlock(const Trial& trial, Tick tick, double motor_force_n) 
   }
   if (latched_tick_ < 0) {
     latched_tick_ = tick;
-    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, "a process is missing");
+    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().replay_present()
+                                                                    ? "a replay is on the bus"
+                                                                    : "a process is missing");
   }
   if (!told_zero_ && motor_force_n == 0.0) {
     told_zero_ = true;

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
-#include <mutex>
 #include <set>
 
 #include "contract/config_error.hpp"
 #include "runtime/endpoint.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/replay_mark.hpp"
 #include "runtime/serialized_type.hpp"
 #include "runtime/type_tag.hpp"
 
@@ -22,7 +22,8 @@ using eprosima::fastrtps::types::ReturnCode_t;
 namespace edds = eprosima::fastdds::dds;
 
 struct Bus::Impl {
-  Impl(const Bus::Options& options) : peers(options.service, options.rig) {}
+  explicit Impl(const Bus::Options& options)
+      : peers(options.service, options.rig, options.answers_replay) {}
   ~Impl() {
     if (participant == nullptr) return;
     participant->delete_contained_entities();
@@ -48,56 +49,11 @@ struct Bus::Impl {
   edds::Subscriber* subscriber = nullptr;
 };
 
-namespace {
-
-constexpr std::uint32_t kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
-
-// The factory keeps profiles for the whole process and refuses a file it has already read.
-void load_profiles(const std::filesystem::path& file) {
-  static std::mutex mutex;
-  static std::set<std::string> loaded;
-  const std::lock_guard lock(mutex);
-  if (!std::filesystem::is_regular_file(file)) {
-    throw ConfigError("QoS profiles", "no file " + file.string(), "the path of qos/profiles.xml");
-  }
-  const std::string path = std::filesystem::canonical(file).string();
-  if (loaded.count(path) != 0) return;
-  if (edds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(path) !=
-      ReturnCode_t::RETCODE_OK) {
-    throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
-                      "XML as in qos/profiles.xml");
-  }
-  loaded.insert(path);
-}
-
-ConfigError missing_profile(const Bus::Options& options, const char* kind, std::string_view name) {
-  return {options.profiles.string(), "no " + std::string(kind) + " profile",
-          "one named \"" + std::string(name) + "\""};
-}
-
-}  // namespace
-
 Bus::Bus(Options options) : options_(std::move(options)) {
-  if (options_.domain > kMaxDomain) {
-    throw ConfigError("domain", std::to_string(options_.domain), "0 to 232");
-  }
-  edds::Log::SetVerbosity(edds::Log::Kind::Error);
-  load_profiles(options_.profiles);
-  auto* factory = edds::DomainParticipantFactory::get_instance();
-  edds::DomainParticipantQos qos;
-  if (factory->get_participant_qos_from_profile("stillhand_participant", qos) !=
-      ReturnCode_t::RETCODE_OK) {
-    throw missing_profile(options_, "participant", "stillhand_participant");
-  }
-  qos.name(Peers::participant_name(options_.rig, options_.service));
   impl_ = std::make_unique<Impl>(options_);
-  impl_->participant =
-      factory->create_participant(options_.domain, qos, &impl_->peers, edds::StatusMask::none());
-  if (impl_->participant == nullptr) {
-    throw BusError("Fast DDS opened no participant on domain " + std::to_string(options_.domain) +
-                   ": are its UDP ports free and the addresses in " + options_.profiles.string() +
-                   " those of this machine?");
-  }
+  impl_->participant = create_participant(options_.profiles, options_.domain,
+                                          Peers::participant_name(options_.rig, options_.service),
+                                          options_.answers_replay, &impl_->peers);
   // Endpoints wait for start(): a callback must not run before its owner is complete.
   edds::PublisherQos publisher_qos;
   publisher_qos.entity_factory().autoenable_created_entities = false;
@@ -132,8 +88,9 @@ detail::Endpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& typ
   const std::string profile(topics::profile_of(topic.pattern));
   edds::DataWriterQos qos;
   if (impl_->publisher->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
-    throw missing_profile(options_, "data_writer", profile);
+    throw missing_profile(options_.profiles, "data_writer", profile);
   }
+  if (options_.answers_replay) qos.user_data().data_vec(replay_mark());
   edds::Topic* dds_topic =
       topic_of(*impl_->participant, impl_->topics, topic, impl_->carrier(options_, type.support));
   auto endpoint =
@@ -185,7 +142,7 @@ void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& to
                             std::shared_ptr<void> sample, detail::Deliver deliver) {
   edds::DataReaderQos qos;
   if (subscriber->get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
-    throw missing_profile(options, "data_reader", profile);
+    throw missing_profile(options.profiles, "data_reader", profile);
   }
   edds::Topic* dds_topic = topic_of(*participant, topics, topic, type);
   auto endpoint = std::make_unique<detail::ReaderEndpoint>(topic, peers, options, supervising,
@@ -220,6 +177,7 @@ std::vector<std::string> Bus::missing_peers() const {
 
 std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.duplicates(); }
 bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
+bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
 std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
 void Bus::supervise(bool on) noexcept { impl_->supervising.store(on, std::memory_order_relaxed); }
 

@@ -108,6 +108,9 @@ class Bus {
     /// Every topic is carried as bytes: the recorder reads what it also writes, and one participant
     /// can hold a type name once.  subscribe_serialized() needs it.
     bool serialized = false;
+    /// This process takes what a replay writes, and carries the replay's mark itself, so that no
+    /// rig takes what it answers.  Others drop every sample of a marked writer.
+    bool answers_replay = false;
     std::function<void(const BusIncident&)> on_incident;
   };
 
@@ -157,8 +160,11 @@ class Bus {
   [[nodiscard]] std::vector<std::string> missing_peers() const;
   /// Services that are on the bus more than once under this rig number.
   [[nodiscard]] std::vector<std::string> duplicate_peers() const;
-  /// True when each service of the catalogue but this one has a live status writer.
+  /// True when each service of the catalogue but this one has a live status writer and nobody on
+  /// the domain plays a recording.  With Options::answers_replay: while somebody does.
   [[nodiscard]] bool peers_alive() const noexcept;
+  /// A participant that carries the replay's mark is on the domain.
+  [[nodiscard]] bool replay_present() const noexcept;
   /// Names of services whose status writer was alive once and is not now.
   [[nodiscard]] std::vector<std::string> lost_peers() const;
 

@@ -130,7 +130,7 @@ void ReaderEndpoint::close_reader(edds::Subscriber& owner) {
 void ReaderEndpoint::on_data_available(edds::DataReader* source) {
   edds::SampleInfo info;
   while (source->take_next_sample(sample_.get(), &info) == ReturnCode_t::RETCODE_OK) {
-    if (!info.valid_data) continue;
+    if (!info.valid_data || peers_.refuses(info.publication_handle)) continue;
     const Arrival arrival{monotonic_ns(), info.source_timestamp.to_ns(), system_ns()};
     const auto clock = deliver_(sample_.get(), arrival);
     if (!clock.ours) continue;

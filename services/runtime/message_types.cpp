@@ -1,20 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fastcdr/exceptions/Exception.h>
+
 #include <array>
 
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/modelPubSubTypes.h"
+#include "idl/recordingPubSubTypes.h"
 #include "idl/sessionPubSubTypes.h"
 #include "runtime/bus.hpp"
 #include "runtime/type_tag.hpp"
 
 namespace stillhand::runtime {
 
-#define STILLHAND_MESSAGE(Name)                                                       \
-  template <>                                                                         \
-  const TypeTag& type_tag<stillhand_msgs::Name>() {                                   \
-    static const TypeTag tag{                                                         \
-        eprosima::fastdds::dds::TypeSupport(new stillhand_msgs::Name##PubSubType())}; \
-    return tag;                                                                       \
+namespace {
+
+/// The generated types let through what Fast CDR throws at bytes that are no message: one such
+/// sample would end the process that reads it.
+template <typename Generated>
+struct Guarded final : Generated {
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+    try {
+      return Generated::deserialize(payload, data);
+    } catch (const eprosima::fastcdr::exception::Exception&) {
+      return false;
+    }
+  }
+};
+
+}  // namespace
+
+#define STILLHAND_MESSAGE(Name)                                                                \
+  template <>                                                                                  \
+  const TypeTag& type_tag<stillhand_msgs::Name>() {                                            \
+    static const TypeTag tag{                                                                  \
+        eprosima::fastdds::dds::TypeSupport(new Guarded<stillhand_msgs::Name##PubSubType>())}; \
+    return tag;                                                                                \
   }
 
 STILLHAND_MESSAGE(PlatformCommand)
@@ -30,6 +50,10 @@ STILLHAND_MESSAGE(TrialAssignment)
 STILLHAND_MESSAGE(FeedthroughModel)
 STILLHAND_MESSAGE(Event)
 STILLHAND_MESSAGE(ServiceStatus)
+STILLHAND_MESSAGE(RecorderCommand)
+STILLHAND_MESSAGE(RecorderStatus)
+STILLHAND_MESSAGE(ReplayCommand)
+STILLHAND_MESSAGE(ReplayStatus)
 
 #undef STILLHAND_MESSAGE
 
@@ -40,7 +64,8 @@ const TypeTag* find_type(std::string_view type_name) {
       &type_tag<Sensed>(),          &type_tag<MotorCommand>(),     &type_tag<TrackingSample>(),
       &type_tag<OperatorForce>(),   &type_tag<Pointer>(),          &type_tag<TrialControl>(),
       &type_tag<TrialAssignment>(), &type_tag<FeedthroughModel>(), &type_tag<Event>(),
-      &type_tag<ServiceStatus>()};
+      &type_tag<ServiceStatus>(),   &type_tag<RecorderCommand>(),  &type_tag<RecorderStatus>(),
+      &type_tag<ReplayCommand>(),   &type_tag<ReplayStatus>()};
   for (const TypeTag* tag : tags) {
     if (tag->support.get_type_name() == type_name) return tag;
   }

@@ -4,14 +4,17 @@
 #include <algorithm>
 
 #include "idl/topics.hpp"
+#include "runtime/replay_mark.hpp"
 
 namespace stillhand::runtime {
 
+using eprosima::fastrtps::rtps::GuidPrefix_t;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 
-Peers::Peers(std::string self, std::uint32_t rig)
-    : self_(std::move(self)), prefix_(participant_name(rig, "")) {}
+Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay)
+    : self_(std::move(self)), prefix_(participant_name(rig, "")), answers_replay_(answers_replay) {}
 
 std::string Peers::participant_name(std::uint32_t rig, const std::string& service) {
   return "stillhand/" + std::to_string(rig) + "/" + service;
@@ -26,9 +29,36 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* 
     if (name.starts_with(prefix_)) {
       services_[info.info.m_guid.guidPrefix] = name.substr(prefix_.size());
     }
+    if (is_replay_mark(info.info.m_userData.data_vec())) mark(info.info.m_guid.guidPrefix);
   } else {
     services_.erase(info.info.m_guid.guidPrefix);
+    marked_now_.erase(info.info.m_guid.guidPrefix);
+    replay_present_.store(!marked_now_.empty(), std::memory_order_release);
   }
+}
+
+// Comes before the writer is matched, unlike the discovery of its participant, which Fast DDS tells
+// after it has begun to match (PDPListener::onNewCacheChangeAdded).
+void Peers::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                   WriterDiscoveryInfo&& info) {
+  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) return;
+  if (!is_replay_mark(info.info.m_qos.m_userData.data_vec())) return;
+  const std::lock_guard lock(mutex_);
+  mark(info.info.guid().guidPrefix);
+}
+
+void Peers::mark(const GuidPrefix_t& participant) {
+  marked_now_.insert(participant);
+  ever_marked_.insert(participant);
+  replay_seen_.store(true, std::memory_order_release);
+  replay_present_.store(true, std::memory_order_release);
+}
+
+bool Peers::refuses(const InstanceHandle_t& writer) const {
+  if (answers_replay_ || !replay_seen()) return false;
+  const auto guid = eprosima::fastrtps::rtps::iHandle2GUID(writer);
+  const std::lock_guard lock(mutex_);
+  return ever_marked_.count(guid.guidPrefix) != 0;
 }
 
 std::string Peers::service_of(const InstanceHandle_t& endpoint) const {

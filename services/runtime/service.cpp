@@ -65,6 +65,7 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   bus_options.domain = options_.domain;
   bus_options.profiles = options_.profiles;
   bus_options.serialized = options_.serialized;
+  bus_options.answers_replay = options_.answers_replay;
   bus_options.on_incident = [this](const BusIncident& incident) {
     Note note{event_kind(incident.kind),
               incident.topic,

@@ -30,6 +30,7 @@ struct ServiceOptions {
   std::filesystem::path config;    ///< folder of <service>.yaml
   bool real_time = false;          ///< ask for a real-time scheduling policy
   bool serialized = false;         ///< see Bus::Options
+  bool answers_replay = false;     ///< see Bus::Options
   std::filesystem::path out;       ///< where this process may write files
 };
 

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing a recording to a file, beside a plain write() of the same messages, and reading it back.
+// Writing a recording to a file, beside a plain write() of the same messages, and reading it back:
+//   build/bin/mcap_write_benchmark            files in /tmp, or in TMPDIR
+//
 // Messages are 92 bytes, the size of a Sensed sample in CDR, filled like one: a slow sine per
 // field.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "recording/core/mcap_reader.hpp"
 #include "recording/core/mcap_writer.hpp"
@@ -56,7 +61,24 @@ void plain_write(benchmark::State& state) {
   set_rates(state);
   std::filesystem::remove(file);
 }
-BENCHMARK(plain_write)->Unit(benchmark::kMillisecond);
+BENCHMARK(plain_write)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// The same bytes in pieces of a chunk's size: what the system itself takes.
+void plain_write_in_blocks(benchmark::State& state) {
+  const std::string file = path("stillhand_plain.bin");
+  constexpr std::size_t kBlockBytes = 256 * 1024;
+  const auto all = std::as_bytes(std::span(messages()));
+  for (auto _ : state) {
+    FileSink sink(file, Existing::kReplace);
+    for (std::size_t at = 0; at < all.size(); at += kBlockBytes) {
+      const auto block = all.subspan(at, std::min(kBlockBytes, all.size() - at));
+      if (!sink.write(block).ok()) state.SkipWithError("write failed");
+    }
+  }
+  set_rates(state);
+  std::filesystem::remove(file);
+}
+BENCHMARK(plain_write_in_blocks)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void write_all(ByteSink& sink, Compression compression, std::size_t chunk_bytes,
                benchmark::State& state) {
@@ -90,7 +112,20 @@ void mcap_write(benchmark::State& state) {
 BENCHMARK(mcap_write)
     ->ArgNames({"compression", "chunk_KiB"})
     ->ArgsProduct({{0, 1, 2}, {64, 256, 1024}})
-    ->Unit(benchmark::kMillisecond);
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+// The recorder's --fsync: each chunk waits for the disk.
+void mcap_write_synced(benchmark::State& state) {
+  const std::string file = path("stillhand_benchmark.mcap");
+  for (auto _ : state) {
+    FileSink sink(file, Existing::kReplace, Durability::kPower);
+    write_all(sink, Compression::kZstd, 256 * 1024, state);
+  }
+  set_rates(state);
+  std::filesystem::remove(file);
+}
+BENCHMARK(mcap_write_synced)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void mcap_read(benchmark::State& state) {
   const auto compression = static_cast<Compression>(state.range(0));

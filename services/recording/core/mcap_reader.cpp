@@ -10,15 +10,42 @@ namespace stillhand::recording {
 
 McapReader::McapReader(ByteSource& source, McapReaderOptions options)
     : source_(source), options_(options), window_(source) {
+  if (is_newer()) return;
   read_header();
   if (!open_by_summary() && window_.status().ok()) scan();
   if (status_.ok()) status_ = window_.status();
   if (!status_.ok()) {
     forget();
   } else if (pieces_.empty() && !damage_.empty() && damage_.front().kind == DamageKind::kNoMagic) {
-    status_ = Status::failure(StatusKind::kDamaged,
-                              "not an MCAP file: neither its first bytes nor any chunk in it");
+    status_ = Status::failure(
+        StatusKind::kDamaged,
+        version_at(0) ? "an MCAP file of version " + std::string(1, *version_at(0))
+                      : "not an MCAP file: neither its first bytes nor any chunk in it");
   }
+}
+
+// The version that the magic at `offset` states, when it is a magic; its byte is a digit.
+std::optional<char> McapReader::version_at(std::uint64_t offset) {
+  constexpr std::size_t kVersionByte = 5;
+  const auto magic = window_.view(offset, kMagic.size());
+  if (magic.size() < kMagic.size()) return std::nullopt;
+  for (std::size_t i = 0; i < kMagic.size(); ++i) {
+    if (i != kVersionByte && magic[i] != std::byte{kMagic[i]}) return std::nullopt;
+  }
+  const char version = static_cast<char>(magic[kVersionByte]);
+  return version >= '0' && version <= '9' ? std::optional(version) : std::nullopt;
+}
+
+// Both ends say so: one of them alone may be a byte that changed.
+bool McapReader::is_newer() {
+  const std::uint64_t size = source_.size();
+  if (size < 2 * kMagic.size()) return false;
+  const auto first = version_at(0);
+  const auto last = version_at(size - kMagic.size());
+  if (!first || first != last || *first == '0') return false;
+  status_ =
+      Status::failure(StatusKind::kDamaged, "an MCAP file of version " + std::string(1, *first));
+  return true;
 }
 
 void McapReader::read_header() {

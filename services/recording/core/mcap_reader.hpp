@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,7 +50,8 @@ class McapReader {
  public:
   explicit McapReader(ByteSource& source, McapReaderOptions options = {});
 
-  /// Not ok when the source failed or there is nothing of MCAP in it; then everything is empty.
+  /// Not ok when the source failed, there is nothing of MCAP in it, or it is of a later version;
+  /// then everything is empty.
   [[nodiscard]] const Status& status() const noexcept { return status_; }
   /// False when the file was scanned because it has no usable index.
   [[nodiscard]] bool indexed() const noexcept { return indexed_; }
@@ -58,6 +60,8 @@ class McapReader {
   [[nodiscard]] const std::map<SchemaId, Schema>& schemas() const noexcept { return schemas_; }
   [[nodiscard]] const std::map<ChannelId, Channel>& channels() const noexcept { return channels_; }
   [[nodiscard]] const std::vector<Metadata>& metadata() const noexcept { return metadata_; }
+  /// How the chunks read so far are packed.
+  [[nodiscard]] const std::set<Compression>& compressions() const noexcept { return compressions_; }
   /// From the summary, or counted by the scan.
   [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
   /// First metadata record of that name, or nullptr.
@@ -108,6 +112,8 @@ class McapReader {
   std::uint64_t next_chunk(std::uint64_t offset, std::uint64_t end);
 
   // mcap_reader.cpp
+  std::optional<char> version_at(std::uint64_t offset);
+  bool is_newer();
   void read_header();
   void define(Schema schema, std::uint64_t offset);
   void define(Channel channel, std::uint64_t offset);
@@ -134,6 +140,7 @@ class McapReader {
   std::map<ChannelId, Channel> channels_;
   std::vector<Metadata> metadata_;
   Statistics statistics_;
+  std::set<Compression> compressions_;
   std::vector<Piece> pieces_;
   std::vector<Damage> damage_;
   std::optional<std::uint64_t> data_end_;  // offset of the Data End record

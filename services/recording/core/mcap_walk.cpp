@@ -111,6 +111,7 @@ std::optional<std::span<const std::byte>> McapReader::unpack_chunk(const Piece& 
   }
   const auto compression = compression_of(head->compression);
   if (!compression) return lost(DamageKind::kBadChunk, "packed in a way unknown here");
+  compressions_.insert(*compression);
   const auto packed = content.subspan(kChunkFixedBytes + head->compression.size(),
                                       static_cast<std::size_t>(head->packed_size));
   const Status unpacked = unpack(*compression, packed, head->uncompressed_size, unpacked_);

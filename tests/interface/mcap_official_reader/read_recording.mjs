@@ -3,18 +3,11 @@
 // Reads FILE twice with the MCAP project's own TypeScript reader, by index and as a stream with
 // every checksum validated, and prints one JSON object.  Exits with 1 when either refuses the file
 // or when the two differ.
-import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 import { createHash } from "node:crypto";
 import { crc32 } from "node:zlib";
-import { McapIndexedReader, McapStreamReader } from "@mcap/core";
-import { decompress as unzstd } from "fzstd";
-
-const lz4 = createRequire(import.meta.url)("lz4js");
-const decompressHandlers = {
-  zstd: (packed, size) => unzstd(packed, new Uint8Array(Number(size))),
-  lz4: (packed) => new Uint8Array(lz4.decompress(packed)),
-};
+import { McapIndexedReader } from "@mcap/core";
+import { decompressHandlers, streamOf } from "./recording.mjs";
 
 function newTally() {
   return { topics: {}, schemas: {}, metadata: {}, messages: 0, hash: createHash("sha256") };
@@ -60,11 +53,9 @@ async function byIndex(bytes) {
 }
 
 function byStream(bytes) {
-  const reader = new McapStreamReader({ decompressHandlers, validateCrcs: true });
-  reader.append(bytes);
   const tally = newTally();
   const channels = new Map();
-  for (let record; (record = reader.nextRecord()) !== undefined; ) {
+  for (const record of streamOf(bytes)) {
     if (record.type === "Schema") keepSchema(tally, record);
     if (record.type === "Channel") channels.set(record.id, record);
     if (record.type === "Message") count(tally, channels.get(record.channelId), record);
@@ -72,7 +63,6 @@ function byStream(bytes) {
       tally.metadata[record.name] = Object.fromEntries(record.metadata);
     }
   }
-  if (!reader.done()) throw new Error("stream reader wants more bytes");
   return tally;
 }
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording/core/topic_filter.hpp"
+#include "recording/tape.hpp"
+#include "runtime/stop.hpp"
+
+namespace stillhand::record {
+
+struct RecordOptions {
+  recording::TapeOptions tape;
+  recording::TopicFilter topics;
+  std::vector<std::string> required;  ///< topics without which a trial is not worth starting
+  bool trigger_on_deadline = false;   ///< a missed deadline writes the event window
+  std::vector<std::string> triggers;  ///< conditions that write it, as FieldTrigger reads them
+  std::optional<std::int64_t> duration_ns;  ///< [ns] nothing: until a signal
+  std::uint32_t domain = 0;
+  std::filesystem::path profiles;
+};
+
+/// Records until the duration is over, a signal comes or the tape stops.  Tells what was received,
+/// lost and written.  @returns 0, or 1 when anything was lost, missing or could not be written
+/// @throws ConfigError, runtime::BusError
+int run_record(const RecordOptions& options, runtime::Stop& stop);
+
+/// Sends one command to the recorders of a domain: "pause", "resume", "trigger" or "stop".
+/// @returns 0 when one obeyed, 1 when none did or answered  @throws ConfigError for another word
+int run_remote(const std::string& action, const RecordOptions& options, runtime::Stop& stop);
+
+}  // namespace stillhand::record

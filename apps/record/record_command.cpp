@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "record/record_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "contract/config_error.hpp"
+#include "record/record.hpp"
+#include "recording/keep_options.hpp"
+#include "runtime/clock.hpp"
+#include "runtime/profiles_path.hpp"
+#include "runtime/real_time.hpp"
+
+namespace stillhand::record {
+namespace {
+
+constexpr double kBytesPerMb = 1e6;
+constexpr double kMostSeconds = 1e7;  // four months
+constexpr double kMostMb = 1e9;
+
+struct Words {
+  RecordOptions options;
+  bool ordinary = false;
+  std::string out, remote;
+  recording::KeepOptions keep;
+  double duration_s = 0, rotate_s = 0, rotate_mb = 0, min_free_mb = 16, window_s = 0;
+};
+
+std::int64_t ns_of(double seconds) {
+  return std::llround(seconds * static_cast<double>(runtime::kNsPerSecond));
+}
+
+int run(Words words) {
+  RecordOptions& options = words.options;
+  if (words.remote.empty() && words.out.empty()) {
+    throw ConfigError("--out", "none", "the MCAP file to write");
+  }
+  options.tape.path = words.out;
+  options.tape.writer.compression = words.keep.compression;
+  options.tape.durability = words.keep.durability;
+  options.tape.flush_interval_ns = std::chrono::nanoseconds(words.keep.flush_interval).count();
+  if (words.duration_s > 0) options.duration_ns = ns_of(words.duration_s);
+  options.tape.rotation.max_ns = ns_of(words.rotate_s);
+  options.tape.rotation.max_bytes = static_cast<std::uint64_t>(words.rotate_mb * kBytesPerMb);
+  options.tape.min_free_bytes = static_cast<std::uint64_t>(words.min_free_mb * kBytesPerMb);
+  options.tape.window_ns = ns_of(words.window_s);
+  if ((options.trigger_on_deadline || !options.triggers.empty()) && words.window_s <= 0) {
+    throw ConfigError("--trigger", "one without --window", "--window S with it");
+  }
+  runtime::Stop stop;
+  if (!words.remote.empty()) return run_remote(words.remote, options, stop);
+  // Before the participant: Fast DDS's threads inherit it.  Where it is refused, it goes without.
+  if (!words.ordinary) runtime::become_real_time();
+  return run_record(options, stop);
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  RecordOptions& options = words->options;
+  options.profiles = runtime::find_profiles(STILLHAND_SOURCE);
+  CLI::App* verb = cli.add_subcommand(
+      "record",
+      "Records a running bus into an MCAP file, from outside: no session waits for it or ends "
+      "with\n"
+      "it. Every topic whose type is known, unless patterns say otherwise; in a pattern * stands\n"
+      "for any run of characters and ? for one. Ends with Ctrl-C or --duration, and tells for "
+      "each\n"
+      "topic how many messages came, were lost and were written. Exit status 1 when any was lost.\n"
+      "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
+  verb->add_option("--out", words->out, "MCAP file; must not be there yet");
+  verb->add_option("--topics", options.topics.allow, "record topics that match; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--block", options.topics.block, "and none that match; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--require", options.required,
+                   "topic that must be there: says in red when it is not, before a trial starts "
+                   "and at the end; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--duration", words->duration_s, "stop after that long [s]")
+      ->check(CLI::Range(0.001, kMostSeconds));
+  verb->add_option("--rotate-s", words->rotate_s, "go on in another file after that long [s]")
+      ->check(CLI::Range(0.1, kMostSeconds));
+  verb->add_option("--rotate-mb", words->rotate_mb, "go on in another file after that much [MB]")
+      ->check(CLI::Range(0.1, kMostMb));
+  verb->add_option("--min-free-mb", words->min_free_mb,
+                   "stop, with a whole file, when less is left on the disk [MB]")
+      ->check(CLI::Range(0.0, kMostMb))
+      ->capture_default_str();
+  verb->add_option("--window", words->window_s,
+                   "keep only that much in memory until something triggers [s]")
+      ->check(CLI::Range(0.1, 3600.0));
+  verb->add_option("--trigger", options.triggers,
+                   "a signal beyond a threshold writes the window: TOPIC.FIELD>VALUE or <VALUE, "
+                   "|FIELD| for its magnitude; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_flag("--trigger-on-deadline", options.trigger_on_deadline,
+                 "a missed deadline writes the window");
+  recording::add_keep_options(*verb, words->keep);
+  verb->add_option("--remote", words->remote,
+                   "instead: tell the recorder on this domain to pause, resume, trigger or stop");
+  verb->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
+  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
+  verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::record

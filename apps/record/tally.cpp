@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "record/tally.hpp"
+
+#include <algorithm>
+
+#include "idl/cdr.hpp"
+#include "idl/idl_text.hpp"
+#include "idl/session.h"
+#include "idl/topics.hpp"
+#include "recording/qos_texts.hpp"
+#include "recording/sample_clock.hpp"
+
+namespace stillhand::record {
+
+using runtime::FoundWriter;
+using runtime::TappedSample;
+
+namespace {
+
+/// Its samples begin with rig, tick and stamp, one tick after the other.
+bool counts_ticks(const std::string& type) {
+  return std::ranges::any_of(topics::kCatalogue, [&](const topics::Topic* row) {
+    return row->type == type && row->pattern == topics::Pattern::kStream1khz;
+  });
+}
+
+recording::Channel channel_of(const FoundWriter& writer) {
+  recording::Channel channel;
+  channel.topic = writer.topic;
+  channel.message_encoding = recording::kMessageEncoding;
+  channel.metadata = recording::qos_texts(writer.qos);
+  channel.metadata["writer"] = writer.id;
+  channel.metadata["participant"] = writer.participant;
+  if (!writer.profile.empty()) channel.metadata["qos_profile"] = writer.profile;
+  if (writer.replayed) channel.metadata["replayed"] = "true";
+  return channel;
+}
+
+}  // namespace
+
+void Tally::take(const FoundWriter& writer, const TappedSample& sample) {
+  const std::lock_guard lock(mutex_);
+  auto known = sources_.find(sample.writer);
+  if (known == sources_.end()) {
+    Source source;
+    source.topic = writer.topic;
+    source.has_ticks = counts_ticks(writer.type);
+    source.channel =
+        tape_.add_channel(channel_of(writer), writer.type, topics::idl_of(writer.type));
+    known = sources_.emplace(sample.writer, std::move(source)).first;
+  }
+  Source& source = known->second;
+  source.count.step(sample.sequence,
+                    source.has_ticks ? recording::sample_head(sample.bytes).tick : -1);
+  // MCAP has 32 bits for it; a reader sees a gap all the same.
+  tape_.put(source.channel, static_cast<std::uint32_t>(sample.sequence), sample.logged_ns,
+            sample.source_ns, sample.bytes);
+}
+
+std::map<std::string, TopicTally> Tally::topics(const std::vector<FoundWriter>& found) const {
+  const std::vector<std::uint64_t> written = tape_.written_by_channel();
+  std::map<std::string, TopicTally> all;
+  for (const FoundWriter& writer : found) {
+    if (!writer.wanted) continue;
+    TopicTally& tally = all[writer.topic];
+    ++tally.writers;
+    tally.type_known = tally.type_known && writer.type_known;
+  }
+  const std::lock_guard lock(mutex_);
+  for (const auto& [number, source] : sources_) {
+    TopicTally& tally = all[source.topic];
+    tally.received += static_cast<std::uint64_t>(source.count.received());
+    tally.lost += static_cast<std::uint64_t>(source.count.lost());
+    tally.not_sent += static_cast<std::uint64_t>(source.count.not_sent());
+    if (source.channel < written.size()) tally.written += written[source.channel];
+  }
+  return all;
+}
+
+std::set<std::string> Tally::heard() const {
+  const std::lock_guard lock(mutex_);
+  std::set<std::string> topics;
+  for (const auto& [number, source] : sources_) topics.insert(source.topic);
+  return topics;
+}
+
+recording::TextMap Tally::texts() const {
+  recording::TextMap texts;
+  for (const auto& [topic, tally] : topics({})) {
+    texts[topic + " received"] = std::to_string(tally.received);
+    texts[topic + " lost"] = std::to_string(tally.lost);
+    texts[topic + " not_sent"] = std::to_string(tally.not_sent);
+    texts[topic + " written"] = std::to_string(tally.written);
+  }
+  return texts;
+}
+
+void TrialLog::take(const FoundWriter& writer, const TappedSample& sample) {
+  if (writer.topic != topics::kTrialControl.name || writer.type != topics::kTrialControl.type) {
+    return;
+  }
+  stillhand_msgs::TrialControl control;
+  if (!from_cdr(sample.bytes, control) || control.trial() < 0) return;
+  const std::lock_guard lock(mutex_);
+  newest_ = control.trial();
+  const std::string trial = "trial " + std::to_string(control.trial());
+  texts_[trial + " phase"] = control.phase() == stillhand_msgs::PHASE_PEGGED     ? "pegged"
+                             : control.phase() == stillhand_msgs::PHASE_TRACKING ? "tracking"
+                                                                                 : "idle";
+  texts_[trial + " start_tick"] = std::to_string(control.start_tick());
+  texts_[trial + " duration_ticks"] = std::to_string(control.duration_ticks());
+  texts_[trial + " reference_seed"] = std::to_string(control.reference_seed());
+}
+
+std::int64_t TrialLog::newest() const {
+  const std::lock_guard lock(mutex_);
+  return newest_;
+}
+
+recording::TextMap TrialLog::texts() const {
+  const std::lock_guard lock(mutex_);
+  return texts_;
+}
+
+}  // namespace stillhand::record

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "recording/core/loss_count.hpp"
+#include "recording/core/mcap_format.hpp"
+#include "recording/tape.hpp"
+#include "runtime/tap.hpp"
+
+namespace stillhand::record {
+
+/// One topic of a recording, all its writers together.
+struct TopicTally {
+  std::uint64_t writers = 0, received = 0, lost = 0, not_sent = 0, written = 0;
+  bool type_known = true;
+};
+
+/// From the bus to the tape: makes a channel for each writer at its first sample and counts what
+/// came of each.  take() is for DDS's threads, the rest for any.
+class Tally {
+ public:
+  explicit Tally(recording::Tape& tape) : tape_(tape) {}
+
+  void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
+
+  /// By topic; the wanted writers that sent nothing are there with zeros.
+  [[nodiscard]] std::map<std::string, TopicTally> topics(
+      const std::vector<runtime::FoundWriter>& found) const;
+  /// Topics of which a sample came.
+  [[nodiscard]] std::set<std::string> heard() const;
+  /// The same counts as the metadata record "stillhand.counts" of a file.
+  [[nodiscard]] recording::TextMap texts() const;
+
+ private:
+  struct Source {
+    std::string topic;
+    std::uint32_t channel = 0;
+    bool has_ticks = false;
+    recording::LossCount count;
+  };
+
+  recording::Tape& tape_;
+  mutable std::mutex mutex_;
+  std::map<std::size_t, Source> sources_;  // by the writer's number
+};
+
+/// What a file says of itself besides its messages: trials that were heard of.
+class TrialLog {
+ public:
+  void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
+  /// Number of the newest trial, -1 before the first.
+  [[nodiscard]] std::int64_t newest() const;
+  /// Metadata record "stillhand.trials".
+  [[nodiscard]] recording::TextMap texts() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::int64_t newest_ = -1;
+  recording::TextMap texts_;
+};
+
+}  // namespace stillhand::record

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recorder/info.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "idl/topics.hpp"
+#include "recording/core/compression.hpp"
+#include "recording/sample_clock.hpp"
+
+namespace stillhand::recorder {
+namespace {
+
+// One topic on the way: ticks are counted for each rig by itself.
+struct Counted {
+  TopicInfo info;
+  bool has_ticks = false;
+  std::map<std::uint32_t, Tick> newest_ticks;
+
+  void take(const recording::MessageView& message) {
+    const std::uint64_t time_ns = message.log_time_ns;
+    info.first_ns = info.messages == 0 ? time_ns : std::min(info.first_ns, time_ns);
+    info.last_ns = std::max(info.last_ns, time_ns);
+    ++info.messages;
+    if (!has_ticks) return;
+    const recording::SampleHead head = recording::sample_head(message.bytes);
+    if (head.tick < 0) return;
+    const auto [newest, first] = newest_ticks.try_emplace(head.rig, head.tick);
+    if (!first && head.tick > newest->second) *info.lost_ticks += head.tick - newest->second - 1;
+    newest->second = std::max(newest->second, head.tick);
+  }
+};
+
+std::map<recording::ChannelId, Counted> topics_of(const recording::McapReader& reader) {
+  std::map<recording::ChannelId, Counted> topics;
+  for (const auto& [id, channel] : reader.channels()) {
+    Counted& counted = topics[id];
+    counted.info.topic = channel.topic;
+    counted.info.encoding = channel.message_encoding;
+    counted.info.metadata = channel.metadata;
+    const auto schema = reader.schemas().find(channel.schema_id);
+    if (schema != reader.schemas().end()) {
+      counted.info.type = schema->second.name;
+      counted.info.schema_encoding = schema->second.encoding;
+    }
+    const topics::Topic* known = topics::find(channel.topic);
+    counted.has_ticks = known != nullptr && known->pattern == topics::Pattern::kStream1khz &&
+                        channel.message_encoding == recording::kMessageEncoding;
+    if (counted.has_ticks) counted.info.lost_ticks = 0;
+  }
+  return topics;
+}
+
+std::string packing_name(recording::Compression compression) {
+  const std::string_view name = recording::compression_name(compression);
+  return name.empty() ? "none" : std::string(name);
+}
+
+}  // namespace
+
+RecordingInfo info_of(OpenRecording& recording) {
+  recording::McapReader& reader = recording.reader;
+  auto topics = topics_of(reader);
+  RecordingInfo info;
+  check(reader.for_each_message({}, [&](const recording::MessageView& message) {
+    topics.at(message.channel.id).take(message);
+    const std::uint64_t time_ns = message.log_time_ns;
+    info.start_ns = info.messages == 0 ? time_ns : std::min(info.start_ns, time_ns);
+    info.end_ns = std::max(info.end_ns, time_ns);
+    ++info.messages;
+    return true;
+  }));
+  info.path = recording.path;
+  info.bytes = recording.source.size();
+  info.program = reader.library();
+  info.profile = reader.profile();
+  info.being_written = recording.source.being_written();
+  info.whole = reader.damage().empty() && !info.being_written;
+  info.chunks = reader.statistics().chunk_count;
+  info.attachments = reader.statistics().attachment_count;
+  for (const auto compression : reader.compressions()) {
+    info.packings.push_back(packing_name(compression));
+  }
+  for (auto& [id, counted] : topics) {
+    TopicInfo& topic = counted.info;
+    if (topic.messages > 1 && topic.last_ns > topic.first_ns) {
+      topic.rate_hz = static_cast<double>(topic.messages - 1) * 1e9 /
+                      static_cast<double>(topic.last_ns - topic.first_ns);
+    }
+    info.topics.push_back(std::move(topic));
+  }
+  std::ranges::sort(info.topics, {}, &TopicInfo::topic);
+  info.metadata = reader.metadata();
+  info.damage = reader.damage();
+  info.lost_bytes = reader.lost_bytes();
+  return info;
+}
+
+}  // namespace stillhand::recorder

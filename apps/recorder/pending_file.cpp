@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recorder/pending_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::recorder {
+namespace {
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+[[noreturn]] void fail(const std::string& place, const char* step) {
+  throw std::runtime_error(place + ": cannot " + step + ": " + reason(errno));
+}
+
+// The process number keeps two runs apart.
+std::string beside(const std::string& place) {
+  return place + ".new-" + std::to_string(::getpid());
+}
+
+}  // namespace
+
+PendingFile::PendingFile(std::string place) : place_(std::move(place)), path_(beside(place_)) {}
+
+PendingFile::~PendingFile() { ::unlink(path_.c_str()); }
+
+void PendingFile::to_disk() const {
+  const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path_, "open");
+  const bool done = ::fsync(descriptor) == 0;
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  if (!done) fail(path_, "synchronise");
+}
+
+void PendingFile::publish() {
+  to_disk();
+  if (std::rename(path_.c_str(), place_.c_str()) != 0) fail(place_, "replace");
+}
+
+void PendingFile::publish_new() {
+  to_disk();
+  // A second name is refused where one is; renaming would write over it.
+  if (::link(path_.c_str(), place_.c_str()) == 0) return;
+  if (errno == EEXIST) throw ConfigError(place_, "a file that is there", "a name that is free");
+  // A file system without second names.
+  if (std::filesystem::exists(place_)) {
+    throw ConfigError(place_, "a file that is there", "a name that is free");
+  }
+  if (std::rename(path_.c_str(), place_.c_str()) != 0) fail(place_, "make");
+}
+
+}  // namespace stillhand::recorder

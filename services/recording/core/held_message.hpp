@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stillhand::recording {
+
+/// Where one message of a batch lies, and what goes with it.
+struct HeldMessage {
+  std::uint32_t channel;
+  std::uint32_t sequence;
+  std::uint64_t log_time_ns;
+  std::uint64_t publish_time_ns;
+  std::size_t begin;  ///< in the batch's bytes
+  std::size_t size;
+};
+
+/// Messages on their way to the file, bytes in one piece: emptied and refilled without allocating.
+struct MessageBatch {
+  std::vector<HeldMessage> messages;
+  std::vector<std::byte> bytes;
+
+  void add(HeldMessage message, std::span<const std::byte> content) {
+    message.begin = bytes.size();
+    message.size = content.size();
+    bytes.insert(bytes.end(), content.begin(), content.end());
+    messages.push_back(message);
+  }
+  [[nodiscard]] std::span<const std::byte> content(const HeldMessage& message) const {
+    return std::span(bytes).subspan(message.begin, message.size);
+  }
+  void clear() {
+    messages.clear();
+    bytes.clear();
+  }
+};
+
+}  // namespace stillhand::recording

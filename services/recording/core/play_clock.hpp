@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace stillhand::recording {
+
+/// How fast a recording is played: thousandths of real time, 0.1 to 100.
+struct PlayRate {
+  std::int64_t per_mille = 1000;  ///< [1/1000] 100 to 100 000
+
+  static constexpr std::int64_t kSlowest = 100;
+  static constexpr std::int64_t kFastest = 100'000;
+
+  /// "1", "0.25", "100": at most three decimals; nothing for any other text.
+  static std::optional<PlayRate> parse(std::string_view text) noexcept;
+  [[nodiscard]] std::string text() const;
+  /// The next step up or down of 0.1 0.2 0.5 1 2 5 10 20 50 100.
+  [[nodiscard]] PlayRate faster() const noexcept;
+  [[nodiscard]] PlayRate slower() const noexcept;
+  bool operator==(const PlayRate&) const = default;
+};
+
+/// Where a replay is, and when a recorded instant is due, Eqs. RC-12 and RC-13:
+///
+///   recorded = R0 + floor((now - N0) rate / 1000),   due = N0 + ceil((recorded - R0) 1000 / rate)
+///
+/// The anchor (N0, R0) moves only at a pause, a seek or a change of the rate, so errors of single
+/// releases never add up, and at most 1 ns is rounded at each such move.  Integers throughout.
+/// `now` is any steady clock of the caller's [ns].  Pure; one thread.
+class PlayClock {
+ public:
+  PlayClock(std::int64_t now_ns, std::int64_t recorded_ns, PlayRate rate) noexcept
+      : now0_ns_(now_ns), recorded0_ns_(recorded_ns), rate_(rate) {}
+
+  /// Recorded instant that is played now.
+  [[nodiscard]] std::int64_t recorded_at(std::int64_t now_ns) const noexcept;
+  /// When a recorded instant is due; nothing while paused.
+  [[nodiscard]] std::optional<std::int64_t> due(std::int64_t recorded_ns) const noexcept;
+
+  void pause(std::int64_t now_ns) noexcept;
+  void resume(std::int64_t now_ns) noexcept;
+  void seek(std::int64_t now_ns, std::int64_t recorded_ns) noexcept;
+  void set_rate(std::int64_t now_ns, PlayRate rate) noexcept;
+
+  [[nodiscard]] bool paused() const noexcept { return paused_; }
+  [[nodiscard]] PlayRate rate() const noexcept { return rate_; }
+
+ private:
+  std::int64_t now0_ns_;
+  std::int64_t recorded0_ns_;
+  PlayRate rate_;
+  bool paused_ = false;
+};
+
+}  // namespace stillhand::recording

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/core/topic_filter.hpp"
+
+#include <algorithm>
+
+namespace stillhand::recording {
+
+// The newest star takes one character more whenever what follows it does not match: linear in the
+// text for each star, and no recursion that a pattern of many stars could drive.
+bool matches_pattern(std::string_view pattern, std::string_view text) noexcept {
+  std::size_t p = 0;
+  std::size_t t = 0;
+  std::size_t star = std::string_view::npos;
+  std::size_t taken = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      taken = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p;
+      ++t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++taken;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+bool TopicFilter::wants(std::string_view topic) const noexcept {
+  const auto matches = [topic](const std::string& pattern) {
+    return matches_pattern(pattern, topic);
+  };
+  return (allow.empty() || std::ranges::any_of(allow, matches)) &&
+         std::ranges::none_of(block, matches);
+}
+
+}  // namespace stillhand::recording

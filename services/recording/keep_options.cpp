@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/keep_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+namespace stillhand::recording {
+namespace {
+
+// At most 1 s is lost on kill -9: the interval, one round of the writing thread (50 ms) and a
+// write to a disk that is not idle.
+constexpr int kLeastFlush_ms = 10;
+constexpr int kMostFlush_ms = 800;
+
+}  // namespace
+
+void add_keep_options(CLI::App& cli, KeepOptions& options) {
+  cli.add_option_function<std::string>(
+         "--compression",
+         [&options](const std::string& name) {
+           options.compression = *compression_of(name == "none" ? "" : name);
+         },
+         "of the chunks: zstd, lz4 or none [zstd]")
+      ->check(CLI::IsMember({"zstd", "lz4", "none"}));
+  cli.add_option_function<int>(
+         "--flush-ms",
+         [&options](int interval_ms) {
+           options.flush_interval = std::chrono::milliseconds(interval_ms);
+         },
+         "to the file at least that often [ms]; a kill loses no more than this and a write [500]")
+      ->check(CLI::Range(kLeastFlush_ms, kMostFlush_ms));
+  cli.add_flag_callback(
+      "--fsync", [&options] { options.durability = Durability::kPower; },
+      "wait for the disk after each chunk: a loss of power loses no more than a kill");
+}
+
+}  // namespace stillhand::recording

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/participant.hpp"
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <mutex>
+#include <set>
+
+#include "runtime/bus.hpp"
+#include "runtime/replay_mark.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::types::ReturnCode_t;
+namespace edds = eprosima::fastdds::dds;
+
+namespace {
+constexpr std::uint32_t kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
+}
+
+// The factory keeps profiles for the whole process and refuses a file it has already read.
+void load_profiles(const std::filesystem::path& file) {
+  static std::mutex mutex;
+  static std::set<std::string> loaded;
+  const std::lock_guard lock(mutex);
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError("QoS profiles", "no file " + file.string(), "the path of qos/profiles.xml");
+  }
+  const std::string path = std::filesystem::canonical(file).string();
+  if (loaded.count(path) != 0) return;
+  if (edds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(path) !=
+      ReturnCode_t::RETCODE_OK) {
+    throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
+                      "XML as in qos/profiles.xml");
+  }
+  loaded.insert(path);
+}
+
+ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,
+                            std::string_view name) {
+  return {profiles.string(), "no " + std::string(kind) + " profile",
+          "one named \"" + std::string(name) + "\""};
+}
+
+edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
+                                            std::uint32_t domain, const std::string& name,
+                                            bool marked,
+                                            edds::DomainParticipantListener* listener) {
+  if (domain > kMaxDomain) throw ConfigError("domain", std::to_string(domain), "0 to 232");
+  edds::Log::SetVerbosity(edds::Log::Kind::Error);
+  load_profiles(profiles);
+  auto* factory = edds::DomainParticipantFactory::get_instance();
+  edds::DomainParticipantQos qos;
+  if (factory->get_participant_qos_from_profile("stillhand_participant", qos) !=
+      ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(profiles, "participant", "stillhand_participant");
+  }
+  qos.name(name);
+  if (marked) qos.user_data().data_vec(replay_mark());
+  auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
+  if (participant == nullptr) {
+    throw BusError("Fast DDS opened no participant on domain " + std::to_string(domain) +
+                   ": are its UDP ports free and the addresses in " + profiles.string() +
+                   " those of this machine?");
+  }
+  return participant;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <filesystem>
+#include <string>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::runtime {
+
+/// Reads the profile file into the factory, once a process.  @throws ConfigError
+void load_profiles(const std::filesystem::path& file);
+
+/// A participant of the profile "stillhand_participant".  @param marked  it carries the replay's
+/// mark  @throws ConfigError for a bad domain or missing profile, BusError when DDS refuses.
+eprosima::fastdds::dds::DomainParticipant* create_participant(
+    const std::filesystem::path& profiles, std::uint32_t domain, const std::string& name,
+    bool marked, eprosima::fastdds::dds::DomainParticipantListener* listener);
+
+/// The error of a profile file that lacks one.
+ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,
+                            std::string_view name);
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <unistd.h>
+
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "runtime/bus.hpp"
+#include "runtime/stop.hpp"
+
+namespace stillhand::runtime {
+
+/// Bus options of a verb that stands outside of every session: a name of its own for each process,
+/// so that no session takes two of them for one service that is there twice.
+inline Bus::Options outsider(const std::string& verb, std::uint32_t domain,
+                             const std::filesystem::path& profiles, bool answers_replay) {
+  Bus::Options options;
+  options.service = verb + "-" + std::to_string(getpid());
+  options.domain = domain;
+  options.profiles = profiles;
+  options.answers_replay = answers_replay;
+  return options;
+}
+
+/// The side that obeys: takes commands, and says in its status which was answered and how.
+/// next(), answer() and tell() from one thread.
+template <typename Command, typename Status>
+class RemoteControl {
+ public:
+  RemoteControl(Bus::Options options, const topics::Topic& commands, const topics::Topic& statuses)
+      : bus_(std::move(options)), statuses_(bus_.publisher<Status>(statuses)) {
+    bus_.subscribe<Command>(commands, [this](const Command& command, const Arrival&) {
+      const std::lock_guard lock(mutex_);
+      waiting_.push_back(command);
+    });
+    bus_.start();
+  }
+  ~RemoteControl() { bus_.stop_receiving(); }
+  RemoteControl(const RemoteControl&) = delete;
+  RemoteControl& operator=(const RemoteControl&) = delete;
+
+  /// The oldest command that waits.
+  std::optional<Command> next() {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return std::nullopt;
+    Command command = waiting_.front();
+    waiting_.pop_front();
+    return command;
+  }
+  /// @param refusal  why the command was not obeyed; empty: it was
+  void answer(const Command& command, const std::string& refusal) {
+    answered_ = command.request();
+    refusal_ = refusal;
+  }
+  /// Somebody asked at least once.
+  [[nodiscard]] bool asked() const noexcept { return answered_ != 0; }
+  /// Publishes a status with the newest answer.
+  void tell(Status status) {
+    constexpr std::size_t kRoom = 99;  // string<100> in idl/recording.idl
+    status.answered(answered_);
+    status.accepted(refusal_.empty());
+    status.answer(refusal_.substr(0, kRoom));
+    statuses_.write(status);
+  }
+  /// The last word, told for half a second: the status is best effort, and who asked for the end
+  /// may not be matched with it yet.
+  void tell_last(const Status& status) {
+    constexpr int kTimes = 10;
+    constexpr std::int64_t kPause_ns = 50'000'000;
+    for (int i = 0; i < kTimes; ++i) {
+      tell(status);
+      sleep_until_ns(monotonic_ns() + kPause_ns);
+    }
+  }
+  [[nodiscard]] const std::string& name() const noexcept { return bus_.options().service; }
+
+ private:
+  Bus bus_;
+  Publisher<Status> statuses_;
+  std::mutex mutex_;
+  std::deque<Command> waiting_;
+  std::uint64_t answered_ = 0;
+  std::string refusal_;
+};
+
+/// The side that asks: sends one command, waits for its answer at most `limit_ns`.
+/// @returns the status that answered, nothing when nobody did
+template <typename Command, typename Status>
+std::optional<Status> ask(const Bus::Options& options, const topics::Topic& commands,
+                          const topics::Topic& statuses, Command command, std::int64_t limit_ns,
+                          const Stop& stop) {
+  Bus bus(options);
+  std::mutex mutex;
+  std::optional<Status> answer;
+  const auto request = static_cast<std::uint64_t>(monotonic_ns());
+  command.request(request);
+  Publisher<Command> publisher = bus.publisher<Command>(commands);
+  bus.subscribe<Status>(statuses, [&](const Status& status, const Arrival&) {
+    const std::lock_guard lock(mutex);
+    if (status.answered() == request && !answer) answer = status;
+  });
+  bus.start();
+  publisher.write(command);  // latched: whoever matches later gets it too
+  const std::int64_t end_ns = monotonic_ns() + limit_ns;
+  constexpr std::int64_t kPoll_ns = 10'000'000;
+  while (monotonic_ns() < end_ns && !stop.requested()) {
+    {
+      const std::lock_guard lock(mutex);
+      if (answer) break;
+    }
+    sleep_until_ns(monotonic_ns() + kPoll_ns);
+  }
+  bus.stop_receiving();
+  return answer;
+}
+
+}  // namespace stillhand::runtime

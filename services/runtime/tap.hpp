@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/writer_qos.hpp"
+
+namespace stillhand::runtime {
+
+/// A writer that was found on the bus.
+struct FoundWriter {
+  std::string topic;
+  std::string type;         ///< DDS type name
+  std::string participant;  ///< its name; "" while DDS has not told it
+  std::string id;           ///< GUID as text
+  std::string profile;      ///< QoS profile of a topic of the catalogue, or ""
+  WriterQos qos;
+  bool replayed = false;    ///< it carries the replay's mark
+  bool type_known = false;  ///< idl/ defines its type
+  bool wanted = false;      ///< Options::wanted said so
+  bool present = true;      ///< it has not left yet
+};
+
+/// One sample as it came.
+struct TappedSample {
+  std::size_t writer;                ///< index into writers()
+  std::int64_t sequence;             ///< RTPS sequence number of that writer
+  std::int64_t source_ns;            ///< [ns] system clock of the writer's host, as DDS stamped it
+  std::int64_t logged_ns;            ///< [ns] system clock of this host
+  std::span<const std::byte> bytes;  ///< CDR with encapsulation header, valid during the call
+};
+
+/// Listens to a domain from outside of any session: no status, no life sign, nothing that a session
+/// waits for.  Readers are made for each wanted topic as its writers are found, one for each
+/// combination of reliability and durability, so that every writer matches and none is read twice.
+///
+/// on_sample() runs in DDS's receiving thread, one call at a time for each reader; writers() is for
+/// any thread.  Endpoint errors after the start are in trouble().
+class Tap {
+ public:
+  struct Options {
+    std::string name;                ///< of the participant
+    std::uint32_t domain = 0;        ///< DDS domain, 0 to 232
+    std::filesystem::path profiles;  ///< qos/profiles.xml
+    std::function<bool(const std::string& topic)> wanted;
+    std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
+  };
+
+  /// @throws ConfigError for a bad domain or profile file; BusError when DDS refuses.
+  explicit Tap(Options options);
+  ~Tap();
+  Tap(const Tap&) = delete;
+  Tap& operator=(const Tap&) = delete;
+
+  /// No on_sample() runs after this returns.
+  void stop();
+  /// Every writer found so far, in the order of finding; those that left stay.
+  [[nodiscard]] std::vector<FoundWriter> writers() const;
+  /// What could not be subscribed to, and why; one line each.
+  [[nodiscard]] std::vector<std::string> trouble() const;
+  /// Samples of writers that DDS never announced; 0 unless DDS is at fault.
+  [[nodiscard]] std::uint64_t unattributed() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// bus_load DOMAIN RATE SECONDS [PATTERN]: messages of one 1 kHz type on ten topics "load/0" to
+// "load/9", RATE a second in all, evenly, then prints how many were sent and how big they are.
+// bus_load --write FILE RATE SECONDS: the same messages as a recording instead, for a replay.
+// bus_load --span FILE: nanoseconds from a recording's first message to its last.
+// Used by record_rate.py and replay_timing.py.
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <thread>
+
+#include "contract/config_error.hpp"
+#include "idl/control_loop.h"
+#include "idl/idl_text.hpp"
+#include "recording/core/mcap_reader.hpp"
+#include "recording/core/mcap_writer.hpp"
+#include "recording/file_io.hpp"
+#include "recording/qos_texts.hpp"
+#include "runtime/bus.hpp"
+#include "runtime/real_time.hpp"
+#include "support/idl_fields.hpp"
+
+namespace {
+
+using namespace stillhand;  // NOLINT(google-build-using-namespace): a program of one file
+using Message = stillhand_msgs::RigTruth;
+
+constexpr std::size_t kTopics = 10;
+constexpr std::int64_t kSlot_ns = 200'000;  // what is due in a slot is sent at its beginning
+constexpr const char* kType = "stillhand_msgs::RigTruth";
+
+std::size_t message_bytes() { return tests::cdr_of(Message{}).size() + 4; }
+
+int write_file(const std::string& path, std::int64_t rate, std::int64_t seconds) {
+  recording::FileSink file(path);
+  recording::McapWriter writer(file);
+  const auto schema = writer.add_schema(kType, recording::kSchemaEncoding, topics::idl_of(kType));
+  std::array<recording::ChannelId, kTopics> channels{};
+  for (std::size_t i = 0; i < kTopics; ++i) {
+    runtime::WriterQos qos;
+    qos.depth = 16;
+    channels[i] = writer.add_channel("load/" + std::to_string(i), schema,
+                                     recording::kMessageEncoding, recording::qos_texts(qos));
+  }
+  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  Message message;
+  message.rig(1);
+  for (std::int64_t n = 0; n < rate * seconds; ++n) {
+    message.tick(n / static_cast<std::int64_t>(kTopics));
+    bytes.resize(4);
+    for (const char c : tests::cdr_of(message)) bytes.push_back(static_cast<std::byte>(c));
+    const auto at_ns = static_cast<std::uint64_t>(n * runtime::kNsPerSecond / rate);
+    const recording::Status status =
+        writer.write(channels[static_cast<std::size_t>(n) % kTopics], static_cast<std::uint32_t>(n),
+                     at_ns, at_ns, bytes);
+    if (!status.ok()) throw std::runtime_error(status.text);
+  }
+  if (const auto status = writer.close(); !status.ok()) throw std::runtime_error(status.text);
+  return 0;
+}
+
+int publish(std::uint32_t domain, std::int64_t rate, std::int64_t seconds,
+            const std::string& pattern) {
+  static std::array<std::string, kTopics> names;
+  std::vector<topics::Topic> rows;
+  for (std::size_t i = 0; i < kTopics; ++i) {
+    names[i] = "load/" + std::to_string(i);
+    rows.push_back({names[i],
+                    kType,
+                    pattern == "event" ? topics::Pattern::kEvent : topics::Pattern::kStream1khz,
+                    0.0,
+                    {},
+                    {}});
+  }
+  runtime::Bus::Options options;
+  options.service = "load";
+  options.domain = domain;
+  options.profiles = STILLHAND_SOURCE "/qos/profiles.xml";
+  runtime::become_real_time();  // as the recorder: where both want a core, neither starves
+  runtime::Bus bus(options);
+  std::vector<runtime::Publisher<Message>> publishers;
+  for (const topics::Topic& row : rows) publishers.push_back(bus.publisher<Message>(row));
+  bus.start();
+  for (bool all = false; !all; std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
+    all = true;
+    for (const auto& report : bus.report()) all = all && report.matched > 0;
+  }
+  Message message;
+  const std::int64_t begin_ns = runtime::monotonic_ns();
+  std::int64_t worst_ns = 0;
+  for (std::int64_t n = 0; n < rate * seconds;) {
+    const std::int64_t slot_ns =
+        begin_ns + (n * runtime::kNsPerSecond / rate) / kSlot_ns * kSlot_ns;
+    runtime::sleep_until_ns(slot_ns);
+    worst_ns = std::max(worst_ns, runtime::monotonic_ns() - slot_ns);
+    for (; n < rate * seconds && n * runtime::kNsPerSecond / rate < slot_ns + kSlot_ns - begin_ns;
+         ++n) {
+      message.tick(n / static_cast<std::int64_t>(kTopics));
+      publishers[static_cast<std::size_t>(n) % kTopics].write(message);
+    }
+  }
+  const double took_s =
+      static_cast<double>(runtime::monotonic_ns() - begin_ns) / static_cast<double>(1e9);
+  std::cout << "sent " << rate * seconds << " messages of " << message_bytes() << " bytes in "
+            << took_s << " s, " << static_cast<double>(rate * seconds) / took_s
+            << " a second, worst slot late by " << worst_ns / 1000 << " us" << std::endl;
+  // What is on its way arrives before the writers leave.
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.size() == 4 && words[0] == "--write") {
+      return write_file(words[1], std::stoll(words[2]), std::stoll(words[3]));
+    }
+    if (words.size() == 2 && words[0] == "--span") {
+      recording::FileSource file(words[1]);
+      const recording::McapReader reader(file);
+      std::cout << reader.statistics().end_time_ns - reader.statistics().start_time_ns << '\n';
+      return reader.indexed() ? 0 : 1;
+    }
+    if (words.size() < 3) {
+      std::cerr << "bus_load: want DOMAIN RATE SECONDS [PATTERN], or --write FILE RATE SECONDS\n";
+      return 2;
+    }
+    return publish(static_cast<std::uint32_t>(std::stoul(words[0])), std::stoll(words[1]),
+                   std::stoll(words[2]), words.size() > 3 ? words[3] : "");
+  } catch (const std::exception& error) {
+    std::cerr << "bus_load: " << error.what() << '\n';
+    return 1;
+  }
+}

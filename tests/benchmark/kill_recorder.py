@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Kills a recorder with SIGKILL at random moments while it records 4000 messages a second.
+
+Usage: STILLHAND_BUILD=build python3 tests/benchmark/kill_recorder.py [--kills 200] [--seed 1] [--domain 214]
+
+Every file must open, say that it was cut off, lose at most 1 s of messages, and come out whole of `stillhand recover`.
+What was published is known by the tick: tick n goes onto the bus n ms after the publisher's start.
+"""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
+RECORDER = BUILD / "bin" / "stillhand-recorder"
+PUBLISH = BUILD / "tests" / "publish_samples"
+TOPICS = ("raw_sample", "rig_truth", "sensed", "motor_command")
+CTEST_SKIPPED = 77
+LOST_LIMIT_S = 1.0
+START_LIMIT_S = 15.0
+# Behind the first chunk: several flush intervals, so that every phase of one is hit.
+LATEST_KILL_S = 1.5
+
+
+class Broken(Exception):
+    pass
+
+
+def run(*words):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+
+
+def wait_for(what, condition, process):
+    limit = time.monotonic() + START_LIMIT_S
+    while not condition():
+        if process.poll() is not None:
+            raise Broken(f"the recorder ended with status {process.returncode} before {what}")
+        if time.monotonic() > limit:
+            raise Broken(f"no {what} within {START_LIMIT_S} s")
+        time.sleep(0.005)
+
+
+def size_of(file):
+    return file.stat().st_size if file.exists() else 0
+
+
+def record_and_kill(file, domain, when_s, in_start_up):
+    """Returns the monotonic time of the kill [s]."""
+    recorder = subprocess.Popen([str(RECORDER), "--domain", str(domain), "--profiles", str(SOURCE / "qos/profiles.xml"),
+                                 "--config", str(SOURCE / "deploy/config"), "--out", str(file)],
+                                stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        wait_for("file", file.exists, recorder)
+        if not in_start_up:
+            empty = size_of(file)
+            wait_for("chunk", lambda: size_of(file) > max(empty, 4096), recorder)
+        time.sleep(when_s)
+        return time.monotonic()
+    finally:
+        recorder.send_signal(signal.SIGKILL)
+        recorder.wait()
+
+
+def newest_ticks(file, folder):
+    """{topic: (first tick, last tick, messages)} of the tables of a recording."""
+    exported = run(STILLHAND, "export", file, "--csv", folder)
+    if exported.returncode != 0:
+        raise Broken("export: " + exported.stderr)
+    found = {}
+    for topic in TOPICS:
+        with open(folder / f"stillhand_{topic}.csv", encoding="utf-8") as table:
+            ticks = [int(row["tick [-]"]) for row in csv.DictReader(table)]
+        if ticks:
+            found[topic] = (ticks[0], ticks[-1], len(ticks))
+    return found
+
+
+def check(file, folder, killed_s, start_s):
+    """(messages read, messages lost, seconds lost); nothing to lose in a file without a chunk: 0, 0, None."""
+    told = run(STILLHAND, "info", file, "--json", folder / "info.json")
+    if told.returncode != 0:
+        raise Broken(f"info: status {told.returncode}: {told.stderr}")
+    info = json.loads((folder / "info.json").read_text())
+    if run(STILLHAND, "verify", file).returncode != 1 or "as after a crash" not in told.stderr:
+        raise Broken("a file that was cut off is not said to be: " + told.stderr)
+    whole = folder / "whole.mcap"
+    if run(STILLHAND, "recover", file, "--out", whole).returncode != 0 or run(STILLHAND, "verify", whole).returncode != 0:
+        raise Broken("recover gives no whole file")
+    if info["messages"] == 0:
+        return 0, 0, None
+    sent_tick = int((killed_s - start_s) * 1000)
+    found = newest_ticks(file, folder / "tables")
+    if not found:
+        return info["messages"], 0, None
+    lost = sum(max(sent_tick - last, 0) for _, last, _ in found.values())
+    return info["messages"], lost, max((sent_tick - last) / 1000.0 for _, last, _ in found.values())
+
+
+def summary(lost_s, lost, messages, kills, empty):
+    ordered = sorted(lost_s)
+    middle, most = (ordered[len(ordered) // 2], ordered[-1]) if ordered else (0.0, 0.0)
+    return (f"{kills} kills: every file opened; {empty} of them before a first message was in the file; "
+            f"{messages} messages read, {lost} lost (at the end of each file); "
+            f"lost time median {middle:.3f} s, most {most:.3f} s")
+
+
+def main():
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("--kills", type=int, default=200)
+    words.add_argument("--seed", type=int, default=1)
+    words.add_argument("--domain", type=int, default=214)
+    words = words.parse_args()
+    missing = [str(path) for path in (STILLHAND, RECORDER, PUBLISH) if not path.is_file()]
+    if missing:
+        print("skipped, not built:", ", ".join(missing))
+        return CTEST_SKIPPED
+    chance = random.Random(words.seed)
+    publisher = subprocess.Popen([str(PUBLISH), "--domain", str(words.domain)], stdout=subprocess.PIPE, text=True)
+    lost_s, lost, messages, empty = [], 0, 0, 0
+    try:
+        start_s = int(publisher.stdout.readline()) * 1e-9
+        for kill in range(words.kills):
+            with tempfile.TemporaryDirectory(prefix="stillhand-") as folder:
+                folder = pathlib.Path(folder)
+                file = folder / "a.mcap"
+                in_start_up = kill % 5 == 4
+                when_s = chance.uniform(0.0, LATEST_KILL_S)
+                try:
+                    killed_s = record_and_kill(file, words.domain, when_s, in_start_up)
+                    read, gone, gone_s = check(file, folder, killed_s, start_s)
+                    if gone_s is not None and gone_s > LOST_LIMIT_S:
+                        raise Broken(f"{gone_s:.3f} s lost")
+                except Broken as error:
+                    print(f"kill {kill} ({when_s:.3f} s behind the {'file' if in_start_up else 'first chunk'}): {error}")
+                    return 1
+                messages, lost = messages + read, lost + gone
+                empty += gone_s is None
+                lost_s += [] if gone_s is None else [gone_s]
+    finally:
+        publisher.terminate()
+        publisher.wait()
+    print(summary(lost_s, lost, messages, words.kills, empty))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A recorder on a disk of 20 MB that fills up: it says so and ends, the file is readable and holds what came before.
+
+The disk is a tmpfs in a mount namespace of this test's own (unshare); skipped where the system allows none.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
+RECORDER = BUILD / "bin" / "stillhand-recorder"
+PUBLISH = BUILD / "tests" / "publish_samples"
+CTEST_SKIPPED = 77
+DISK_BYTES = 20_000_000
+FILLED_BYTES = 19_000_000  # before it begins: 1 MB is full after 3 s of 4 unpacked topics at 1 kHz
+END_LIMIT_S = 60.0
+INSIDE = "STILLHAND_FULL_DISK"  # set inside the namespace: the mount point
+
+
+def run(*words):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+
+
+class FullDiskTest(unittest.TestCase):
+    def setUp(self):
+        self.disk = pathlib.Path(os.environ[INSIDE])
+        (self.disk / "other").write_bytes(bytes(FILLED_BYTES))
+        self.domain = 214 - os.getpid() % 4
+        self.publisher = subprocess.Popen([str(PUBLISH), "--domain", str(self.domain)], stdout=subprocess.PIPE)
+        self.addCleanup(self.end_publisher)
+
+    def end_publisher(self):
+        self.publisher.terminate()
+        self.publisher.wait()
+        self.publisher.stdout.close()
+
+    def test_a_full_disk_is_announced_and_the_file_is_readable(self):
+        file = self.disk / "a.mcap"
+        recorder = subprocess.Popen(
+            [str(RECORDER), "--domain", str(self.domain), "--profiles", str(SOURCE / "qos/profiles.xml"), "--config",
+             str(SOURCE / "deploy/config"), "--out", str(file), "--compression", "none"],
+            stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            errors = recorder.communicate(timeout=END_LIMIT_S)[1]
+        finally:
+            recorder.kill()
+        self.assertEqual(recorder.returncode, 1, errors)
+        lines = errors.splitlines()
+        self.assertEqual(len(lines), 1, errors)
+        self.assertIn("a.mcap", lines[0])
+        self.assertIn("No space left on device", lines[0])
+
+        out = self.disk.parent / "out"
+        out.mkdir()
+        told = run(STILLHAND, "info", file, "--json", out / "info.json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        info = json.loads((out / "info.json").read_text())
+        self.assertGreater(info["messages"], 4000)
+        # All of it but the chunk that did not fit.
+        self.assertLess(info["lost_bytes"], 400_000)
+        self.assertIn("cut off", told.stderr)
+        # A copy finds no room beside it, and the old file stays.
+        there = run(STILLHAND, "recover", file)
+        self.assertEqual(there.returncode, 1, there.stderr)
+        self.assertIn("No space left on device", there.stderr)
+        self.assertEqual(sorted(path.name for path in self.disk.iterdir()), ["a.mcap", "other"])
+        elsewhere = run(STILLHAND, "recover", file, "--out", out / "whole.mcap")
+        self.assertEqual(elsewhere.returncode, 0, elsewhere.stderr)
+        self.assertEqual(run(STILLHAND, "verify", out / "whole.mcap").returncode, 0)
+        (self.disk / "other").unlink()
+        self.assertEqual(run(STILLHAND, "recover", file).returncode, 0)
+        self.assertEqual(run(STILLHAND, "verify", file).returncode, 0)
+
+
+def enter_namespace():
+    """Runs this script again with a disk of its own; returns its status."""
+    with tempfile.TemporaryDirectory(prefix="stillhand-") as folder:
+        disk = pathlib.Path(folder) / "disk"
+        disk.mkdir()
+        mount = ["mount", "-t", "tmpfs", "-o", f"size={DISK_BYTES}", "tmpfs", str(disk)]
+        # With a user namespace of its own where it is allowed, else as root.
+        for flags in (["-rm"], ["-m"]):
+            if run("unshare", *flags, *mount).returncode == 0:
+                script = '"$@" && exec "$PYTHON" "$SCRIPT" --verbose'
+                environment = {**os.environ, INSIDE: str(disk), "PYTHON": sys.executable, "SCRIPT": __file__}
+                return subprocess.run(["unshare", *flags, "sh", "-c", script, "sh", *mount], env=environment,
+                                      check=False).returncode
+    print("skipped: no mount namespace (unshare -rm) on this system")
+    return CTEST_SKIPPED
+
+
+if __name__ == "__main__":
+    missing = [str(path) for path in (STILLHAND, RECORDER, PUBLISH) if not path.is_file()]
+    if missing:
+        print("skipped, not built:", ", ".join(missing))
+        sys.exit(CTEST_SKIPPED)
+    if INSIDE in os.environ:
+        unittest.main()
+    sys.exit(enter_namespace())

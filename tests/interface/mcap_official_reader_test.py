@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings as others read them: the MCAP project's own reader, Foxglove's IDL parser and deserialiser.
+
+Installs the npm packages, as their lock file says, into the build tree; status 77 (skipped) when Node.js, npm or the
+packages are not to be had. Reads a live session's recording (fixture lab_run) and one file of each compression.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
+SCRIPTS = pathlib.Path(__file__).resolve().parent / "mcap_official_reader"
+INSTALLED = BUILD / "tests" / "mcap_official_reader"
+STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
+WRITE_SAMPLE = BUILD / "tests" / "write_sample_recording"
+RECORDING = pathlib.Path(os.environ.get("STILLHAND_RECORDING", BUILD / "tests" / "lab_run" / "session.mcap"))
+CTEST_SKIPPED = 77
+INSTALL_LIMIT_S = 120
+
+
+def skip(why):
+    print("skipped:", why)
+    sys.exit(CTEST_SKIPPED)
+
+
+def install():
+    for program in ("node", "npm"):
+        if shutil.which(program) is None:
+            skip(f"{program} is not installed")
+    INSTALLED.mkdir(parents=True, exist_ok=True)
+    for script in SCRIPTS.iterdir():
+        if script.is_file():
+            shutil.copy(script, INSTALLED)
+    lock = (SCRIPTS / "package-lock.json").read_text()
+    mark = INSTALLED / "node_modules" / "installed-lock.json"
+    if mark.is_file() and mark.read_text() == lock:
+        return
+    try:
+        installed = subprocess.run(["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund"], cwd=INSTALLED,
+                                   capture_output=True, text=True, timeout=INSTALL_LIMIT_S, check=False)
+    except subprocess.TimeoutExpired:
+        skip(f"npm did not install the packages within {INSTALL_LIMIT_S} s")
+    if installed.returncode != 0:
+        skip("npm cannot install the packages: " + (installed.stderr.strip().splitlines() or ["?"])[-1])
+    mark.write_text(lock)
+
+
+def run(*words):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+
+
+def node(script, *words):
+    return run("node", INSTALLED / script, *words)
+
+
+class OfficialReaderTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def info(self, file):
+        told = run(STILLHAND, "info", file, "--json", self.folder / "info.json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        return json.loads((self.folder / "info.json").read_text())
+
+    def assert_same_counts(self, file):
+        """Their reader by index and as a stream, every checksum validated; ours."""
+        theirs = node("read_recording.mjs", file)
+        self.assertEqual(theirs.returncode, 0, theirs.stderr)
+        theirs = json.loads(theirs.stdout)
+        ours = self.info(file)
+        self.assertEqual(theirs["messages"], ours["messages"])
+        self.assertEqual({name: topic["messages"] for name, topic in theirs["topics"].items()},
+                         {topic["topic"]: topic["messages"] for topic in ours["topics"] if topic["messages"]})
+        self.assertEqual(theirs["statistics"]["start_ns"], str(ours["start_ns"]))
+        self.assertEqual(theirs["statistics"]["end_ns"], str(ours["end_ns"]))
+        if "data_crc_computed" in theirs:
+            self.assertEqual(theirs["data_crc_computed"], theirs["data_crc_in_file"])
+        return ours, theirs
+
+    def export(self, file):
+        tables = self.folder / "tables"
+        exported = run(STILLHAND, "export", file, "--csv", tables)
+        self.assertEqual((exported.returncode, exported.stderr), (0, ""))
+        return tables
+
+    def test_every_message_of_a_live_recording_has_the_same_values(self):
+        ours, _ = self.assert_same_counts(RECORDING)
+        self.assertGreater(ours["messages"], 10_000)
+        compared = node("compare_values.mjs", RECORDING, self.export(RECORDING))
+        self.assertEqual(compared.returncode, 0, compared.stderr)
+        found = json.loads(compared.stdout)
+        self.assertEqual(found["messages"], ours["messages"])
+        print(f"{found['messages']} messages, {found['values']} values are the same")
+
+    def test_one_wrong_digit_would_be_noticed(self):
+        tables = self.export(RECORDING)
+        sensed = tables / "stillhand_sensed.csv"
+        lines = sensed.read_text().split("\n")
+        cells = lines[1000].split(",")
+        cells[9] = cells[9][:-1] + ("1" if cells[9][-1] != "1" else "2")
+        lines[1000] = ",".join(cells)
+        sensed.write_text("\n".join(lines))
+        compared = node("compare_values.mjs", RECORDING, tables)
+        self.assertEqual(compared.returncode, 1)
+        self.assertIn("stillhand/sensed, message 1000: accel_y_m_s2", compared.stderr)
+
+    def test_every_compression_is_read(self):
+        for compression in ("none", "lz4", "zstd"):
+            with self.subTest(compression):
+                file = self.folder / f"{compression}.mcap"
+                self.assertEqual(run(WRITE_SAMPLE, file, compression).returncode, 0)
+                ours, theirs = self.assert_same_counts(file)
+                self.assertEqual(ours["compression"], [compression])
+                self.assertEqual(theirs["compression"], ["" if compression == "none" else compression])
+                self.assertEqual(ours["messages"], 20_000)
+
+    def test_a_recovered_recording_is_read(self):
+        whole = RECORDING.read_bytes()
+        cut, mended = self.folder / "cut.mcap", self.folder / "mended.mcap"
+        cut.write_bytes(whole[:len(whole) // 2])
+        recovered = run(STILLHAND, "recover", cut, "--out", mended)
+        self.assertEqual(recovered.returncode, 0, recovered.stderr)
+        ours, _ = self.assert_same_counts(mended)
+        self.assertEqual(ours["messages"], self.info(cut)["messages"])
+        compared = node("compare_values.mjs", mended, self.export(mended))
+        self.assertEqual(compared.returncode, 0, compared.stderr)
+
+
+if __name__ == "__main__":
+    missing = [str(path) for path in (STILLHAND, WRITE_SAMPLE, RECORDING) if not path.is_file()]
+    if missing:
+        skip("not there: " + ", ".join(missing))
+    install()
+    unittest.main()

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/core/event_window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace stillhand::recording {
+namespace {
+
+/// Messages at the given times, each of `size` bytes.
+MessageBatch batch(const std::vector<std::uint64_t>& times_ns, std::size_t size = 1) {
+  MessageBatch made;
+  const std::vector<std::byte> bytes(size);
+  for (const std::uint64_t at_ns : times_ns) made.add({0, 0, at_ns, at_ns, 0, 0}, bytes);
+  return made;
+}
+
+std::vector<std::uint64_t> times_of(EventWindow& sut) {
+  std::vector<std::uint64_t> times;
+  for (const MessageBatch& each : sut.take()) {
+    for (const HeldMessage& message : each.messages) times.push_back(message.log_time_ns);
+  }
+  return times;
+}
+
+TEST(EventWindowTest, ItHoldsTheLastStretchAndForgetsWhatIsOlder) {
+  EventWindow sut(100, 1000);
+  for (std::uint64_t at_ns = 0; at_ns <= 500; at_ns += 50) sut.add(batch({at_ns}));
+  EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{400, 450, 500}));
+  EXPECT_EQ(sut.crowded_out(), 0u);
+}
+
+TEST(EventWindowTest, ABatchStaysWhileItsNewestMessageIsYoungEnough) {
+  EventWindow sut(100, 1000);
+  sut.add(batch({0, 90}));
+  sut.add(batch({190}));
+  EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{0, 90, 190}));
+}
+
+TEST(EventWindowTest, WhatWasTakenIsNotThereAgain) {
+  EventWindow sut(100, 1000);
+  sut.add(batch({1, 2, 3}));
+  EXPECT_EQ(sut.held_messages(), 3u);
+  EXPECT_EQ(times_of(sut).size(), 3u);
+  EXPECT_EQ(sut.held_messages(), 0u);
+  EXPECT_TRUE(times_of(sut).empty());
+  sut.add(batch({4}));
+  EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{4}));
+}
+
+TEST(EventWindowTest, WhatHasNoRoomLeavesAndIsCounted) {
+  EventWindow sut(1000, 25);
+  for (std::uint64_t at_ns = 1; at_ns <= 4; ++at_ns) sut.add(batch({at_ns}, 10));
+  EXPECT_EQ(sut.crowded_out(), 2u);
+  EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{3, 4}));
+}
+
+}  // namespace
+}  // namespace stillhand::recording

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/core/omgidl.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::recording {
+namespace {
+
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::Pair;
+using testing::ThrowsMessage;
+
+const IdlType& type_of(const IdlSchema& schema, const IdlStruct& of, std::size_t member) {
+  return schema.types.at(of.members.at(member).type);
+}
+
+TEST(IdlSchemaTest, MembersHaveTheirKindsAndUnits) {
+  const IdlSchema sut = parse_idl(R"(
+module lab {
+  // stream, 1 kHz [not a unit: no member stands on this line]
+  struct Sensed {
+    @key unsigned long rig;   // [-] number
+    long long tick;           // the sample [1] of the clock
+    double accel_m_s2;        // [m/s^2] lateral
+    double x, y;              /* [m] both */
+    @unit("rad") float angle; // [degrees] the annotation is believed
+    boolean on; octet raw; char letter; short a; unsigned short b; uint8 c; int8 d; int64 e;
+    string<32> name;
+  };
+};
+)",
+                                  "F");
+  const IdlStruct* sensed = sut.find("lab::Sensed");
+  ASSERT_NE(sensed, nullptr);
+  EXPECT_EQ(sensed, sut.find("lab/Sensed"));
+  EXPECT_EQ(sut.find("Sensed"), nullptr);
+  std::vector<std::pair<std::string, std::string>> units;
+  for (std::size_t i = 0; i < 6; ++i) {
+    units.emplace_back(sensed->members[i].name, sensed->members[i].unit);
+  }
+  EXPECT_THAT(units, ElementsAre(Pair("rig", "-"), Pair("tick", ""), Pair("accel_m_s2", "m/s^2"),
+                                 Pair("x", "m"), Pair("y", "m"), Pair("angle", "rad")));
+  EXPECT_TRUE(sensed->members[0].key);
+  EXPECT_FALSE(sensed->members[1].key);
+  std::vector<IdlKind> kinds;
+  for (std::size_t i = 0; i < sensed->members.size(); ++i) {
+    kinds.push_back(type_of(sut, *sensed, i).kind);
+  }
+  using enum IdlKind;
+  EXPECT_THAT(kinds, ElementsAre(kUint32, kInt64, kFloat64, kFloat64, kFloat64, kFloat32, kBoolean,
+                                 kOctet, kChar, kInt16, kUint16, kOctet, kInt8, kInt64, kString));
+}
+
+TEST(IdlSchemaTest, EnumsArraysSequencesTypedefsAndConstantsAreResolved) {
+  const IdlSchema sut = parse_idl(R"(
+#include "other.idl"
+const long kAxes = 3;
+const string kName = "a; text };";
+const double kPi = 3.14159;
+module a {
+  enum Phase { IDLE, @value(4) PEGGED, TRACKING };
+  typedef double Vector[kAxes];
+  typedef sequence<Vector, 2 * (kAxes + 1)> Path;
+  module b { struct Inner { Phase phase; Vector force; }; };
+  struct Outer : b::Inner { Path path; ::a::b::Inner nested; long grid[2][0x3]; sequence<string> names; };
+};
+)",
+                                  "F");
+  ASSERT_EQ(sut.enums.size(), 1u);
+  EXPECT_THAT(sut.enums[0].values,
+              ElementsAre(Pair(0, "IDLE"), Pair(4, "PEGGED"), Pair(5, "TRACKING")));
+  const IdlStruct* outer = sut.find("a::Outer");
+  ASSERT_NE(outer, nullptr);
+  EXPECT_THAT(outer->members,
+              ElementsAre(Field(&IdlMember::name, "phase"), Field(&IdlMember::name, "force"),
+                          Field(&IdlMember::name, "path"), Field(&IdlMember::name, "nested"),
+                          Field(&IdlMember::name, "grid"), Field(&IdlMember::name, "names")));
+  EXPECT_EQ(type_of(sut, *outer, 1).length, 3u);
+  const IdlType& path = type_of(sut, *outer, 2);
+  EXPECT_EQ(path.kind, IdlKind::kSequence);
+  EXPECT_EQ(sut.types[path.of].kind, IdlKind::kArray);
+  const IdlType& grid = type_of(sut, *outer, 4);
+  EXPECT_EQ(grid.length, 2u);
+  EXPECT_EQ(sut.types[grid.of].length, 3u);
+}
+
+TEST(IdlSchemaTest, WhatIsNotDecodedIsReadOverUntilItIsNeeded) {
+  const IdlSchema sut = parse_idl(R"(
+@annotation mine { string text default "x"; };
+union Either switch (long) { case 1: double x; default: string y; };
+bitmask Bits { @position(0) A, B };
+struct Later;
+struct Plain { double x; };
+@mutable struct Grown { @optional double y; Either either; map<long, string> m; wstring w; };
+)",
+                                  "F");
+  ASSERT_NE(sut.find("Plain"), nullptr);
+  const IdlStruct* grown = sut.find("Grown");
+  ASSERT_NE(grown, nullptr);
+  EXPECT_TRUE(grown->is_mutable);
+  EXPECT_TRUE(grown->members[0].optional);
+  for (const std::size_t i : {1u, 2u, 3u}) {
+    EXPECT_EQ(type_of(sut, *grown, i).kind, IdlKind::kUnsupported) << i;
+  }
+  EXPECT_EQ(type_of(sut, *grown, 1).name, "union Either");
+}
+
+TEST(IdlSchemaTest, MistakesAreNamedWithLineAndColumn) {
+  const auto mistake = [](const char* text, const char* words) {
+    EXPECT_THAT([&] { (void)parse_idl(text, "F.mcap, schema 3"); },
+                ThrowsMessage<ConfigError>(HasSubstr(words)))
+        << text;
+  };
+  mistake("struct A {\n  doubble x;\n};",
+          "F.mcap, schema 3, IDL line 2:3: got 'doubble', want a type");
+  mistake("struct A { double x; }", "got the end of the text, want ;");
+  mistake("struct A { double x[0]; };", "a length of at least 1");
+  mistake("struct A { double x[9999999999]; };", "want a number of at most 32 bits");
+  mistake("struct A { A again; };", "got 'A', want a type that is defined before");
+  mistake("message Foo {}", "got 'message', want module, struct");
+  mistake("module m { struct A { double x; };", "got the end of the text, want }");
+  mistake("struct A { double 3x; };", "want a name");
+  mistake("\x01\xff", "want");
+}
+
+// Whatever bytes a file holds: an answer or an error, no crash and no endless loop.
+TEST(IdlSchemaTest, CutAndChangedTextsEndInAnAnswerOrAnError) {
+  const std::string whole =
+      "module a { /* [m] */ enum E { @value(3) A, B }; const long n = 2*(3+1); // [s]\n"
+      "@final struct S { @key long x[n]; sequence<E, 3> y; string<n> z; }; union U { }; };";
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    for (const char c : {'\0', '{', '(', '@', '"', ':', '<', '[', '*', '9'}) {
+      std::string text = whole;
+      text[length] = c;
+      for (const std::string& candidate : {whole.substr(0, length) + c, text}) {
+        try {
+          (void)parse_idl(candidate, "F");
+        } catch (const ConfigError&) {
+        }
+      }
+    }
+  }
+  EXPECT_THAT(
+      [] {
+        (void)parse_idl(
+            "struct A { " +
+                [] {
+                  std::string nested;
+                  for (int i = 0; i < 100'000; ++i) nested += "sequence<";
+                  return nested;
+                }(),
+            "F");
+      },
+      ThrowsMessage<ConfigError>(HasSubstr("fewer types in each other")));
+}
+
+}  // namespace
+}  // namespace stillhand::recording

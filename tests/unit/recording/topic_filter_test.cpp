@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/core/topic_filter.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stillhand::recording {
+namespace {
+
+TEST(TopicFilterTest, PatternsMatchWhatTheySay) {
+  EXPECT_TRUE(matches_pattern("stillhand/sensed", "stillhand/sensed"));
+  EXPECT_FALSE(matches_pattern("stillhand/sensed", "stillhand/sensed2"));
+  EXPECT_FALSE(matches_pattern("stillhand/sensed", "stillhand/sense"));
+  EXPECT_TRUE(matches_pattern("*", ""));
+  EXPECT_TRUE(matches_pattern("*", "a/b"));
+  EXPECT_TRUE(matches_pattern("stillhand/*_command", "stillhand/motor_command"));
+  EXPECT_FALSE(matches_pattern("stillhand/*_command", "stillhand/motor_commands"));
+  EXPECT_TRUE(matches_pattern("a?c", "abc"));
+  EXPECT_FALSE(matches_pattern("a?c", "ac"));
+  EXPECT_TRUE(matches_pattern("*ab*ab", "xababab"));
+  EXPECT_FALSE(matches_pattern("", "a"));
+  EXPECT_TRUE(matches_pattern("", ""));
+}
+
+// A pattern of many stars against a long text that does not match takes years when each star tries
+// every length for each of the others.
+TEST(TopicFilterTest, ManyStarsCostNoMoreThanThePatternTimesTheText) {
+  std::string pattern;
+  for (int i = 0; i < 200; ++i) pattern += "*a";
+  EXPECT_FALSE(matches_pattern(pattern + "b", std::string(20'000, 'a')));
+}
+
+TEST(TopicFilterTest, BlockedWinsOverAllowedAndNothingAllowedMeansAll) {
+  EXPECT_TRUE((TopicFilter{{}, {}}).wants("x"));
+  EXPECT_FALSE((TopicFilter{{}, {"x"}}).wants("x"));
+  const TopicFilter sut{{"stillhand/*", "desk/*"}, {"*status"}};
+  EXPECT_TRUE(sut.wants("stillhand/sensed"));
+  EXPECT_TRUE(sut.wants("desk/lamp"));
+  EXPECT_FALSE(sut.wants("stillhand/service_status"));
+  EXPECT_FALSE(sut.wants("other/sensed"));
+}
+
+}  // namespace
+}  // namespace stillhand::recording
