@@ -31,6 +31,7 @@ struct Words {
   std::string output = "f";
   std::string model = "auto";
   int order = 4;
+  std::size_t most_effects = diagnosis::SearchOptions{}.most_effects;
   std::filesystem::path save;
   std::filesystem::path json;
   std::filesystem::path report;
@@ -81,6 +82,7 @@ int run(const Words& words) {
   options.inputs = words.inputs;
   options.output = words.output;
   options.order = words.order;
+  options.search.most_effects = words.most_effects;
   if (words.model == "arx") options.model = diagnosis::ModelClass::kArx;
   if (words.model == "linear") options.model = diagnosis::ModelClass::kLinear;
   options.for_each = on_all_cores;
@@ -128,6 +130,10 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--order", words->order, "order of the difference model, 1 to 12")
       ->check(CLI::Range(1, 12))
+      ->capture_default_str();
+  verb->add_option("--most-effects", words->most_effects,
+                   "stop after this many effects; 0: the baseline alone")
+      ->check(CLI::Range(0, 8))
       ->capture_default_str();
   verb->add_option("--trial", words->read.trial,
                    "of a session's recording: number of the trial, or its condition's letter");

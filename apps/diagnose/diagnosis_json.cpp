@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "diagnose/detection_json.hpp"
 #include "diagnosis/core/effect_kind.hpp"
 
 namespace stillhand::diagnose {
@@ -108,6 +109,10 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                    {"times_s", diagnosis.unexplained->times_s},
                    {"channels", diagnosis.unexplained->channels}};
   }
+  ordered_json estimates = ordered_json::object();
+  for (const diagnosis::NoiseEstimate& each : diagnosis.noise_floor.estimates) {
+    estimates[each.name] = each.rmse;
+  }
   const ordered_json json{{"input", joined(diagnosis.options.inputs)},
                           {"output", diagnosis.options.output},
                           {"output_unit", diagnosis.output_unit},
@@ -117,7 +122,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                           {"noise_floor",
                            {{"low", diagnosis.noise_floor.low},
                             {"high", diagnosis.noise_floor.high},
-                            {"method", diagnosis.noise_floor.method}}},
+                            {"method", diagnosis.noise_floor.method},
+                            {"estimates", estimates}}},
                           {"verdict", diagnosis.verdict()},
                           {"effects", effects},
                           {"final",
@@ -125,6 +131,11 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                             {"vaf_percent", diagnosis.final_error.vaf_percent},
                             {"ci95", {diagnosis.final_error.low, diagnosis.final_error.high}}}},
                           {"unexplained", unexplained},
+                          {"detection",
+                           {{"least_share", diagnosis::kLeastShare},
+                            {"significance", diagnosis::kSignificance},
+                            {"before", detection_json(diagnosis.before)},
+                            {"after", detection_json(diagnosis.after)}}},
                           {"body", body_json(diagnosis.model)},
                           {"notes", diagnosis.notes}};
   return json.dump(2) + "\n";

@@ -45,6 +45,11 @@ Pairs facts_of(const Evidence& evidence, const std::string& recording_name) {
       {"baseline", order == 0 ? found.model_class + ", static"
                               : found.model_class + ", order " + std::to_string(order)},
       {"output, standard deviation", shown(signals.output().deviation, signals.output().unit)}};
+  if (const auto& lines = found.before.lines) {
+    const double period_s = static_cast<double>(lines->periodicity.period) / found.sample_rate_hz;
+    facts.emplace_back("excitation repeats", std::to_string(lines->repeats.periods) +
+                                                 " periods of " + short_number(period_s) + " s");
+  }
   return facts;
 }
 
@@ -107,7 +112,8 @@ void add_remainder(Page& page, const Diagnosis& found,
     page.paragraph(
         "Nothing that was asked of the residual explains it: to this engine it is noise.");
   }
-  for (const char* name : {"residual_over_time", "autocorrelation", "detections"}) {
+  for (const char* name : {"residual_over_time", "autocorrelation", "partial_coherence",
+                           "detection_lines", "detections"}) {
     add_figure(page, drawings, name);
   }
   page.table(detection_table(found));

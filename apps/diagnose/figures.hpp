@@ -24,6 +24,11 @@ report::Figure figure_spectra(const Evidence& evidence);
 report::Figure figure_autocorrelation(const Evidence& evidence);
 /// The questions with the largest shares, and their thresholds.
 report::Figure figure_detections(const Evidence& evidence);
+/// Coherence of the residual with every channel; only where it was computed.
+report::Figure figure_coherence(const Evidence& evidence);
+/// Output, residual and noise at excited, odd and even lines; only where the excitation is
+/// periodic.
+report::Figure figure_lines(const Evidence& evidence);
 /// The residual without one effect of the final model against what explains it, and against what
 /// the effect predicts.  @param which  index in found.effects
 report::Figure figure_effect(const Evidence& evidence, std::size_t which);

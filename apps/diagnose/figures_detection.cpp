@@ -14,12 +14,10 @@ using report::Scale;
 using report::Series;
 
 constexpr std::size_t kMostQuestions = 12;
+// [-] smaller ones would leave the others no room, and the plotter no ticks.
+constexpr double kLeastDrawn = 1e-30;
 constexpr double kBeside =
     0.14;  // of a place on the axis, so that two points don't hide each other
-
-// services/diagnosis/core/detection.cpp, README "Detection".
-constexpr double kLeastShare = 0.06;
-constexpr double kSignificance = 0.01;
 
 // Short enough for a place on the axis.
 std::string tick_of(const diagnosis::Detection& detection) {
@@ -55,7 +53,7 @@ Points points_of(const std::vector<Answers>& all, diagnosis::Detection Answers::
     points.share.x.push_back(place);
     points.chance.x.push_back(place);
     points.share.y.push_back(100.0 * std::max(answer.share, 0.0));
-    points.chance.y.push_back(answer.p);
+    points.chance.y.push_back(std::max(answer.p, kLeastDrawn));
   }
   return points;
 }
@@ -88,15 +86,15 @@ report::Figure figure_detections(const Evidence& evidence) {
     add(&Answers::after, "residual with the effects", kAfter, kBeside);
   }
   chance.legend = report::Legend::kNone;
-  share.reference_lines = {{.at = 100.0 * kLeastShare, .label = "threshold"}};
-  chance.reference_lines = {{.at = kSignificance, .label = "threshold"}};
+  share.reference_lines = {{.at = 100.0 * diagnosis::kLeastShare, .label = "threshold"}};
+  chance.reference_lines = {{.at = diagnosis::kSignificance, .label = "threshold"}};
   return {.name = "detections",
           .caption =
               "The questions that explain most of the residual. Above: share of its power, "
               "held out (negative ones at 0). Below: probability of such a gain by chance, "
               "corrected for all questions after Holm. Large marks: something is there, the "
-              "share above its threshold and p below its own (of a large share p counts "
-              "uncorrected). y: the body's output.",
+              "share above its threshold and p below its own (drawn at 1e-30 where it is "
+              "less). y: the body's output.",
           .panels = {share, chance},
           .width_px = 980,
           .height_px = 560};

@@ -15,9 +15,9 @@ std::vector<Answers> strongest_answers(const diagnosis::Diagnosis& found, std::s
       return other.question == each.question && other.channel == each.channel;
     });
     const bool asked = at != found.after.detections.end();
-    all.push_back(
-        {each,
-         asked ? *at : diagnosis::Detection{each.question, each.channel, kNone, kNone, false}});
+    all.push_back({each, asked ? *at
+                               : diagnosis::Detection{each.question, each.channel, kNone, kNone,
+                                                      false, each.channels}});
   }
   const auto share = [](const Answers& answers) {
     return std::fmax(answers.before.share, answers.after.share);  // passes over a NaN

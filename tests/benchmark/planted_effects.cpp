@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plants effects, seals the label, asks the engine, opens the label: confusion matrix, false alarms
 // and what is left over the noise.
-//   build/bin/planted_effects                 504 recordings with one effect at 10 and 25 % of the
-//                                             force, 200 with none; 40 with two
-//   build/bin/planted_effects --tenth         every tenth of them, and exit 1 where too many are
-//   wrong
+//   build/bin/planted_effects            504 recordings with one effect at 10 and 25 % of the
+//   force,
+//                                        72 at 5 %, 200 with none, 40 with two
+//   build/bin/planted_effects --tenth    every tenth of them, and exit 1 where too many are wrong
+//   build/bin/planted_effects --only 1 7 the eighth recording of the first list, in detail
 // Recordings are those of tests/planted with the plan's seed; README there says what is drawn.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <cstring>
 #include <map>
 #include <mutex>
 #include <string>
@@ -24,7 +27,22 @@ namespace {
 
 using namespace stillhand;
 
+// The four lists, by the seed of their plan.
+enum List : std::uint64_t { kSingles = 1, kNone = 2, kPairs = 3, kWeak = 4 };
+
+planted::SeriesPlan plan_of(std::uint64_t list) {
+  planted::SeriesPlan plan;
+  plan.seed = list;
+  plan.kinds.assign(planted::kKindNames.begin(), planted::kKindNames.end());
+  if (list == kNone) plan.kinds = {"none"};
+  if (list == kPairs) plan.together = 2;
+  if (list == kWeak) plan.strengths = {0.05};
+  return plan;
+}
+
 struct Case {
+  std::uint64_t list = 0;
+  std::size_t index = 0;
   std::uint64_t seed = 0;
   planted::Spec spec;
   planted::Truth truth;
@@ -33,11 +51,12 @@ struct Case {
   std::string failure;
 };
 
-std::vector<Case> cases_of(const planted::SeriesPlan& plan, std::size_t count, std::size_t step) {
+std::vector<Case> cases_of(std::uint64_t list, std::size_t count, std::size_t step) {
+  const planted::SeriesPlan plan = plan_of(list);
   std::vector<Case> cases;
   for (std::size_t i = 0; i < count; i += step) {
     const auto [seed, spec] = plan.at(i);
-    cases.push_back({seed, spec, {}, {}, 0.0, {}});
+    cases.push_back({list, i, seed, spec, {}, {}, 0.0, {}});
   }
   return cases;
 }
@@ -57,9 +76,11 @@ void ask(Case& each) {
 void ask_all(std::vector<Case>& cases, const char* what) {
   std::atomic<std::size_t> next{0};
   std::mutex printing;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto work = [&] {
     for (std::size_t i = 0; (i = next++) < cases.size();) {
       ask(cases[i]);
+      if (!terminal) continue;
       const std::lock_guard lock(printing);
       std::fprintf(stderr, "\r%s %zu of %zu   ", what, i + 1, cases.size());
     }
@@ -69,14 +90,14 @@ void ask_all(std::vector<Case>& cases, const char* what) {
     for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
     work();
   }
-  std::fputc('\n', stderr);
+  if (terminal) std::fputc('\n', stderr);
 }
 
 std::string kind_name(planted::Kind kind) {
   return std::string(planted::kKindNames[static_cast<std::size_t>(kind)]);
 }
 
-// Right: the first effect's kind is the planted one, or one that the generator says is as right.
+// Right: the first effect's kind is the planted one.
 bool right(const Case& each) {
   if (each.found.empty() || each.truth.effects.empty()) return false;
   return each.found.front() == kind_name(each.truth.effects.front().kind);
@@ -109,8 +130,7 @@ void print_misses(const std::vector<Case>& cases) {
   for (const Case& each : cases) {
     const bool none = each.truth.effects.empty();
     if (each.failure.empty() && (none ? each.found.empty() : right(each))) continue;
-    std::printf("seed %llu: %s (%s), %.0f dB, evidence %.0f; named",
-                static_cast<unsigned long long>(each.seed),
+    std::printf("%zu %zu: %s (%s), %.0f dB, evidence %.0f; named", each.list, each.index,
                 none ? "none" : kind_name(each.truth.effects[0].kind).c_str(),
                 none ? each.truth.noise.c_str() : each.truth.effects[0].variant.c_str(),
                 each.truth.snr_db, each.truth.evidence);
@@ -129,35 +149,31 @@ Tally tally(const std::vector<Case>& cases) {
   return {static_cast<std::size_t>(std::ranges::count_if(cases, right)), cases.size()};
 }
 
-}  // namespace
+std::size_t alarms(const std::vector<Case>& cases) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(cases, [](const Case& each) { return !each.found.empty(); }));
+}
 
-int main(int argc, char** argv) {
-  const bool tenth = argc > 1 && std::strcmp(argv[1], "--tenth") == 0;
-  const std::size_t step = tenth ? 10 : 1;
-  planted::SeriesPlan singles;
-  singles.kinds.assign(planted::kKindNames.begin(), planted::kKindNames.end());
-  planted::SeriesPlan none;
-  none.kinds = {"none"};
-  none.seed = 2;
-  planted::SeriesPlan pairs = singles;
-  pairs.together = 2;
-  pairs.seed = 3;
-  // A step of ten meets every other kind only; eleven meets them all.
-  auto one = cases_of(singles, 504, tenth ? 11 : 1);
-  auto nothing = cases_of(none, 200, step);
-  auto two = cases_of(pairs, 40, step);
-  ask_all(one, "one effect");
-  ask_all(nothing, "none");
-  ask_all(two, "two effects");
+double percent(std::size_t part, std::size_t whole) {
+  return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
+}
 
-  const Tally single = tally(one);
-  const auto alarms = static_cast<std::size_t>(
-      std::ranges::count_if(nothing, [](const Case& each) { return !each.found.empty(); }));
-  const auto failures = static_cast<std::size_t>(
-      std::ranges::count_if(one, [](const Case& each) { return !each.failure.empty(); }));
+void print_singles(const char* what, const std::vector<Case>& cases) {
+  const Tally all = tally(cases);
+  std::vector<double> left;
+  for (const Case& each : cases) left.push_back(each.left_over_noise);
+  const auto within = static_cast<std::size_t>(
+      std::ranges::count_if(left, [](double ratio) { return ratio <= 1.2; }));
+  std::printf("%s: %zu of %zu named right (%.1f %%); held-out error over noise: median %.3f, ",
+              what, all.right, all.all, percent(all.right, all.all), quantile(left, 0.5));
+  std::printf("90 %% below %.3f, %zu above 1.2, largest %.3f\n", quantile(left, 0.9),
+              left.size() - within, quantile(left, 1.0));
+}
+
+void print_pairs(const std::vector<Case>& cases) {
   std::size_t both = 0;
   std::size_t in_order = 0;
-  for (const Case& each : two) {
+  for (const Case& each : cases) {
     std::vector<std::string> truth;
     for (const auto& effect : each.truth.effects) truth.push_back(kind_name(effect.kind));
     std::vector<std::string> named(
@@ -168,25 +184,104 @@ int main(int argc, char** argv) {
     std::ranges::sort(truth);
     if (named == truth) ++both;
   }
-  std::vector<double> left;
-  for (const Case& each : one) left.push_back(each.left_over_noise);
-  std::printf("one effect: %zu of %zu named right (%.1f %%)\n", single.right, single.all,
-              100.0 * static_cast<double>(single.right) / static_cast<double>(single.all));
-  std::printf("none: %zu false alarms of %zu (%.1f %%)\n", alarms, nothing.size(),
-              100.0 * static_cast<double>(alarms) / static_cast<double>(nothing.size()));
-  std::printf("two effects: both named in %zu of %zu, strongest first in %zu\n", both, two.size(),
+  std::printf("two effects: both named in %zu of %zu, strongest first in %zu\n", both, cases.size(),
               in_order);
-  std::printf("held-out error over noise: median %.3f, 90 %% below %.3f, largest %.3f\n\n",
-              quantile(left, 0.5), quantile(left, 0.9), quantile(left, 1.0));
+}
+
+// The recording of one seed: what was planted, and all that was tried.
+void print_one(std::uint64_t list, std::size_t i) {
+  const auto [seed, spec] = plan_of(list).at(i);
+  const planted::Draft draft = planted::draw(seed, spec);
+  for (const auto& effect : draft.truth.effects) {
+    std::printf("planted: %s (%s), strength %.3f, noise %.4f N, evidence %.0f\n",
+                kind_name(effect.kind).c_str(), effect.variant.c_str(), effect.strength,
+                draft.truth.noise_rms_n, draft.truth.evidence);
+    for (const auto& parameter : effect.parameters) {
+      std::printf("   %s=%.4g", parameter.name.c_str(), parameter.value);
+    }
+    std::printf("\n");
+  }
+  const auto verdict = diagnosis::diagnose(planted::to_measurement(draft.recording), {});
+  std::printf("baseline: order %zu, %.4f N held out, impulse response %.4f N\n",
+              verdict.baseline.model.body.order(), verdict.baseline_error.rmse,
+              verdict.baseline.impulse_response_rmse);
+  const auto print_tried = [](const std::vector<diagnosis::Trial>& tried) {
+    for (std::size_t k = 0; k < std::min<std::size_t>(12, tried.size()); ++k) {
+      const auto& effect = tried[k].model.effects.back();
+      std::printf("   %.4f N  %2zu numbers  %s (%s)", tried[k].rmse, complexity(tried[k].model),
+                  effect.kind.c_str(), effect.form.c_str());
+      for (const std::string& channel : effect.channels) std::printf(" %s", channel.c_str());
+      for (const auto& parameter : effect.parameters) {
+        std::printf(" %s=%.4g", parameter.name.c_str(), parameter.value);
+      }
+      std::printf("\n");
+    }
+  };
+  for (const auto& addition : verdict.search.additions) {
+    const auto& chosen = addition.tried[addition.chosen].model.effects.back();
+    std::printf("added %s (%s), p %.2g\n", chosen.kind.c_str(), chosen.form.c_str(),
+                addition.comparison.p);
+    print_tried(addition.tried);
+  }
+  std::printf("rejected after it\n");
+  print_tried(verdict.search.last_tried);
+  for (const auto& detection : verdict.after.detections) {
+    if (detection.share < 0.02) break;
+    std::printf("left: %s %s, share %.3f, p %.2g\n", detection.question.c_str(),
+                detection.channel.c_str(), detection.share, detection.p);
+  }
+}
+
+int run(bool tenth) {
+  const std::size_t step = tenth ? 10 : 1;
+  // A step of ten meets every other kind only; eleven meets them all.
+  auto one = cases_of(kSingles, 504, tenth ? 11 : 1);
+  auto five_percent = cases_of(kWeak, tenth ? 0 : 72, 1);
+  auto nothing = cases_of(kNone, 200, step);
+  auto two = cases_of(kPairs, 40, step);
+  ask_all(one, "one effect");
+  ask_all(five_percent, "at 5 %");
+  ask_all(nothing, "none");
+  ask_all(two, "two effects");
+
+  print_singles("one effect", one);
+  if (!five_percent.empty()) print_singles("one effect at 5 %", five_percent);
+  std::printf("none: %zu false alarms of %zu (%.1f %%)\n", alarms(nothing), nothing.size(),
+              percent(alarms(nothing), nothing.size()));
+  print_pairs(two);
+  std::printf("\n");
   print_matrix(one);
   print_matrix(nothing);
   std::printf("\n");
-  print_misses(one);
-  print_misses(nothing);
+  for (const auto* cases : {&one, &five_percent, &nothing}) print_misses(*cases);
   if (!tenth) return 0;
   // A guard against steps back: 41 of 46 were right and none of 20 an alarm on 2026-11-21.  The
   // goal for the whole is 95 % and below 2 %.
-  const bool good = single.right >= 39 && alarms <= 1 && failures == 0;
+  const bool failed =
+      std::ranges::any_of(one, [](const Case& each) { return !each.failure.empty(); });
+  const bool good = tally(one).right >= 39 && alarms(nothing) <= 1 && !failed;
   if (!good) std::printf("too many are wrong\n");
   return good ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Confusion matrix of the residual engine over recordings with planted effects"};
+  bool tenth = false;
+  std::vector<std::size_t> only;
+  app.add_flag("--tenth", tenth, "every tenth recording; exit 1 where too many are wrong");
+  app.add_option("--only", only,
+                 "LIST INDEX: one recording with everything that was tried; list 1 has one effect "
+                 "each, 2 none, 3 two, 4 one at 5 %")
+      ->expected(2);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (only.empty()) return run(tenth);
+    print_one(only[0], only[1]);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "planted_effects: %s\n", error.what());
+    return 2;
+  }
 }

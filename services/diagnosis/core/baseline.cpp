@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "contract/config_error.hpp"
+#include "diagnosis/core/modes.hpp"
 #include "signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr int kLargestOrder = 12;
 constexpr int kSteiglitzMcBrideSteps = 4;
 constexpr double kClearlyAbove = 1.003;  // of what a long impulse response leaves
 
@@ -189,48 +189,6 @@ Model empty_model(const Signals& signals) {
   return model;
 }
 
-// Real polynomial 1 - 2 r cos(w) q^-1 + r^2 q^-2 times another.
-std::vector<double> times_mode(const std::vector<double>& polynomial, double radius, double turn) {
-  const double middle = -2.0 * radius * std::cos(turn);
-  std::vector<double> product(polynomial.size() + 2, 0.0);
-  for (std::size_t i = 0; i < polynomial.size(); ++i) {
-    product[i] += polynomial[i];
-    product[i + 1] += middle * polynomial[i];
-    product[i + 2] += radius * radius * polynomial[i];
-  }
-  return product;
-}
-
-// A fit may rest in a hollow where one mode is right and the other's poles are of no use: each mode
-// of a fourth-order body is kept in turn, the other tried on a grid of frequency and damping.
-Body with_other_mode(const Body& fitted, const std::vector<std::vector<double>>& inputs,
-                     const std::vector<double>& output, const Signals& signals) {
-  constexpr int kFrequencies = 12;
-  constexpr double kHighestOfRate = 0.3;
-  constexpr double kDampings[] = {0.1, 0.35};
-  const double lowest_hz = 0.7 * signals.lowest_excited_hz();
-  const double highest_hz = kHighestOfRate * signals.rate_hz();
-  Rated best = rated(fitted, inputs, output, signals);
-  for (const std::complex<double>& pole :
-       signal::poles({1.0, fitted.denominator, fitted.denominator})) {
-    if (pole.imag() <= 0.0) continue;
-    const auto kept = times_mode({1.0}, std::abs(pole), std::arg(pole));
-    for (int i = 0; i < kFrequencies; ++i) {
-      const double frequency_hz =
-          lowest_hz * std::pow(highest_hz / lowest_hz, static_cast<double>(i) / (kFrequencies - 1));
-      const double w = 2.0 * std::numbers::pi * frequency_hz / signals.rate_hz();
-      for (const double damping : kDampings) {
-        Body tried = fitted;
-        tried.denominator =
-            times_mode(kept, std::exp(-damping * w), w * std::sqrt(1.0 - damping * damping));
-        Rated next = rated(tried, inputs, output, signals);
-        if (next.rmse < best.rmse) best = std::move(next);
-      }
-    }
-  }
-  return best.body;
-}
-
 // Whether the linearised cross-validation agrees with refitting: not where poles and zeros outside
 // the excited band are free to move far without a change within it.
 bool determined(const Model& model, const Signals& signals, const Blocks& blocks) {
@@ -260,12 +218,49 @@ Body started_body(const std::vector<std::vector<double>>& inputs, const std::vec
   return best.body;
 }
 
+Body with_mode(const Body& like, const std::vector<double>& kept,
+               const std::vector<std::vector<double>>& inputs, const std::vector<double>& output,
+               const Signals& signals) {
+  constexpr int kFrequencies = 12;
+  constexpr double kHighestOfRate = 0.3;
+  constexpr double kDampings[] = {0.1, 0.35};
+  const double lowest_hz = 0.7 * signals.lowest_excited_hz();
+  const double highest_hz = kHighestOfRate * signals.rate_hz();
+  Body tried = like;
+  for (auto& numerator : tried.numerators) numerator.resize(kept.size() + 2);
+  Rated best{like};
+  for (int i = 0; i < kFrequencies; ++i) {
+    const double frequency_hz =
+        lowest_hz * std::pow(highest_hz / lowest_hz, static_cast<double>(i) / (kFrequencies - 1));
+    for (const double damping : kDampings) {
+      tried.denominator = product(kept, mode_denominator(frequency_hz, damping, signals.rate_hz()));
+      Rated next = rated(tried, inputs, output, signals);
+      if (next.rmse < best.rmse) best = std::move(next);
+    }
+  }
+  return best.body;
+}
+
+Body with_other_mode(const Body& fitted, const std::vector<std::vector<double>>& inputs,
+                     const std::vector<double>& output, const Signals& signals) {
+  Rated best = rated(fitted, inputs, output, signals);
+  for (const std::complex<double>& pole :
+       signal::poles({1.0, fitted.denominator, fitted.denominator})) {
+    if (pole.imag() <= 0.0) continue;
+    const std::vector<double> kept{1.0, -2.0 * pole.real(), std::norm(pole)};
+    Rated next = rated(with_mode(fitted, kept, inputs, output, signals), inputs, output, signals);
+    if (next.rmse < best.rmse) best = std::move(next);
+  }
+  return best.body;
+}
+
 Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order) {
   if (order < 0 || order > kLargestOrder) {
     throw ConfigError("order", std::to_string(order), "0 to " + std::to_string(kLargestOrder));
   }
   Baseline baseline;
   baseline.model = empty_model(signals);
+  baseline.order = order;
   const auto inputs = input_values(signals);
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   baseline.impulse_response_rmse = impulse_response.rmse;

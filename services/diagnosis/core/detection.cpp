@@ -11,8 +11,6 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kLeastShare = 0.06;  // of the squared error: 3 % of its root
-constexpr double kSignificance = 0.01;
 constexpr double kLags_s[] = {0.0, 0.05, 0.1, 0.2, 0.4, 0.8};
 constexpr int kGainCosines = 8;
 
@@ -38,9 +36,13 @@ class Questions {
  public:
   explicit Questions(const Screening& screening) : screening_(screening) {}
 
-  void ask(const std::string& question, const std::string& channel, const Columns& columns) {
+  void ask(const std::string& question, const std::string& about,
+           const std::vector<std::string>& channels, const Columns& columns) {
     const ScreenedGain gain = screening_.gain(columns);
-    answers_.push_back({question, channel, gain.share, gain.p, false});
+    answers_.push_back({question, about, gain.share, gain.p, false, channels});
+  }
+  void add(const std::string& about, const LineGroup& lines) {
+    if (!lines.empty()) answers_.push_back({kDistortion, about, lines.share, lines.p, false, {}});
   }
 
   [[nodiscard]] std::vector<Detection> answers() const {
@@ -81,18 +83,20 @@ void ask_about_signals(const Screening& screening, Questions& questions) {
                             static_cast<std::size_t>(std::lround(lag_s * signals.rate_hz())),
                             signals.stretches()));
     }
-    questions.ask("linear in", signal.name, lags);
-    questions.ask("square of", signal.name, {scaled(signal, 2.0)});
-    questions.ask("cube of", signal.name, {scaled(signal, 3.0)});
+    const std::vector<std::string> own{signal.name};
+    questions.ask("linear in", signal.name, own, lags);
+    questions.ask("square of", signal.name, own, {scaled(signal, 2.0)});
+    questions.ask("cube of", signal.name, own, {scaled(signal, 3.0)});
     std::vector<double> product = screening.body_output();
     for (std::size_t n = 0; n < product.size(); ++n) product[n] *= signal.values[n] - signal.mean;
-    if (!signals.is_input(signal.name)) questions.ask("gain by", signal.name, {product});
+    if (!signals.is_input(signal.name)) questions.ask("gain by", signal.name, own, {product});
     for (std::size_t j = i + 1; j < measured.size(); ++j) {
       std::vector<double> both(signals.size());
       for (std::size_t n = 0; n < both.size(); ++n) {
         both[n] = (signal.values[n] - signal.mean) * (measured[j]->values[n] - measured[j]->mean);
       }
-      questions.ask("product of", signal.name + " and " + measured[j]->name, {both});
+      questions.ask("product of", signal.name + " and " + measured[j]->name,
+                    {signal.name, measured[j]->name}, {both});
     }
   }
 }
@@ -107,15 +111,15 @@ void ask_about_state(const Screening& screening, Questions& questions) {
   const auto passed = [&](const std::function<double(double)>& f) {
     return screening.through_body(mapped(y, [&](double value) { return f(value / size); }));
   };
-  questions.ask("square of", "the body's output", passed([](double z) { return z * z; }));
-  questions.ask("cube of", "the body's output", passed([](double z) { return z * z * z; }));
-  questions.ask("size of", "the body's output", passed([](double z) { return std::abs(z); }));
+  questions.ask("square of", "the body's output", {}, passed([](double z) { return z * z; }));
+  questions.ask("cube of", "the body's output", {}, passed([](double z) { return z * z * z; }));
+  questions.ask("size of", "the body's output", {}, passed([](double z) { return std::abs(z); }));
   const std::vector<double> rate = differenced(y, stretches);
-  questions.ask("sign of the rate of", "the body's output",
+  questions.ask("sign of the rate of", "the body's output", {},
                 {mapped(rate, [](double v) { return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0); })});
   std::vector<double> past(y.size());
   for (std::size_t n = 0; n < y.size(); ++n) past[n] = std::abs(y[n]) * rate[n];
-  questions.ask("damping by the size of", "the body's output", {past});
+  questions.ask("damping by the size of", "the body's output", {}, {past});
 }
 
 void ask_about_time(const Screening& screening, Questions& questions) {
@@ -130,7 +134,7 @@ void ask_about_time(const Screening& screening, Questions& questions) {
     for (std::size_t n = 0; n < shape.size(); ++n) shape[n] *= screening.body_output()[n];
     gains.push_back(std::move(shape));
   }
-  questions.ask("gain over", "time", gains);
+  questions.ask("gain over", "time", {}, gains);
 }
 
 Whiteness whiteness_of(const Screening& screening) {
@@ -175,14 +179,31 @@ Spread spread_of(const Screening& screening) {
   return result;
 }
 
+std::optional<DetectionLines> lines_of(const Screening& screening,
+                                       const std::optional<PeriodicExcitation>& excitation) {
+  if (!excitation) return {};
+  const auto repeated =
+      repeated_residual(excitation->periodicity, screening.residual(), screening.weight());
+  if (!repeated) return {};
+  return detection_lines(*repeated, excitation->excited, screening.signals());
+}
+
 }  // namespace
 
-DetectionResult detected(const Screening& screening) {
+DetectionResult detected(const Screening& screening,
+                         const std::optional<PeriodicExcitation>& excitation) {
   Questions questions(screening);
   ask_about_signals(screening, questions);
   ask_about_state(screening, questions);
   ask_about_time(screening, questions);
-  return {questions.answers(), whiteness_of(screening), spread_of(screening)};
+  const std::optional<DetectionLines> lines = lines_of(screening, excitation);
+  if (lines) {
+    questions.add("odd lines", lines->odd);
+    questions.add("even lines", lines->even);
+    questions.add("lines not excited", lines->odd_or_even);
+  }
+  return {questions.answers(), whiteness_of(screening), spread_of(screening),
+          coherence_of(screening.residual(), screening.weight(), screening.signals()), lines};
 }
 
 }  // namespace stillhand::diagnosis

@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnosis/core/detection_lines.hpp"
+#include "diagnosis/core/partial_coherence.hpp"
 #include "diagnosis/core/screening.hpp"
 
 namespace stillhand::diagnosis {
+
+/// A question is answered yes above this share [-] of the squared error (3 % of its root),
+inline constexpr double kLeastShare = 0.06;
+/// and below this probability [-] by chance, corrected.
+inline constexpr double kSignificance = 0.01;
+/// Question about a multisine's detection lines; its `channel` says which lines.
+inline constexpr const char* kDistortion = "distortion at";
 
 /// One question that was put to a residual.
 struct Detection {
@@ -15,6 +25,7 @@ struct Detection {
   double share = 0.0;    ///< [-] of the squared error that it explains, held out
   double p = 1.0;        ///< [-] Holm's correction for all questions applied
   bool found = false;    ///< share and p say that something is there
+  std::vector<std::string> channels = {};  ///< the measured ones among what it was asked about
 };
 
 /// Autocorrelation of a residual.
@@ -33,14 +44,19 @@ struct Spread {
 
 /// What the residual of a model still depends on, README "Detection".
 struct DetectionResult {
-  std::vector<Detection> detections;  ///< strongest first
-  Whiteness whiteness;                ///< colour alone is no effect
-  Spread spread;                      ///< nor is uneven noise
+  std::vector<Detection> detections;    ///< strongest first
+  Whiteness whiteness;                  ///< colour alone is no effect
+  Spread spread;                        ///< nor is uneven noise
+  CoherenceResult coherence;            ///< with every measured channel; shown, not judged
+  std::optional<DetectionLines> lines;  ///< where the excitation is periodic
 };
 
 /// Puts every question to a residual: each signal at several lags, powers and products of signals
 /// and of the body's output, its past and sign, gains and offsets over time.  Each is judged on
-/// held-out blocks beside the model, whose numbers may move; p after Holm.
-DetectionResult detected(const Screening& screening);
+/// held-out blocks beside the model, whose numbers may move; p after Holm.  Where the excitation is
+/// periodic the lines that it leaves out are asked as well (Eq. DG-44).
+/// @param excitation  of the same signals
+DetectionResult detected(const Screening& screening,
+                         const std::optional<PeriodicExcitation>& excitation);
 
 }  // namespace stillhand::diagnosis

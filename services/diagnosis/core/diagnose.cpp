@@ -126,23 +126,34 @@ std::array<double, 2> band_of(const Eigen::VectorXd& residual, double rate_hz) {
   return band;
 }
 
+// What one question found, in words.
+std::string finding(const Detection& detection) {
+  const std::string share =
+      std::to_string(std::lround(100.0 * detection.share)) + " % of its power";
+  if (detection.question == kDistortion) {
+    return "the residual repeats with the excitation at " + detection.channel +
+           ", where a linear system has no answer (" + share +
+           "): distortion that no kind of effect explains";
+  }
+  return "the residual still depends on: " + detection.question + " " + detection.channel + " (" +
+         share + ", held out), which no kind of effect explains";
+}
+
 std::optional<Unexplained> unexplained_of(const DetectionResult& detections,
                                           const Screening& screening) {
+  constexpr std::size_t kMostChannels = 3;
   Unexplained left;
-  std::string what;
   for (const Detection& detection : detections.detections) {
     if (!detection.found) continue;
-    if (what.empty()) {
-      what = "the residual still depends on: " + detection.question + " " + detection.channel +
-             " (" + std::to_string(static_cast<int>(std::lround(100.0 * detection.share))) +
-             " % of its power, held out), which no kind of effect explains";
-    }
-    if (screening.signals().size() > 0 && !detection.channel.empty() && left.channels.size() < 3) {
-      left.channels.push_back(detection.channel);
+    if (left.what.empty()) left.what = finding(detection);
+    for (const std::string& channel : detection.channels) {
+      if (left.channels.size() == kMostChannels) break;
+      if (std::ranges::find(left.channels, channel) == left.channels.end()) {
+        left.channels.push_back(channel);
+      }
     }
   }
-  if (what.empty()) return {};
-  left.what = what;
+  if (left.what.empty()) return {};
   left.band_hz = band_of(screening.residual(), screening.signals().rate_hz());
   std::vector<std::size_t> order(detections.spread.rms.size());
   std::iota(order.begin(), order.end(), 0);
@@ -154,33 +165,6 @@ std::optional<Unexplained> unexplained_of(const DetectionResult& detections,
   }
   std::ranges::sort(left.times_s);
   return left;
-}
-
-// What noise amounts to: the final residual less what any question still explains of it, below
-// what linear models of any order leave.
-NoiseFloor noise_floor_of(const Diagnosis& diagnosis, const Screening& screening) {
-  double share = 0.0;
-  for (const Detection& detection : diagnosis.after.detections) {
-    if (detection.found) share = std::max(share, detection.share);
-  }
-  double weight = 0.0;
-  for (const double each : screening.weight()) weight += each;
-  const auto numbers = static_cast<double>(complexity(diagnosis.model));
-  NoiseFloor floor;
-  // Freed of the numbers that were fitted to it.
-  const double own = screening.rmse() * std::sqrt(weight / std::max(weight - numbers, 1.0));
-  floor.rmse = own * std::sqrt(1.0 - share);
-  floor.low = std::min(floor.rmse, diagnosis.final_error.low);
-  floor.high = diagnosis.final_error.high;
-  if (diagnosis.baseline.impulse_response_rmse > 0.0) {
-    floor.high =
-        std::min(floor.high, std::max(diagnosis.baseline.impulse_response_rmse, floor.rmse));
-  }
-  floor.method =
-      "residual of the final model, freed of its fitted numbers and of what any question about "
-      "channels, state and time still explains of it; low: of the held-out blocks' interval; high: "
-      "what a long impulse response leaves, or that interval's end";
-  return floor;
 }
 
 // Errors of the models with the first effect, the first two, and so on.
@@ -249,9 +233,10 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   step("baseline");
   diagnosis.baseline = chosen_baseline(signals, blocks, options, diagnosis.model_class);
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
+  const std::optional<PeriodicExcitation> excitation = periodic_excitation_of(signals);
   {
     const Screening screening(diagnosis.baseline.model, signals, blocks, impulse_response);
-    diagnosis.before = detected(screening);
+    diagnosis.before = detected(screening, excitation);
   }
   diagnosis.search = search(diagnosis.baseline, signals, blocks, options.search, options.for_each,
                             [&step](const std::string& name) {
@@ -263,9 +248,11 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
-  diagnosis.after = detected(screening);
+  diagnosis.after = detected(screening, excitation);
   diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
-  diagnosis.noise_floor = noise_floor_of(diagnosis, screening);
+  diagnosis.noise_floor = noise_floor_of(diagnosis.after, screening,
+                                         {diagnosis.final_error.low, diagnosis.final_error.high,
+                                          diagnosis.baseline.impulse_response_rmse});
   for (const Signal& signal : signals.all()) {
     if (!signal.derived) continue;
     const bool used = std::ranges::any_of(diagnosis.model.effects, [&](const Effect& effect) {

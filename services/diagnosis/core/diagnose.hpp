@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnosis/core/detection.hpp"
+#include "diagnosis/core/noise_floor.hpp"
 #include "diagnosis/core/search.hpp"
 
 namespace stillhand::diagnosis {
@@ -51,20 +52,12 @@ struct FoundEffect {
   std::vector<std::string> ties;  ///< kinds that explain the data as well
 };
 
-/// What noise amounts to, README "Noise floor".
-struct NoiseFloor {
-  double rmse = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-  std::string method;
-};
-
 /// What is left and not explained.
 struct Unexplained {
   std::string what;  ///< one sentence
   std::array<double, 2> band_hz{};
-  std::vector<double> times_s;  ///< [s] where it is strongest
-  std::vector<std::string> channels;
+  std::vector<double> times_s;        ///< [s] where it is strongest
+  std::vector<std::string> channels;  ///< measured ones, three at most
 };
 
 /// The verdict and everything that it rests on.

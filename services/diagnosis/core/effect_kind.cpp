@@ -21,6 +21,10 @@ void EffectKind::terms(const Effect& /*effect*/, const Signals& /*signals*/,
 bool EffectKind::through_body(const Effect& effect) const {
   return effect.form.find("through the body") != std::string::npos;
 }
+std::vector<double> EffectKind::own_poles(const Effect& /*effect*/,
+                                          const Signals& /*signals*/) const {
+  return {};
+}
 void EffectKind::weigh(const Effect& /*effect*/, const Signals& /*signals*/,
                        std::span<double> /*weight*/) const {}
 

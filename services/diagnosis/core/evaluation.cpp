@@ -213,7 +213,7 @@ Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun&
   run = free_run(model, signals);
   Eigen::VectorXd residual = weighted_error(run, signals);
   if (!run.finite) return residual;
-  const InitialStates initial(model.body, signals, run.weight);
+  const InitialStates initial(model, signals, run.weight);
   Eigen::Ref<Eigen::MatrixXd> view(residual);
   initial.remove_from(view);
   return residual;

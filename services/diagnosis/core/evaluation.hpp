@@ -45,16 +45,20 @@ Linearisation linearised(const Model& model, const Signals& signals);
 /// The residual alone, as in Linearisation.
 Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun& run);
 
-/// Orthonormal free responses of the body at the start of every stretch: removes them from a
-/// column, Eq. DG-10.
+/// Orthonormal free responses at the start of every stretch: removes them from a column, Eq. DG-10.
 class InitialStates {
  public:
   InitialStates(const Body& body, const Signals& signals, const std::vector<double>& weight);
+  /// With the poles that effects have beside the body.
+  InitialStates(const Model& model, const Signals& signals, const std::vector<double>& weight);
   void remove_from(Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// What it removes from one column.
   [[nodiscard]] Eigen::VectorXd part_of(const Eigen::VectorXd& column) const;
 
  private:
+  InitialStates(const std::vector<double>& denominator, const Signals& signals,
+                const std::vector<double>& weight);
+
   struct Start {
     std::size_t first;
     Eigen::MatrixXd basis;  ///< [window x order], orthonormal

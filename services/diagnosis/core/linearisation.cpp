@@ -153,7 +153,7 @@ Linearisation linearised(const Model& model, const Signals& signals) {
                             static_cast<Eigen::Index>(which.size()));
     write_exact_columns(model, signals, run, feedback, result.jacobian);
     write_difference_columns(model, signals, run, which, result.jacobian);
-    const InitialStates initial(model.body, signals, run.free.weight);
+    const InitialStates initial(model, signals, run.free.weight);
     initial.remove_from(result.jacobian);
     Eigen::Ref<Eigen::MatrixXd> view(result.residual);
     initial.remove_from(view);

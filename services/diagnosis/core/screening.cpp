@@ -24,7 +24,7 @@ Screening::Screening(const Model& model, const Signals& signals, const Blocks& b
       impulse_response_(impulse_response),
       line_(linearised(model, signals)),
       grams_(grams_of(line_.jacobian, line_.residual, line_.run.weight, blocks)),
-      initial_(model.body, signals, line_.run.weight) {
+      initial_(model, signals, line_.run.weight) {
   held_out_ = held_out_linearised(grams_, blocks);
   rmse_ = std::sqrt(line_.residual.squaredNorm() / std::max(sum_of(line_.run.weight), 1.0));
 }

@@ -56,17 +56,31 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
 }
 
 // The body that was fitted without the effect may sit in a hollow that the effect has made void:
-// one estimated anew from what the effect leaves of the output, where that is better.
-void start_afresh(Model& model, const Signals& signals) {
+// one estimated anew from what the effect leaves of the output, where that is better.  Of the order
+// that was asked for, too: what the effect did may have hidden poles of a body taken down.
+void start_afresh(Model& model, const Signals& signals, int order) {
+  constexpr double kWorthPoles = 0.98;  // of the squared error
   std::vector<double> left = signals.output().values;
   std::vector<std::vector<double>> inputs;
   if (!without_effects(model, signals, inputs, left)) return;
-  Model other = model;
-  other.body = started_body(inputs, left, {}, signals, static_cast<int>(model.body.order()));
+  const bool bound_to_order = std::ranges::any_of(model.effects, [](const Effect& effect) {
+    return effect_kind(effect.kind).through_body(effect);
+  });
   FreeRun run;
-  const double now = residual_of(model, signals, run).squaredNorm();
-  const double then = residual_of(other, signals, run).squaredNorm();
-  if (run.finite && then < now) model = std::move(other);
+  double least = residual_of(model, signals, run).squaredNorm();
+  const auto own = static_cast<int>(model.body.order());
+  for (const int p : {own, order}) {
+    if (p > own && bound_to_order) break;
+    Model other = model;
+    other.body = started_body(inputs, left, {}, signals, p);
+    if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);
+    const double square = residual_of(other, signals, run).squaredNorm();
+    if (run.finite && square < (p > own ? kWorthPoles : 1.0) * least) {
+      least = square;
+      model = std::move(other);
+    }
+    if (p == order) break;
+  }
 }
 
 bool by_rmse(const Trial& a, const Trial& b) { return a.rmse < b.rmse; }
@@ -79,7 +93,7 @@ bool passes_over_samples(const Trial& trial) {
 // Everything that is proposed, fitted jointly in two passes: a few steps for all, then to the end
 // for those near the best.
 std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
-                          const Blocks& blocks, const ImpulseResponse& impulse_response,
+                          const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
                           const SearchOptions& options, const ForEach& for_each) {
   constexpr double kNear = 1.35;
   constexpr double kGains = 0.985;
@@ -110,7 +124,8 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
          (near < kFewest || all[near].rmse < kGains * current_rmse)) {
     ++near;
   }
-  for_each(std::min(near, kFewest), [&](std::size_t i) { start_afresh(all[i].model, signals); });
+  for_each(std::min(near, kFewest),
+           [&](std::size_t i) { start_afresh(all[i].model, signals, order); });
   for_each(near, [&](std::size_t i) {
     all[i] = judged_trial(std::move(all[i].model), signals, blocks, options.fit_iterations, true);
   });
@@ -162,11 +177,11 @@ std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t
   return kinds;
 }
 
-bool worth_it(const Comparison& comparison, const SearchOptions& options, std::size_t candidates) {
+bool worth_it(const Comparison& comparison, const SearchOptions& options, double least_fall,
+              std::size_t candidates) {
   const double fall = 1.0 - comparison.rmse_ratio;
   if (fall >= options.large_fall) return comparison.p < options.large_significance;
-  return fall > options.least_fall &&
-         comparison.p * static_cast<double>(candidates) < options.significance;
+  return fall > least_fall && comparison.p * static_cast<double>(candidates) < options.significance;
 }
 
 // Drops effects that the later ones have made idle.  True when one left.
@@ -180,7 +195,9 @@ bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
     const Trial trial =
         judged_trial(std::move(without), signals, blocks, options.fit_iterations, true);
     const HeldOut with = held_out(result.model, signals, blocks);
-    if (!trial.held_out.finite || worth_it(compared(trial.held_out, with), options, 1)) continue;
+    if (!trial.held_out.finite ||
+        worth_it(compared(trial.held_out, with), options, options.least_fall, 1))
+      continue;
     result.model = trial.model;
     result.additions.erase(result.additions.begin() + static_cast<std::ptrdiff_t>(e));
     return true;
@@ -225,15 +242,18 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   HeldOut current = held_out(result.model, signals, blocks);
   while (progress("effect " + std::to_string(result.additions.size() + 1))) {
-    std::vector<Trial> tried =
-        trials(result.model, current.rmse(), signals, blocks, impulse_response, options, for_each);
+    std::vector<Trial> tried = trials(result.model, current.rmse(), signals, blocks,
+                                      impulse_response, baseline.order, options, for_each);
     if (tried.empty() || !std::isfinite(tried.front().rmse)) break;
     const std::size_t chosen = simplest(tried, current.rmse(), options);
     const Comparison comparison = compared(current, tried[chosen].held_out);
     // Bursts lie in few blocks, whose signs say little; that they stand out has been asked already.
     const bool bursts = passes_over_samples(tried[chosen]);
-    const bool good = bursts ? 1.0 - comparison.rmse_ratio > options.large_fall
-                             : worth_it(comparison, options, tried.size());
+    const bool good =
+        bursts ? 1.0 - comparison.rmse_ratio > options.large_fall
+               : worth_it(comparison, options,
+                          result.additions.empty() ? options.first_least_fall : options.least_fall,
+                          tried.size());
     if (!good || result.additions.size() == options.most_effects) {
       result.last_tried = std::move(tried);
       break;

@@ -50,9 +50,10 @@ struct Addition {
 /// Settings of the search; the figures' origin: README "Selection".
 struct SearchOptions {
   std::size_t most_effects = 4;
-  double least_fall = 0.01;          ///< [-] of the held-out error
-  double significance = 0.001;       ///< [-] divided by the number of candidates (Bonferroni)
-  double large_fall = 0.15;          ///< [-] of the held-out error: significance not divided,
+  double first_least_fall = 0.005;  ///< [-] of the held-out error: is anything missing at all?
+  double least_fall = 0.01;     ///< [-] later: less is what the first one's form leaves of itself
+  double significance = 0.001;  ///< [-] divided by the number of candidates (Bonferroni)
+  double large_fall = 0.15;     ///< [-] of the held-out error: significance not divided,
   double large_significance = 0.01;  ///< [-] and this one
   double tie = 0.03;                 ///< [-] of the held-out error,
   double tied_gain = 0.95;           ///< [-] and of the gain: the simpler wins

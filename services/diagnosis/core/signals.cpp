@@ -221,4 +221,10 @@ const Signal* Signals::rate_of(const Signal& position) const noexcept {
   return nullptr;
 }
 
+Signals Signals::weighed(std::vector<double> weight) const {
+  Signals other = *this;
+  other.weight_ = std::move(weight);
+  return other;
+}
+
 }  // namespace stillhand::diagnosis

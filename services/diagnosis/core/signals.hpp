@@ -49,6 +49,8 @@ class Signals {
   /// The measurement's, and 0 in a stretch's first second (at most a tenth of it): there the
   /// unknown past has its say, beyond what a fitted initial state follows.
   [[nodiscard]] const std::vector<double>& weight() const noexcept { return weight_; }
+  /// The same signals with other weights, one a sample.
+  [[nodiscard]] Signals weighed(std::vector<double> weight) const;
   [[nodiscard]] const std::vector<double>& time_s() const noexcept { return time_s_; }
   /// [s] from the first to the last sample.
   [[nodiscard]] double duration_s() const noexcept { return time_s_.back() - time_s_.front(); }

@@ -9,7 +9,8 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kStartLag_s[] = {0.05, 0.2, 0.8};
+constexpr double kStartLag_s[] = {0.05, 0.2, 0.8, 3.0, 10.0};
+constexpr double kLongestLag = 0.2;  // [record lengths]
 
 std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals& signals) {
   const double keep = std::exp(-1.0 / (lag_s * signals.rate_hz()));
@@ -61,11 +62,13 @@ std::vector<Proposal> CoupledInput::proposed(const Screening& screening) const {
     if (!signal.derived) {
       forms.push_back({"coupled_input", "static", {signal.name}, {}, {}});
       for (const double lag_s : kStartLag_s) {
-        forms.push_back({"coupled_input",
-                         "lagged",
-                         {signal.name},
-                         {{"lag", "s", lag_s, 0.5 / signals.rate_hz(), 0.1 * signals.duration_s()}},
-                         {}});
+        if (lag_s > kLongestLag * signals.duration_s()) break;
+        forms.push_back(
+            {"coupled_input",
+             "lagged",
+             {signal.name},
+             {{"lag", "s", lag_s, 0.5 / signals.rate_hz(), kLongestLag * signals.duration_s()}},
+             {}});
       }
       if (dynamic) forms.push_back({"coupled_input", "through the body", {signal.name}, {}, {}});
       if (const Signal* rate = signals.rate_of(signal); rate != nullptr && rate != &signal) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diagnosis/effects/delay.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "diagnosis/core/interpolation.hpp"
@@ -11,7 +13,11 @@ namespace {
 
 constexpr double kEarliest_s = -0.1;  // the input's own sensor may be late, too
 constexpr double kLatest_s = 0.5;
-constexpr double kTried_s[] = {-0.02, 0.02, 0.04, 0.07, 0.12, 0.2};
+// Hollows of the error lie a few samples of 10 ms apart.
+constexpr double kTried_s[] = {-0.03, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3};
+constexpr std::size_t kThorough = 4;
+constexpr double kFiner_s[] = {0.01, 0.005, 0.0025};
+constexpr double kHollow_s = 0.015;
 
 class Delay final : public EffectKind {
  public:
@@ -27,6 +33,31 @@ class Delay final : public EffectKind {
   }
 };
 
+// A delay moves the poles: each trial starts from a body of its own.
+Proposal with_own_body(const Screening& screening, double delay_s, bool thoroughly) {
+  const Signals& signals = screening.signals();
+  std::vector<std::vector<double>> inputs;
+  for (const Signal& input : signals.inputs()) {
+    inputs.push_back(delayed(input.values, signals, [&](double) { return delay_s; }));
+  }
+  const std::vector<double>& output = signals.output().values;
+  Body body = started_body(inputs, output, screening.impulse_response(), signals,
+                           static_cast<int>(screening.model().body.order()));
+  if (thoroughly && body.order() == 4) body = with_other_mode(body, inputs, output, signals);
+  Proposal proposal{
+      {"delay", "of the input", {}, {{"delay", "s", delay_s, kEarliest_s, kLatest_s}}, {}},
+      0.0,
+      body};
+  Model model = screening.model();
+  model.body = std::move(body);
+  model.effects.push_back(proposal.effect);
+  FreeRun run;
+  const double square = residual_of(model, signals, run).squaredNorm();
+  proposal.gain = run.finite ? 1.0 - square / screening.residual().squaredNorm()
+                             : -std::numeric_limits<double>::infinity();
+  return proposal;
+}
+
 std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   const Body& body = screening.model().body;
   for (const Effect& effect : screening.model().effects) {
@@ -37,29 +68,28 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
              0.0,
              {}}};
   }
-  // A delay moves the poles: each trial starts from a body of its own.
   std::vector<Proposal> proposals;
   for (const double delay_s : kTried_s) {
-    std::vector<std::vector<double>> inputs;
-    for (const Signal& input : screening.signals().inputs()) {
-      inputs.push_back(delayed(input.values, screening.signals(), [&](double) { return delay_s; }));
-    }
-    Proposal proposal{
-        {"delay", "of the input", {}, {{"delay", "s", delay_s, kEarliest_s, kLatest_s}}, {}},
-        0.0,
-        started_body(inputs, screening.signals().output().values, screening.impulse_response(),
-                     screening.signals(), static_cast<int>(body.order()))};
-    Model model = screening.model();
-    model.body = *proposal.body;
-    model.effects.push_back(proposal.effect);
-    FreeRun run;
-    const double square = residual_of(model, screening.signals(), run).squaredNorm();
-    proposal.gain = run.finite ? 1.0 - square / screening.residual().squaredNorm()
-                               : -std::numeric_limits<double>::infinity();
-    proposals.push_back(std::move(proposal));
+    proposals.push_back(with_own_body(screening, delay_s, false));
   }
-  // A delay's error has hollows a few samples apart: two starts.
-  return best_of(std::move(proposals), 2);
+  // The order among the first few rests on bodies that may sit in a hollow.
+  proposals = best_of(std::move(proposals), kThorough);
+  for (Proposal& each : proposals) each = with_own_body(screening, each.effect.value(0), true);
+  proposals = best_of(std::move(proposals), kThorough);
+  Proposal best = proposals.front();
+  for (const double step_s : kFiner_s) {
+    const double from_s = best.effect.value(0);
+    for (const double delay_s : {from_s - step_s, from_s + step_s}) {
+      Proposal next = with_own_body(screening, delay_s, true);
+      if (next.gain > best.gain) best = std::move(next);
+    }
+  }
+  // Another hollow may be as deep once it is fitted: the best beyond this one.
+  const auto other = std::ranges::find_if(proposals, [&](const Proposal& each) {
+    return std::abs(each.effect.value(0) - best.effect.value(0)) > kHollow_s;
+  });
+  if (other == proposals.end()) return {best};
+  return {best, *other};
 }
 
 }  // namespace

@@ -14,6 +14,9 @@ double cube(double z) { return z * z * z; }
 // Cubic for small, linear for large z: hardening and softening springs that don't run away.
 double bent(double z) { return cube(z) / (1.0 + z * z); }
 
+// Cubic for small z; what a spring loses whose force levels off.
+double levelled(double z) { return z - std::tanh(z); }
+
 class NonlinearStiffness final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "nonlinear_stiffness"; }
@@ -34,7 +37,8 @@ class NonlinearStiffness final : public EffectKind {
   }
   double feedback(const Effect& effect, double z, LoopMemory& /*memory*/) const override {
     const double x = in_thresholds(effect, z);
-    return effect.form.starts_with("cubic") ? cube(x) : bent(x);
+    if (effect.form.starts_with("cubic")) return cube(x);
+    return effect.form.starts_with("levelled") ? levelled(x) : bent(x);
   }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
@@ -67,6 +71,11 @@ std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) c
   std::vector<Proposal> proposals = loop_proposals(
       screening, "nonlinear_stiffness", "bent",
       [](double z, LoopMemory& /*memory*/) { return bent(z); }, false);
+  for (Proposal& each : loop_proposals(
+           screening, "nonlinear_stiffness", "levelled",
+           [](double z, LoopMemory& /*memory*/) { return levelled(z); }, false)) {
+    proposals.push_back(std::move(each));
+  }
   for (Proposal& each : loop_proposals(
            screening, "nonlinear_stiffness", "cubic",
            [](double z, LoopMemory& /*memory*/) { return cube(z); }, true)) {

@@ -47,6 +47,21 @@ double quantile_of(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+// The body of the output as it was before the soft limit; near the limit little of it can be told.
+Body body_before(const Effect& effect, const Screening& screening) {
+  constexpr double kTellable = 0.97;
+  const Signals& signals = screening.signals();
+  std::vector<double> y = signals.output().values;
+  for (double& each : y) {
+    each = upper(effect) * std::atanh(std::clamp(each / upper(effect), -kTellable, kTellable));
+  }
+  std::vector<std::vector<double>> inputs;
+  for (const Signal& input : signals.inputs()) inputs.push_back(input.values);
+  const auto order = static_cast<int>(screening.model().body.order());
+  Body body = started_body(inputs, y, {}, signals, order);
+  return order == 4 ? with_other_mode(body, inputs, y, signals) : body;
+}
+
 std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   for (const Effect& effect : screening.model().effects) {
@@ -86,6 +101,9 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
     // As if the linear body had been fitted to the unlimited output: a start for the joint fit.
     Model model = screening.model();
     model.effects.push_back(start);
+    if (soft(start) && model.effects.size() == 1) {
+      model.body = body_before(start, screening);
+    }
     FitOptions options;
     options.max_iterations = 4;
     const FitResult fitted = fit(model, signals, screening.blocks(), options);

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diagnosis/effects/resonance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/core/modes.hpp"
 #include "diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kTriedDamping[] = {0.03, 0.1, 0.3};
-constexpr int kTriedFrequencies = 24;
+constexpr double kTriedDamping[] = {0.012, 0.035, 0.1, 0.3};
+constexpr double kStep = 2.0;  // between tried frequencies, in damping ratios: half power and half
 constexpr double kLowest_hz = 0.3;
 constexpr double kHighestOfRate = 0.4;
-
-// Poles of a mode by the matched z transform, over which the input is passed.
-std::vector<double> mode_denominator(double frequency_hz, double damping, double rate_hz) {
-  const double w = 2.0 * std::numbers::pi * frequency_hz / rate_hz;
-  const double radius = std::exp(-damping * w);
-  const double angle = w * std::sqrt(std::max(1.0 - damping * damping, 0.0));
-  return {1.0, -2.0 * radius * std::cos(angle), radius * radius};
-}
+constexpr double kLeastDamping = 0.003;
+constexpr double kLargestDamping = 0.95;
+constexpr double kLongestRinging = 0.125;  // [record lengths]
 
 class Resonance final : public EffectKind {
  public:
@@ -29,10 +26,18 @@ class Resonance final : public EffectKind {
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const auto denominator = mode_denominator(effect.value(0), effect.value(1), signals.rate_hz());
-    std::vector<double> x =
-        through_poles(signals.inputs().front().values, denominator, signals.stretches());
-    columns.push_back(differenced(x, signals.stretches()));
-    columns.push_back(std::move(x));
+    for (const Signal& input : signals.inputs()) {
+      std::vector<double> x = through_poles(input.values, denominator, signals.stretches());
+      columns.push_back(differenced(x, signals.stretches()));
+      columns.push_back(std::move(x));
+    }
+  }
+  // A mode that rings on through the record would take a tone for its free response.
+  [[nodiscard]] std::vector<double> own_poles(const Effect& effect,
+                                              const Signals& signals) const override {
+    const double ringing_s = 1.0 / (2.0 * std::numbers::pi * effect.value(0) * effect.value(1));
+    if (ringing_s > kLongestRinging * signals.duration_s()) return {};
+    return mode_denominator(effect.value(0), effect.value(1), signals.rate_hz());
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
@@ -41,26 +46,103 @@ class Resonance final : public EffectKind {
   }
 };
 
+Effect mode_beside(const Screening& screening, double frequency_hz, double damping_ratio) {
+  return {"resonance",
+          "beside the body",
+          {},
+          {{"frequency", "Hz", frequency_hz, 0.5 * kLowest_hz,
+            kHighestOfRate * screening.signals().rate_hz()},
+           {"damping_ratio", "-", damping_ratio, kLeastDamping, kLargestDamping}},
+          {}};
+}
+
+// The mode of a larger body that is best taken out of it: the rest must be a body as the model
+// allows it, and the mode itself explain least.
+std::optional<Proposal> mode_of(const Model& larger, const Screening& screening, double gain) {
+  const Signals& signals = screening.signals();
+  std::optional<Proposal> best;
+  double least = 0.0;
+  for (SplitBody& split : split_modes(larger.body, signals.rate_hz())) {
+    Effect effect = mode_beside(screening, split.frequency_hz, split.damping_ratio);
+    const bool within = std::ranges::all_of(effect.parameters, [](const Parameter& each) {
+      return each.value >= each.lower && each.value <= each.upper;
+    });
+    split.rest.largest_radius = screening.model().body.largest_radius;
+    split.rest.slowest_radius = screening.model().body.slowest_radius;
+    if (!within || !is_stable(split.rest)) continue;
+    // c_0 x(n) + c_1 x(n-1) by the difference of x and by x.
+    for (const auto& [c0, c1] : split.mode) {
+      effect.coefficients.push_back(-c1);
+      effect.coefficients.push_back(c0 + c1);
+    }
+    Columns columns;
+    effect_kind(effect.kind).terms(effect, signals, {}, columns);
+    double power = 0.0;
+    for (std::size_t n = 0; n < signals.size(); ++n) {
+      double sum = 0.0;
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        sum += effect.coefficients[c] * columns[c][n];
+      power += sum * sum;
+    }
+    if (best && power >= least) continue;
+    least = power;
+    best = Proposal{std::move(effect), gain, std::move(split.rest)};
+  }
+  return best;
+}
+
+// Bodies of two poles more, fitted from starts of their own: a grid beside the body as it is misses
+// what only a different body makes room for.
+std::vector<Proposal> from_larger_bodies(const Screening& screening) {
+  constexpr int kIterations = 15;
+  const Signals& signals = screening.signals();
+  const Model& own = screening.model();
+  const int order = static_cast<int>(own.body.order()) + 2;
+  std::vector<double> left = signals.output().values;
+  std::vector<std::vector<double>> inputs;
+  const bool bound_to_order = std::ranges::any_of(own.effects, [](const Effect& effect) {
+    return effect_kind(effect.kind).through_body(effect);
+  });
+  if (order > kLargestOrder || bound_to_order || !without_effects(own, signals, inputs, left)) {
+    return {};
+  }
+  const Body other = order == 6 ? with_other_mode(own.body, inputs, left, signals) : own.body;
+  std::vector<Proposal> proposals;
+  for (Body& start : std::vector<Body>{
+           with_mode(other, other.denominator, inputs, left, signals),
+           started_body(inputs, left,
+                        own.effects.empty() ? screening.impulse_response() : ImpulseResponse{},
+                        signals, order)}) {
+    Model larger = own;
+    larger.body = std::move(start);
+    // Beside the body a mode may ring longer than the body's poles, whose free response is fitted.
+    larger.body.largest_radius =
+        std::exp(-1.0 / (kLongestRinging * signals.duration_s() * signals.rate_hz()));
+    larger.body.slowest_radius = larger.body.largest_radius;
+    FitOptions options;
+    options.max_iterations = kIterations;
+    const FitResult fitted = fit(larger, signals, screening.blocks(), options);
+    auto proposal = mode_of(larger, screening, 1.0 - std::pow(fitted.rmse / screening.rmse(), 2));
+    if (proposal) proposals.push_back(std::move(*proposal));
+  }
+  return best_of(std::move(proposals), 1);
+}
+
 std::vector<Proposal> Resonance::proposed(const Screening& screening) const {
   if (screening.model().body.order() == 0) return {};
   const double highest_hz = kHighestOfRate * screening.signals().rate_hz();
   std::vector<Proposal> proposals;
-  for (int i = 0; i < kTriedFrequencies; ++i) {
-    const double frequency_hz =
-        kLowest_hz *
-        std::pow(highest_hz / kLowest_hz, static_cast<double>(i) / (kTriedFrequencies - 1));
-    for (const double damping : kTriedDamping) {
-      auto [effect, gain] = screening.with_coefficients(
-          {"resonance",
-           "beside the body",
-           {},
-           {{"frequency", "Hz", frequency_hz, 0.5 * kLowest_hz, highest_hz},
-            {"damping_ratio", "-", damping, 0.003, 0.95}},
-           {}});
+  for (const double damping : kTriedDamping) {
+    for (double frequency_hz = kLowest_hz; frequency_hz < highest_hz;
+         frequency_hz *= 1.0 + kStep * damping) {
+      auto [effect, gain] =
+          screening.with_coefficients(mode_beside(screening, frequency_hz, damping));
       proposals.push_back({std::move(effect), gain, {}});
     }
   }
-  return best_of(std::move(proposals), 1);
+  proposals = best_of(std::move(proposals), 1);
+  for (Proposal& each : from_larger_bodies(screening)) proposals.push_back(std::move(each));
+  return proposals;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "diagnosis/effects/parts.hpp"
 
@@ -19,6 +20,9 @@ constexpr double kLargestShare = 0.15;  // of the record: more isn't isolated
 constexpr std::size_t kMostBursts = 20;
 constexpr double kLeastEnergy = 0.35;  // of the residual's, or there is more to it than bursts
 constexpr std::size_t kDiscarded = 2;
+constexpr int kRounds = 2;
+constexpr double kFewWindows = 0.04;  // of all
+constexpr double kMuchEnergy = 0.25;  // of the residual's; of even noise they hold a tenth
 
 struct Window {
   std::size_t first;
@@ -67,6 +71,68 @@ class Transients final : public EffectKind {
   }
 };
 
+struct Bursts {
+  Effect effect{"transients", "isolated bursts", {}, {}, {}};
+  double claimed_s = 0.0;
+  double energy = 0.0;  // of the windows' squares
+};
+
+// Windows above a square, with their guards, as one effect.
+Bursts bursts_above(double least, const std::vector<Window>& windows,
+                    const std::vector<double>& squares, const Signals& signals) {
+  Bursts bursts;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    if (squares[w] < least) continue;
+    bursts.energy += squares[w];
+    const double from_s = signals.time_s()[windows[w].first] - kGuard_s;
+    const double to_s = signals.time_s()[windows[w].end - 1] + kGuard_s;
+    auto& all = bursts.effect.parameters;
+    if (!all.empty() && from_s <= all.back().value) {
+      bursts.claimed_s += to_s - all.back().value;
+      all.back().value = to_s;
+      continue;
+    }
+    bursts.claimed_s += to_s - from_s;
+    const std::string number = std::to_string(all.size() / 2 + 1);
+    const double begin_s = signals.time_s().front() - kGuard_s;
+    const double end_s = signals.time_s().back() + kGuard_s;
+    all.push_back({"begin_" + number, "s", from_s, begin_s, end_s, false});
+    all.push_back({"end_" + number, "s", to_s, begin_s, end_s, false});
+  }
+  return bursts;
+}
+
+double quantile_of(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// A body fitted to what the bursts leave: one fitted to them as well may be all wrong.
+std::optional<Body> body_without(const Bursts& bursts, const Screening& screening) {
+  constexpr int kIterations = 10;
+  const Signals& signals = screening.signals();
+  Model model = screening.model();
+  std::vector<double> left = signals.output().values;
+  std::vector<std::vector<double>> inputs;
+  if (model.body.order() == 0 || !without_effects(model, signals, inputs, left)) return {};
+  std::vector<double> weight = signals.weight();
+  transients_kind().weigh(bursts.effect, signals, weight);
+  const Signals masked = signals.weighed(std::move(weight));
+  const auto order = static_cast<int>(model.body.order());
+  model.body = started_body(inputs, left, {}, masked, order);
+  if (order == 4) model.body = with_other_mode(model.body, inputs, left, masked);
+  FitOptions options;
+  options.max_iterations = kIterations;
+  fit(model, masked, screening.blocks(), options);
+  return model.body;
+}
+
 std::vector<Proposal> Transients::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   for (const Effect& effect : screening.model().effects) {
@@ -81,37 +147,35 @@ std::vector<Proposal> Transients::proposed(const Screening& screening) const {
     }
   }
   if (windows.size() < 20) return {};
-  const std::vector<double> squares = window_squares(screening.residual(), windows);
-  std::vector<double> sorted = squares;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double ordinary = *middle;
-  Effect effect{"transients", "isolated bursts", {}, {}, {}};
-  double claimed_s = 0.0;
-  double burst = 0.0;
-  for (std::size_t w = 0; w < windows.size(); ++w) {
-    if (squares[w] < kStandsOut * ordinary) continue;
-    burst += squares[w];
-    const double from_s = signals.time_s()[windows[w].first] - kGuard_s;
-    const double to_s = signals.time_s()[windows[w].end - 1] + kGuard_s;
-    auto& all = effect.parameters;
-    if (!all.empty() && from_s <= all.back().value) {
-      claimed_s += to_s - all.back().value;
-      all.back().value = to_s;
-    } else {
-      claimed_s += to_s - from_s;
-      const std::string number = std::to_string(all.size() / 2 + 1);
-      const double begin_s = signals.time_s().front() - kGuard_s;
-      const double end_s = signals.time_s().back() + kGuard_s;
-      all.push_back({"begin_" + number, "s", from_s, begin_s, end_s, false});
-      all.push_back({"end_" + number, "s", to_s, begin_s, end_s, false});
+  std::vector<double> squares = window_squares(screening.residual(), windows);
+  std::vector<Proposal> proposals;
+  const auto propose = [&](const std::optional<Body>& body) {
+    Bursts bursts = bursts_above(kStandsOut * quantile_of(squares, 0.5), windows, squares, signals);
+    const std::size_t count = bursts.effect.parameters.size() / 2;
+    const double share = bursts.energy / sum_of(squares);
+    if (count == 0 || count > kMostBursts || share < kLeastEnergy ||
+        bursts.claimed_s > kLargestShare * signals.duration_s()) {
+      return;
     }
+    proposals.push_back({std::move(bursts.effect), share, body});
+  };
+  propose({});
+  // Bursts bend the fit that is to show them.  Where few windows hold much, they are left out and
+  // the fit is made anew.
+  std::optional<Body> body;
+  for (int round = 0; round < kRounds; ++round) {
+    const Bursts strongest =
+        bursts_above(quantile_of(squares, 1.0 - kFewWindows), windows, squares, signals);
+    if (strongest.energy < kMuchEnergy * sum_of(squares)) break;
+    body = body_without(strongest, screening);
+    if (!body) break;
+    Model model = screening.model();
+    model.body = *body;
+    FreeRun run;
+    squares = window_squares(residual_of(model, signals, run), windows);
   }
-  if (effect.parameters.empty() || claimed_s > kLargestShare * signals.duration_s()) return {};
-  double all = 0.0;
-  for (const double square : squares) all += square;
-  if (effect.parameters.size() > 2 * kMostBursts || burst < kLeastEnergy * all) return {};
-  return {{std::move(effect), burst / all, {}}};
+  if (body) propose(body);
+  return proposals;
 }
 
 }  // namespace

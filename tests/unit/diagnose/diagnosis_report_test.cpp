@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <numbers>
 #include <string>
 
 #include "diagnose/effect_numbers.hpp"
@@ -107,7 +108,7 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
     EXPECT_THAT(with_friction_->html, HasSubstr(part));
   }
   for (const char* name : {"prediction", "residual_spectra", "effect_1", "residual_over_time",
-                           "autocorrelation", "detections"}) {
+                           "autocorrelation", "partial_coherence", "detections"}) {
     for (const char* ending : {".svg", ".png"}) {
       EXPECT_TRUE(
           std::filesystem::exists(with_friction_->folder.path() / (std::string(name) + ending)))
@@ -118,7 +119,7 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
         std::string::npos)
         << name;
   }
-  EXPECT_THAT(with_friction_->html, HasSubstr("Figure 6."));
+  EXPECT_THAT(with_friction_->html, HasSubstr("Figure 7."));
   EXPECT_TRUE(
       report::test::well_formed(with_friction_->html.substr(with_friction_->html.find("<html"))));
 }
@@ -137,6 +138,32 @@ TEST_F(DiagnosisReportTest, NothingMissingIsAPageToo) {
   EXPECT_THAT(without_->html, HasSubstr("No effect was worth adding"));
   EXPECT_FALSE(std::filesystem::exists(without_->folder.path() / "effect_1.svg"));
   EXPECT_TRUE(std::filesystem::exists(without_->folder.path() / "prediction.svg"));
+}
+
+TEST_F(DiagnosisReportTest, LinesAreDrawnWhereTheExcitationRepeats) {
+  EXPECT_FALSE(std::filesystem::exists(without_->folder.path() / "detection_lines.svg"));
+  diagnosis::Measurement measurement = recording(0.0);
+  auto& a_y = measurement.channels[0].values;
+  auto& force_n = measurement.channels[2].values;
+  // Lines at 0.3 and 0.7 Hz every 10 s, RMS 1, and a square, so that even lines stand out.
+  for (std::size_t n = 0; n < a_y.size(); ++n) {
+    const double turn = 2.0 * std::numbers::pi * static_cast<double>(n % 1000) / 1000.0;
+    force_n[n] += 3.2 * a_y[n];
+    a_y[n] = std::sin(3.0 * turn) + std::sin(7.0 * turn + 1.0);
+    force_n[n] += -3.2 * a_y[n] + 0.5 * a_y[n] * a_y[n];
+  }
+  diagnosis::DiagnoseOptions options = static_model();
+  options.search.most_effects = 0;
+  const diagnosis::Diagnosis found = diagnosis::diagnose(measurement, options);
+  const TemporaryFolder folder;
+  report::StagedFolder staged(folder.path());
+  write_report(found, measurement, "ride.csv", staged);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "detection_lines.svg"));
+  const std::string html = text_of(folder.path() / "report.html");
+  for (const char* part : {"excitation repeats", "periods of 10 s", "harmonics of 0.1 Hz",
+                           "even lines", "distortion at"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+  }
 }
 
 TEST_F(DiagnosisReportTest, NoNumberIsPrintedThatIsNone) {

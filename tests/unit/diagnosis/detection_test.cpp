@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "unit/diagnosis/made_measurement.hpp"
+#include "unit/diagnosis/made_multisine.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -29,7 +29,8 @@ Measurement made_with(std::uint64_t seed, const Addition& more) {
 }
 
 DetectionResult detected_in(const Measurement& measurement) {
-  return detected(made::Studied(measurement, 2).screening);
+  const made::Studied studied(measurement, 2);
+  return detected(studied.screening, periodic_excitation_of(studied.signals));
 }
 
 const Detection* find(const DetectionResult& result, const std::string& question,
@@ -103,8 +104,46 @@ TEST(DetectionTest, AProductOfTwoChannelsIsAskedForAllPairs) {
   ASSERT_NE(find(sut, "product of", "v and w"), nullptr);
   EXPECT_TRUE(find(sut, "product of", "v and w")->found);
   EXPECT_EQ(sut.detections.front().channel, "v and w");
+  EXPECT_EQ(sut.detections.front().channels, (std::vector<std::string>{"v", "w"}));
   ASSERT_NE(find(sut, "product of", "u and v"), nullptr);
   EXPECT_FALSE(find(sut, "product of", "u and v")->found);
+}
+
+// A square of what the input was over a second ago: no column is that, but the lines are.
+TEST(DetectionTest, DistortionThatNoColumnShowsIsFoundAtTheLines) {
+  const auto u = made::multisine(kCount, 1000, {5, 11, 15, 23, 31, 37, 45, 55}, 60);
+  const auto noise = made::white(kCount, 61);
+  const Body body = made::two_pole_body();
+  auto y = made::answer(body.numerators[0], body.denominator, u);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    y[n] += kNoise * noise[n] + (n < 125 ? 0.0 : 0.1 * u[n - 75] * u[n - 125]);
+  }
+  const DetectionResult sut = detected_in(made::measurement_of({{"u", "V", u}, {"y", "N", y}}));
+  const Detection* even = find(sut, kDistortion, "even lines");
+  ASSERT_NE(even, nullptr);
+  EXPECT_TRUE(even->found);
+  EXPECT_TRUE(even->channels.empty());
+  const Detection* odd = find(sut, kDistortion, "odd lines");
+  ASSERT_NE(odd, nullptr);
+  EXPECT_FALSE(odd->found);
+  ASSERT_TRUE(sut.lines.has_value());
+  EXPECT_NEAR(sut.lines->repeats.rms, kNoise, 0.002);
+}
+
+// As without a period: none of ten recordings answers.
+TEST(DetectionTest, NoiseOnAPeriodicExcitationAnswersNoQuestion) {
+  const Body body = made::two_pole_body();
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const auto u = made::multisine(kCount, 1000, {5, 11, 15, 23, 31, 37, 45, 55}, 70 + seed);
+    const auto noise = made::answer({1.0}, {1.0, -0.9}, made::white(kCount, 90 + seed));
+    auto y = made::answer(body.numerators[0], body.denominator, u);
+    for (std::size_t n = 0; n < kCount; ++n) y[n] += kNoise * noise[n];
+    const DetectionResult sut = detected_in(made::measurement_of({{"u", "V", u}, {"y", "N", y}}));
+    EXPECT_TRUE(sut.lines.has_value());
+    for (const Detection& each : sut.detections) {
+      EXPECT_FALSE(each.found) << seed << ": " << each.question << " " << each.channel;
+    }
+  }
 }
 
 // Three blocks of thirty that say so are no evidence, however much of the power they hold.

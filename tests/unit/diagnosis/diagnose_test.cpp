@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "contract/config_error.hpp"
 #include "unit/diagnosis/made_measurement.hpp"
@@ -98,6 +99,59 @@ TEST(DiagnoseTest, WhereNothingIsMissingTheVerdictSaysSo) {
   EXPECT_EQ(sut.final_error.rmse, sut.baseline_error.rmse);
   EXPECT_NEAR(sut.final_error.rmse, 0.02, 0.002);
   EXPECT_TRUE(sut.model.effects.empty());
+}
+
+// The baseline alone: nothing is explained.
+DiagnoseOptions without_effects(ModelClass model) {
+  DiagnoseOptions options = options_of(model);
+  options.search.most_effects = 0;
+  return options;
+}
+
+TEST(DiagnoseTest, WhatIsLeftNamesMeasuredChannelsOnly) {
+  constexpr std::size_t kLong = 6000;  // 30 blocks: p can fall far enough
+  const auto u = made::ride(kLong, 1);
+  const auto v = made::ride(kLong, 2);
+  const auto w = made::ride(kLong, 9);
+  const auto noise = made::white(kLong, 3);
+  const Body body = made::two_pole_body();
+  auto y = made::answer(body.numerators[0], body.denominator, u);
+  for (std::size_t n = 0; n < kLong; ++n) {
+    y[n] += 0.3 * v[n] * w[n] + 0.1 * y[n] * y[n] + 0.02 * noise[n];
+  }
+  const Measurement measurement =
+      made::measurement_of({{"u", "V", u}, {"a_x", "m/s^2", v}, {"w", "V", w}, {"y", "N", y}});
+  const Diagnosis sut = diagnose(measurement, without_effects(ModelClass::kArx));
+  ASSERT_TRUE(sut.unexplained.has_value());
+  EXPECT_EQ(sut.verdict(), "unexplained residual");
+  // The product's two channels are two entries; the body's output is none.
+  EXPECT_THAT(sut.unexplained->channels, Contains("a_x"));
+  EXPECT_THAT(sut.unexplained->channels, Contains("w"));
+  for (const std::string& channel : sut.unexplained->channels) {
+    EXPECT_NE(measurement.find(channel), nullptr) << channel;
+  }
+}
+
+TEST(DiagnoseTest, DistortionAtLinesAloneIsLeftUnexplained) {
+  std::vector<double> u(kCount);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    u[n] = 0.0;
+    for (const int h : {3, 7, 11, 13}) {
+      const auto step = static_cast<double>(static_cast<std::size_t>(h) * n % 400);
+      u[n] += std::sin(2.0 * std::numbers::pi * step / 400.0 + h * h);
+    }
+  }
+  std::vector<double> y = made::white(kCount, 3);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    y[n] = 2.0 * u[n] + 0.05 * y[n] + (n < 130 ? 0.0 : 0.1 * u[n - 130] * u[n - 85]);
+  }
+  const Diagnosis sut = diagnose(made::measurement_of({{"u", "V", u}, {"y", "N", y}}),
+                                 without_effects(ModelClass::kLinear));
+  ASSERT_TRUE(sut.unexplained.has_value());
+  EXPECT_EQ(sut.verdict(), "unexplained residual");
+  EXPECT_THAT(sut.unexplained->what, HasSubstr("repeats with the excitation at even lines"));
+  EXPECT_THAT(sut.noise_floor.method, testing::StartsWith("repeats"));
+  EXPECT_NEAR(sut.noise_floor.rmse, 0.05, 0.004);
 }
 
 TEST(DiagnoseTest, TheResultDoesNotDependOnTheOrderOfTheWork) {

@@ -51,7 +51,7 @@ TEST(EffectKindsTest, EveryProposalCanBeRunAndFitted) {
   for (const EffectKind* kind : effect_kinds()) {
     const auto proposals = kind->proposed(of.screening);
     if (proposals.empty()) silent.emplace(kind->name());
-    EXPECT_LE(proposals.size(), 6u) << kind->name();
+    EXPECT_LE(proposals.size(), 8u) << kind->name();
     for (const Proposal& proposal : proposals) {
       SCOPED_TRACE(proposal.effect.kind + ", " + proposal.effect.form);
       EXPECT_EQ(proposal.effect.kind, kind->name());

@@ -51,7 +51,7 @@ Eigen::VectorXd column_by_differences(const Model& model, const Signals& signals
   for (Eigen::Index n = 0; n < column.rows(); ++n) {
     column(n, 0) *= weight[static_cast<std::size_t>(n)];
   }
-  const InitialStates initial(model.body, signals, weight);
+  const InitialStates initial(model, signals, weight);
   initial.remove_from(column);
   return column.col(0);
 }
@@ -144,7 +144,7 @@ TEST(LinearisationTest, EveryStageAgrees) {
        "beside the body",
        {},
        {{"frequency", "Hz", 4.3, 0.1, 40.0}, {"damping_ratio", "-", 0.06, 0.003, 0.95}},
-       {0.2, -0.1}},
+       {0.2, -0.1, 0.15, 0.05}},
       {"output_saturation", "soft", {}, one(4.0), {}},
       {"transients",
        "isolated bursts",

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/detection_lines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "unit/diagnosis/made_multisine.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kPeriod = 1000;
+const std::vector<std::size_t> kOdd{1, 5, 7, 11, 15, 17, 21, 25};  // 3, 9, 13, 19, 23 left out
+const std::vector<std::size_t> kAll{2, 3, 5, 8, 9, 12, 14, 15};
+
+// The first second isn't judged, the periods behind it are whole.
+constexpr std::size_t count_of(std::size_t periods) { return periods * kPeriod + 100; }
+
+// The residual is noise and a distortion of the input; the output is u and the residual.
+DetectionLines lines_of(
+    const std::vector<std::size_t>& harmonics, std::size_t periods,
+    const std::vector<double>& noise,
+    const std::function<double(double)>& distortion = [](double) { return 0.0; }) {
+  const std::size_t count = count_of(periods);
+  const std::vector<double> u = made::multisine(count, kPeriod, harmonics, 1);
+  std::vector<double> y = u;
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(count));
+  for (std::size_t n = 0; n < count; ++n) {
+    const double r = noise[n] + distortion(u[n]);
+    residual[static_cast<Eigen::Index>(n)] = r;
+    y[n] += r;
+  }
+  const Signals signals(made::measurement_of({{"u", "V", u}, {"y", "N", y}}), {"u"}, "y");
+  const auto excitation = periodic_excitation_of(signals);
+  EXPECT_TRUE(excitation.has_value());
+  const auto repeated =
+      repeated_residual(excitation->periodicity, residual, std::vector<double>(count, 1.0));
+  EXPECT_TRUE(repeated.has_value());
+  return detection_lines(*repeated, excitation->excited, signals);
+}
+
+std::vector<double> scaled(std::vector<double> x, double by) {
+  for (double& value : x) value *= by;
+  return x;
+}
+
+TEST(DetectionLinesTest, LinesAreSortedByWhatIsExcited) {
+  const DetectionLines sut = lines_of(kOdd, 4, scaled(made::white(count_of(4), 2), 0.1));
+  EXPECT_NEAR(sut.fundamental_hz, 0.1, 1e-12);
+  EXPECT_TRUE(sut.odd_excitation);
+  EXPECT_EQ(sut.excited.frequency_hz.size(), kOdd.size());
+  // Odd ones to 3 x 25 = 75: 38 less 8; even ones to 50: 25.
+  EXPECT_EQ(sut.odd.frequency_hz.size(), 30u);
+  EXPECT_EQ(sut.even.frequency_hz.size(), 25u);
+  EXPECT_TRUE(sut.odd_or_even.empty());
+  EXPECT_NEAR(sut.odd.frequency_hz.front(), 0.3, 1e-12);
+  EXPECT_NEAR(sut.even.frequency_hz.front(), 0.2, 1e-12);
+  // Each of 8 lines of an input of RMS 1 has 1/sqrt 8; noise a line 0.1 sqrt(2/4000).
+  EXPECT_NEAR(sut.excited.output.front(), 1.0 / std::sqrt(8.0), 0.02);
+  EXPECT_NEAR(sut.even.noise.front(), 0.1 * std::sqrt(2.0 / 4000.0), 0.004);
+}
+
+// Every third harmonic is excited, 3 x odd: the fundamental is three times 1/period.
+TEST(DetectionLinesTest, OddAndEvenCountFromTheCommonDivisorOfWhatIsExcited) {
+  const DetectionLines sut = lines_of({6, 18, 42}, 3, scaled(made::white(count_of(3), 3), 0.1));
+  EXPECT_NEAR(sut.fundamental_hz, 0.6, 1e-12);
+  EXPECT_TRUE(sut.odd_excitation);
+}
+
+TEST(DetectionLinesTest, ASquareIsEvenAndACubeIsOdd) {
+  const auto noise = scaled(made::white(count_of(4), 4), 0.05);
+  const DetectionLines square = lines_of(kOdd, 4, noise, [](double u) { return 0.05 * u * u; });
+  EXPECT_LT(square.even.p, 1e-10);
+  EXPECT_GT(square.even.share, 0.2);
+  EXPECT_GT(square.odd.p, 1e-3);
+  EXPECT_LT(std::abs(square.odd.share), 0.02);
+  const DetectionLines cube = lines_of(kOdd, 4, noise, [](double u) { return 0.05 * u * u * u; });
+  EXPECT_LT(cube.odd.p, 1e-10);
+  EXPECT_GT(cube.odd.share, 0.1);
+  EXPECT_GT(cube.even.p, 1e-3);
+}
+
+// A sine of RMS 1 squared is 1 - cos(2 .): one line of RMS 1/sqrt 2.
+TEST(DetectionLinesTest, TheLevelOfALineIsItsRms) {
+  const DetectionLines sut = lines_of({7}, 4, scaled(made::white(count_of(4), 5), 1e-3),
+                                      [](double u) { return 0.05 * u * u; });
+  ASSERT_FALSE(sut.even.empty());
+  EXPECT_NEAR(sut.even.frequency_hz.front(), 1.4, 1e-12);
+  EXPECT_NEAR(sut.even.residual.front(), 0.05 / std::sqrt(2.0), 2e-4);
+  EXPECT_NEAR(sut.even.share, 1.0, 0.01);
+}
+
+TEST(DetectionLinesTest, WhereEvenLinesAreExcitedTheOrdersAreNotToldApart) {
+  const DetectionLines sut = lines_of(kAll, 4, scaled(made::white(count_of(4), 6), 0.05),
+                                      [](double u) { return 0.05 * u * u; });
+  EXPECT_FALSE(sut.odd_excitation);
+  EXPECT_TRUE(sut.odd.empty());
+  EXPECT_TRUE(sut.even.empty());
+  EXPECT_LT(sut.odd_or_even.p, 1e-10);
+}
+
+// How many of 400 recordings of noise alone have p below 5 %, both groups.
+int alarms(std::size_t periods, const std::vector<double>& colour, bool heavy) {
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    auto noise = made::answer({0.1}, colour, made::white(count_of(periods), 2000 + seed));
+    if (heavy) {
+      for (double& value : noise) value *= value * value * 100.0;
+    }
+    const DetectionLines sut = lines_of(kOdd, periods, noise);
+    count += sut.odd.p < 0.05 ? 1 : 0;
+    count += sut.even.p < 0.05 ? 1 : 0;
+  }
+  return count;
+}
+
+// 5 % of 800 are 40 with a deviation of 6.2; 3.5 of these.  Where a group's lines hold less than
+// noise would, p isn't looked at; that is never among the 5 %.
+TEST(DetectionLinesTest, NoiseAloneGivesAlarmsAsOftenAsPSays) {
+  EXPECT_NEAR(alarms(2, {1.0}, false), 40, 22);
+  EXPECT_NEAR(alarms(6, {1.0}, false), 40, 22);
+  // Slow noise is no different, level by level.
+  EXPECT_NEAR(alarms(4, {1.0, -0.95}, false), 40, 22);
+  // Heavy tails: cubes of normal deviates.
+  EXPECT_NEAR(alarms(4, {1.0}, true), 40, 22);
+}
+
+// A ramp over the record is the same within every period, and yet no line.
+TEST(DetectionLinesTest, ADriftIsNoDistortion) {
+  std::vector<double> noise = scaled(made::white(count_of(4), 7), 0.05);
+  for (std::size_t n = 0; n < noise.size(); ++n) noise[n] += 1e-3 * static_cast<double>(n);
+  const DetectionLines sut = lines_of(kOdd, 4, noise);
+  EXPECT_GT(sut.odd.p, 0.01);
+  EXPECT_GT(sut.even.p, 0.01);
+}
+
+// A tone between two harmonics leaks to both sides.
+TEST(DetectionLinesTest, ATonePastTheLinesIsNoDistortion) {
+  std::vector<double> noise = scaled(made::white(count_of(4), 8), 0.05);
+  for (std::size_t n = 0; n < noise.size(); ++n)
+    noise[n] += std::sin(0.0643 * static_cast<double>(n));
+  const DetectionLines sut = lines_of(kOdd, 4, noise);
+  EXPECT_GT(sut.odd.p, 0.01);
+  EXPECT_GT(sut.even.p, 0.01);
+}
+
+// A converter's steps repeat with the excitation; 1e-4 of the output are nothing.
+TEST(DetectionLinesTest, StepsOfAConverterAreNoEffect) {
+  const DetectionLines sut = lines_of(kOdd, 4, scaled(made::white(count_of(4), 9), 1e-7),
+                                      [](double u) { return std::round(u * 5000.0) / 5000.0 - u; });
+  EXPECT_EQ(sut.odd.p, 1.0);
+  EXPECT_EQ(sut.even.p, 1.0);
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis

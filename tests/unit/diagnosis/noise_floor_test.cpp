@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "diagnosis/core/noise_floor.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/diagnosis/made_multisine.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr std::size_t kCount = 6000;
+const std::vector<std::size_t> kHarmonics{5, 11, 15, 23, 31, 37, 45, 55};
+
+// Body on u and noise of 0.05.
+Measurement made_with(const std::vector<double>& u, const std::vector<double>& noise) {
+  const Body body = made::two_pole_body();
+  auto y = made::answer(body.numerators[0], body.denominator, u);
+  const auto settled = made::scaled_to(noise, 0.05);
+  for (std::size_t n = 0; n < kCount; ++n) y[n] += settled[n];
+  return made::measurement_of({{"u", "V", u}, {"y", "N", y}});
+}
+
+NoiseFloor floor_of(const Measurement& measurement) {
+  const made::Studied studied(measurement, 2);
+  return noise_floor_of(detected(studied.screening, periodic_excitation_of(studied.signals)),
+                        studied.screening, {0.049, 0.051, 0.0502});
+}
+
+double estimate(const NoiseFloor& floor, const std::string& name) {
+  for (const NoiseEstimate& each : floor.estimates) {
+    if (each.name == name) return each.rmse;
+  }
+  return 0.0;
+}
+
+// 5900 samples of white noise tell its size to 1 % (one deviation), spectra of it to 2 %.
+TEST(NoiseFloorTest, OfWhiteNoiseAllEstimatesAgree) {
+  const NoiseFloor sut = floor_of(made_with(made::ride(kCount, 1), made::white(kCount, 2)));
+  EXPECT_NEAR(sut.rmse, 0.05, 0.002);
+  EXPECT_EQ(sut.estimates.front().name, "final model");
+  EXPECT_EQ(estimate(sut, "repeats"), 0.0);
+  EXPECT_NEAR(estimate(sut, "high frequencies"), 0.05, 0.004);
+  EXPECT_NEAR(estimate(sut, "between blocks"), 0.05, 0.004);
+  EXPECT_THAT(sut.method, StartsWith("residual of the final model"));
+  EXPECT_THAT(sut.method, HasSubstr("Others: high frequencies 0.0"));
+  EXPECT_THAT(sut.method, HasSubstr("between blocks 0.0"));
+}
+
+TEST(NoiseFloorTest, WhereTheExcitationRepeatsTheRepeatsAreUsed) {
+  const NoiseFloor sut =
+      floor_of(made_with(made::multisine(kCount, 1000, kHarmonics, 3), made::white(kCount, 4)));
+  EXPECT_EQ(sut.estimates.front().name, "repeats");
+  EXPECT_EQ(sut.rmse, sut.estimates.front().rmse);
+  EXPECT_NEAR(sut.rmse, 0.05, 0.002);
+  EXPECT_LT(sut.low, 0.05);
+  EXPECT_GT(sut.high, 0.05);
+  // 4000 degrees of freedom: 2.2 % to each side.
+  EXPECT_NEAR((sut.high - sut.low) / sut.rmse, 0.044, 0.01);
+  EXPECT_THAT(sut.method, StartsWith("repeats"));
+  EXPECT_THAT(sut.method, HasSubstr("5 periods of the excitation (10 s each)"));
+  EXPECT_THAT(sut.method, HasSubstr("final model 0.0"));
+}
+
+// What repeats and isn't explained stays out of the repeats, and in the others.
+TEST(NoiseFloorTest, DistortionIsNotTakenForNoise) {
+  const auto u = made::multisine(kCount, 1000, kHarmonics, 5);
+  Measurement measurement = made_with(u, made::white(kCount, 6));
+  std::vector<double>& y = measurement.channels[1].values;
+  for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.1 * u[n] * u[n];
+  const NoiseFloor sut = floor_of(measurement);
+  EXPECT_NEAR(sut.rmse, 0.05, 0.002);
+  EXPECT_GT(estimate(sut, "between blocks"), 0.07);
+}
+
+// Noise behind a low-pass of 0.5 Hz: 0.05 in all, next to nothing above 10 Hz.
+TEST(NoiseFloorTest, SlowNoiseSpreadsTheEstimatesAndTheInterval) {
+  const auto slow = made::answer({1.0}, {1.0, -0.97}, made::white(kCount, 8));
+  const NoiseFloor sut = floor_of(made_with(made::ride(kCount, 7), slow));
+  EXPECT_LT(estimate(sut, "high frequencies"), 0.02);
+  EXPECT_EQ(sut.low, estimate(sut, "high frequencies"));
+  EXPECT_GE(sut.high, sut.rmse);
+  EXPECT_GT(sut.rmse, 0.04);
+}
+
+// An input up to half the rate leaves no band above it.
+TEST(NoiseFloorTest, WithoutRoomAboveTheBandThereIsNoHighFrequencyEstimate) {
+  const NoiseFloor sut = floor_of(made_with(made::white(kCount, 9), made::white(kCount, 10)));
+  EXPECT_EQ(estimate(sut, "high frequencies"), 0.0);
+  EXPECT_THAT(sut.method, Not(HasSubstr("high frequencies")));
+  EXPECT_NEAR(estimate(sut, "between blocks"), 0.05, 0.004);
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
