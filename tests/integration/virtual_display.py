@@ -28,8 +28,9 @@ class VirtualDisplay:
         self._folder = tempfile.TemporaryDirectory(prefix="stillhand-screen-")
         told, tell = os.pipe()
         self._server = subprocess.Popen(
+            # A server begins anew when its last client leaves, and refuses who comes meanwhile: -noreset.
             ["Xvfb", "-displayfd", str(tell), "-screen", "0", f"{COLUMNS}x{ROWS}x24", "-fbdir", self._folder.name,
-             "-nolisten", "tcp"], pass_fds=(tell,), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+             "-nolisten", "tcp", "-noreset"], pass_fds=(tell,), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
         os.close(tell)
         with os.fdopen(told) as pipe:
