@@ -133,8 +133,10 @@ std::vector<Proposal> Resonance::proposed(const Screening& screening) const {
   const double highest_hz = kHighestOfRate * screening.signals().rate_hz();
   std::vector<Proposal> proposals;
   for (const double damping : kTriedDamping) {
-    for (double frequency_hz = kLowest_hz; frequency_hz < highest_hz;
-         frequency_hz *= 1.0 + kStep * damping) {
+    const double ratio = 1.0 + kStep * damping;
+    const auto steps = static_cast<int>(std::log(highest_hz / kLowest_hz) / std::log(ratio));
+    for (int i = 0; i <= steps; ++i) {
+      const double frequency_hz = kLowest_hz * std::pow(ratio, i);
       auto [effect, gain] =
           screening.with_coefficients(mode_beside(screening, frequency_hz, damping));
       proposals.push_back({std::move(effect), gain, {}});
