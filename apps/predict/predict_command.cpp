@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "contract/config_error.hpp"
 #include "diagnosis/model_file.hpp"
 #include "measurement/read.hpp"
 #include "predict/predict.hpp"
@@ -24,6 +25,7 @@ struct Words {
 };
 
 int run(const Words& words) {
+  if (words.out.empty()) throw ConfigError("--out", "nothing", "the CSV file to write");
   report::ResultFiles files({{"--out", words.out}}, {words.model, words.recording});
   const diagnosis::Model model =
       diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());

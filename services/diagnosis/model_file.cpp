@@ -2,10 +2,14 @@
 #include "diagnosis/model_file.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include "contract/config_error.hpp"
 #include "diagnosis/core/effect_kind.hpp"
+#include "diagnosis/core/evaluation.hpp"
 #include "diagnosis/core/loop.hpp"
+#include "diagnosis/core/signals.hpp"
 #include "settings/json_entry.hpp"
 
 namespace stillhand::diagnosis {
@@ -71,6 +75,62 @@ Effect effect_of(const Entry& entry, std::size_t order) {
   return effect;
 }
 
+// Some samples of every channel that the model reads: enough to ask a kind what it needs.
+Signals made_up_signals(const Model& model) {
+  constexpr std::size_t kSamples = 64;
+  Measurement made;
+  made.source = "model";
+  made.rate_hz = model.rate_hz;
+  made.stretches = {{0, kSamples, 0.0}};
+  made.weight.assign(kSamples, 1.0);
+  const auto add = [&](const std::string& name) {
+    if (made.find(name) != nullptr) return;
+    const double step = 1.0 + 0.3 * static_cast<double>(made.channels.size());
+    Channel channel{name, "", std::vector<double>(kSamples)};
+    for (std::size_t n = 0; n < kSamples; ++n) {
+      channel.values[n] = std::sin(step * static_cast<double>(n));
+    }
+    made.channels.push_back(std::move(channel));
+  };
+  add(model.output);
+  for (const std::string& input : model.inputs) add(input);
+  for (const Effect& effect : model.effects) {
+    for (const std::string& channel : effect.channels) add(channel);
+  }
+  return {made, model.inputs, model.output};
+}
+
+// Linear numbers that the prediction takes; a feedback's were counted when they were read.
+// @throws std::out_of_range for an effect without the channels or parameters that its kind reads.
+std::size_t coefficients_of(const Effect& effect, const Model& model, const Signals& signals) {
+  const EffectKind& kind = effect_kind(effect.kind);
+  if (kind.stage(effect) == Stage::kFeedback) return effect.coefficients.size();
+  if (kind.stage(effect) != Stage::kTerm) return 0;
+  Columns columns;
+  kind.terms(effect, signals, std::vector<double>(signals.size(), 0.0), columns);
+  return columns.size() * (kind.through_body(effect) ? model.body.order() + 1 : 1);
+}
+
+// What no single entry shows: whether the effects have all that their kinds and forms read.
+void check_effects(const Model& model, const std::vector<Entry>& entries) {
+  const Signals signals = made_up_signals(model);
+  for (std::size_t i = 0; i < model.effects.size(); ++i) {
+    const Effect& effect = model.effects[i];
+    try {
+      const std::size_t count = coefficients_of(effect, model, signals);
+      if (effect.coefficients.size() != count) {
+        entries[i].at("coefficients").refuse(std::to_string(count) + " numbers for this form");
+      }
+      Model alone = model;
+      alone.effects = {effect};
+      static_cast<void>(free_run(alone, signals));
+      static_cast<void>(effect_kind(effect.kind).time_only(effect));
+    } catch (const std::out_of_range&) {
+      entries[i].refuse("the channels and parameters that its kind and form read");
+    }
+  }
+}
+
 Body body_of(const Entry& entry) {
   Body body;
   body.largest_radius = 1.0;  // the fit's own bound depended on the record's length
@@ -130,9 +190,11 @@ Model parse_model(std::string_view json, const std::string& origin) {
   if (model.body.numerators.size() != model.inputs.size()) {
     top.at("body").at("numerators").refuse("one an input");
   }
-  for (const Entry& effect : top.at("effects").entries(0, kMostEffects)) {
+  const std::vector<Entry> effects = top.at("effects").entries(0, kMostEffects);
+  for (const Entry& effect : effects) {
     model.effects.push_back(effect_of(effect, model.body.order()));
   }
+  check_effects(model, effects);
   return model;
 }
 

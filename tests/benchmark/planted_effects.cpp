@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plants effects, seals the label, asks the engine, opens the label: confusion matrix, false alarms
 // and what is left over the noise.
-//   build/bin/planted_effects            504 recordings with one effect at 10 and 25 % of the
-//   force,
+//   build/bin/planted_effects            504 recordings with one effect at 10 or 25 % of the force,
 //                                        72 at 5 %, 200 with none, 40 with two
 //   build/bin/planted_effects --tenth    every tenth of them, and exit 1 where too many are wrong
 //   build/bin/planted_effects --only 1 7 the eighth recording of the first list, in detail
@@ -239,15 +238,16 @@ int run(bool tenth) {
   auto five_percent = cases_of(kWeak, tenth ? 0 : 72, 1);
   auto nothing = cases_of(kNone, 200, step);
   auto two = cases_of(kPairs, 40, step);
+  // Each list is told as soon as it is done: the whole takes 75 minutes of processor time.
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   ask_all(one, "one effect");
-  ask_all(five_percent, "at 5 %");
-  ask_all(nothing, "none");
-  ask_all(two, "two effects");
-
   print_singles("one effect", one);
+  ask_all(five_percent, "at 5 %");
   if (!five_percent.empty()) print_singles("one effect at 5 %", five_percent);
+  ask_all(nothing, "none");
   std::printf("none: %zu false alarms of %zu (%.1f %%)\n", alarms(nothing), nothing.size(),
               percent(alarms(nothing), nothing.size()));
+  ask_all(two, "two effects");
   print_pairs(two);
   std::printf("\n");
   print_matrix(one);
@@ -255,11 +255,11 @@ int run(bool tenth) {
   std::printf("\n");
   for (const auto* cases : {&one, &five_percent, &nothing}) print_misses(*cases);
   if (!tenth) return 0;
-  // A guard against steps back: 41 of 46 were right and none of 20 an alarm on 2026-11-21.  The
-  // goal for the whole is 95 % and below 2 %.
+  // A guard against steps back: 495 of the whole 504 were right and one of 200 an alarm on
+  // 2026-11-22; 2 in 46 may be the wrong ones of the whole, 3 aren't (p = 0.05).
   const bool failed =
       std::ranges::any_of(one, [](const Case& each) { return !each.failure.empty(); });
-  const bool good = tally(one).right >= 39 && alarms(nothing) <= 1 && !failed;
+  const bool good = tally(one).right >= 44 && alarms(nothing) <= 1 && !failed;
   if (!good) std::printf("too many are wrong\n");
   return good ? 0 : 1;
 }

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import random
 import subprocess
 import tempfile
 import unittest
@@ -67,6 +68,15 @@ class DiagnoseTest(unittest.TestCase):
         self.assertGreater(len(errors), 5000)
         rms = math.sqrt(sum(e * e for e in errors) / len(errors))
         self.assertLess(rms, 1.1 * verdict["final"]["heldout_rmse"])
+        # The inputs alone do: no column f, or one that is called otherwise.
+        with open(recording, newline="") as file:
+            rows = list(csv.reader(file))
+        at = [title.split(" [")[0] for title in rows[0]].index("f")
+        bare = self.folder / "bare.csv"
+        bare.write_text("\n".join(",".join(row[:at] + row[at + 1:]) for row in rows) + "\n")
+        run = stillhand("predict", model, bare, "--out", self.folder / "bare_pred.csv")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual((self.folder / "bare_pred.csv").read_text(), prediction.read_text())
 
     def test_nothing_planted_nothing_found(self):
         out = self.folder / "out.json"
@@ -86,6 +96,14 @@ class DiagnoseTest(unittest.TestCase):
             "ten_rows": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},{f}\n" for t, a, f in rows[:10]), "want"),
             "backwards": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.02,1,3\n0.01,2,2\n", ":4:"),
             "not_a_number": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,nan,2\n", ":3:"),
+            "infinite": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,1,inf\n", ":3:"),
+            "repeated_times": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,1,3\n0.01,2,2\n", ":4:"),
+            "acceleration_in_g": ("t [s],a_y [g],f [N]\n0,1,2\n0.01,1,3\n", "a_y [m/s^2]"),
+            "force_in_kn": ("t [s],a_y [m/s^2],f [kN]\n0,1,2\n0.01,1,3\n", "f [N]"),
+            "time_in_ms": ("t [ms],a_y [m/s^2],f [N]\n0,1,2\n10,1,3\n", "t [s]"),
+            "without_units": ("t,a_y,f\n0,1,2\n0.01,1,3\n", "unit"),
+            "without_input": ("t [s],f [N]\n" + "".join(f"{t},{f}\n" for t, _, f in rows), "a_y"),
+            "constant_output": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},2\n" for t, a, _ in rows), "constant"),
         }
         for name, (text, said) in texts.items():
             with self.subTest(name):
@@ -94,6 +112,29 @@ class DiagnoseTest(unittest.TestCase):
                 out = self.folder / f"{name}.json"
                 self.assertIn(said, self.refused("diagnose", path, "--json", out))
                 self.assertFalse(out.exists())
+
+    def test_broken_mcap_files_are_refused_in_one_line(self):
+        for name, content in {"magic": b"\x89MCAP0\r\n", "half_magic": b"\x89MCAP", "noise": b"\x89MCAP0\r\n" + bytes(range(256)) * 20,
+                              "binary": bytes(range(256)) * 20}.items():
+            with self.subTest(name):
+                path = self.folder / f"{name}.mcap"
+                path.write_bytes(content)
+                self.assertIn(path.name, self.refused("diagnose", path))
+
+    def test_an_input_that_moves_nothing_explains_nothing(self):
+        noise = random.Random(3)
+        inputs = {
+            "unrelated": lambda n: noise.gauss(0.0, 1.0),
+            "far_too_slow": lambda n: 1e-3 * math.sin(2.0 * math.pi * n / 10000),
+            "every_other_sample": lambda n: (-1.0) ** n,
+        }
+        for name, of_sample in inputs.items():
+            with self.subTest(name):
+                path, out = self.folder / f"{name}.csv", self.folder / f"{name}.json"
+                path.write_text("t [s],a_y [m/s^2],f [N]\n" + "".join(
+                    f"{n / 100},{of_sample(n)},{noise.gauss(0.0, 1.0)}\n" for n in range(6000)))
+                self.assertEqual(stillhand("diagnose", path, "--json", out).returncode, 0)
+                self.assertEqual(json.loads(out.read_text())["effects"], [])
 
     def test_wrong_channels_and_models_are_refused(self):
         recording = self.planted("none")

@@ -2,8 +2,10 @@
 #include "planted/linear_fit.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <vector>
 
 namespace stillhand::planted {
 
@@ -78,18 +80,107 @@ Eigen::VectorXd forgetting(const Eigen::VectorXd& poles, double radius) {
   return polynomial.tail(order).real();
 }
 
-/// Columns: 1/A of the input delayed by 0 .. order, and a constant; the first `skip` rows left out.
+/// Columns: 1/A of the input delayed by 0 .. order, a constant, and the free responses to what was
+/// before the record; the first `skip` rows left out.
 Eigen::MatrixXd numerator_columns(const Series& input, const Eigen::VectorXd& poles,
                                   std::size_t skip) {
   const auto order = poles.size();
   const auto count = static_cast<Eigen::Index>(input.size() - skip);
   const Series x = through_poles(input, poles);
-  Eigen::MatrixXd out(count, order + 2);
+  Series impulse(input.size(), 0.0);
+  impulse.front() = 1.0;
+  const Series free = through_poles(impulse, poles);
+  Eigen::MatrixXd out(count, 2 * order + 2);
   for (Eigen::Index i = 0; i <= order; ++i) {
     out.col(i) = Eigen::Map<const Eigen::VectorXd>(x.data() + skip - i, count);
   }
   out.col(order + 1).setOnes();
+  for (Eigen::Index j = 0; j < order; ++j) {
+    out.col(order + 2 + j) =
+        Eigen::Map<const Eigen::VectorXd>(free.data() + static_cast<Eigen::Index>(skip) - j, count);
+  }
   return out;
+}
+
+/// What these poles leave at best, and the poles of the next pass after Steiglitz and McBride.
+class Passes {
+ public:
+  Passes(const Series& input, const Series& output, std::size_t skip, double longest_samples)
+      : input_(input),
+        output_(output),
+        skip_(skip),
+        radius_(std::exp(-1.0 / longest_samples)),
+        wanted_(output.data() + skip, static_cast<Eigen::Index>(output.size() - skip)) {}
+
+  [[nodiscard]] double left(const Eigen::VectorXd& poles) const {
+    const Eigen::MatrixXd numerator = numerator_columns(input_, poles, skip_);
+    const Eigen::VectorXd weights = numerator.colPivHouseholderQr().solve(wanted_);
+    return std::sqrt((wanted_ - numerator * weights).squaredNorm() /
+                     static_cast<double>(wanted_.size()));
+  }
+
+  [[nodiscard]] Eigen::VectorXd next(const Eigen::VectorXd& poles) const {
+    const Eigen::MatrixXd numerator = numerator_columns(input_, poles, skip_);
+    const Series filtered = through_poles(output_, poles);
+    Eigen::MatrixXd columns(wanted_.size(), numerator.cols() + poles.size());
+    columns.leftCols(numerator.cols()) = numerator;
+    for (Eigen::Index j = 1; j <= poles.size(); ++j) {
+      columns.col(numerator.cols() + j - 1) = -Eigen::Map<const Eigen::VectorXd>(
+          filtered.data() + static_cast<Eigen::Index>(skip_) - j, wanted_.size());
+    }
+    const Eigen::Map<const Eigen::VectorXd> target(filtered.data() + skip_, wanted_.size());
+    return forgetting(
+        Eigen::VectorXd(columns.colPivHouseholderQr().solve(target)).tail(poles.size()), radius_);
+  }
+
+ private:
+  const Series& input_;
+  const Series& output_;
+  std::size_t skip_;
+  double radius_;
+  Eigen::Map<const Eigen::VectorXd> wanted_;
+};
+
+struct Start {
+  double left = INFINITY;
+  Eigen::VectorXd poles;
+};
+
+/// The best of `count` passes and where it was.
+Start best_of_passes(const Passes& passes, Start from, int count) {
+  Eigen::VectorXd poles = from.poles;
+  for (int pass = 0; pass < count; ++pass) {
+    poles = passes.next(poles);
+    const double left = passes.left(poles);
+    if (left < from.left) from = {left, poles};
+  }
+  return from;
+}
+
+/// Each mode of a fourth-order denominator with another beside it, slow ones with little damping
+/// too, best first: the passes may end where one mode is wasted.
+std::vector<Start> with_other_modes(const Passes& passes, const Eigen::VectorXd& poles) {
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(4, 4);
+  companion.row(0) = -poles.transpose();
+  for (Eigen::Index i = 1; i < 4; ++i) companion(i, i - 1) = 1.0;
+  std::vector<Start> starts;
+  for (const std::complex<double>& root : Eigen::VectorXcd(companion.eigenvalues())) {
+    if (!(root.imag() > 0.0)) continue;
+    const double a1 = -2.0 * root.real();
+    const double a2 = std::norm(root);
+    for (const double turn : {0.05, 0.08, 0.12, 0.18, 0.27, 0.4}) {  // rad a sample
+      for (const double ratio : {0.04, 0.3}) {
+        const double radius = std::exp(-ratio * turn);
+        const double b1 = -2.0 * radius * std::cos(turn * std::sqrt(1.0 - ratio * ratio));
+        const double b2 = radius * radius;
+        Eigen::VectorXd both(4);
+        both << a1 + b1, a2 + b2 + a1 * b1, a1 * b2 + a2 * b1, a2 * b2;
+        starts.push_back({passes.left(both), std::move(both)});
+      }
+    }
+  }
+  std::ranges::sort(starts, {}, &Start::left);
+  return starts;
 }
 
 }  // namespace
@@ -97,32 +188,20 @@ Eigen::MatrixXd numerator_columns(const Series& input, const Eigen::VectorXd& po
 double left_by_difference_equation(const Series& input, const Series& output, std::size_t order,
                                    std::size_t skip, double longest_samples) {
   if (skip < order || output.size() < skip + 10 * order) return std::nan("");
-  const auto count = static_cast<Eigen::Index>(output.size() - skip);
-  const auto poles_count = static_cast<Eigen::Index>(order);
-  const Eigen::Map<const Eigen::VectorXd> wanted(output.data() + skip, count);
-  Eigen::VectorXd poles = Eigen::VectorXd::Zero(poles_count);
-  const double radius = std::exp(-1.0 / longest_samples);
-  double best = INFINITY;
   constexpr int kPasses = 25;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const Eigen::MatrixXd numerator = numerator_columns(input, poles, skip);
-    if (pass > 0) {
-      const Eigen::VectorXd weights = numerator.colPivHouseholderQr().solve(wanted);
-      best = std::min(best, std::sqrt((wanted - numerator * weights).squaredNorm() /
-                                      static_cast<double>(count)));
-    }
-    const Series filtered = through_poles(output, poles);
-    Eigen::MatrixXd columns(count, numerator.cols() + poles_count);
-    columns.leftCols(numerator.cols()) = numerator;
-    for (Eigen::Index j = 1; j <= poles_count; ++j) {
-      columns.col(numerator.cols() + j - 1) =
-          -Eigen::Map<const Eigen::VectorXd>(filtered.data() + skip - j, count);
-    }
-    const Eigen::Map<const Eigen::VectorXd> target(filtered.data() + skip, count);
-    poles = forgetting(
-        Eigen::VectorXd(columns.colPivHouseholderQr().solve(target)).tail(poles_count), radius);
+  constexpr int kPassesAgain = 10;
+  constexpr std::size_t kStartsAgain = 3;
+  const Passes passes(input, output, skip, longest_samples);
+  Start best = best_of_passes(
+      passes, {INFINITY, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order))}, kPasses);
+  if (order != 4) return best.left;
+  std::vector<Start> others = with_other_modes(passes, best.poles);
+  others.resize(std::min(others.size(), kStartsAgain));
+  for (Start& other : others) {
+    other = best_of_passes(passes, std::move(other), kPassesAgain);
+    if (other.left < best.left) best = std::move(other);
   }
-  return best;
+  return best.left;
 }
 
 }  // namespace stillhand::planted

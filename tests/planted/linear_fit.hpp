@@ -15,9 +15,10 @@ Series beyond_impulse_response(const Series& input, const Series& output, std::s
                                std::size_t stride);
 
 /// Root mean square left of `output` by a difference equation of the given order plus a constant,
-/// run free from rest and fitted to its simulation error (Steiglitz and McBride 1965, the best of
-/// its passes): an upper bound of the best possible.
-/// @param skip  samples at the start that count nothing: the model starts at rest, the body did not
+/// run free from an initial state of its own and fitted to its simulation error (Steiglitz and
+/// McBride 1965, the best of its passes; of order 4 also from starts with one mode exchanged): an
+/// upper bound of the best possible.
+/// @param skip  samples at the start that count nothing
 /// @param longest_samples  no pole forgets more slowly: poles on the unit circle, set off by the
 ///        first samples, would swallow tones and drifts
 double left_by_difference_equation(const Series& input, const Series& output, std::size_t order,

@@ -110,7 +110,8 @@ double Stand::left_by_order_4(const Series& force_n) const {
     thin_f.push_back(force_n[n]);
   }
   if (thin_f.size() > kMostSamples) return std::nan("");
-  // A body's transient has gone after 3 s; 10 s leaves room for every planted mode.
+  // The first 3 s count nothing, as an effect that starts has transients of its own; poles that
+  // forget within 10 s leave room for every planted mode.
   const double thin_hz = rate_hz_ / stride_;
   return left_by_difference_equation(thin_a, thin_f, 4, static_cast<std::size_t>(3.0 * thin_hz),
                                      10.0 * thin_hz) /

@@ -249,7 +249,9 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   add_effects(diagnosis, signals, blocks, variance);
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
   diagnosis.after = detected(screening, excitation);
-  diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
+  if (!is_rounding(diagnosis.final_error.rmse, signals)) {
+    diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
+  }
   diagnosis.noise_floor = noise_floor_of(diagnosis.after, screening,
                                          {diagnosis.final_error.low, diagnosis.final_error.high,
                                           diagnosis.baseline.impulse_response_rmse});

@@ -11,8 +11,8 @@ namespace stillhand::diagnosis {
 double EffectKind::input_delay_s(const Effect& /*effect*/, double /*time_s*/) const { return 0.0; }
 double EffectKind::mapped(const Effect& /*effect*/, double value) const { return value; }
 double EffectKind::slope(const Effect& /*effect*/, double /*value*/) const { return 1.0; }
-double EffectKind::feedback(const Effect& /*effect*/, double /*z*/, LoopMemory& /*memory*/) const {
-  return 0.0;
+Nonlinearity EffectKind::feedback(const Effect& /*effect*/) const {
+  return {[](double /*z*/, LoopMemory& /*memory*/) { return 0.0; }, 1.0};
 }
 void EffectKind::gain(const Effect& /*effect*/, const Signals& /*signals*/,
                       std::span<double> /*gain*/) const {}

@@ -22,6 +22,12 @@ struct LoopMemory {
   bool started = false;
 };
 
+/// phi of a signal in units of its threshold, as a function that the loop calls once a sample.
+struct Nonlinearity {
+  double (*phi)(double z, LoopMemory& memory) = nullptr;
+  double threshold = 1.0;
+};
+
 /// An effect with values to start its fit from.
 struct Proposal {
   Effect effect;
@@ -50,8 +56,8 @@ class EffectKind {
   /// kInputValue, kOutputValue: the map and its slope.
   [[nodiscard]] virtual double mapped(const Effect& effect, double value) const;
   [[nodiscard]] virtual double slope(const Effect& effect, double value) const;
-  /// kFeedback: phi(z).
-  virtual double feedback(const Effect& effect, double z, LoopMemory& memory) const;
+  /// kFeedback: phi.
+  [[nodiscard]] virtual Nonlinearity feedback(const Effect& effect) const;
   /// kGain: multiplies `gain`, one a sample.
   virtual void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const;
   /// kTerm: appends a column for every signal that is weighed; through_body() tells how.

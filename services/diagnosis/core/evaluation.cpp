@@ -12,9 +12,6 @@
 namespace stillhand::diagnosis {
 namespace {
 
-// A prediction beyond this many standard deviations of the output has run away.
-constexpr double kRunaway = 1e6;
-
 std::vector<double> shaped_input(const Model& model, const Signals& signals, std::size_t k) {
   std::vector<double> u = signals.inputs()[k].values;
   for (const Effect& effect : model.effects) {
@@ -44,20 +41,22 @@ void add_differences(std::vector<double> x, std::span<const double> coefficients
 }
 
 void run_body(const Model& model, const Signals& signals, ModelRun& run) {
-  const std::size_t count = signals.size();
   std::vector<const Effect*> feedback;
   for (const Effect& effect : model.effects) {
     if (acts_at(effect, Stage::kFeedback)) feedback.push_back(&effect);
   }
-  run.free.body.assign(count, 0.0);
   if (!feedback.empty()) {
-    std::vector<std::vector<double>> inputs;
     for (std::size_t k = 0; k < model.inputs.size(); ++k) {
-      inputs.push_back(shaped_input(model, signals, k));
+      run.inputs.push_back(shaped_input(model, signals, k));
     }
-    run.free.finite = run_loop(model.body, feedback, inputs, signals, run.free.body);
+    LoopRun loop;
+    run.free.finite = run_loop(model.body, feedback, run.inputs, signals, loop);
+    run.free.body = std::move(loop.output);
+    run.free.argument = std::move(loop.argument);
+    run.free.phi = std::move(loop.phi);
     return;
   }
+  run.free.body.assign(signals.size(), 0.0);
   for (std::size_t k = 0; k < model.inputs.size(); ++k) {
     run.filtered_inputs.push_back(through_poles(shaped_input(model, signals, k),
                                                 model.body.denominator, signals.stretches()));
@@ -120,6 +119,13 @@ void apply_output_maps(const Model& model, const Signals& signals, ModelRun& run
 
 }  // namespace
 
+double runaway_bound(const Signal& output) {
+  constexpr double kRunaway = 1e6;
+  constexpr double kOfNothing = 1e30;
+  const double size = output.deviation + std::abs(output.mean);
+  return size > 0.0 ? kRunaway * size : kOfNothing;
+}
+
 bool acts_at(const Effect& effect, Stage stage) {
   return effect_kind(effect.kind).stage(effect) == stage;
 }
@@ -129,8 +135,7 @@ void run_all(const Model& model, const Signals& signals, ModelRun& run) {
   apply_gain(model, signals, run);
   add_terms(model, signals, run);
   apply_output_maps(model, signals, run);
-  const Signal& output = signals.output();
-  const double bound = kRunaway * (output.deviation + std::abs(output.mean) + 1e-300);
+  const double bound = runaway_bound(signals.output());
   run.free.finite =
       run.free.finite && is_stable(model.body) &&
       std::ranges::all_of(run.free.prediction, [&](double y) { return std::abs(y) < bound; });

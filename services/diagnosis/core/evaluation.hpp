@@ -13,10 +13,16 @@ namespace stillhand::diagnosis {
 struct FreeRun {
   bool finite = true;                ///< false: unstable, or it ran away
   std::vector<double> body;          ///< y_b of Eq. DG-1 with feedback, before gain, terms and maps
+  std::vector<double> argument;      ///< z of Eq. DG-4, with feedback
+  std::vector<double> phi;           ///< phi(z)
   std::vector<double> prediction;    ///< [unit of the output]
   std::vector<double> output_slope;  ///< of the output maps, [-]
   std::vector<double> weight;        ///< of the measurement, less what the model doesn't claim
 };
+
+/// What a prediction has to stay below: a million times the output's size; without an output, as in
+/// predicting from the inputs alone, 1e30.
+double runaway_bound(const Signal& output);
 
 /// Every stretch from rest, the inputs alone.  @param with_time_only  false: without the effects
 /// that no input can tell (EffectKind::time_only)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "contract/config_error.hpp"
 
@@ -35,7 +36,11 @@ class Compressed {
   Compressed(Model& model, const Signals& signals, const Blocks& blocks, int without_fold)
       : model_(model), signals_(signals), blocks_(blocks), without_fold_(without_fold) {
     start_ = packed(model);
-    const Eigen::MatrixXd gram = gram_at(start_);
+    Eigen::MatrixXd gram = gram_at(start_);
+    if (const double step = offset_step(gram); step != 0.0) {
+      start_[0] += step;
+      gram = gram_at(start_);
+    }
     scale_ = gram.diagonal().head(start_.size()).cwiseSqrt();
     for (Eigen::Index i = 0; i < scale_.size(); ++i) {
       if (!(scale_[i] > 0.0)) scale_[i] = 1.0;
@@ -105,6 +110,15 @@ class Compressed {
   }
 
  private:
+  // A term of a channel far from 0 comes with a large constant; as long as that is most of the
+  // error, the body's numbers follow it instead.  0: it isn't.
+  static double offset_step(const Eigen::MatrixXd& gram) {
+    const Eigen::Index last = gram.cols() - 1;
+    const double product = gram(0, last);
+    const bool most = product * product > 0.5 * gram(0, 0) * squared_error(gram);
+    return most ? product / gram(0, 0) : 0.0;
+  }
+
   [[nodiscard]] Eigen::MatrixXd gram_at(const Eigen::VectorXd& numbers) const {
     unpack(numbers, model_);
     const Linearisation at = linearised(model_, signals_);
@@ -219,13 +233,11 @@ FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
   return result;
 }
 
-double HeldOut::rmse() const {
-  double sum = 0.0;
-  double weight = 0.0;
-  for (const double square : squares) sum += square;
-  for (const double each : weights) weight += each;
-  return std::sqrt(sum / std::max(weight, 1.0));
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
 }
+
+double HeldOut::rmse() const { return std::sqrt(sum_of(squares) / std::max(sum_of(weights), 1.0)); }
 
 HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
   HeldOut result;

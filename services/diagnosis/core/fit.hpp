@@ -64,6 +64,8 @@ struct HeldOut {
   [[nodiscard]] double rmse() const;
 };
 
+double sum_of(const std::vector<double>& values);
+
 /// Every fold predicted by a fit to the others, from one linearisation at the fit to all, Eq.
 /// DG-12.
 HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks);

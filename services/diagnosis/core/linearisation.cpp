@@ -4,20 +4,39 @@
 
 #include "diagnosis/core/effect_kind.hpp"
 #include "diagnosis/core/evaluation.hpp"
+#include "diagnosis/core/loop.hpp"
 #include "diagnosis/core/model_run.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
-// The numbers whose columns come from forward differences: those of nonlinear parameters, and with
-// feedback those of the whole body.
-std::vector<bool> by_differences(const Model& model, bool feedback) {
-  std::vector<bool> which{false};
-  std::size_t body = model.body.order();
-  for (const auto& numerator : model.body.numerators) body += numerator.size();
-  which.insert(which.end(), body, feedback);
+// Where a model's nonlinearity is: inside the body, nothing that the numerators B and E of Eq. DG-4
+// say comes back to its argument, and their columns are exact.
+enum class Loop { kNone, kOfOutput, kInside };
+
+Loop loop_of(const Model& model) {
+  Loop loop = Loop::kNone;
   for (const Effect& effect : model.effects) {
-    which.insert(which.end(), effect.coefficients.size(), acts_at(effect, Stage::kFeedback));
+    if (!acts_at(effect, Stage::kFeedback)) continue;
+    const bool inside = loop == Loop::kNone && !loop_path(effect, model.body.order()).of_output();
+    loop = inside ? Loop::kInside : Loop::kOfOutput;
+  }
+  return loop;
+}
+
+// The numbers whose columns come from forward differences: those of nonlinear parameters, and with
+// feedback those that its argument depends on.
+std::vector<bool> by_differences(const Model& model, Loop loop) {
+  std::vector<bool> which{false};
+  std::size_t numerators = 0;
+  for (const auto& numerator : model.body.numerators) numerators += numerator.size();
+  which.insert(which.end(), numerators, loop == Loop::kOfOutput);
+  which.insert(which.end(), model.body.order(), loop != Loop::kNone);
+  for (const Effect& effect : model.effects) {
+    const bool feedback = acts_at(effect, Stage::kFeedback);
+    const std::size_t exact = feedback && loop == Loop::kInside ? model.body.order() + 1 : 0;
+    which.insert(which.end(), exact, false);
+    which.insert(which.end(), effect.coefficients.size() - exact, feedback);
     for (const Parameter& parameter : effect.parameters) {
       if (parameter.fitted) which.push_back(true);
     }
@@ -55,15 +74,20 @@ std::vector<double> late_through_poles(const std::vector<double>& x, const Model
   return late;
 }
 
+// x, D x, .. D^p x behind the gain.
+void write_differences(std::vector<double> x, const Model& model, const Signals& signals,
+                       const ModelRun& run, ColumnWriter& writer) {
+  for (std::size_t i = 0; i <= model.body.order(); ++i) {
+    if (i > 0) x = differenced(x, signals.stretches());
+    writer.write(x, 1.0, &run.gain);
+  }
+}
+
 void write_body_columns(const Model& model, const Signals& signals, const ModelRun& run,
                         ColumnWriter& writer) {
   const auto& stretches = signals.stretches();
-  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
-    std::vector<double> x = run.filtered_inputs[k];
-    for (std::size_t i = 0; i < model.body.numerators[k].size(); ++i) {
-      if (i > 0) x = differenced(x, stretches);
-      writer.write(x, 1.0, &run.gain);
-    }
+  for (const auto& filtered : run.filtered_inputs) {
+    write_differences(filtered, model, signals, run, writer);
   }
   // d/dg_i of B u / A with A = 1 + q^-1 sum g_i D^i: -q^-1 D^i y / A, behind which comes the gain;
   // terms that pass the body do so without it.
@@ -81,20 +105,35 @@ void write_body_columns(const Model& model, const Signals& signals, const ModelR
   }
 }
 
-void write_exact_columns(const Model& model, const Signals& signals, const ModelRun& run,
-                         bool feedback, Eigen::MatrixXd& jacobian) {
+void write_loop_columns(const Model& model, const Signals& signals, const ModelRun& run, Loop loop,
+                        ColumnWriter& writer) {
+  for (const auto& input : run.inputs) {
+    if (loop == Loop::kOfOutput) {
+      writer.skip(model.body.order() + 1);
+    } else {
+      write_differences(through_poles(input, model.body.denominator, signals.stretches()), model,
+                        signals, run, writer);
+    }
+  }
+  writer.skip(model.body.order());
+}
+
+void write_exact_columns(const Model& model, const Signals& signals, const ModelRun& run, Loop loop,
+                         Eigen::MatrixXd& jacobian) {
   ColumnWriter writer(jacobian, run.free);
   writer.write(std::vector<double>(signals.size(), 1.0), 1.0, nullptr);
-  if (feedback) {
-    std::size_t body = model.body.order();
-    for (const auto& numerator : model.body.numerators) body += numerator.size();
-    writer.skip(body);
-  } else {
+  if (loop == Loop::kNone) {
     write_body_columns(model, signals, run, writer);
+  } else {
+    write_loop_columns(model, signals, run, loop, writer);
   }
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const Effect& effect = model.effects[e];
-    if (run.term_columns[e].empty()) {
+    if (loop == Loop::kInside && acts_at(effect, Stage::kFeedback)) {
+      write_differences(through_poles(run.free.phi, model.body.denominator, signals.stretches()),
+                        model, signals, run, writer);
+      writer.skip(effect.coefficients.size() - model.body.order() - 1);
+    } else if (run.term_columns[e].empty()) {
       writer.skip(effect.coefficients.size());
     } else {
       for (const auto& column : run.term_columns[e]) writer.write(column, 1.0, nullptr);
@@ -146,12 +185,11 @@ Linearisation linearised(const Model& model, const Signals& signals) {
   result.residual = weighted_error(run.free, signals);
   result.finite = run.free.finite;
   if (result.finite) {
-    const bool feedback = std::ranges::any_of(
-        model.effects, [](const Effect& effect) { return acts_at(effect, Stage::kFeedback); });
-    const std::vector<bool> which = by_differences(model, feedback);
+    const Loop loop = loop_of(model);
+    const std::vector<bool> which = by_differences(model, loop);
     result.jacobian.setZero(static_cast<Eigen::Index>(signals.size()),
                             static_cast<Eigen::Index>(which.size()));
-    write_exact_columns(model, signals, run, feedback, result.jacobian);
+    write_exact_columns(model, signals, run, loop, result.jacobian);
     write_difference_columns(model, signals, run, which, result.jacobian);
     const InitialStates initial(model, signals, run.free.weight);
     initial.remove_from(result.jacobian);

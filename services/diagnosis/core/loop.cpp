@@ -6,6 +6,7 @@
 
 #include "contract/expects.hpp"
 #include "diagnosis/core/effect_kind.hpp"
+#include "diagnosis/core/evaluation.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -17,56 +18,76 @@ std::vector<double> late(std::span<const double> coefficients) {
   return powers;
 }
 
-// One nonlinearity while a stretch runs; newest sample last.
+// A signal of a stretch behind as many zeros as the body looks back.
+using Padded = std::vector<double>;
+
 struct Running {
-  const Effect* effect;
-  const EffectKind* kind;
+  Nonlinearity nonlinearity;
   LoopPath path;
   LoopMemory memory;
-  std::vector<double> z;    // [samples of the stretch]
-  std::vector<double> phi;  // [samples of the stretch]
+  Padded z;
+  Padded phi;
 };
 
-double past_sum(const std::vector<double>& taps, std::size_t from, const double* newest,
-                std::size_t past) {
+// sum_{i = from..P} taps_i newest_{-i}
+template <std::size_t P>
+double past_sum(const double* taps, std::size_t from, std::size_t order, const double* newest) {
   double sum = 0.0;
-  const double* tap = taps.data();
-  const std::size_t end = std::min(taps.size(), past + 1);
-  for (std::size_t i = from; i < end; ++i) sum += tap[i] * *(newest - i);
+  for (std::size_t i = from; i <= (P == 0 ? order : P); ++i) {
+    sum += taps[i] * newest[-static_cast<std::ptrdiff_t>(i)];
+  }
   return sum;
 }
 
-bool run_stretch(const Body& body, std::vector<Running>& loops,
-                 const std::vector<std::vector<double>>& inputs, const Stretch& stretch,
-                 double runaway, std::vector<double>& output) {
-  const std::size_t count = stretch.end - stretch.first;
-  for (Running& loop : loops) {
-    loop.memory = {};
-    loop.z.assign(count, 0.0);
-    loop.phi.assign(count, 0.0);
-  }
-  for (std::size_t n = 0; n < count; ++n) {
-    const std::size_t at = stretch.first + n;
-    double y = -past_sum(body.denominator, 1, &output[at], n);
-    for (std::size_t k = 0; k < inputs.size(); ++k) {
-      y += past_sum(body.numerators[k], 0, &inputs[k][at], n);
+struct StretchRun {
+  std::vector<Running> loops;
+  std::vector<Padded> inputs;
+  Padded output;
+};
+
+// For a body of order P; 0: of any.  The fit spends most of its time here.
+template <std::size_t P>
+bool run_stretch(const Body& body, double runaway, StretchRun& run) {
+  const std::size_t order = body.order();
+  const double* a = body.denominator.data();
+  for (std::size_t n = order; n < run.output.size(); ++n) {
+    double y = -past_sum<P>(a, 1, order, &run.output[n]);
+    for (std::size_t k = 0; k < run.inputs.size(); ++k) {
+      y += past_sum<P>(body.numerators[k].data(), 0, order, &run.inputs[k][n]);
     }
-    for (const Running& loop : loops) y += past_sum(loop.path.e, 1, &loop.phi[n], n);
-    for (Running& loop : loops) {
+    for (const Running& loop : run.loops) {
+      y += past_sum<P>(loop.path.e.data(), 1, order, &loop.phi[n]);
+    }
+    for (Running& loop : run.loops) {
       if (loop.path.of_output()) {
         loop.z[n] = y;
       } else {
-        loop.z[n] = past_sum(loop.path.n, 0, &inputs[0][at], n) +
-                    past_sum(loop.path.m, 1, &loop.phi[n], n) -
-                    past_sum(body.denominator, 1, &loop.z[n], n);
+        loop.z[n] = past_sum<P>(loop.path.n.data(), 0, order, &run.inputs[0][n]) +
+                    past_sum<P>(loop.path.m.data(), 1, order, &loop.phi[n]) -
+                    past_sum<P>(a, 1, order, &loop.z[n]);
       }
-      loop.phi[n] = loop.kind->feedback(*loop.effect, loop.z[n], loop.memory);
+      loop.phi[n] = loop.nonlinearity.phi(loop.z[n] / loop.nonlinearity.threshold, loop.memory);
       y += loop.path.e[0] * loop.phi[n];
     }
-    output[at] = y;
+    run.output[n] = y;
     if (!(std::abs(y) < runaway)) return false;
   }
   return true;
+}
+
+bool run_stretch_of_order(const Body& body, double runaway, StretchRun& run) {
+  switch (body.order()) {
+    case 2:
+      return run_stretch<2>(body, runaway, run);
+    case 3:
+      return run_stretch<3>(body, runaway, run);
+    case 4:
+      return run_stretch<4>(body, runaway, run);
+    case 6:
+      return run_stretch<6>(body, runaway, run);
+    default:
+      return run_stretch<0>(body, runaway, run);
+  }
 }
 
 }  // namespace
@@ -95,17 +116,39 @@ LoopPath loop_path(const Effect& effect, std::size_t order) {
 
 bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
               const std::vector<std::vector<double>>& inputs, const Signals& signals,
-              std::vector<double>& output) {
-  constexpr double kRunaway = 1e6;
-  const Signal& measured = signals.output();
-  const double runaway = kRunaway * (measured.deviation + std::abs(measured.mean) + 1e-300);
-  std::vector<Running> loops;
+              LoopRun& run) {
+  const double runaway = runaway_bound(signals.output());
+  const std::size_t order = body.order();
+  StretchRun of_stretch;
+  of_stretch.inputs.resize(inputs.size());
   for (const Effect* effect : feedback) {
-    loops.push_back(
-        {effect, &effect_kind(effect->kind), loop_path(*effect, body.order()), {}, {}, {}});
+    of_stretch.loops.push_back(
+        {effect_kind(effect->kind).feedback(*effect), loop_path(*effect, order), {}, {}, {}});
   }
+  for (auto* each : {&run.output, &run.argument, &run.phi}) each->assign(signals.size(), 0.0);
   return std::ranges::all_of(signals.stretches(), [&](const Stretch& stretch) {
-    return run_stretch(body, loops, inputs, stretch, runaway, output);
+    const auto first = static_cast<std::ptrdiff_t>(stretch.first);
+    const std::size_t count = stretch.end - stretch.first;
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      Padded& padded = of_stretch.inputs[k];
+      padded.assign(order, 0.0);
+      padded.insert(padded.end(), inputs[k].begin() + first,
+                    inputs[k].begin() + static_cast<std::ptrdiff_t>(stretch.end));
+    }
+    of_stretch.output.assign(order + count, 0.0);
+    for (Running& loop : of_stretch.loops) {
+      loop.memory = {};
+      loop.z.assign(order + count, 0.0);
+      loop.phi.assign(order + count, 0.0);
+    }
+    const bool bounded = run_stretch_of_order(body, runaway, of_stretch);
+    const auto back = [&](const Padded& from, std::vector<double>& to) {
+      std::copy(from.begin() + static_cast<std::ptrdiff_t>(order), from.end(), to.begin() + first);
+    };
+    back(of_stretch.output, run.output);
+    back(of_stretch.loops.front().z, run.argument);
+    back(of_stretch.loops.front().phi, run.phi);
+    return bounded;
   });
 }
 

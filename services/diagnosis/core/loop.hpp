@@ -26,16 +26,21 @@ struct LoopPath {
   [[nodiscard]] bool of_output() const noexcept { return n.empty(); }
 };
 
+/// Signals in the loop, each as long as the measurement.
+struct LoopRun {
+  std::vector<double> output;    ///< y_b
+  std::vector<double> argument;  ///< z of the first nonlinearity
+  std::vector<double> phi;       ///< its phi(z)
+};
+
 /// Coefficients that a feedback effect has for a body of this order.
 std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
 LoopPath loop_path(const Effect& effect, std::size_t order);
 
 /// Runs the body with its nonlinearities, every stretch from rest.
 /// @param inputs  what reaches the body, [inputs][samples]
-/// @param output  y_b, as long as the measurement
 /// @return false when it ran away
 bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
-              const std::vector<std::vector<double>>& inputs, const Signals& signals,
-              std::vector<double>& output);
+              const std::vector<std::vector<double>>& inputs, const Signals& signals, LoopRun& run);
 
 }  // namespace stillhand::diagnosis

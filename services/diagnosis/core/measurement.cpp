@@ -2,7 +2,9 @@
 #include "diagnosis/core/measurement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "contract/config_error.hpp"
 
@@ -11,6 +13,9 @@ namespace {
 
 std::string samples(std::size_t count) { return std::to_string(count) + " samples"; }
 
+// Squares of squares of it are still numbers.
+constexpr double kLargestValue = 1e30;
+
 void check_values(const Measurement& measurement) {
   for (const Channel& channel : measurement.channels) {
     const std::string where = measurement.source + ", channel " + channel.name;
@@ -18,11 +23,13 @@ void check_values(const Measurement& measurement) {
       throw ConfigError(where, samples(channel.values.size()),
                         samples(measurement.size()) + ", as there are weights");
     }
-    const auto odd =
-        std::ranges::find_if_not(channel.values, [](double value) { return std::isfinite(value); });
+    const auto odd = std::ranges::find_if_not(
+        channel.values, [](double value) { return std::abs(value) < kLargestValue; });
     if (odd != channel.values.end()) {
+      std::array<char, 32> value{};
+      std::snprintf(value.data(), value.size(), "%.3g", *odd);
       throw ConfigError(where + ", sample " + std::to_string(odd - channel.values.begin()),
-                        std::to_string(*odd), "a finite number");
+                        value.data(), "a finite number, below 1e30 in size");
     }
   }
   const auto odd = std::ranges::find_if_not(

@@ -16,6 +16,7 @@ struct ModelRun {
   std::vector<double> through_body;   ///< sum of the terms that passed A
   bool passes_terms = false;          ///< any did
   Columns filtered_inputs;            ///< u_k / A; none with feedback
+  Columns inputs;                     ///< u_k as they reach the body; with feedback alone
 };
 
 /// Runs a model over its signals, README "The model".

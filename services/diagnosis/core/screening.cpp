@@ -3,18 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "statistics/signed_rank.hpp"
 
 namespace stillhand::diagnosis {
-namespace {
-
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Screening::Screening(const Model& model, const Signals& signals, const Blocks& blocks,
                      const ImpulseResponse& impulse_response)

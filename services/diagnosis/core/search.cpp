@@ -4,33 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "diagnosis/core/screening.hpp"
-#include "statistics/signed_rank.hpp"
+#include "diagnosis/core/shape_exchange.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
-// Mean squares of the blocks that count in both.
-struct BlockDifferences {
-  std::vector<double> before;
-  std::vector<double> after;
-};
-
-BlockDifferences mean_squares(const HeldOut& before, const HeldOut& after) {
-  BlockDifferences result;
-  for (std::size_t b = 0; b < before.squares.size(); ++b) {
-    if (before.weights[b] < 1.0 || after.weights[b] < 1.0) continue;
-    result.before.push_back(before.squares[b] / before.weights[b]);
-    result.after.push_back(after.squares[b] / after.weights[b]);
-  }
-  return result;
-}
+constexpr double kNear = 1.35;  // of the best error: worth fitting to the end
 
 // Held-out error of a model at its fit, without refitting.
 HeldOut judged(const Model& model, const Signals& signals, const Blocks& blocks) {
@@ -83,7 +64,48 @@ void start_afresh(Model& model, const Signals& signals, int order) {
   }
 }
 
-bool by_rmse(const Trial& a, const Trial& b) { return a.rmse < b.rmse; }
+bool same_shape(const Model& a, const Model& b) {
+  return a.effects.back().kind == b.effects.back().kind &&
+         a.effects.back().form == b.effects.back().form;
+}
+
+// Nonlinearities inside the body differ in their shape alone, and their fits often end in a hollow:
+// each is tried again from the linear parts of the best of them, and from those of another that
+// this has made the best.  The first may have been bound to the order of a body taken down, whose
+// other poles it has hidden.
+void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
+                     const Blocks& blocks, int order, const SearchOptions& options,
+                     const ForEach& for_each) {
+  constexpr double kWorthPoles = 0.99;  // of the held-out error
+  constexpr double kGains = 0.97;       // of the present one
+  constexpr int kPasses = 2;
+  const auto inside = [](const Trial& trial) { return ends_inside_body(trial.model); };
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto best = std::ranges::find_if(all, inside);
+    if (best == all.end() || best->rmse > kGains * current_rmse) return;
+    const bool bound = std::ranges::any_of(best->model.effects, [](const Effect& effect) {
+      return effect_kind(effect.kind).through_body(effect);
+    });
+    while (!bound && static_cast<int>(best->model.body.order()) < order) {
+      Trial richer =
+          judged_trial(lifted(best->model), signals, blocks, options.fit_iterations, true);
+      if (!(richer.rmse < kWorthPoles * best->rmse)) break;
+      *best = std::move(richer);
+    }
+    const Model from = best->model;
+    for_each(all.size(), [&](std::size_t i) {
+      if (!inside(all[i]) || &all[i] == &*best) return;
+      const auto start = with_shape_of(all[i].model.effects.back(), from, signals);
+      if (!start) return;
+      Trial other = judged_trial(*start, signals, blocks, options.screening_iterations, false);
+      if (!(other.rmse < std::min(kNear * best->rmse, all[i].rmse))) return;
+      other = judged_trial(std::move(other.model), signals, blocks, options.fit_iterations, true);
+      if (other.rmse < all[i].rmse) all[i] = std::move(other);
+    });
+    std::ranges::stable_sort(all, by_rmse);
+    if (same_shape(std::ranges::find_if(all, inside)->model, from)) return;
+  }
+}
 
 bool passes_over_samples(const Trial& trial) {
   const Effect& effect = trial.model.effects.back();
@@ -95,7 +117,6 @@ bool passes_over_samples(const Trial& trial) {
 std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
                           const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
                           const SearchOptions& options, const ForEach& for_each) {
-  constexpr double kNear = 1.35;
   constexpr double kGains = 0.985;
   constexpr double kExplainsMuch = 0.85;
   constexpr std::size_t kFewest = 5;
@@ -130,58 +151,13 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
     all[i] = judged_trial(std::move(all[i].model), signals, blocks, options.fit_iterations, true);
   });
   std::ranges::stable_sort(all, by_rmse);
+  exchange_shapes(all, current_rmse, signals, blocks, order, options, for_each);
   // To pass over samples explains nothing: only where no effect explains much.
   const auto explains = std::ranges::find_if_not(all, passes_over_samples);
   if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
     std::erase_if(all, passes_over_samples);
   }
   return all;
-}
-
-// True when `other` explains as much as the best: the blocks don't tell them apart (one standard
-// error), or its error is hardly larger and it has nearly all of the gain.
-bool ties_with(const Trial& other, const Trial& best, double current_rmse,
-               const SearchOptions& options) {
-  if (compared(other.held_out, best.held_out).t < 1.0) return true;
-  const auto gain = [&](const Trial& trial) {
-    return current_rmse * current_rmse - trial.rmse * trial.rmse;
-  };
-  return other.rmse <= (1.0 + options.tie) * best.rmse &&
-         gain(other) >= options.tied_gain * gain(best);
-}
-
-std::size_t simplest(const std::vector<Trial>& tried, double current_rmse,
-                     const SearchOptions& options) {
-  std::size_t chosen = 0;
-  for (std::size_t i = 1; i < tried.size(); ++i) {
-    if (!std::isfinite(tried[i].rmse) || !ties_with(tried[i], tried[0], current_rmse, options)) {
-      continue;
-    }
-    const std::size_t mine = complexity(tried[i].model);
-    const std::size_t best = complexity(tried[chosen].model);
-    if (mine < best) chosen = i;
-  }
-  return chosen;
-}
-
-std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t chosen,
-                                    double current_rmse, const SearchOptions& options) {
-  std::vector<std::string> kinds;
-  const std::string& own = tried[chosen].model.effects.back().kind;
-  for (const Trial& trial : tried) {
-    if (!std::isfinite(trial.rmse)) continue;
-    const std::string& kind = trial.model.effects.back().kind;
-    if (kind == own || std::ranges::find(kinds, kind) != kinds.end()) continue;
-    if (ties_with(trial, tried[chosen], current_rmse, options)) kinds.push_back(kind);
-  }
-  return kinds;
-}
-
-bool worth_it(const Comparison& comparison, const SearchOptions& options, double least_fall,
-              std::size_t candidates) {
-  const double fall = 1.0 - comparison.rmse_ratio;
-  if (fall >= options.large_fall) return comparison.p < options.large_significance;
-  return fall > least_fall && comparison.p * static_cast<double>(candidates) < options.significance;
 }
 
 // Drops effects that the later ones have made idle.  True when one left.
@@ -211,29 +187,6 @@ void in_order(std::size_t count, const std::function<void(std::size_t)>& task) {
   for (std::size_t i = 0; i < count; ++i) task(i);
 }
 
-Comparison compared(const HeldOut& before, const HeldOut& after) {
-  Comparison result;
-  const BlockDifferences blocks = mean_squares(before, after);
-  const auto count = static_cast<double>(blocks.before.size());
-  if (blocks.before.size() < 3) return result;
-  result.rmse_ratio = std::sqrt(sum_of(blocks.after) / std::max(sum_of(blocks.before), 1e-300));
-  double mean = 0.0;
-  std::vector<double> differences;
-  for (std::size_t b = 0; b < blocks.before.size(); ++b) {
-    differences.push_back(blocks.before[b] - blocks.after[b]);
-    mean += differences.back() / count;
-    if (blocks.after[b] < blocks.before[b]) result.share_better += 1.0 / count;
-  }
-  double square = 0.0;
-  for (std::size_t b = 0; b < blocks.before.size(); ++b) {
-    square += std::pow(blocks.before[b] - blocks.after[b] - mean, 2);
-  }
-  const double error = std::sqrt(square / (count - 1.0) / count);
-  result.t = error > 0.0 ? mean / error : (mean > 0.0 ? 1e6 : 0.0);
-  result.p = statistics::signed_rank_p(differences);
-  return result;
-}
-
 SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
                     const SearchOptions& options, const ForEach& for_each,
                     const std::function<bool(const std::string&)>& progress) {
@@ -241,11 +194,12 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
   result.model = baseline.model;
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   HeldOut current = held_out(result.model, signals, blocks);
-  while (progress("effect " + std::to_string(result.additions.size() + 1))) {
+  while (!is_rounding(current.rmse(), signals) &&
+         progress("effect " + std::to_string(result.additions.size() + 1))) {
     std::vector<Trial> tried = trials(result.model, current.rmse(), signals, blocks,
                                       impulse_response, baseline.order, options, for_each);
     if (tried.empty() || !std::isfinite(tried.front().rmse)) break;
-    const std::size_t chosen = simplest(tried, current.rmse(), options);
+    const std::size_t chosen = chosen_of(tried, current.rmse(), options);
     const Comparison comparison = compared(current, tried[chosen].held_out);
     // Bursts lie in few blocks, whose signs say little; that they stand out has been asked already.
     const bool bursts = passes_over_samples(tried[chosen]);

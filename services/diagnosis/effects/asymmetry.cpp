@@ -28,9 +28,11 @@ class Asymmetry final : public EffectKind {
   [[nodiscard]] double slope(const Effect& effect, double value) const override {
     return 1.0 + (value > 0.0 ? effect.value(0) : -effect.value(0));
   }
-  double feedback(const Effect& effect, double z, LoopMemory& /*memory*/) const override {
-    const double x = in_thresholds(effect, z);
-    return quadratic(effect) ? x * x : std::abs(x);
+  [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
+    if (quadratic(effect)) {
+      return {[](double z, LoopMemory& /*memory*/) { return z * z; }, threshold_of(effect)};
+    }
+    return {[](double z, LoopMemory& /*memory*/) { return std::abs(z); }, threshold_of(effect)};
   }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {

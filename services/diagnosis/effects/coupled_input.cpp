@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "diagnosis/effects/parts.hpp"
 
@@ -10,13 +11,20 @@ namespace stillhand::diagnosis {
 namespace {
 
 constexpr double kStartLag_s[] = {0.05, 0.2, 0.8, 3.0, 10.0};
+constexpr double kSettled_s = 1.0;
 constexpr double kLongestLag = 0.2;  // [record lengths]
 
 std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals& signals) {
   const double keep = std::exp(-1.0 / (lag_s * signals.rate_hz()));
   std::vector<double> y(signal.values.size());
   for (const Stretch& stretch : signals.stretches()) {
-    double state = signal.values[stretch.first];  // settled on its first value
+    // Settled on its mean over the first second, which weighs nothing; on the first value alone, of
+    // a signal that swings, it would fade like a drift.
+    const auto settled = std::min(static_cast<std::size_t>(kSettled_s * signals.rate_hz()) + 1,
+                                  stretch.end - stretch.first);
+    const auto first = signal.values.begin() + static_cast<std::ptrdiff_t>(stretch.first);
+    double state = std::accumulate(first, first + static_cast<std::ptrdiff_t>(settled), 0.0) /
+                   static_cast<double>(settled);
     for (std::size_t n = stretch.first; n < stretch.end; ++n) {
       state += (1.0 - keep) * (signal.values[n] - state);
       y[n] = state;

@@ -30,8 +30,9 @@ class DeadZone final : public EffectKind {
     return std::abs(value) > effect.value(0) ? 1.0 : 0.0;
   }
   // A linear spring with play is the spring less a spring that stops at the play's ends.
-  double feedback(const Effect& effect, double z, LoopMemory& /*memory*/) const override {
-    return std::clamp(in_thresholds(effect, z), -1.0, 1.0);
+  [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
+    return {[](double z, LoopMemory& /*memory*/) { return std::clamp(z, -1.0, 1.0); },
+            threshold_of(effect)};
   }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
@@ -78,7 +79,8 @@ std::vector<Proposal> DeadZone::proposed(const Screening& screening) const {
                             {},
                             {{"half_width", signals.output().unit, 0.0, 0.0, 3.0 * deviation}},
                             {}},
-                           widths(deviation), lost));
+                           widths(deviation), lost,
+                           [](double y, double width) { return y + std::copysign(width, y); }));
   std::vector<Proposal> of_channels;
   for (const Signal& signal : signals.all()) {
     if (signal.quantity != Quantity::kPosition || signal.derived) continue;

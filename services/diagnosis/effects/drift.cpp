@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "diagnosis/core/evaluation.hpp"
 #include "diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -20,22 +21,34 @@ constexpr int kSlowest = 3;
 constexpr int kFollowing = 15;
 constexpr double kLeastRatio = 12.0;
 
-double slow_power_ratio(const Screening& screening) {
-  const Signals& signals = screening.signals();
-  std::array<double, kFollowing> power{};
+using HalfCosines = std::array<double, kFollowing>;
+
+HalfCosines powers_of(const Eigen::VectorXd& residual, const Signals& signals) {
+  HalfCosines power{};
   for (int k = 1; k <= kFollowing; ++k) {
     double sum = 0.0;
     for (std::size_t n = 0; n < signals.size(); ++n) {
       const double t = (signals.time_s()[n] - signals.time_s().front()) / signals.duration_s();
-      sum +=
-          screening.residual()[static_cast<Eigen::Index>(n)] * std::cos(std::numbers::pi * k * t);
+      sum += residual[static_cast<Eigen::Index>(n)] * std::cos(std::numbers::pi * k * t);
     }
     power[static_cast<std::size_t>(k - 1)] = sum * sum;
   }
-  const double slow = std::accumulate(power.begin(), power.begin() + kSlowest, 0.0) / kSlowest;
+  return power;
+}
+
+// The three lowest in the residual, against those that follow in what the drift leaves: an
+// exponential has some of its own there.
+bool stands_out(const Effect& drift, const HalfCosines& of_residual, const Screening& screening) {
+  Model model = screening.model();
+  model.effects.push_back(drift);
+  FreeRun run;
+  const HalfCosines left =
+      powers_of(residual_of(model, screening.signals(), run), screening.signals());
+  const double slow =
+      std::accumulate(of_residual.begin(), of_residual.begin() + kSlowest, 0.0) / kSlowest;
   const double rest =
-      std::accumulate(power.begin() + kSlowest, power.end(), 0.0) / (kFollowing - kSlowest);
-  return slow / std::max(rest, 1e-300);
+      std::accumulate(left.begin() + kSlowest, left.end(), 0.0) / (kFollowing - kSlowest);
+  return slow >= kLeastRatio * rest;
 }
 
 class Drift final : public EffectKind {
@@ -65,7 +78,7 @@ class Drift final : public EffectKind {
     }
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override {
-    if (slow_power_ratio(screening) < kLeastRatio) return {};
+    const HalfCosines of_residual = powers_of(screening.residual(), screening.signals());
     std::vector<Effect> forms{{"drift", "linear", {}, {}, {}},
                               {"drift", "slow cosines", {}, {}, {}}};
     const double length_s = screening.signals().duration_s();
@@ -79,6 +92,7 @@ class Drift final : public EffectKind {
     std::vector<Proposal> proposals;
     for (Effect& form : forms) {
       auto [effect, gain] = screening.with_coefficients(std::move(form));
+      if (!stands_out(effect, of_residual, screening)) continue;
       proposals.push_back({std::move(effect), gain, {}});
     }
     return best_of(std::move(proposals), 3);

@@ -10,8 +10,8 @@ constexpr double kTriedThresholds[] = {0.2, 0.5, 1.0};  // [standard deviations]
 
 bool smooth(const Effect& effect) { return effect.form.starts_with("smooth"); }
 
-double operated(const Effect& effect, double z, LoopMemory& memory) {
-  return smooth(effect) ? dahl_operator(z, memory) : stop_operator(z, memory);
+Nonlinearity element_of(const Effect& effect, double threshold) {
+  return {smooth(effect) ? dahl_operator : stop_operator, threshold};
 }
 
 class Hysteresis final : public EffectKind {
@@ -20,18 +20,19 @@ class Hysteresis final : public EffectKind {
   [[nodiscard]] Stage stage(const Effect& effect) const override {
     return effect.channels.empty() ? Stage::kFeedback : Stage::kTerm;
   }
-  double feedback(const Effect& effect, double z, LoopMemory& memory) const override {
-    return operated(effect, in_thresholds(effect, z), memory);
+  [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
+    return element_of(effect, threshold_of(effect));
   }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const Signal& position = signals.at(effect.channels.at(0));
     std::vector<double> state(signals.size());
     std::vector<double> linear(signals.size());
+    const Nonlinearity element = element_of(effect, effect.value(0));
     for (const Stretch& stretch : signals.stretches()) {
       LoopMemory memory;
       for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-        state[n] = operated(effect, position.values[n] / effect.value(0), memory);
+        state[n] = element.phi(position.values[n] / element.threshold, memory);
         linear[n] = position.values[n];
       }
     }

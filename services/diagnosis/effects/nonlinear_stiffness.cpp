@@ -10,12 +10,13 @@ namespace stillhand::diagnosis {
 namespace {
 
 double cube(double z) { return z * z * z; }
+double cubic(double z, LoopMemory& /*memory*/) { return cube(z); }
 
 // Cubic for small, linear for large z: hardening and softening springs that don't run away.
-double bent(double z) { return cube(z) / (1.0 + z * z); }
+double bent(double z, LoopMemory& /*memory*/) { return cube(z) / (1.0 + z * z); }
 
 // Cubic for small z; what a spring loses whose force levels off.
-double levelled(double z) { return z - std::tanh(z); }
+double levelled(double z, LoopMemory& /*memory*/) { return z - std::tanh(z); }
 
 class NonlinearStiffness final : public EffectKind {
  public:
@@ -35,10 +36,9 @@ class NonlinearStiffness final : public EffectKind {
     const double kappa = effect.value(0);
     return std::abs(y) < turning_point(kappa) ? 1.0 + 3.0 * kappa * y * y : 0.0;
   }
-  double feedback(const Effect& effect, double z, LoopMemory& /*memory*/) const override {
-    const double x = in_thresholds(effect, z);
-    if (effect.form.starts_with("cubic")) return cube(x);
-    return effect.form.starts_with("levelled") ? levelled(x) : bent(x);
+  [[nodiscard]] Nonlinearity feedback(const Effect& effect) const override {
+    if (effect.form.starts_with("cubic")) return {cubic, threshold_of(effect)};
+    return {effect.form.starts_with("levelled") ? levelled : bent, threshold_of(effect)};
   }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
@@ -68,22 +68,18 @@ class NonlinearStiffness final : public EffectKind {
 
 std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
-  std::vector<Proposal> proposals = loop_proposals(
-      screening, "nonlinear_stiffness", "bent",
-      [](double z, LoopMemory& /*memory*/) { return bent(z); }, false);
-  for (Proposal& each : loop_proposals(
-           screening, "nonlinear_stiffness", "levelled",
-           [](double z, LoopMemory& /*memory*/) { return levelled(z); }, false)) {
+  std::vector<Proposal> proposals =
+      loop_proposals(screening, "nonlinear_stiffness", "bent", bent, false);
+  for (Proposal& each :
+       loop_proposals(screening, "nonlinear_stiffness", "levelled", levelled, false)) {
     proposals.push_back(std::move(each));
   }
-  for (Proposal& each : loop_proposals(
-           screening, "nonlinear_stiffness", "cubic",
-           [](double z, LoopMemory& /*memory*/) { return cube(z); }, true)) {
+  for (Proposal& each : loop_proposals(screening, "nonlinear_stiffness", "cubic", cubic, true)) {
     proposals.push_back(std::move(each));
   }
   const double square = std::pow(deviation_of(screening.prediction()), 2);
   const double limit = 0.3 / square;
-  const ScreenedGain cubic = [&] {
+  const ScreenedGain of_cube = [&] {
     std::vector<double> column = screening.prediction();
     for (double& y : column) y = cube(y);
     return screening.gain({column});
@@ -93,9 +89,9 @@ std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) c
         "at the output",
         {},
         {{"cubic", "1/" + signals.output().unit + "^2",
-          std::clamp(cubic.coefficients[0], -0.3 * limit, 0.3 * limit), -limit, limit}},
+          std::clamp(of_cube.coefficients[0], -0.3 * limit, 0.3 * limit), -limit, limit}},
         {}},
-       cubic.share,
+       of_cube.share,
        {}});
   std::vector<Proposal> of_channels;
   for (const Signal& signal : signals.all()) {

@@ -41,25 +41,14 @@ class OutputSaturation final : public EffectKind {
   }
 };
 
-double quantile_of(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + at);
-  return values[static_cast<std::size_t>(at)];
-}
-
 // The body of the output as it was before the soft limit; near the limit little of it can be told.
 Body body_before(const Effect& effect, const Screening& screening) {
   constexpr double kTellable = 0.97;
-  const Signals& signals = screening.signals();
-  std::vector<double> y = signals.output().values;
+  std::vector<double> y = screening.signals().output().values;
   for (double& each : y) {
     each = upper(effect) * std::atanh(std::clamp(each / upper(effect), -kTellable, kTellable));
   }
-  std::vector<std::vector<double>> inputs;
-  for (const Signal& input : signals.inputs()) inputs.push_back(input.values);
-  const auto order = static_cast<int>(screening.model().body.order());
-  Body body = started_body(inputs, y, {}, signals, order);
-  return order == 4 ? with_other_mode(body, inputs, y, signals) : body;
+  return body_anew(screening, measured_inputs(screening), y);
 }
 
 std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) const {

@@ -7,6 +7,8 @@
 #include <complex>
 #include <cstdio>
 
+#include "diagnosis/core/baseline.hpp"
+#include "diagnosis/core/evaluation.hpp"
 #include "diagnosis/core/loop.hpp"
 #include "signal/difference_model.hpp"
 
@@ -14,6 +16,7 @@ namespace stillhand::diagnosis {
 namespace {
 
 const std::vector<double> kThresholds{0.5, 1.0, 1.7, 3.0};  // [standard deviations]
+constexpr std::size_t kBodiesAnew = 3;                      // values of a map that get one
 
 std::vector<double> shaped(const std::vector<double>& z, double threshold, const Shape& shape,
                            const std::vector<Stretch>& stretches) {
@@ -61,6 +64,14 @@ std::vector<double> filtered(const Screening& screening, std::span<const double>
     }
   }
   return y;
+}
+
+// The inputs as they reach the body behind a map of the first.
+std::vector<std::vector<double>> mapped_inputs(const Screening& screening, const Effect& map) {
+  std::vector<std::vector<double>> inputs = measured_inputs(screening);
+  const EffectKind& kind = effect_kind(map.kind);
+  for (double& u : inputs.front()) u = kind.mapped(map, u);
+  return inputs;
 }
 
 Proposal output_loop(const Screening& screening, const Effect& effect, const Shape& shape,
@@ -125,6 +136,7 @@ std::vector<Proposal> loop_proposals(const Screening& screening, const std::stri
   const Effect effect{kind, form, {}, {{"threshold", unit, 1.0, 0.0, 1.0, !homogeneous}}, {}};
   const std::vector<double> thresholds = homogeneous ? std::vector<double>{1.0} : kThresholds;
   std::vector<Proposal> at_output;
+  at_output.reserve(thresholds.size());
   const double deviation = deviation_of(screening.body_output());
   if (!(deviation > 0.0)) return {};
   std::vector<Proposal> inside;
@@ -147,8 +159,39 @@ std::vector<Proposal> loop_proposals(const Screening& screening, const std::stri
   return all;
 }
 
-double in_thresholds(const Effect& effect, double z) {
-  return effect.parameters.empty() ? z : z / effect.value(0);
+double threshold_of(const Effect& effect) {
+  return effect.parameters.empty() ? 1.0 : effect.value(0);
+}
+
+std::vector<std::vector<double>> measured_inputs(const Screening& screening) {
+  std::vector<std::vector<double>> inputs;
+  for (const Signal& input : screening.signals().inputs()) inputs.push_back(input.values);
+  return inputs;
+}
+
+Body body_anew(const Screening& screening, const std::vector<std::vector<double>>& inputs,
+               const std::vector<double>& output) {
+  const Signals& signals = screening.signals();
+  const auto order = static_cast<int>(screening.model().body.order());
+  Body body = started_body(inputs, output, {}, signals, order);
+  return order == 4 ? with_other_mode(body, inputs, output, signals) : body;
+}
+
+Proposal best_with_body(const Screening& screening, std::vector<Proposal> proposals,
+                        const std::function<Body(const Effect&)>& body_for) {
+  Proposal best;
+  if (!screening.model().effects.empty() || screening.model().body.order() == 0) return best;
+  for (Proposal& each : proposals) {
+    each.body = body_for(each.effect);
+    Model model = screening.model();
+    model.body = *each.body;
+    model.effects.push_back(each.effect);
+    FreeRun run;
+    const double square = residual_of(model, screening.signals(), run).squaredNorm();
+    each.gain = 1.0 - square / screening.residual().squaredNorm();
+    if (run.finite && (!best.body || each.gain > best.gain)) best = std::move(each);
+  }
+  return best;
 }
 
 std::vector<double> response_of(const Screening& screening, const std::vector<double>& input) {
@@ -168,12 +211,23 @@ std::vector<Proposal> input_map_proposals(const Screening& screening, const Effe
     proposal.effect.parameters.front().value = value;
     proposals.push_back(std::move(proposal));
   }
-  return best_of(std::move(proposals), 1);
+  std::vector<Proposal> all = best_of(proposals, 1);
+  const auto body_for = [&](const Effect& tried) {
+    return body_anew(screening, mapped_inputs(screening, tried),
+                     screening.signals().output().values);
+  };
+  if (Proposal best =
+          best_with_body(screening, best_of(std::move(proposals), kBodiesAnew), body_for);
+      best.body) {
+    all.push_back(std::move(best));
+  }
+  return all;
 }
 
-std::vector<Proposal> output_map_proposals(
-    const Screening& screening, const Effect& effect, const std::vector<double>& values,
-    const std::function<double(double, double)>& difference) {
+std::vector<Proposal> output_map_proposals(const Screening& screening, const Effect& effect,
+                                           const std::vector<double>& values,
+                                           const std::function<double(double, double)>& difference,
+                                           const std::function<double(double, double)>& before) {
   std::vector<Proposal> proposals;
   const std::vector<double>& y = screening.prediction();
   for (const double value : values) {
@@ -184,7 +238,18 @@ std::vector<Proposal> output_map_proposals(
     proposal.effect.parameters.front().value = value;
     proposals.push_back(std::move(proposal));
   }
-  return best_of(std::move(proposals), 1);
+  std::vector<Proposal> all = best_of(proposals, 1);
+  const auto body_for = [&](const Effect& tried) {
+    std::vector<double> unmapped = screening.signals().output().values;
+    for (double& each : unmapped) each = before(each, tried.value(0));
+    return body_anew(screening, measured_inputs(screening), unmapped);
+  };
+  if (Proposal best =
+          best_with_body(screening, best_of(std::move(proposals), kBodiesAnew), body_for);
+      best.body) {
+    all.push_back(std::move(best));
+  }
+  return all;
 }
 
 double deviation_of(const std::vector<double>& values) {
@@ -194,6 +259,12 @@ double deviation_of(const std::vector<double>& values) {
   double square = 0.0;
   for (const double x : values) square += (x - mean) * (x - mean);
   return std::sqrt(square / static_cast<double>(values.size()));
+}
+
+double quantile_of(std::vector<double> values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + at);
+  return values[static_cast<std::size_t>(at)];
 }
 
 std::string with_unit(double value, const std::string& unit) {

@@ -24,25 +24,42 @@ std::vector<Proposal> best_of(std::vector<Proposal> proposals, std::size_t count
 std::vector<Proposal> loop_proposals(const Screening& screening, const std::string& kind,
                                      const std::string& form, const Shape& shape, bool homogeneous);
 
-/// z in units of the effect's threshold; inside the body the scale is in the path.
-double in_thresholds(const Effect& effect, double z);
+/// Of a feedback effect; inside the body the scale is in the path, and it is 1.
+double threshold_of(const Effect& effect);
 
 /// A map of the first input that differs from the identity: what the difference brings at the
-/// body's output, for parameter values to try.
+/// body's output, for parameter values to try; and the best with a body of its own.
 std::vector<Proposal> input_map_proposals(
     const Screening& screening, const Effect& effect, const std::vector<double>& values,
     const std::function<double(double u, double value)>& difference);
 
-/// The same for a map of the output.
+/// The same for a map of the output.  @param before  the map's inverse, as far as there is one
 std::vector<Proposal> output_map_proposals(
     const Screening& screening, const Effect& effect, const std::vector<double>& values,
-    const std::function<double(double y, double value)>& difference);
+    const std::function<double(double y, double value)>& difference,
+    const std::function<double(double y, double value)>& before);
+
+/// The inputs as measured, [inputs][samples].
+std::vector<std::vector<double>> measured_inputs(const Screening& screening);
+
+/// A body of the model's order, estimated anew: from an effect's own view of inputs and output.
+Body body_anew(const Screening& screening, const std::vector<std::vector<double>>& inputs,
+               const std::vector<double>& output);
+
+/// The body that was fitted without an effect may sit where the effect can't get it out: the
+/// proposal whose free run with a body of its own leaves least.
+/// @return without a body where none is finite, the body is static or other effects are there
+Proposal best_with_body(const Screening& screening, std::vector<Proposal> proposals,
+                        const std::function<Body(const Effect&)>& body_for);
 
 /// The response of the body to a signal in place of its first input.
 std::vector<double> response_of(const Screening& screening, const std::vector<double>& input);
 
 /// Standard deviation about the mean.
 double deviation_of(const std::vector<double>& values);
+
+/// The value below which a share of them lies.
+double quantile_of(std::vector<double> values, double share);
 
 /// Number and unit, for evidence: "3.2 N".
 std::string with_unit(double value, const std::string& unit);

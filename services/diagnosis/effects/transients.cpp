@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "diagnosis/effects/parts.hpp"
 
@@ -100,17 +99,6 @@ Bursts bursts_above(double least, const std::vector<Window>& windows,
     all.push_back({"end_" + number, "s", to_s, begin_s, end_s, false});
   }
   return bursts;
-}
-
-double quantile_of(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // A body fitted to what the bursts leave: one fitted to them as well may be all wrong.

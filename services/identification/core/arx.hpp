@@ -21,13 +21,19 @@ struct ArxFit {
 ///
 ///   f(n) = sum_{i=0..p} c_i a(n-i) - sum_{j=1..p} d_j f(n-j),   n = p .. N-1
 ///
-/// by Householder QR with column pivoting of the data matrix A.  The normal equations (A^T A)^-1 of
-/// Eq. 5 give the same answer in exact arithmetic but square the condition number.
+/// with the data matrix A: normal equations, corrected with the residual (Eq. ID-19), and
+/// Householder QR with column pivoting where A's condition is 1e5 or worse.
 /// Equation error: unbiased only when the noise is white through 1/D(z); refine_output_error()
 /// removes the bias of output noise.  Pure.
 /// @param order  p, kMinOrder to kMaxOrder
 /// @throws stillhand::ConfigError when the order is out of range or check_excitation() says no.
 ArxFit fit_arx(const Record& record, int order);
+
+/// The least squares of fit_arx() alone: no excitation asked for, nothing held out.  Without
+/// excitation the parameters mean nothing, and may not be finite.
+/// @throws stillhand::ConfigError when the order is out of range or the record unsound or too
+/// short.
+DifferenceModel least_squares(const Record& record, int order);
 
 /// What the least squares of one record needs to know of it: R and Q^T f of A = Q R.
 struct ArxFactor {

@@ -4,10 +4,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <sstream>
 
 #include "contract/config_error.hpp"
 #include "identification/core/arx.hpp"
+#include "identification/core/lagged_products.hpp"
 #include "signal/spectrum.hpp"
 
 namespace stillhand::identification {
@@ -18,6 +20,8 @@ namespace {
 constexpr double kLeastRms_m_s2 = 0.05;
 // Ratio of singular values; leaves about 7 of 16 digits in the parameters.
 constexpr double kLeastSingularRatio = 1e-9;
+// Squares of singular values are known to some 1e-14 of the largest.
+constexpr double kPlainRatio = 1e-6;
 constexpr int kMostLags = 2 * kMaxOrder + 1;
 constexpr double kBandLowHz = 0.7;
 constexpr double kBandHighHz = 4.0;
@@ -40,14 +44,23 @@ int persistent_order(const std::vector<double>& a) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(lagged);
   const Eigen::MatrixXd r =
       qr.matrixQR().topRows(kMostLags).triangularView<Eigen::Upper>().toDenseMatrix();
-  int order = 0;
-  for (int n = 1; n <= kMostLags; ++n) {
+  const auto independent = [&](int n) {
     const Eigen::VectorXd singular =
         Eigen::JacobiSVD<Eigen::MatrixXd>(r.topLeftCorner(n, n)).singularValues();
-    if (!(singular(n - 1) > kLeastSingularRatio * singular(0))) break;
-    order = n;
-  }
-  return order;
+    return singular(n - 1) > kLeastSingularRatio * singular(0);
+  };
+  const auto lags = std::views::iota(1, kMostLags + 1);
+  return static_cast<int>(std::ranges::partition_point(lags, independent) - lags.begin());
+}
+
+// Whether persistent_order() is `count` or more, from the products of the same rows: true only
+// where their rounding, far below kPlainRatio, can't be what makes it so.
+bool plainly_persistent(const std::vector<double>& a, int count) {
+  const auto end = static_cast<Eigen::Index>(a.size());
+  const Eigen::MatrixXd gram = lagged_gram({&a}, count - 1, kMostLags - 1, end);
+  const Eigen::VectorXd squares =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram, Eigen::EigenvaluesOnly).eigenvalues();
+  return squares(0) > kPlainRatio * kPlainRatio * squares(count - 1);
 }
 
 double band_share(const Record& record) {
@@ -64,6 +77,11 @@ double band_share(const Record& record) {
     if (f >= kBandLowHz && f <= kBandHighHz) inside += spectra.s_xx[k];
   }
   return all > 0.0 ? inside / all : 0.0;
+}
+
+// Ten equations a parameter, and the lags themselves.
+std::size_t least_samples(int order) {
+  return 10 * (2 * static_cast<std::size_t>(order) + 1) + kMostLags;
 }
 
 std::string shortcoming(const Excitation& found, int order) {
@@ -90,8 +108,7 @@ Excitation check_excitation(const Record& record, int order) {
     found.verdict = error.what();
     return found;
   }
-  // Ten equations a parameter, and the lags themselves.
-  const auto least = static_cast<std::size_t>(10 * (2 * order + 1) + kMostLags);
+  const std::size_t least = least_samples(order);
   if (record.size() < least) {
     found.verdict = "record: got " + std::to_string(record.size()) + " samples, want " +
                     std::to_string(least) + " or more for order " + std::to_string(order);
@@ -107,6 +124,21 @@ Excitation check_excitation(const Record& record, int order) {
   found.sufficient = found.verdict.empty();
   if (found.sufficient) found.verdict = "sufficient";
   return found;
+}
+
+void require_excitation(const Record& record, int order) {
+  check(record);
+  if (record.size() >= least_samples(order) &&
+      rms_about_mean(record.acceleration_m_s2) >= kLeastRms_m_s2 &&
+      rms_about_mean(record.force_n) > 0.0 &&
+      plainly_persistent(record.acceleration_m_s2, 2 * order + 1)) {
+    return;
+  }
+  const Excitation excitation = check_excitation(record, order);
+  if (!excitation.sufficient) {
+    throw ConfigError("identification.record", excitation.verdict,
+                      "a record that excites the body");
+  }
 }
 
 }  // namespace stillhand::identification

@@ -22,4 +22,8 @@ struct Excitation {
 /// Source: Ljung, System Identification, 2nd ed., definition 13.2.
 Excitation check_excitation(const Record& record, int order);
 
+/// The same yes or no, without the figures where it is plainly yes.
+/// @throws stillhand::ConfigError with the verdict when it is no.
+void require_excitation(const Record& record, int order);
+
 }  // namespace stillhand::identification

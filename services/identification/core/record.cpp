@@ -2,7 +2,9 @@
 #include "identification/core/record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "contract/config_error.hpp"
@@ -11,11 +13,15 @@
 namespace stillhand::identification {
 namespace {
 
+constexpr double kLargestValue = 1e30;  // its square's square is a number
+
 void check_finite(const std::vector<double>& samples, const std::string& channel) {
   for (std::size_t n = 0; n < samples.size(); ++n) {
-    if (!std::isfinite(samples[n])) {
-      throw ConfigError("record." + channel + "[" + std::to_string(n) + "]",
-                        std::to_string(samples[n]), "a finite value");
+    if (!(std::abs(samples[n]) < kLargestValue)) {
+      std::array<char, 32> value{};
+      std::snprintf(value.data(), value.size(), "%.3g", samples[n]);
+      throw ConfigError("record." + channel + "[" + std::to_string(n) + "]", value.data(),
+                        "a finite value, below 1e30 in size");
     }
   }
 }

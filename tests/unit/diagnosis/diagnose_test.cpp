@@ -218,6 +218,23 @@ TEST(DiagnoseTest, AnOutputThatIsTheInputIsRefused) {
   EXPECT_THAT(error_of(recording(), same), HasSubstr("'u', the output"));
 }
 
+// The output is the input three samples late, to the last bit: what a fit leaves is rounding.
+TEST(DiagnoseTest, RoundingIsNoEffect) {
+  const auto u = made::ride(kCount, 1);
+  std::vector<double> y(kCount, 0.0);
+  std::copy(u.begin(), u.end() - 3, y.begin() + 3);
+  const Diagnosis sut = diagnose(made::measurement_of({{"u", "V", u}, {"y", "N", y}}),
+                                 options_of(ModelClass::kArx, 4));
+  EXPECT_EQ(sut.verdict(), "nothing missing");
+  EXPECT_LT(sut.final_error.rmse, 1e-9);
+}
+
+TEST(DiagnoseTest, ValuesBeyondAnyMeasurementAreRefused) {
+  auto measurement = recording();
+  measurement.channels[1].values[7] = 1e150;
+  EXPECT_THAT(error_of(measurement, options_of()), HasSubstr("channel a_x, sample 7: got 1e+150"));
+}
+
 TEST(DiagnoseTest, ARecordTooShortIsRefused) {
   for (const std::size_t count : {1u, 7u, 10u, 49u}) {
     Measurement measurement = recording();

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "contract/config_error.hpp"
+#include "diagnosis/model_file.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+Effect path_from_roll() { return {"coupled_input", "static", {"roll"}, {}, {12.0}}; }
+
+Effect tone() {
+  return {"tone", "fixed", {}, {{"frequency", "Hz", 3.0, 1.0, 5.0, true}}, {0.5, -0.2}};
+}
+
+Effect friction() { return {"coulomb_friction", "sign", {"rate of theta"}, {}, {-0.4}}; }
+
+Model model_with(Effect effect) {
+  Model model;
+  model.rate_hz = 100.0;
+  model.inputs = {"a_y"};
+  model.output = "f";
+  model.output_unit = "N";
+  model.body.numerators = {{-3.0, 0.5, 0.1}};
+  model.body.denominator = {1.0, -0.9, 0.2};
+  model.effects = {std::move(effect)};
+  return model;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    static_cast<void>(parse_model(text, "m.json"));
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// The first effect of a good file, changed.
+template <typename Change>
+std::string changed(const Effect& effect, const Change& change) {
+  json file = json::parse(model_json(model_with(effect)));
+  change(file["effects"][0]);
+  return file.dump();
+}
+
+TEST(AugmentedModelFileTest, EffectsComeBackAsTheyWere) {
+  for (const Effect& effect : {path_from_roll(), tone(), friction()}) {
+    const Model sut = parse_model(model_json(model_with(effect)), "m.json");
+    ASSERT_EQ(sut.effects.size(), 1u) << effect.kind;
+    EXPECT_EQ(sut.effects[0].coefficients, effect.coefficients) << effect.kind;
+    EXPECT_EQ(sut.effects[0].channels, effect.channels) << effect.kind;
+  }
+}
+
+TEST(AugmentedModelFileTest, AWrongNumberOfCoefficientsIsNamed) {
+  for (const Effect& effect : {path_from_roll(), tone(), friction()}) {
+    const std::string want = std::to_string(effect.coefficients.size()) + " numbers";
+    const auto fewer = [](json& entry) { entry["coefficients"].erase(0); };
+    const auto more = [](json& entry) { entry["coefficients"].push_back(1.0); };
+    EXPECT_THAT(refusal(changed(effect, fewer)), AllOf(HasSubstr("m.json"), HasSubstr(want)))
+        << effect.kind;
+    EXPECT_THAT(refusal(changed(effect, more)), AllOf(HasSubstr("coefficients"), HasSubstr(want)))
+        << effect.kind;
+  }
+}
+
+TEST(AugmentedModelFileTest, APathThroughTheBodyHasOneMoreThanItsOrder) {
+  Effect through = path_from_roll();
+  through.form = "through the body";
+  through.coefficients = {1.0, 2.0, 3.0};
+  EXPECT_EQ(refusal(model_json(model_with(through))), "accepted");
+  const auto one = [](json& entry) { entry["coefficients"] = {1.0}; };
+  EXPECT_THAT(refusal(changed(through, one)), HasSubstr("3 numbers"));
+}
+
+TEST(AugmentedModelFileTest, MissingChannelsAndParametersAreRefused) {
+  const auto no_channel = [](json& entry) { entry["channels"] = json::array(); };
+  const auto no_parameter = [](json& entry) { entry["parameters"] = json::array(); };
+  EXPECT_THAT(refusal(changed(friction(), no_channel)),
+              AllOf(HasSubstr("effects"), HasSubstr("channels and parameters")));
+  EXPECT_THAT(refusal(changed(tone(), no_parameter)),
+              AllOf(HasSubstr("effects"), HasSubstr("channels and parameters")));
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
