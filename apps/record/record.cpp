@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
-#include <ctime>
+#include <map>
 
 #include "contract/config_error.hpp"
 #include "idl/cdr.hpp"
@@ -14,7 +14,8 @@
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "record/field_trigger.hpp"
-#include "record/tally.hpp"
+#include "recording/bus_recording.hpp"
+#include "recording/session_texts.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/remote_control.hpp"
 #include "runtime/tap.hpp"
@@ -26,26 +27,6 @@ constexpr std::int64_t kPoll_ns = 20'000'000;
 constexpr std::int64_t kTellInterval_ns = runtime::kNsPerSecond;
 constexpr std::int64_t kStatusInterval_ns = runtime::kNsPerSecond / 10;
 constexpr std::int64_t kAnswer_ns = 5 * runtime::kNsPerSecond;
-
-std::int64_t system_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return now.tv_sec * runtime::kNsPerSecond + now.tv_nsec;
-}
-
-/// What the stamps of the samples are behind the log times: system clock less monotonic clock.
-std::string clock_offset() { return std::to_string(system_ns() - runtime::monotonic_ns()); }
-
-recording::TextMap session_texts(std::uint32_t domain) {
-  char host[256] = {};
-  if (gethostname(host, sizeof(host) - 1) != 0) host[0] = '\0';
-  return {{"host", host},
-          {"domain", std::to_string(domain)},
-          {"stillhand", STILLHAND_VERSION},
-          {"git", STILLHAND_GIT},
-          {"recorded_by", "stillhand record"},
-          {"clock_offset_ns at start", clock_offset()}};
-}
 
 bool is_missed_deadline(const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
   stillhand_msgs::Event event;
@@ -129,7 +110,7 @@ void obey(Remote& remote, recording::Tape& tape, bool windowed, runtime::Stop& s
 }
 
 stillhand_msgs::RecorderStatus status_of(const Remote& remote, const recording::TapeStatus& tape,
-                                         const std::map<std::string, TopicTally>& topics,
+                                         const std::map<std::string, recording::TopicTally>& topics,
                                          const std::string& missing) {
   stillhand_msgs::RecorderStatus status;
   status.recorder(remote.name());
@@ -155,7 +136,7 @@ struct Totals {
   std::uint64_t received = 0, lost = 0, written = 0;
 };
 
-Totals tell_topics(const std::map<std::string, TopicTally>& topics) {
+Totals tell_topics(const std::map<std::string, recording::TopicTally>& topics) {
   Totals totals;
   std::printf("%-32s %12s %10s %10s %12s\n", "topic", "received", "lost", "(not sent)", "written");
   for (const auto& [topic, tally] : topics) {
@@ -172,19 +153,12 @@ Totals tell_topics(const std::map<std::string, TopicTally>& topics) {
 }  // namespace
 
 int run_record(const RecordOptions& options, runtime::Stop& stop) {
-  TrialLog trials;
-  Tally* tally_of_tape = nullptr;  // the tape asks for its counts as it closes a file
   recording::TapeOptions tape_options = options.tape;
-  tape_options.session = session_texts(options.domain);
-  tape_options.last_words = [&] {
-    std::vector<recording::Metadata> words{{"stillhand.counts", tally_of_tape->texts()},
-                                           {"stillhand.trials", trials.texts()}};
-    words.front().texts["clock_offset_ns at end"] = clock_offset();
-    return words;
-  };
-  recording::Tape tape(tape_options);
-  Tally tally(tape);
-  tally_of_tape = &tally;
+  tape_options.session = recording::session_texts(options.domain, "stillhand record");
+  recording::BusRecording recorded(std::move(tape_options));
+  recording::Tape& tape = recorded.tape();
+  const recording::Tally& tally = recorded.tally();
+  const recording::TrialLog& trials = recorded.trials();
 
   std::vector<FieldTrigger> triggers;
   for (const std::string& text : options.triggers) triggers.emplace_back(text);
@@ -196,8 +170,7 @@ int run_record(const RecordOptions& options, runtime::Stop& stop) {
   tap_options.wanted = [&options](const std::string& topic) { return options.topics.wants(topic); };
   tap_options.on_sample = [&](const runtime::FoundWriter& writer,
                               const runtime::TappedSample& sample) {
-    tally.take(writer, sample);
-    trials.take(writer, sample);
+    recorded.take(writer, sample);
     for (FieldTrigger& trigger : triggers) {
       if (trigger.step(writer, sample)) tape.trigger(trigger.text());
     }

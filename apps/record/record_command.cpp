@@ -2,7 +2,6 @@
 #include "record/record_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -25,7 +24,7 @@ struct Words {
   bool ordinary = false;
   std::string out, remote;
   recording::KeepOptions keep;
-  double duration_s = 0, rotate_s = 0, rotate_mb = 0, min_free_mb = 16, window_s = 0;
+  double duration_s = 0, rotate_s = 0, rotate_mb = 0, window_s = 0;
 };
 
 std::int64_t ns_of(double seconds) {
@@ -37,14 +36,10 @@ int run(Words words) {
   if (words.remote.empty() && words.out.empty()) {
     throw ConfigError("--out", "none", "the MCAP file to write");
   }
-  options.tape.path = words.out;
-  options.tape.writer.compression = words.keep.compression;
-  options.tape.durability = words.keep.durability;
-  options.tape.flush_interval_ns = std::chrono::nanoseconds(words.keep.flush_interval).count();
+  options.tape = recording::tape_options(words.keep, words.out);
   if (words.duration_s > 0) options.duration_ns = ns_of(words.duration_s);
   options.tape.rotation.max_ns = ns_of(words.rotate_s);
   options.tape.rotation.max_bytes = static_cast<std::uint64_t>(words.rotate_mb * kBytesPerMb);
-  options.tape.min_free_bytes = static_cast<std::uint64_t>(words.min_free_mb * kBytesPerMb);
   options.tape.window_ns = ns_of(words.window_s);
   if ((options.trigger_on_deadline || !options.triggers.empty()) && words.window_s <= 0) {
     throw ConfigError("--trigger", "one without --window", "--window S with it");
@@ -89,10 +84,6 @@ void add_record_command(CLI::App& cli, int& status) {
       ->check(CLI::Range(0.1, kMostSeconds));
   verb->add_option("--rotate-mb", words->rotate_mb, "go on in another file after that much [MB]")
       ->check(CLI::Range(0.1, kMostMb));
-  verb->add_option("--min-free-mb", words->min_free_mb,
-                   "stop, with a whole file, when less is left on the disk [MB]")
-      ->check(CLI::Range(0.0, kMostMb))
-      ->capture_default_str();
   verb->add_option("--window", words->window_s,
                    "keep only that much in memory until something triggers [s]")
       ->check(CLI::Range(0.1, 3600.0));

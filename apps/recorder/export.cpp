@@ -22,10 +22,12 @@ namespace {
 
 constexpr std::size_t kLongestTable = 60;  // room below MATLAB's 63, for a number behind it
 
-// One channel on its way out.
+// One topic on its way out: all its channels of one type, since a recorder gives each writer its
+// own. What was a replay when it was recorded is kept apart from what was live.
 struct Outlet {
-  const recording::Channel* channel = nullptr;
-  const recording::IdlSchema* schema = nullptr;
+  std::string topic;
+  bool replayed = false;
+  const recording::IdlStruct* type = nullptr;
   std::unique_ptr<recording::MessageColumns> columns;
   std::vector<std::unique_ptr<TableSink>> sinks;
   ExportedTopic result;
@@ -115,10 +117,10 @@ class Exporter {
     make_tables();
     write();
     Exported exported;
-    for (auto& [id, outlet] : outlets_) {
-      for (auto& sink : outlet.sinks) sink->finish();
-      outlet.sinks.clear();
-      exported.topics.push_back(outlet.result);
+    for (const auto& outlet : outlets_) {
+      for (auto& sink : outlet->sinks) sink->finish();
+      outlet->sinks.clear();
+      exported.topics.push_back(outlet->result);
     }
     for (auto& file : files_) file->publish();
     exported.left_out = left_out_;
@@ -135,13 +137,7 @@ class Exporter {
       matched = true;
       try {
         const auto [schema, type] = schemas_.of(channel);
-        Outlet outlet;
-        outlet.channel = &channel;
-        outlet.columns = std::make_unique<recording::MessageColumns>(*schema, *type);
-        outlet.result.topic = channel.topic;
-        outlet.result.name = plain_name(channel.topic, kLongestTable, names_);
-        types_[id] = type->name;
-        outlets_[id] = std::move(outlet);
+        by_channel_[id] = outlet_of(channel, *schema, *type);
       } catch (const ConfigError& error) {
         left_out_.push_back(error.what());
       }
@@ -154,11 +150,32 @@ class Exporter {
     }
   }
 
+  Outlet* outlet_of(const recording::Channel& channel, const recording::IdlSchema& schema,
+                    const recording::IdlStruct& type) {
+    const bool replayed = channel.metadata.count("replayed") != 0;
+    for (const auto& outlet : outlets_) {
+      if (outlet->topic == channel.topic && outlet->type == &type && outlet->replayed == replayed) {
+        return outlet.get();
+      }
+    }
+    auto outlet = std::make_unique<Outlet>();
+    outlet->topic = channel.topic;
+    outlet->replayed = replayed;
+    outlet->type = &type;
+    outlet->columns = std::make_unique<recording::MessageColumns>(schema, type);
+    outlet->result.topic = channel.topic + (replayed ? " (replayed)" : "");
+    outlet->result.name = plain_name(channel.topic, kLongestTable, names_);
+    outlets_.push_back(std::move(outlet));
+    return outlets_.back().get();
+  }
+
   void drop_troubled() {
-    std::erase_if(outlets_, [&](const auto& entry) {
-      const std::string& trouble = entry.second.columns->trouble();
-      if (!trouble.empty()) left_out_.push_back(entry.second.channel->topic + ": " + trouble);
-      return !trouble.empty();
+    const auto troubled = [](const Outlet& outlet) { return !outlet.columns->trouble().empty(); };
+    std::erase_if(by_channel_, [&](const auto& entry) { return troubled(*entry.second); });
+    std::erase_if(outlets_, [&](const auto& outlet) {
+      if (!troubled(*outlet)) return false;
+      left_out_.push_back(outlet->topic + ": " + outlet->columns->trouble());
+      return true;
     });
     if (outlets_.empty() && !left_out_.empty()) {
       throw ConfigError(recording_.path, "nothing that can be exported (" + left_out_.front() + ")",
@@ -168,27 +185,27 @@ class Exporter {
 
   void learn() {
     recording::MessageFilter filter;
-    for (const auto& [id, outlet] : outlets_) {
-      if (outlet.columns->has_lists()) filter.topics.push_back(outlet.channel->topic);
+    for (const auto& outlet : outlets_) {
+      if (outlet->columns->has_lists()) filter.topics.push_back(outlet->topic);
     }
     if (!filter.topics.empty()) {
       check(recording_.reader.for_each_message(filter, [&](const recording::MessageView& message) {
-        const auto outlet = outlets_.find(message.channel.id);
+        const auto found = by_channel_.find(message.channel.id);
         // What is no message of its type is counted when it is written.
-        if (outlet != outlets_.end()) (void)outlet->second.columns->learn(message.bytes);
+        if (found != by_channel_.end()) (void)found->second->columns->learn(message.bytes);
         return true;
       }));
     }
     drop_troubled();
-    for (auto& [id, outlet] : outlets_) outlet.columns->settle();
+    for (const auto& outlet : outlets_) outlet->columns->settle();
   }
 
   void make_tables() {
-    for (auto& [id, outlet] : outlets_) {
-      const TopicTable table{outlet.result.name, outlet.result.topic, types_.at(id),
-                             outlet.columns->columns()};
-      outlet.result.columns = table.columns.size() + 4;
-      for (auto& file : files_) outlet.sinks.push_back(file->add(table));
+    for (const auto& outlet : outlets_) {
+      const TopicTable table{outlet->result.name, outlet->topic, outlet->type->name,
+                             outlet->columns->columns()};
+      outlet->result.columns = table.columns.size() + 4;
+      for (auto& file : files_) outlet->sinks.push_back(file->add(table));
     }
   }
 
@@ -197,9 +214,9 @@ class Exporter {
     std::vector<recording::Cell> cells;
     check(recording_.reader.for_each_message({}, [&](const recording::MessageView& message) {
       ++messages_;
-      const auto found = outlets_.find(message.channel.id);
-      if (found == outlets_.end()) return true;
-      Outlet& outlet = found->second;
+      const auto found = by_channel_.find(message.channel.id);
+      if (found == by_channel_.end()) return true;
+      Outlet& outlet = *found->second;
       if (!outlet.columns->read(message.bytes, cells)) {
         ++outlet.result.unread;
         return true;
@@ -216,10 +233,10 @@ class Exporter {
   OpenRecording recording_;
   Schemas schemas_;
   std::set<std::string> names_;
-  std::map<recording::ChannelId, std::string> types_;
   std::vector<std::string> left_out_;
   std::vector<std::unique_ptr<TableFile>> files_;  // outlive their sinks
-  std::map<recording::ChannelId, Outlet> outlets_;
+  std::vector<std::unique_ptr<Outlet>> outlets_;
+  std::map<recording::ChannelId, Outlet*> by_channel_;
   std::uint64_t messages_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include "recorder/info.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "idl/topics.hpp"
@@ -11,7 +12,7 @@
 namespace stillhand::recorder {
 namespace {
 
-// One topic on the way: ticks are counted for each rig by itself.
+// One channel on the way: ticks are counted for each rig by itself.
 struct Counted {
   TopicInfo info;
   bool has_ticks = false;
@@ -31,13 +32,13 @@ struct Counted {
   }
 };
 
-std::map<recording::ChannelId, Counted> topics_of(const recording::McapReader& reader) {
-  std::map<recording::ChannelId, Counted> topics;
+std::map<recording::ChannelId, Counted> channels_of(const recording::McapReader& reader) {
+  std::map<recording::ChannelId, Counted> channels;
   for (const auto& [id, channel] : reader.channels()) {
-    Counted& counted = topics[id];
+    Counted& counted = channels[id];
     counted.info.topic = channel.topic;
     counted.info.encoding = channel.message_encoding;
-    counted.info.metadata = channel.metadata;
+    counted.info.channels.push_back(channel.metadata);
     const auto schema = reader.schemas().find(channel.schema_id);
     if (schema != reader.schemas().end()) {
       counted.info.type = schema->second.name;
@@ -48,7 +49,37 @@ std::map<recording::ChannelId, Counted> topics_of(const recording::McapReader& r
                         channel.message_encoding == recording::kMessageEncoding;
     if (counted.has_ticks) counted.info.lost_ticks = 0;
   }
-  return topics;
+  return channels;
+}
+
+void add(TopicInfo& topic, const TopicInfo& channel) {
+  topic.channels.insert(topic.channels.end(), channel.channels.begin(), channel.channels.end());
+  if (channel.messages == 0) return;
+  topic.first_ns =
+      topic.messages == 0 ? channel.first_ns : std::min(topic.first_ns, channel.first_ns);
+  topic.last_ns = std::max(topic.last_ns, channel.last_ns);
+  topic.messages += channel.messages;
+  if (channel.lost_ticks) *topic.lost_ticks += *channel.lost_ticks;
+}
+
+// Channels of a topic and type together, by name.
+std::vector<TopicInfo> topics_of(const std::map<recording::ChannelId, Counted>& channels) {
+  std::map<std::array<std::string, 4>, TopicInfo> topics;
+  for (const auto& [id, counted] : channels) {
+    const TopicInfo& info = counted.info;
+    const auto [topic, fresh] =
+        topics.try_emplace({info.topic, info.type, info.encoding, info.schema_encoding}, info);
+    if (!fresh) add(topic->second, info);
+  }
+  std::vector<TopicInfo> list;
+  for (auto& [key, topic] : topics) {
+    if (topic.messages > 1 && topic.last_ns > topic.first_ns) {
+      topic.rate_hz = static_cast<double>(topic.messages - 1) * 1e9 /
+                      static_cast<double>(topic.last_ns - topic.first_ns);
+    }
+    list.push_back(std::move(topic));
+  }
+  return list;
 }
 
 std::string packing_name(recording::Compression compression) {
@@ -60,10 +91,10 @@ std::string packing_name(recording::Compression compression) {
 
 RecordingInfo info_of(OpenRecording& recording) {
   recording::McapReader& reader = recording.reader;
-  auto topics = topics_of(reader);
+  auto channels = channels_of(reader);
   RecordingInfo info;
   check(reader.for_each_message({}, [&](const recording::MessageView& message) {
-    topics.at(message.channel.id).take(message);
+    channels.at(message.channel.id).take(message);
     const std::uint64_t time_ns = message.log_time_ns;
     info.start_ns = info.messages == 0 ? time_ns : std::min(info.start_ns, time_ns);
     info.end_ns = std::max(info.end_ns, time_ns);
@@ -81,15 +112,7 @@ RecordingInfo info_of(OpenRecording& recording) {
   for (const auto compression : reader.compressions()) {
     info.packings.push_back(packing_name(compression));
   }
-  for (auto& [id, counted] : topics) {
-    TopicInfo& topic = counted.info;
-    if (topic.messages > 1 && topic.last_ns > topic.first_ns) {
-      topic.rate_hz = static_cast<double>(topic.messages - 1) * 1e9 /
-                      static_cast<double>(topic.last_ns - topic.first_ns);
-    }
-    info.topics.push_back(std::move(topic));
-  }
-  std::ranges::sort(info.topics, {}, &TopicInfo::topic);
+  info.topics = topics_of(channels);
   info.metadata = reader.metadata();
   info.damage = reader.damage();
   info.lost_bytes = reader.lost_bytes();

@@ -10,18 +10,19 @@
 
 namespace stillhand::recorder {
 
-/// One topic of a recording.
+/// One topic of a recording, of one type: all channels of it together.
 struct TopicInfo {
   std::string topic;
-  std::string type;             ///< empty: its schema is not there
-  std::string encoding;         ///< of the messages: "cdr"
-  std::string schema_encoding;  ///< "omgidl"
-  recording::TextMap metadata;  ///< QoS and what else the recorder kept
-  std::uint64_t messages = 0;   ///< [-] delivered
-  std::uint64_t first_ns = 0;   ///< [ns] log time
+  std::string type;                          ///< empty: its schema is not there
+  std::string encoding;                      ///< of the messages: "cdr"
+  std::string schema_encoding;               ///< "omgidl"
+  std::vector<recording::TextMap> channels;  ///< of each: its writer, QoS, what else was kept
+  std::uint64_t messages = 0;                ///< [-] delivered
+  std::uint64_t first_ns = 0;                ///< [ns] log time
   std::uint64_t last_ns = 0;
   double rate_hz = 0.0;  ///< [Hz] mean; 0 with fewer than two messages
-  /// [-] gaps in the tick numbers, of the 1 kHz topics of the catalogue; others have no such count
+  /// [-] gaps in each channel's tick numbers, of the 1 kHz topics of the catalogue; others have no
+  /// such count
   std::optional<std::int64_t> lost_ticks;
 };
 

@@ -79,7 +79,7 @@ ordered_json topic_json(const TopicInfo& topic) {
                      {"encoding", topic.encoding}, {"schema_encoding", topic.schema_encoding},
                      {"messages", topic.messages}, {"rate_hz", topic.rate_hz},
                      {"first_ns", topic.first_ns}, {"last_ns", topic.last_ns},
-                     {"lost_ticks", nullptr},      {"metadata", topic.metadata}};
+                     {"lost_ticks", nullptr},      {"channels", topic.channels}};
   if (topic.lost_ticks) entry["lost_ticks"] = *topic.lost_ticks;
   return entry;
 }

@@ -28,7 +28,14 @@ std::string beside(const std::string& place) {
 
 }  // namespace
 
-PendingFile::PendingFile(std::string place) : place_(std::move(place)), path_(beside(place_)) {}
+PendingFile::PendingFile(std::string place) : place_(std::move(place)), path_(beside(place_)) {
+  // A device or a folder would be replaced by a file: renaming does not ask.
+  std::error_code none;
+  const auto status = std::filesystem::status(place_, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw ConfigError(place_, "something that is no file", "a file, or a name that is free");
+  }
+}
 
 PendingFile::~PendingFile() { ::unlink(path_.c_str()); }
 

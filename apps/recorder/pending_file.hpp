@@ -9,6 +9,7 @@ namespace stillhand::recorder {
 /// complete.  Gone, when that never happens.
 class PendingFile {
  public:
+  /// @throws ConfigError when something that is no file is there
   explicit PendingFile(std::string place);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <set>
 
 #include "contract/config_error.hpp"
 #include "idl/idl_text.hpp"
@@ -94,12 +95,11 @@ struct Plan {
 Plan plan_routes(const ReplayOptions& options, const recording::McapReader& reader,
                  runtime::Playback& playback) {
   Plan plan;
-  std::string refused;
+  std::set<std::string> refused;  // once for all writers of a topic
   for (const auto& [id, channel] : reader.channels()) {
     if (!options.topics.wants(channel.topic)) continue;
     if (const std::string why = refusal(channel, reader); !why.empty()) {
-      refused = channel.topic + ": " + why;
-      std::fprintf(stderr, "not played: %s\n", refused.c_str());
+      refused.insert(channel.topic + ": " + why);
       continue;
     }
     const runtime::WriterQos qos = qos_for(channel, playback);
@@ -110,17 +110,18 @@ Plan plan_routes(const ReplayOptions& options, const recording::McapReader& read
     if (is_latched(qos)) plan.latched.push_back(id);
   }
   if (plan.wanted.empty()) {
-    throw ConfigError(options.file, refused.empty() ? "no topic that matches" : refused,
+    throw ConfigError(options.file, refused.empty() ? "no topic that matches" : *refused.begin(),
                       "a recording with topics to play");
   }
+  for (const std::string& each : refused) std::fprintf(stderr, "not played: %s\n", each.c_str());
   return plan;
 }
 
+/// Every writer of the topic: each is found by itself.
 bool has_readers(const std::string& topic, const Plan& plan, const runtime::Playback& playback) {
-  for (const auto& [id, route] : plan.routes) {
-    if (route.topic == topic && playback.matched(route.writer) > 0) return true;
-  }
-  return false;
+  return std::ranges::all_of(plan.routes, [&](const auto& route) {
+    return route.second.topic != topic || playback.matched(route.second.writer) > 0;
+  });
 }
 
 void wait_for_readers(const ReplayOptions& options, const Plan& plan,
@@ -194,7 +195,7 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
   recording::FileSource file(options.file);
   const recording::McapReader reader(file);
   if (!reader.status().ok()) {
-    throw ConfigError(options.file, reader.status().text, "an MCAP recording");
+    throw ConfigError(options.file, reader.status().text, "a recording (MCAP, version 0)");
   }
   if (reader.statistics().message_count == 0) {
     throw ConfigError(options.file, "no messages", "a recording with messages");

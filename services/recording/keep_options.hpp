@@ -5,8 +5,8 @@
 #include <string>
 
 #include "recording/core/compression.hpp"
-#include "recording/core/mcap_writer.hpp"
 #include "recording/file_io.hpp"
+#include "recording/tape.hpp"
 
 namespace CLI {
 class App;
@@ -20,9 +20,14 @@ struct KeepOptions {
   std::chrono::milliseconds flush_interval{500};  ///< between chunks: a kill costs at most this
                                                   ///< and what waits for the disk
   Durability durability = Durability::kProcess;
+  double min_free_mb = 16;  ///< [MB] left on the disk; below, the recording stops
 };
 
-/// Adds --compression, --flush-ms and --fsync, which set `options` as they are parsed.
+/// Adds --compression, --flush-ms, --fsync and --min-free-mb, which set `options` as they are
+/// parsed.
 void add_keep_options(CLI::App& cli, KeepOptions& options);
+
+/// A tape that keeps what it gets so.
+TapeOptions tape_options(const KeepOptions& keep, const std::string& path);
 
 }  // namespace stillhand::recording

@@ -11,6 +11,7 @@
 
 #include "contract/config_error.hpp"
 #include "runtime/endpoint.hpp"
+#include "runtime/found_writers.hpp"
 #include "runtime/participant.hpp"
 #include "runtime/replay_mark.hpp"
 #include "runtime/serialized_type.hpp"
@@ -23,7 +24,8 @@ namespace edds = eprosima::fastdds::dds;
 
 struct Bus::Impl {
   explicit Impl(const Bus::Options& options)
-      : peers(options.service, options.rig, options.answers_replay) {}
+      : peers(options.service, options.rig, options.answers_replay,
+              options.serialized ? &writers : nullptr) {}
   ~Impl() {
     if (participant == nullptr) return;
     participant->delete_contained_entities();
@@ -39,7 +41,8 @@ struct Bus::Impl {
                    std::shared_ptr<void> sample, detail::Deliver deliver);
 
   // Readers and writers hand callbacks into `endpoints` until the participant is gone, and the
-  // participant into `peers`: order of members matters.
+  // participant into `peers`, which tell `writers`: order of members matters.
+  FoundWriters writers;
   Peers peers;
   std::atomic<bool> supervising{false};
   std::vector<std::unique_ptr<detail::Endpoint>> endpoints;
@@ -63,6 +66,12 @@ Bus::Bus(Options options) : options_(std::move(options)) {
   impl_->subscriber = impl_->participant->create_subscriber(subscriber_qos);
   if (impl_->publisher == nullptr || impl_->subscriber == nullptr) {
     throw BusError("Fast DDS gave no publisher or subscriber");
+  }
+  if (options_.serialized) {
+    impl_->writers.learn_depths(*impl_->publisher, options_.profiles);
+    // Nobody tells a participant of itself.
+    impl_->writers.note_participant(impl_->participant->guid().guidPrefix,
+                                    Peers::participant_name(options_.rig, options_.service));
   }
 }
 
@@ -146,7 +155,8 @@ void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& to
   }
   edds::Topic* dds_topic = topic_of(*participant, topics, topic, type);
   auto endpoint = std::make_unique<detail::ReaderEndpoint>(topic, peers, options, supervising,
-                                                           std::move(sample), std::move(deliver));
+                                                           std::move(sample), std::move(deliver),
+                                                           options.serialized ? &writers : nullptr);
   endpoint->reader = subscriber->create_datareader(dds_topic, qos, endpoint.get());
   if (endpoint->reader == nullptr) {
     throw BusError("Fast DDS refused the reader of " + std::string(topic.name));

@@ -28,11 +28,18 @@ struct TypeTag;
 template <typename Message>
 const TypeTag& type_tag();
 
-/// When a sample came.
+struct FoundWriter;
+
+/// When a sample came, and of whom.
 struct Arrival {
   std::int64_t received_ns;  ///< [ns] CLOCK_MONOTONIC of this process
   std::int64_t source_ns;    ///< [ns] system clock of the writer's host, as DDS stamped it
   std::int64_t logged_ns;    ///< [ns] system clock of this host
+  std::int64_t sequence;     ///< [-] RTPS sequence number of its writer
+  /// With Options::serialized: the writer, valid during the call, and its number in the order of
+  /// finding.  nullptr without, and for a writer that DDS never announced.
+  const FoundWriter* writer = nullptr;
+  std::size_t writer_number = 0;
 };
 
 /// What happened at an endpoint, told from DDS's own threads.  Plain, so that it can leave a
@@ -146,7 +153,7 @@ class Bus {
 
   /// For the recorder: every sample as it came; the callback tells its tick, CDR with its
   /// encapsulation header, any rig. Takes the profile "record_stream" on best-effort topics.  Only
-  /// with Options::serialized.
+  /// with Options::serialized.  Arrival tells the writer.
   void subscribe_serialized(
       const topics::Topic& topic,
       std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample);

@@ -16,6 +16,13 @@ inline std::int64_t monotonic_ns() noexcept {
   return now.tv_sec * kNsPerSecond + now.tv_nsec;
 }
 
+/// CLOCK_REALTIME [ns]: what time it is, for files and for other hosts; it may jump.
+inline std::int64_t system_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return now.tv_sec * kNsPerSecond + now.tv_nsec;
+}
+
 /// Sleeps until an absolute CLOCK_MONOTONIC time [ns]; goes on after signals.
 inline void sleep_until_ns(std::int64_t when_ns) noexcept {
   const timespec when{when_ns / kNsPerSecond, when_ns % kNsPerSecond};

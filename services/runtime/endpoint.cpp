@@ -37,12 +37,6 @@ const char* policy_name(std::uint32_t policy) {
   }
 }
 
-std::int64_t system_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return now.tv_sec * kNsPerSecond + now.tv_nsec;
-}
-
 }  // namespace
 
 void write(Endpoint& endpoint, void* message) { endpoint.write(message); }
@@ -116,10 +110,12 @@ void WriterEndpoint::on_offered_incompatible_qos(edds::DataWriter* /*writer*/,
 
 ReaderEndpoint::ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus::Options& options,
                                const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
-                               Deliver deliver)
+                               Deliver deliver, const FoundWriters* writers)
     : Endpoint(row, peers, options, supervising),
       sample_(std::move(sample)),
-      deliver_(std::move(deliver)) {}
+      deliver_(std::move(deliver)) {
+  if (writers != nullptr) writer_of_.emplace(*writers);
+}
 
 void ReaderEndpoint::close_reader(edds::Subscriber& owner) {
   if (reader == nullptr) return;
@@ -131,7 +127,14 @@ void ReaderEndpoint::on_data_available(edds::DataReader* source) {
   edds::SampleInfo info;
   while (source->take_next_sample(sample_.get(), &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data || peers_.refuses(info.publication_handle)) continue;
-    const Arrival arrival{monotonic_ns(), info.source_timestamp.to_ns(), system_ns()};
+    Arrival arrival{monotonic_ns(), info.source_timestamp.to_ns(), system_ns(),
+                    static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long())};
+    if (writer_of_) {
+      if (const SampleWriters::Entry* entry = writer_of_->of(info.publication_handle)) {
+        arrival.writer = &entry->writer;
+        arrival.writer_number = entry->number;
+      }
+    }
     const auto clock = deliver_(sample_.get(), arrival);
     if (!clock.ours) continue;
     samples_.fetch_add(1, std::memory_order_relaxed);

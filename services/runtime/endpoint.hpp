@@ -10,10 +10,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 
 #include "runtime/bus.hpp"
+#include "runtime/found_writers.hpp"
 #include "runtime/latest_value.hpp"
 #include "runtime/peers.hpp"
 #include "signal/cycle_monitor.hpp"
@@ -89,9 +91,10 @@ class WriterEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
 class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::DataReaderListener {
  public:
   /// @param sample  storage that each sample is taken into  @param deliver  called with it
+  /// @param writers  where `deliver` hears of the writer, or nullptr
   ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus::Options& options,
                  const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
-                 Deliver deliver);
+                 Deliver deliver, const FoundWriters* writers);
 
   void enable() override { reader->enable(); }
   void close_reader(eprosima::fastdds::dds::Subscriber& owner) override;
@@ -117,6 +120,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
 
   std::shared_ptr<void> sample_;
   Deliver deliver_;
+  std::optional<SampleWriters> writer_of_;  // receiving thread only
   std::atomic<std::uint64_t> samples_{0};
   std::atomic<std::uint64_t> deadline_misses_{0};
   std::atomic<std::int64_t> last_arrival_ns_{0};

@@ -13,8 +13,11 @@ using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 
-Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay)
-    : self_(std::move(self)), prefix_(participant_name(rig, "")), answers_replay_(answers_replay) {}
+Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWriters* writers)
+    : self_(std::move(self)),
+      prefix_(participant_name(rig, "")),
+      answers_replay_(answers_replay),
+      writers_(writers) {}
 
 std::string Peers::participant_name(std::uint32_t rig, const std::string& service) {
   return "stillhand/" + std::to_string(rig) + "/" + service;
@@ -22,6 +25,7 @@ std::string Peers::participant_name(std::uint32_t rig, const std::string& servic
 
 void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                      ParticipantDiscoveryInfo&& info) {
+  if (writers_ != nullptr) writers_->note_participant(info);
   const std::string name = info.info.m_participantName.to_string();
   const std::lock_guard lock(mutex_);
   if (info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
@@ -41,6 +45,7 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* 
 // after it has begun to match (PDPListener::onNewCacheChangeAdded).
 void Peers::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                    WriterDiscoveryInfo&& info) {
+  if (writers_ != nullptr) writers_->note_writer(info);
   if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) return;
   if (!is_replay_mark(info.info.m_qos.m_userData.data_vec())) return;
   const std::lock_guard lock(mutex_);

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/found_writers.hpp"
+
 namespace stillhand::runtime {
 
 /// Who is on the bus: names of participants by GUID, which services show a life sign, and who plays
@@ -22,7 +24,9 @@ namespace stillhand::runtime {
 class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// @param answers_replay  this process takes what a replay writes, and is marked itself
-  Peers(std::string self, std::uint32_t rig, bool answers_replay = false);
+  /// @param writers  to be told of every writer, or nullptr
+  Peers(std::string self, std::uint32_t rig, bool answers_replay = false,
+        FoundWriters* writers = nullptr);
 
   static std::string participant_name(std::uint32_t rig, const std::string& service);
 
@@ -48,7 +52,7 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   [[nodiscard]] bool replay_present() const noexcept {
     return replay_present_.load(std::memory_order_acquire);
   }
-  /// A marked writer was found since the start: from_replay() may be true.  Wait-free.
+  /// A marked writer was found since the start: refuses() may be true.  Wait-free.
   [[nodiscard]] bool replay_seen() const noexcept {
     return replay_seen_.load(std::memory_order_acquire);
   }
@@ -68,6 +72,7 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   std::map<eprosima::fastrtps::rtps::InstanceHandle_t, std::string> alive_writers_;
   std::set<std::string> ever_alive_;
   bool answers_replay_;
+  FoundWriters* writers_;
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> marked_now_;
   // Never forgotten: a sample may outlive its writer in a reader's history.
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> ever_marked_;

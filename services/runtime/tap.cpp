@@ -14,21 +14,17 @@
 #include <map>
 #include <mutex>
 #include <set>
-#include <sstream>
 #include <thread>
 
 #include "idl/topics.hpp"
 #include "runtime/bus.hpp"
-#include "runtime/discovered_qos.hpp"
+#include "runtime/found_writers.hpp"
 #include "runtime/participant.hpp"
-#include "runtime/replay_mark.hpp"
 #include "runtime/serialized_type.hpp"
 #include "runtime/type_tag.hpp"
 
 namespace stillhand::runtime {
 
-using eprosima::fastrtps::rtps::GuidPrefix_t;
-using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 using eprosima::fastrtps::types::ReturnCode_t;
@@ -57,12 +53,6 @@ const char* profile_of(ReaderClass reader_class) {
   return "";
 }
 
-std::int64_t system_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return now.tv_sec * kNsPerSecond + now.tv_nsec;
-}
-
 }  // namespace
 
 struct Tap::Impl final : edds::DomainParticipantListener {
@@ -75,28 +65,18 @@ struct Tap::Impl final : edds::DomainParticipantListener {
                                 ParticipantDiscoveryInfo&& info) override;
   void on_publisher_discovery(edds::DomainParticipant* participant,
                               WriterDiscoveryInfo&& info) override;
-  void note_writer(const eprosima::fastrtps::rtps::WriterProxyData& data);
   void open_readers(const std::stop_token& stop);
   void open_reader(const ReaderKey& key, const std::string& type);
   void tell(std::string line);
-  /// With what discovery does not tell.
-  [[nodiscard]] FoundWriter complete(FoundWriter writer) const {
-    const auto depth = depth_of.find(writer.profile);
-    if (depth != depth_of.end()) writer.qos.depth = depth->second;
-    return writer;
-  }
 
   Options options;
+  FoundWriters writers;
   mutable std::mutex mutex;
   std::condition_variable_any wake;
-  std::deque<FoundWriter> writers;
-  std::map<InstanceHandle_t, std::size_t> by_handle;
-  std::map<GuidPrefix_t, std::string> participants;
   std::set<ReaderKey> asked_for;
   std::deque<std::pair<ReaderKey, std::string>> waiting;
   std::vector<std::string> trouble;
   std::atomic<std::uint64_t> unattributed{0};
-  std::map<std::string, std::int32_t> depth_of;  // by profile; complete before the first reader
 
   // Of the opening thread alone.
   std::map<std::string, edds::Topic*> topics;
@@ -107,15 +87,20 @@ struct Tap::Impl final : edds::DomainParticipantListener {
 };
 
 struct Tap::Impl::Reader final : edds::DataReaderListener {
-  Reader(Impl& owner_, ReaderKey key_) : owner(owner_), key(std::move(key_)) {}
+  Reader(Impl& owner_, ReaderKey key_)
+      : owner(owner_), key(std::move(key_)), writer_of(owner.writers) {}
 
   void on_data_available(edds::DataReader* source) override {
     edds::SampleInfo info;
     while (source->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data || !find(info.publication_handle) || !current_is_mine) continue;
+      if (!info.valid_data) continue;
+      const SampleWriters::Entry* entry = writer_of.of(info.publication_handle);
+      if (entry == nullptr) owner.unattributed.fetch_add(1, std::memory_order_relaxed);
+      if (entry == nullptr || class_of(entry->writer.qos) != key.second) continue;
       owner.options.on_sample(
-          told.at(current),
-          {current, static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long()),
+          entry->writer,
+          {entry->number,
+           static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long()),
            info.source_timestamp.to_ns(), system_ns(), sample});
     }
   }
@@ -131,90 +116,35 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
                std::to_string(status.last_policy_id) + ")");
   }
 
-  /// Sets `current`; the writer of most samples is that of the one before.
-  bool find(const InstanceHandle_t& handle) {
-    if (handle == handle_now) return true;
-    const std::lock_guard lock(owner.mutex);
-    const auto found = owner.by_handle.find(handle);
-    if (found == owner.by_handle.end()) {
-      owner.unattributed.fetch_add(1, std::memory_order_relaxed);
-      return false;
-    }
-    handle_now = handle;
-    current = found->second;
-    const FoundWriter& writer = owner.writers[current];
-    current_is_mine = class_of(writer.qos) == key.second;
-    if (told.count(current) == 0) told.emplace(current, owner.complete(writer));
-    return true;
-  }
-
   Impl& owner;
   ReaderKey key;
   edds::DataReader* reader = nullptr;
   SerializedSample sample;
-  InstanceHandle_t handle_now;
-  std::size_t current = 0;
-  bool current_is_mine = false;
-  std::map<std::size_t, FoundWriter> told;  // as known at the writer's first sample
+  SampleWriters writer_of;
 };
 
 void Tap::Impl::on_participant_discovery(edds::DomainParticipant* /*participant*/,
                                          ParticipantDiscoveryInfo&& info) {
-  const std::lock_guard lock(mutex);
-  const auto prefix = info.info.m_guid.guidPrefix;
-  const bool here = info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
-                    info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT;
-  if (here) participants[prefix] = info.info.m_participantName.to_string();
-  for (const auto& [handle, index] : by_handle) {
-    if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix != prefix) continue;
-    if (here) {
-      writers[index].participant = participants[prefix];
-    } else {
-      writers[index].present = false;
-    }
-  }
+  writers.note_participant(info);
 }
 
 void Tap::Impl::on_publisher_discovery(edds::DomainParticipant* /*participant*/,
                                        WriterDiscoveryInfo&& info) {
-  const std::lock_guard lock(mutex);
-  const InstanceHandle_t handle(info.info.guid());
-  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
-    if (const auto found = by_handle.find(handle); found != by_handle.end()) {
-      writers[found->second].present = false;
-    }
-  } else if (by_handle.count(handle) == 0) {
-    note_writer(info.info);
-  }
-}
-
-void Tap::Impl::note_writer(const eprosima::fastrtps::rtps::WriterProxyData& data) {
-  FoundWriter writer;
-  writer.topic = data.topicName().to_string();
-  writer.type = data.typeName().to_string();
-  std::ostringstream id;
-  id << data.guid();
-  writer.id = id.str();
-  if (const auto name = participants.find(data.guid().guidPrefix); name != participants.end()) {
-    writer.participant = name->second;
-  }
-  writer.qos = discovered_qos(data.m_qos);
-  writer.replayed = is_replay_mark(data.m_qos.m_userData.data_vec());
-  writer.type_known = find_type(writer.type) != nullptr;
-  writer.wanted = options.wanted(writer.topic);
-  if (const topics::Topic* row = topics::find(writer.topic); row != nullptr) {
-    writer.profile = std::string(topics::profile_of(row->pattern));
-  }
+  const auto number = writers.note_writer(info, options.wanted(info.info.topicName().to_string()));
+  if (!number) return;
+  const FoundWriter writer = writers.at(*number);
+  if (!writer.wanted) return;
+  const auto& partitions = info.info.m_qos.m_partition.names();
   const ReaderKey key{writer.topic, class_of(writer.qos)};
-  const bool open = writer.wanted && writer.type_known && asked_for.insert(key).second;
-  if (writer.wanted && !data.m_qos.m_partition.names().empty()) {
-    trouble.push_back(writer.topic + ": a writer in the partition \"" +
-                      data.m_qos.m_partition.names().front() + "\" is not heard");
+  const std::lock_guard lock(mutex);
+  if (!partitions.empty()) {
+    trouble.push_back(writer.topic + ": a writer in the partition \"" + partitions.front() +
+                      "\" is not heard");
   }
-  if (open) waiting.emplace_back(key, writer.type);
-  by_handle.emplace(InstanceHandle_t(data.guid()), writers.size());
-  writers.push_back(std::move(writer));
-  if (open) wake.notify_all();
+  if (writer.type_known && asked_for.insert(key).second) {
+    waiting.emplace_back(key, writer.type);
+    wake.notify_all();
+  }
 }
 
 // DDS holds locks of its own while it tells of a writer, so readers are made in this thread.
@@ -269,13 +199,7 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
   if (impl_->subscriber == nullptr || profiles == nullptr) {
     throw BusError("Fast DDS gave no subscriber");
   }
-  // HISTORY does not travel in discovery: the catalogue's profiles tell it.
-  for (const topics::Topic* row : topics::kCatalogue) {
-    const std::string name(topics::profile_of(row->pattern));
-    const std::optional<WriterQos> qos = profile_qos(*profiles, name);
-    if (!qos) throw missing_profile(impl_->options.profiles, "data_writer", name);
-    impl_->depth_of[name] = qos->depth;
-  }
+  impl_->writers.learn_depths(*profiles, impl_->options.profiles);
   for (const auto each :
        {ReaderClass::kBestEffort, ReaderClass::kReliable, ReaderClass::kReliableLatched}) {
     edds::DataReaderQos qos;
@@ -305,12 +229,7 @@ void Tap::stop() {
   }
 }
 
-std::vector<FoundWriter> Tap::writers() const {
-  const std::lock_guard lock(impl_->mutex);
-  std::vector<FoundWriter> all;
-  for (const FoundWriter& writer : impl_->writers) all.push_back(impl_->complete(writer));
-  return all;
-}
+std::vector<FoundWriter> Tap::writers() const { return impl_->writers.all(); }
 
 std::vector<std::string> Tap::trouble() const {
   const std::lock_guard lock(impl_->mutex);

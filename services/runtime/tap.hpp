@@ -1,41 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "runtime/writer_qos.hpp"
+#include "runtime/found_writer.hpp"
 
 namespace stillhand::runtime {
-
-/// A writer that was found on the bus.
-struct FoundWriter {
-  std::string topic;
-  std::string type;         ///< DDS type name
-  std::string participant;  ///< its name; "" while DDS has not told it
-  std::string id;           ///< GUID as text
-  std::string profile;      ///< QoS profile of a topic of the catalogue, or ""
-  WriterQos qos;
-  bool replayed = false;    ///< it carries the replay's mark
-  bool type_known = false;  ///< idl/ defines its type
-  bool wanted = false;      ///< Options::wanted said so
-  bool present = true;      ///< it has not left yet
-};
-
-/// One sample as it came.
-struct TappedSample {
-  std::size_t writer;                ///< index into writers()
-  std::int64_t sequence;             ///< RTPS sequence number of that writer
-  std::int64_t source_ns;            ///< [ns] system clock of the writer's host, as DDS stamped it
-  std::int64_t logged_ns;            ///< [ns] system clock of this host
-  std::span<const std::byte> bytes;  ///< CDR with encapsulation header, valid during the call
-};
 
 /// Listens to a domain from outside of any session: no status, no life sign, nothing that a session
 /// waits for.  Readers are made for each wanted topic as its writers are found, one for each

@@ -5,8 +5,8 @@
     tests/benchmark/replay_timing.py [--seconds 600] [--rate 10000] [--speed 1]
 
 Replays a recording of ten topics, RATE messages a second in all, while `stillhand record` listens. Prints what the
-replay measured of itself (time of the write less time due), and what the listener's file says: how much longer or
-shorter the whole took than the recording, by the system clock.
+replay measured of itself (time of the write less time due), what was lost on the way, and what the listener's file
+says: how much longer or shorter the whole took than the recording, by the system clock.
 """
 import argparse
 import os
@@ -37,7 +37,11 @@ def main():
         subprocess.run([stillhand, "replay", recording, "--domain", domain, "--rate", options.speed, *waits],
                        stdin=subprocess.DEVNULL, check=True)
         recorder.send_signal(2)
-        print(recorder.communicate(timeout=60)[0].splitlines()[-1])
+        rows = [[int(word) for word in line.split()[1:5]]
+                for line in recorder.communicate(timeout=60)[0].splitlines() if line.startswith("load/")]
+        received, lost, _, written = (sum(column) for column in zip(*rows))
+        sent = options.rate * options.seconds
+        print(f"{sent} in the recording, {received} heard, {sent - received} missing ({lost} by gaps), {written} written")
         spans = [int(subprocess.run([load, "--span", path], stdout=subprocess.PIPE, text=True, check=True).stdout)
                  for path in (recording, heard)]
         wanted = spans[0] / float(options.speed)

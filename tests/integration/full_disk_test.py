@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recorder on a disk of 20 MB that fills up: it says so and ends, the file is readable and holds what came before.
+"""A disk of 20 MB that fills up: recorder and session say so and end, the file is readable and holds what came before.
 
 The disk is a tmpfs in a mount namespace of this test's own (unshare); skipped where the system allows none.
 """
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,8 +31,17 @@ def run(*words):
 class FullDiskTest(unittest.TestCase):
     def setUp(self):
         self.disk = pathlib.Path(os.environ[INSIDE])
-        (self.disk / "other").write_bytes(bytes(FILLED_BYTES))
+        for left in self.disk.iterdir():
+            shutil.rmtree(left) if left.is_dir() else left.unlink()
+        out = tempfile.TemporaryDirectory(prefix="out-", dir=self.disk.parent)
+        self.addCleanup(out.cleanup)
+        self.out = pathlib.Path(out.name)
         self.domain = 214 - os.getpid() % 4
+
+    def fill(self, bytes_used):
+        (self.disk / "other").write_bytes(bytes(bytes_used))
+
+    def publish(self):
         self.publisher = subprocess.Popen([str(PUBLISH), "--domain", str(self.domain)], stdout=subprocess.PIPE)
         self.addCleanup(self.end_publisher)
 
@@ -40,24 +50,42 @@ class FullDiskTest(unittest.TestCase):
         self.publisher.wait()
         self.publisher.stdout.close()
 
-    def test_a_full_disk_is_announced_and_the_file_is_readable(self):
-        file = self.disk / "a.mcap"
+    def record_until_it_ends(self, *words):
+        """The recorder's one line, with status 1."""
+        self.publish()
         recorder = subprocess.Popen(
             [str(RECORDER), "--domain", str(self.domain), "--profiles", str(SOURCE / "qos/profiles.xml"), "--config",
-             str(SOURCE / "deploy/config"), "--out", str(file), "--compression", "none"],
+             str(SOURCE / "deploy/config"), "--out", str(self.disk / "a.mcap"), "--compression", "none", *words],
             stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
             errors = recorder.communicate(timeout=END_LIMIT_S)[1]
         finally:
             recorder.kill()
         self.assertEqual(recorder.returncode, 1, errors)
-        lines = errors.splitlines()
-        self.assertEqual(len(lines), 1, errors)
-        self.assertIn("a.mcap", lines[0])
-        self.assertIn("No space left on device", lines[0])
+        self.assertEqual(len(errors.splitlines()), 1, errors)
+        self.assertIn("a.mcap", errors)
+        return errors
 
-        out = self.disk.parent / "out"
-        out.mkdir()
+    def test_the_recorder_stops_with_a_whole_file_before_the_disk_is_full(self):
+        self.fill(FILLED_BYTES)
+        line = self.record_until_it_ends("--min-free-mb", "0.5")
+        self.assertIn("left on the disk", line)
+        self.assertEqual(run(STILLHAND, "verify", self.disk / "a.mcap").returncode, 0)
+
+    def test_a_session_on_a_full_disk_says_so_and_keeps_what_was_recorded(self):
+        # 16 MB are left alone by default: 3 MB hold some seconds of a session, and no first trial of 40 s.
+        self.fill(1_000_000)
+        lab = run(STILLHAND, "lab", "--domain", self.domain, "--headless", "--out", self.disk / "run", "--trial-seconds",
+                  20, "--identify-seconds", 40)
+        self.assertEqual(lab.returncode, 1, lab.stderr)
+        self.assertIn("left on the disk", lab.stderr)
+        self.assertEqual(run(STILLHAND, "verify", self.disk / "run" / "session.mcap").returncode, 0)
+
+    def test_a_full_disk_is_announced_and_the_file_is_readable(self):
+        self.fill(FILLED_BYTES)
+        line = self.record_until_it_ends("--min-free-mb", "0")
+        self.assertIn("No space left on device", line)
+        file, out = self.disk / "a.mcap", self.out
         told = run(STILLHAND, "info", file, "--json", out / "info.json")
         self.assertEqual(told.returncode, 0, told.stderr)
         info = json.loads((out / "info.json").read_text())

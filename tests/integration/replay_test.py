@@ -5,6 +5,7 @@ One session is recorded twice: by its own recorder and from outside. What was re
 that answers replays, whose motor commands must be the recorded ones, bit for bit. Replayed onto the bus of another
 session in the middle of a cancelled trial, it must take the motor's force away and put none of its own in its place.
 """
+import csv
 import json
 import pathlib
 import signal
@@ -147,6 +148,42 @@ class ReplayTest(LabTestCase):
                 self.assertGreater(compared["greatest_force_n"], 1.0)  # a force was asked for at all
                 return
         self.fail("three replays lost samples on their way")
+
+    def rows(self, file, topic):
+        """Table of one topic, [{title: text}]."""
+        tables = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        subprocess.run([str(STILLHAND), "export", str(file), "--csv", str(tables), "--topics", topic], check=True,
+                       stdout=subprocess.DEVNULL)
+        with open(tables / (topic.replace("/", "_") + ".csv"), encoding="utf-8", newline="") as table:
+            return [{title.split(" [")[0]: cell for title, cell in row.items()} for row in csv.DictReader(table)]
+
+    def test_behind_a_seek_the_bus_has_the_state_of_that_instant_and_no_event_from_before(self):
+        control = self.rows(self.session, "stillhand/trial_control")
+        first = int(self.rows(self.session, "stillhand/sensed")[0]["log_time"]) - int(
+            1e9 * float(self.rows(self.session, "stillhand/sensed")[0]["t"]))
+        # Half a second behind the last announcement of a trial: nothing of this topic follows soon.
+        announced = [row for row in control if int(row["trial"]) >= 0][-1]
+        at_s = (int(announced["log_time"]) - first) * 1e-9 + 0.5
+        domain = next_domain()
+        heard = self.folder / "heard.mcap"
+        recorder = self.verb("record", "--out", heard, "--domain", domain, "--topics", "stillhand/trial_control",
+                             "--topics", "stillhand/event", "--topics", "stillhand/sensed")
+        replay = self.verb("replay", self.session, "--domain", domain, "--paused", "--topics", "stillhand/trial_control",
+                           "--topics", "stillhand/event", "--topics", "stillhand/sensed", "--wait-for",
+                           "stillhand/trial_control", "--wait-for", "stillhand/event", "--wait-for", "stillhand/sensed")
+        for command in (f"seek {at_s:.3f}", "play"):
+            subprocess.run([str(STILLHAND), "replay", "--domain", str(domain), "--remote", command], check=True)
+        subprocess.run([str(STILLHAND), "replay", "--domain", str(domain), "--remote", "stop"], check=True)
+        self.assertEqual(replay.end(), 0, replay.errors())
+        recorder.interrupt()
+        self.assertEqual(self.rows(heard, "stillhand/trial_control")[0]["stamp_ns"], announced["stamp_ns"])
+        newest_before = [row for row in self.rows(self.session, "stillhand/sensed")
+                         if int(row["log_time"]) < int(announced["log_time"]) + 500_000_000][-1]
+        self.assertGreater(int(self.rows(heard, "stillhand/sensed")[0]["tick"]), int(newest_before["tick"]) - 10)
+        events = {int(row["stamp_ns"]) for row in self.rows(heard, "stillhand/event")}
+        before = {int(row["stamp_ns"]) for row in self.rows(self.session, "stillhand/event")
+                  if int(row["log_time"]) < int(announced["log_time"]) + 490_000_000}
+        self.assertEqual(events & before, set())
 
     def test_a_replay_on_a_sessions_bus_takes_the_motors_force_away(self):
         lab = self.lab(*quick_session(self.folder / "config"))

@@ -100,22 +100,24 @@ function differs(topic, row, message, record) {
 
 const [file, tables] = process.argv.slice(2);
 const schemas = new Map();
-const topics = new Map();
+const channels = new Map();
+const tablesOf = new Map(); // by topic: the channels of its writers share one
 let values = 0;
 for (const record of streamOf(new Uint8Array(readFileSync(file)))) {
   if (record.type === "Schema") schemas.set(record.id, record);
-  if (record.type === "Channel" && !topics.has(record.id)) {
+  if (record.type === "Channel" && !channels.has(record.id)) {
     const schema = schemas.get(record.schemaId);
     const definitions = parseIDL(new TextDecoder().decode(schema.data));
-    topics.set(record.id, {
+    if (!tablesOf.has(record.topic)) tablesOf.set(record.topic, new Table(tables, record.topic));
+    channels.set(record.id, {
       name: record.topic,
       reader: new MessageReader(schema.name, definitions),
       enumerators: enumeratorsOf(definitions),
-      table: new Table(tables, record.topic),
+      table: tablesOf.get(record.topic),
     });
   }
   if (record.type !== "Message") continue;
-  const topic = topics.get(record.channelId);
+  const topic = channels.get(record.channelId);
   const row = topic.table.next();
   const difference = row === undefined ? "no such row"
                                        : differs(topic, row, topic.reader.readMessage(record.data), record);
@@ -126,11 +128,11 @@ for (const record of streamOf(new Uint8Array(readFileSync(file)))) {
   values += row.length;
 }
 let messages = 0;
-for (const topic of topics.values()) {
-  if (topic.table.next() !== undefined) {
-    console.error(`${topic.name}: the table has more rows than the recording messages`);
+for (const [name, table] of tablesOf) {
+  if (table.next() !== undefined) {
+    console.error(`${name}: the table has more rows than the recording messages`);
     process.exit(1);
   }
-  messages += topic.table.count - 1;
+  messages += table.count - 1;
 }
-console.log(JSON.stringify({ topics: topics.size, messages, values }));
+console.log(JSON.stringify({ topics: tablesOf.size, messages, values }));

@@ -10,15 +10,17 @@ import { McapIndexedReader } from "@mcap/core";
 import { decompressHandlers, streamOf } from "./recording.mjs";
 
 function newTally() {
-  return { topics: {}, schemas: {}, metadata: {}, messages: 0, hash: createHash("sha256") };
+  return { topics: {}, channels: {}, schemas: {}, metadata: {}, messages: 0, hash: createHash("sha256") };
 }
 
 function count(tally, channel, message) {
   const topic = (tally.topics[channel.topic] ??= { messages: 0 });
-  topic.encoding = channel.messageEncoding;
-  topic.schema = channel.schemaId;
-  topic.metadata = Object.fromEntries(channel.metadata);
   topic.messages += 1;
+  const entry = (tally.channels[channel.id] ??= { topic: channel.topic, messages: 0 });
+  entry.encoding = channel.messageEncoding;
+  entry.schema = channel.schemaId;
+  entry.metadata = Object.fromEntries(channel.metadata);
+  entry.messages += 1;
   tally.messages += 1;
   tally.hash.update(`${channel.topic} ${message.sequence} ${message.logTime} ${message.publishTime} `);
   tally.hash.update(message.data);
@@ -75,6 +77,7 @@ const report = {
   library: reader.header.library,
   messages: indexed.messages,
   topics: indexed.topics,
+  channels: indexed.channels,
   schemas: indexed.schemas,
   metadata: indexed.metadata,
   chunks: reader.chunkIndexes.length,
@@ -99,8 +102,8 @@ report.sha256 = streamed.hash.copy().digest("hex");
 const text = JSON.stringify(report, null, 1);
 console.log(text);
 const same =
-  JSON.stringify([indexed.topics, indexed.schemas, indexed.metadata]) ===
-  JSON.stringify([streamed.topics, streamed.schemas, streamed.metadata]);
+  JSON.stringify([indexed.topics, indexed.channels, indexed.schemas, indexed.metadata]) ===
+  JSON.stringify([streamed.topics, streamed.channels, streamed.schemas, streamed.metadata]);
 if (!same || indexed.messages !== report.statistics.messages) {
   console.error("index and stream differ, or the statistics are wrong");
   process.exit(1);

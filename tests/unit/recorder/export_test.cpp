@@ -46,6 +46,26 @@ TEST_F(ExportTest, ATopicBecomesACsvFileWithTimeFirstAndUnits) {
   EXPECT_NEAR(table.rate_hz, 1000.0, 1e-6);
 }
 
+TEST_F(ExportTest, TheWritersOfATopicShareItsTableInTheOrderOfTheFile) {
+  write_two_writers(path("a.mcap"));
+  const Exported sut = export_recording(path("a.mcap"), {path("tables"), {}, {}, {}});
+  ASSERT_EQ(sut.topics.size(), 1u);
+  EXPECT_EQ(sut.topics[0].rows, 6u);
+  const auto table = recording::read_csv(path("tables/stillhand_sensed.csv"));
+  ASSERT_NE(table.find("tick"), nullptr);
+  EXPECT_EQ(table.find("tick")->values, (std::vector<double>{0, 0, 1, 1, 3, 3}));
+}
+
+TEST_F(ExportTest, WhatAReplayWroteHasATableOfItsOwn) {
+  write_two_writers(path("a.mcap"), {{"replayed", "true"}});
+  const Exported sut = export_recording(path("a.mcap"), {path("tables"), {}, {}, {}});
+  ASSERT_EQ(sut.topics.size(), 2u);
+  EXPECT_EQ(sut.topics[0].topic, "stillhand/sensed");
+  EXPECT_EQ(sut.topics[1].topic, "stillhand/sensed (replayed)");
+  EXPECT_EQ(sut.topics[1].rows, 3u);
+  EXPECT_NE(sut.topics[0].name, sut.topics[1].name);
+}
+
 TEST_F(ExportTest, TextsAndEnumsAreReadable) {
   write_sample(path("a.mcap"));
   export_recording(path("a.mcap"), {path("out"), {}, {}, {}});

@@ -31,8 +31,21 @@ TEST_F(InfoTest, TopicsCountsRatesAndLostTicksAreFound) {
   EXPECT_EQ(sensed.messages, 200u);
   EXPECT_NEAR(sensed.rate_hz, 1000.0, 1e-6);  // 199 steps of 1 ms exactly; the rest is rounding
   EXPECT_EQ(sensed.lost_ticks, 2);
-  EXPECT_EQ(sensed.metadata.at("qos_profile"), "stream_1khz");
+  ASSERT_EQ(sensed.channels.size(), 1u);
+  EXPECT_EQ(sensed.channels[0].at("qos_profile"), "stream_1khz");
   EXPECT_EQ(sut.topics[0].lost_ticks, std::nullopt) << "an event's tick counts nothing";
+}
+
+// Each writer of a topic has a channel of its own, and ticks of its own.
+TEST_F(InfoTest, TheWritersOfATopicAreOneTopic) {
+  write_two_writers(path("a.mcap"));
+  OpenRecording recording(path("a.mcap"));
+  const RecordingInfo sut = info_of(recording);
+  ASSERT_EQ(sut.topics.size(), 1u);
+  EXPECT_EQ(sut.topics[0].messages, 6u);
+  EXPECT_EQ(sut.topics[0].lost_ticks, 2);
+  ASSERT_EQ(sut.topics[0].channels.size(), 2u);
+  EXPECT_EQ(sut.topics[0].channels[1].at("writer"), "second");
 }
 
 TEST_F(InfoTest, TextAndJsonSayTheSame) {

@@ -87,4 +87,26 @@ inline void write_sample(const std::string& path, bool close = true) {
   ASSERT_TRUE(ok);
 }
 
+/// One topic of two writers, a channel each, taking turns; of each tick 2 is missing.
+/// @param second_texts  metadata of the second one's channel
+inline void write_two_writers(const std::string& path,
+                              const recording::TextMap& second_texts = {{"writer", "second"}}) {
+  using namespace recording;
+  FileSink sink(path, Existing::kReplace);
+  McapWriter writer(sink);
+  const auto schema =
+      writer.add_schema("stillhand_msgs::Sensed", "omgidl", topics::kControlLoopIdl);
+  const auto first = writer.add_channel("stillhand/sensed", schema, "cdr", {{"writer", "first"}});
+  const auto second = writer.add_channel("stillhand/sensed", schema, "cdr", second_texts);
+  bool ok = true;
+  std::uint64_t time_ns = kSampleStart_ns;
+  for (const std::int64_t tick : {0, 1, 3}) {
+    for (const auto channel : {first, second}) {
+      ok = ok && writer.write(channel, 0, time_ns, time_ns, tests::cdr_of(sample(tick))).ok();
+      time_ns += 500'000;
+    }
+  }
+  ASSERT_TRUE(ok && writer.close().ok());
+}
+
 }  // namespace stillhand::recorder

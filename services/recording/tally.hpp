@@ -11,9 +11,9 @@
 #include "recording/core/loss_count.hpp"
 #include "recording/core/mcap_format.hpp"
 #include "recording/tape.hpp"
-#include "runtime/tap.hpp"
+#include "runtime/found_writer.hpp"
 
-namespace stillhand::record {
+namespace stillhand::recording {
 
 /// One topic of a recording, all its writers together.
 struct TopicTally {
@@ -25,7 +25,8 @@ struct TopicTally {
 /// came of each.  take() is for DDS's threads, the rest for any.
 class Tally {
  public:
-  explicit Tally(recording::Tape& tape) : tape_(tape) {}
+  /// @param tape  not nullptr; not used before the first take()
+  explicit Tally(Tape* tape) : tape_(tape) {}
 
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
 
@@ -35,34 +36,19 @@ class Tally {
   /// Topics of which a sample came.
   [[nodiscard]] std::set<std::string> heard() const;
   /// The same counts as the metadata record "stillhand.counts" of a file.
-  [[nodiscard]] recording::TextMap texts() const;
+  [[nodiscard]] TextMap texts() const;
 
  private:
   struct Source {
     std::string topic;
     std::uint32_t channel = 0;
     bool has_ticks = false;
-    recording::LossCount count;
+    LossCount count;
   };
 
-  recording::Tape& tape_;
+  Tape* tape_;
   mutable std::mutex mutex_;
   std::map<std::size_t, Source> sources_;  // by the writer's number
 };
 
-/// What a file says of itself besides its messages: trials that were heard of.
-class TrialLog {
- public:
-  void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
-  /// Number of the newest trial, -1 before the first.
-  [[nodiscard]] std::int64_t newest() const;
-  /// Metadata record "stillhand.trials".
-  [[nodiscard]] recording::TextMap texts() const;
-
- private:
-  mutable std::mutex mutex_;
-  std::int64_t newest_ = -1;
-  recording::TextMap texts_;
-};
-
-}  // namespace stillhand::record
+}  // namespace stillhand::recording

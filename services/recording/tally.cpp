@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "record/tally.hpp"
+#include "recording/tally.hpp"
 
 #include <algorithm>
 
-#include "idl/cdr.hpp"
 #include "idl/idl_text.hpp"
-#include "idl/session.h"
 #include "idl/topics.hpp"
 #include "recording/qos_texts.hpp"
 #include "recording/sample_clock.hpp"
 
-namespace stillhand::record {
+namespace stillhand::recording {
 
 using runtime::FoundWriter;
 using runtime::TappedSample;
@@ -24,11 +22,11 @@ bool counts_ticks(const std::string& type) {
   });
 }
 
-recording::Channel channel_of(const FoundWriter& writer) {
-  recording::Channel channel;
+Channel channel_of(const FoundWriter& writer) {
+  Channel channel;
   channel.topic = writer.topic;
-  channel.message_encoding = recording::kMessageEncoding;
-  channel.metadata = recording::qos_texts(writer.qos);
+  channel.message_encoding = kMessageEncoding;
+  channel.metadata = qos_texts(writer.qos);
   channel.metadata["writer"] = writer.id;
   channel.metadata["participant"] = writer.participant;
   if (!writer.profile.empty()) channel.metadata["qos_profile"] = writer.profile;
@@ -46,19 +44,18 @@ void Tally::take(const FoundWriter& writer, const TappedSample& sample) {
     source.topic = writer.topic;
     source.has_ticks = counts_ticks(writer.type);
     source.channel =
-        tape_.add_channel(channel_of(writer), writer.type, topics::idl_of(writer.type));
+        tape_->add_channel(channel_of(writer), writer.type, topics::idl_of(writer.type));
     known = sources_.emplace(sample.writer, std::move(source)).first;
   }
   Source& source = known->second;
-  source.count.step(sample.sequence,
-                    source.has_ticks ? recording::sample_head(sample.bytes).tick : -1);
+  source.count.step(sample.sequence, source.has_ticks ? sample_head(sample.bytes).tick : -1);
   // MCAP has 32 bits for it; a reader sees a gap all the same.
-  tape_.put(source.channel, static_cast<std::uint32_t>(sample.sequence), sample.logged_ns,
-            sample.source_ns, sample.bytes);
+  tape_->put(source.channel, static_cast<std::uint32_t>(sample.sequence), sample.logged_ns,
+             sample.source_ns, sample.bytes);
 }
 
 std::map<std::string, TopicTally> Tally::topics(const std::vector<FoundWriter>& found) const {
-  const std::vector<std::uint64_t> written = tape_.written_by_channel();
+  const std::vector<std::uint64_t> written = tape_->written_by_channel();
   std::map<std::string, TopicTally> all;
   for (const FoundWriter& writer : found) {
     if (!writer.wanted) continue;
@@ -84,8 +81,8 @@ std::set<std::string> Tally::heard() const {
   return topics;
 }
 
-recording::TextMap Tally::texts() const {
-  recording::TextMap texts;
+TextMap Tally::texts() const {
+  TextMap texts;
   for (const auto& [topic, tally] : topics({})) {
     texts[topic + " received"] = std::to_string(tally.received);
     texts[topic + " lost"] = std::to_string(tally.lost);
@@ -95,31 +92,4 @@ recording::TextMap Tally::texts() const {
   return texts;
 }
 
-void TrialLog::take(const FoundWriter& writer, const TappedSample& sample) {
-  if (writer.topic != topics::kTrialControl.name || writer.type != topics::kTrialControl.type) {
-    return;
-  }
-  stillhand_msgs::TrialControl control;
-  if (!from_cdr(sample.bytes, control) || control.trial() < 0) return;
-  const std::lock_guard lock(mutex_);
-  newest_ = control.trial();
-  const std::string trial = "trial " + std::to_string(control.trial());
-  texts_[trial + " phase"] = control.phase() == stillhand_msgs::PHASE_PEGGED     ? "pegged"
-                             : control.phase() == stillhand_msgs::PHASE_TRACKING ? "tracking"
-                                                                                 : "idle";
-  texts_[trial + " start_tick"] = std::to_string(control.start_tick());
-  texts_[trial + " duration_ticks"] = std::to_string(control.duration_ticks());
-  texts_[trial + " reference_seed"] = std::to_string(control.reference_seed());
-}
-
-std::int64_t TrialLog::newest() const {
-  const std::lock_guard lock(mutex_);
-  return newest_;
-}
-
-recording::TextMap TrialLog::texts() const {
-  const std::lock_guard lock(mutex_);
-  return texts_;
-}
-
-}  // namespace stillhand::record
+}  // namespace stillhand::recording

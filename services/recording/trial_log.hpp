@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+
+#include "recording/core/mcap_format.hpp"
+#include "runtime/found_writer.hpp"
+
+namespace stillhand::recording {
+
+/// Trials that were heard of while a file was written.  take() is for DDS's threads, the rest for
+/// any.
+class TrialLog {
+ public:
+  void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
+  /// Number of the newest trial, -1 before the first.
+  [[nodiscard]] std::int64_t newest() const;
+  /// Metadata record "stillhand.trials".
+  [[nodiscard]] TextMap texts() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::int64_t newest_ = -1;
+  TextMap texts_;
+};
+
+}  // namespace stillhand::recording

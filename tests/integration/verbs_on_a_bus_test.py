@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand record` and `stillhand replay` on a running bus: every command from afar and from the keyboard.
+
+What is recorded comes from publish_samples (four topics, one sample each millisecond), what is replayed from bus_load
+(ten topics load/0 to load/9, evenly). No session is needed.
+"""
+import json
+import os
+import pathlib
+import pty
+import re
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import lab_process
+from lab_process import BUILD, STILLHAND, next_domain
+
+LOAD = BUILD / "tests" / "bus_load"
+PUBLISH = BUILD / "tests" / "publish_samples"
+LIMIT_S = 30.0
+POLL_S = 0.05
+ANSWER = re.compile(r"(?P<at>[\d.]+) of (?P<length>[\d.]+) s, rate (?P<rate>[\d.e+-]+)(?P<flags>[^\d]*), (?P<count>\d+)")
+
+
+def stillhand(*words):
+    return subprocess.run([str(STILLHAND), *(str(word) for word in words)], capture_output=True, text=True, check=False,
+                          timeout=LIMIT_S)
+
+
+def wait_for(what, condition):
+    limit = time.monotonic() + LIMIT_S
+    while not (value := condition()):
+        if time.monotonic() > limit:
+            raise AssertionError(f"no {what} within {LIMIT_S} s")
+        time.sleep(POLL_S)
+    return value
+
+
+class Bus(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.domain = next_domain()
+
+    def start(self, *words, stdin=subprocess.DEVNULL):
+        """A process that does not outlive the test; its output is a file."""
+        output = tempfile.TemporaryFile("w+")
+        process = subprocess.Popen([str(word) for word in words], stdin=stdin, stdout=output, stderr=subprocess.STDOUT)
+
+        def end():
+            process.kill()
+            process.wait()
+            output.close()
+        self.addCleanup(end)
+
+        def said():
+            output.seek(0)
+            return output.read()
+        process.said = said
+        return process
+
+    def verb(self, name, *words, **keywords):
+        return self.start(STILLHAND, name, "--domain", self.domain, *words, **keywords)
+
+    def remote(self, verb, command):
+        return stillhand(verb, "--domain", self.domain, "--remote", command)
+
+    def obeyed(self, verb, command):
+        answer = self.remote(verb, command)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        return answer.stdout
+
+    def interrupted(self, process):
+        process.send_signal(signal.SIGINT)
+        return process.wait(timeout=LIMIT_S)
+
+    def info(self, file):
+        told = stillhand("info", file, "--json", self.folder / "info.json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        return json.loads((self.folder / "info.json").read_text())
+
+    def messages(self, file):
+        return {topic["topic"]: topic["messages"] for topic in self.info(file)["topics"]}
+
+    def rows(self, file, topic):
+        """Table of one topic, [{title: text}]."""
+        tables = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        exported = stillhand("export", file, "--csv", tables, "--topics", topic)
+        self.assertEqual(exported.returncode, 0, exported.stderr)
+        lines = (tables / (topic.replace("/", "_") + ".csv")).read_text().splitlines()
+        titles = [title.split(" [")[0] for title in lines[0].split(",")]
+        return [dict(zip(titles, line.split(","))) for line in lines[1:]]
+
+
+class RecordTest(Bus):
+    def setUp(self):
+        super().setUp()
+        self.start(PUBLISH, "--domain", self.domain)
+
+    def recorder(self, *words):
+        """`record` at work: it has taken samples."""
+        recorder = self.verb("record", "--topics", "stillhand/sensed", "--topics", "stillhand/raw_sample", *words)
+        wait_for("samples", lambda: self.counted("received") > 100)
+        return recorder
+
+    def counted(self, what):
+        answer = self.remote("record", "resume")
+        found = re.search(rf"(\d+) {what}", answer.stdout)
+        return int(found[1]) if found else 0
+
+    def test_a_pause_leaves_a_hole_and_the_stop_is_acknowledged(self):
+        file = self.folder / "a.mcap"
+        recorder = self.recorder("--out", file)
+        paused = self.obeyed("record", "pause")
+        time.sleep(1.0)  # the hole itself
+        resumed = self.obeyed("record", "resume")
+        stopped = self.obeyed("record", "stop")
+        self.assertIn("stop", stopped)
+        self.assertIn("pause", paused)
+        self.assertIn("resume", resumed)
+        recorder.wait(timeout=LIMIT_S)
+        self.assertIn("messages passed over: paused", recorder.said())
+        ticks = [int(row["tick"]) for row in self.rows(file, "stillhand/sensed")]
+        steps = [later - earlier for earlier, later in zip(ticks, ticks[1:])]
+        # The commands themselves take a while; the hole is at least what lay between the answers.
+        self.assertGreaterEqual(max(steps), 1000)
+
+    def test_who_asks_where_nobody_records_is_told_so(self):
+        answer = self.remote("record", "pause")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn(f"no recorder answers on domain {self.domain}", answer.stderr)
+        self.assertEqual(self.remote("record", "dance").returncode, 2)
+
+    def test_a_trigger_without_a_window_is_refused(self):
+        self.recorder("--out", self.folder / "a.mcap")
+        answer = self.remote("record", "trigger")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("no event window", answer.stderr)
+
+    def test_a_command_writes_the_last_seconds(self):
+        file = self.folder / "a.mcap"
+        recorder = self.recorder("--out", file, "--window", 2)
+        wait_for("a full window", lambda: self.counted("received") > 2 * 4000)
+        self.obeyed("record", "trigger")
+        self.interrupted(recorder)
+        info = self.info(file)
+        cause = [entry["texts"]["cause"] for entry in info["metadata"] if entry["name"] == "stillhand.trigger"]
+        self.assertEqual(cause, ["a command"])
+        # The window, give or take a batch of the writing thread (20 ms), and what the machine holds up.
+        self.assertGreater(info["duration_s"], 1.9)
+        self.assertLess(info["duration_s"], 2.5)
+
+    def test_a_threshold_on_a_field_writes_the_window_once(self):
+        file = self.folder / "a.mcap"
+        # Ticks rise for ever: the threshold is crossed once, between two samples of the window.
+        recorder = self.verb("record", "--topics", "stillhand/sensed", "--out", file, "--window", 2, "--trigger",
+                             "stillhand/sensed.tick>6000")
+        wait_for("the window in the file", lambda: file.exists() and "stillhand/sensed" in self.messages(file))
+        self.interrupted(recorder)
+        info = self.info(file)
+        causes = [entry["texts"]["cause"] for entry in info["metadata"] if entry["name"] == "stillhand.trigger"]
+        self.assertEqual(causes, ["stillhand/sensed.tick>6000"])
+        ticks = [int(row["tick"]) for row in self.rows(file, "stillhand/sensed")]
+        # The sample that crosses it is in the window; a batch later the window is written.
+        self.assertLessEqual(ticks[0], 6000)
+        self.assertGreater(ticks[-1], 6000)
+
+    def assert_parts(self, *words):
+        recorder = self.recorder("--out", self.folder / "a.mcap", *words)
+        wait_for("a third part", (self.folder / "a.0003.mcap").exists)
+        self.interrupted(recorder)
+        parts = sorted(self.folder.glob("a*.mcap"), key=lambda path: (path.name != "a.mcap", path.name))
+        ticks = []
+        for part in parts:
+            self.assertEqual(stillhand("verify", part).returncode, 0, part)
+            ticks += [int(row["tick"]) for row in self.rows(part, "stillhand/sensed")]
+        # Nothing falls between two files: each tick is there once, but for what the bus lost.
+        self.assertEqual(ticks, sorted(set(ticks)))
+        told = [int(word) for line in recorder.said().splitlines() if line.startswith("stillhand/sensed")
+                for word in line.split()[1:5]]
+        self.assertEqual(len(ticks), told[3])
+        self.assertEqual(ticks[-1] - ticks[0] + 1 - len(ticks), told[1])
+        return [self.info(part) for part in parts]
+
+    def test_files_by_time_follow_one_another_without_a_gap(self):
+        for info in self.assert_parts("--rotate-s", 1)[:-1]:
+            self.assertLessEqual(info["duration_s"], 1.0)
+            self.assertGreater(info["duration_s"], 0.9)
+
+    def test_files_by_size_follow_one_another_without_a_gap(self):
+        for info in self.assert_parts("--rotate-mb", 0.2, "--compression", "none", "--flush-ms", 20)[:-1]:
+            self.assertGreater(info["bytes"], 200_000)
+            # A chunk of 20 ms, its index, and the index of all chunks come on top.
+            self.assertLess(info["bytes"], 300_000)
+
+
+class ReplayTest(Bus):
+    LENGTH_S = 20
+    RATE = 1000  # of ten topics together
+
+    def setUp(self):
+        super().setUp()
+        self.file = self.folder / "load.mcap"
+        subprocess.run([str(LOAD), "--write", str(self.file), str(self.RATE), str(self.LENGTH_S)], check=True)
+
+    def replay(self, *words, **keywords):
+        replay = self.verb("replay", self.file, *words, **keywords)
+        wait_for("an answer", lambda: self.remote("replay", "loop-off").returncode == 0)
+        return replay
+
+    def told(self, command):
+        return ANSWER.search(self.obeyed("replay", command))
+
+    def test_each_command_is_obeyed_and_answered(self):
+        replay = self.replay("--paused")
+        self.assertIn("paused", self.told("pause")["flags"])
+        at_start = self.told("seek 5")
+        self.assertEqual((at_start["at"], at_start["count"]), ("5.000", "0"))
+        step = self.told("step")
+        self.assertEqual(step["count"], "1")
+        self.assertGreaterEqual(float(step["at"]), 5.0)
+        self.assertEqual(self.told("rate 10")["rate"], "10")
+        self.assertNotIn("paused", self.told("play")["flags"])
+        self.assertIn("looping", self.told("loop 2 3")["flags"])
+        positions = [float(self.told("play")["at"]) for _ in range(5)]
+        self.assertTrue(all(2.0 <= at <= 3.1 for at in positions), positions)
+        self.assertNotIn("looping", self.told("loop-off")["flags"])
+        self.obeyed("replay", "pause")  # or it is over before the last command
+        for refused in ("seek 1000", "loop 3 2", "rate 1000"):
+            answer = self.remote("replay", refused)
+            self.assertEqual(answer.returncode, 1, refused)
+            self.assertIn(refused, answer.stderr)
+        self.obeyed("replay", "stop")
+        self.assertEqual(replay.wait(timeout=LIMIT_S), 0, replay.said())
+        self.assertEqual(self.remote("replay", "play").returncode, 1)
+
+    def test_a_loop_plays_its_stretch_again_and_again(self):
+        heard = self.folder / "heard.mcap"
+        recorder = self.verb("record", "--out", heard, "--topics", "load/0")
+        replay = self.replay("--paused", "--topics", "load/0", "--wait-for", "load/0")
+        self.obeyed("replay", "loop 4 5")
+        self.obeyed("replay", "play")
+        # 100 messages a second of this topic: a second time round after 200.
+        wait_for("three rounds", lambda: int(self.told("play")["count"]) > 300)
+        self.obeyed("replay", "stop")
+        replay.wait(timeout=LIMIT_S)
+        self.interrupted(recorder)
+        ticks = [int(row["tick"]) for row in self.rows(heard, "load/0")]
+        # Tick n is n/100 s behind the start: the stretch holds 400 to 500, both ends included.
+        self.assertEqual((min(ticks), max(ticks)), (400, 500))
+        self.assertGreaterEqual(ticks.count(450), 2)
+
+    def test_a_subset_goes_out_under_another_name(self):
+        heard = self.folder / "heard.mcap"
+        recorder = self.verb("record", "--out", heard, "--topics", "load/*", "--topics", "other/*")
+        replay = self.verb("replay", self.file, "--topics", "load/3", "--topics", "load/4",
+                           "--block", "load/4", "--remap", "load/3=other/three", "--rate", 10, "--wait-for",
+                           "other/three")
+        self.assertEqual(replay.wait(timeout=LIMIT_S), 0, replay.said())
+        self.interrupted(recorder)
+        self.assertEqual(self.messages(heard), {"other/three": self.RATE * self.LENGTH_S // 10})
+        ticks = [int(row["tick"]) for row in self.rows(heard, "other/three")]
+        self.assertEqual(ticks, list(range(len(ticks))))
+
+    def test_keys_of_a_terminal_control_it(self):
+        # What the replay says of itself ten times a second, as a recording that grows.
+        told = self.folder / "told.mcap"
+        self.verb("record", "--out", told, "--topics", "stillhand/replay_status", "--flush-ms", 20)
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        replay = self.verb("replay", self.file, "--paused", stdin=theirs)
+        os.close(theirs)
+
+        def state():
+            if "stillhand/replay_status" not in self.messages(told):
+                return None
+            newest = self.rows(told, "stillhand/replay_status")[-1]
+            return {name: float(newest[name]) for name in ("paused", "position_s", "rate", "looping", "released")}
+
+        def after(key, condition):
+            os.write(ours, key)
+            wait_for(f"effect of {key}", lambda: condition(state()))
+        wait_for("its status", lambda: told.exists() and state())
+        after(b"s", lambda now: now["released"] == 1)
+        after(b"+", lambda now: now["rate"] > 1)
+        after(b"-", lambda now: now["rate"] == 1)
+        after(b"\x1b[C", lambda now: 5.0 <= now["position_s"] < 5.1)
+        after(b"\x1b[D", lambda now: now["position_s"] < 0.1)
+        os.write(ours, b"a")
+        after(b"\x1b[C", lambda now: now["position_s"] >= 5.0)
+        after(b"b", lambda now: now["looping"] and now["position_s"] < 0.1)
+        after(b"c", lambda now: not now["looping"])
+        after(b" ", lambda now: not now["paused"] and now["position_s"] > 0.1)
+        os.write(ours, b"q")
+        self.assertEqual(replay.wait(timeout=LIMIT_S), 0, replay.said())
+
+
+if __name__ == "__main__":
+    missing = [str(path) for path in (LOAD, PUBLISH) if not path.is_file()]
+    if missing:
+        print("skipped, not built:", ", ".join(missing))
+        raise SystemExit(lab_process.CTEST_SKIPPED)
+    lab_process.main()
