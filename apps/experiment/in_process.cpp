@@ -2,6 +2,7 @@
 #include "experiment/in_process.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace stillhand::experiment {
 namespace {
@@ -33,9 +34,10 @@ double cancelled_share(const std::vector<double>& feedthrough_n,
   return 1.0 - std::sqrt(left / all);
 }
 
-InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every)
+InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every,
+                             rig::SealedEffect effect)
     : configs_(seeded(configs, seed)),
-      rig_(configs_.rig),
+      rig_(configs_.rig, std::move(effect)),
       conditioner_(configs_.sensing),
       motion_(configs_.motion),
       canceller_(configs_.cancellation),

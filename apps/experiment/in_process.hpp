@@ -50,13 +50,17 @@ class InProcessLoop {
  public:
   /// @param seed        session seed, used as the processes use theirs
   /// @param keep_every  ticks between two kept samples; 10 is the paper's recording rate
+  /// @param effect      what nothing but the rig is told of; nothing by default
   /// @throws ConfigError as the cores do.
-  InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every = 1);
+  InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every = 1,
+                rig::SealedEffect effect = {});
 
   /// Runs one trial from its first ramp to its last; start_tick is set by the loop.
   TrialSignals run(PlannedTrial planned);
   /// The model the canceller uses from now on.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
+  /// What the rig held, once the verdict on it is out: no trial runs after it.
+  [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
 
  private:
   void arm(const PlannedTrial& planned);

@@ -6,8 +6,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <iostream>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
 
 #include "contract/config_error.hpp"
 #include "experiment/conductor.hpp"
@@ -16,6 +19,8 @@
 #include "experiment/progress.hpp"
 #include "experiment/rehearsal.hpp"
 #include "experiment/results.hpp"
+#include "rig/sealed_file.hpp"
+#include "runtime/clock.hpp"
 #include "runtime/real_time.hpp"
 
 namespace stillhand::experiment {
@@ -85,7 +90,8 @@ void add_motion(std::vector<std::string>& arguments, const LabOptions& options) 
   }
 }
 
-std::vector<Launch> launches(const LabOptions& options) {
+/// @param sealed  what the rig reads of its undeclared effect; empty: it has none
+std::vector<Launch> launches(const LabOptions& options, const std::string& sealed) {
   std::vector<Launch> list;
   // The recorder first: it is there when the others begin.
   for (const std::string_view service : {"recorder", "rig", "sensing", "motion", "cancellation",
@@ -110,6 +116,10 @@ std::vector<Launch> launches(const LabOptions& options) {
     };
     if (options.real_time) add({"--real-time"});
     if (service == "recorder") add({"--out", (options.out / "session.mcap").string()});
+    if (service == "rig" && !sealed.empty()) {
+      add({"--undeclared-effect", "--out", options.out.string()});
+      launch.standard_input = sealed;
+    }
     if (service == "motion") add_motion(launch.arguments, options);
     if (service == "display" && options.headless) add({"--headless"});
     if (service == "display" && options.video) {
@@ -200,6 +210,31 @@ AskedMotions check(const LabOptions& options) {
   return rehearse(options.protocol, ride, options.config);
 }
 
+/// The rig's executable draws the effect anew and writes it down, once the results are there.
+void open_undeclared_effect(const LabOptions& options, const std::string& sealed) {
+  constexpr std::int64_t kLimit_ns = 60'000'000'000;
+  constexpr std::int64_t kPoll_ns = 20'000'000;
+  Launch launch;
+  launch.name = "rig";
+  launch.executable = options.programs / "stillhand-rig";
+  launch.log = options.out / "logs" / "experiment.log";
+  launch.standard_input = sealed;
+  launch.arguments = {"--open-undeclared-effect", "--config",  options.config.string(), "--out",
+                      options.out.string(),       "--verdict", "summary.json"};
+  Processes processes;
+  processes.start(launch);
+  const std::int64_t limit_ns = runtime::monotonic_ns() + kLimit_ns;
+  std::optional<Ended> ended;
+  while (!(ended = processes.reap())) {
+    if (runtime::monotonic_ns() > limit_ns) {
+      throw std::runtime_error("the undeclared effect could not be opened in time");
+    }
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kPoll_ns);
+  }
+  if (ended->exit_status != 0) throw std::runtime_error(describe(*ended));
+  std::printf("undeclared effect opened: %s\n", (options.out / rig::kSealedFile).string().c_str());
+}
+
 }  // namespace
 
 int run_lab(const LabOptions& options, runtime::Stop& stop) {
@@ -207,6 +242,9 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
   const DomainLock lock(options.domain, options.rig);
   check_port(options.domain);
   const OutputFolder folder(options.out, options.ride);
+  const std::string sealed = options.undeclared_effect == 0
+                                 ? ""
+                                 : rig::text_of({options.undeclared_effect, rig::new_nonce()});
 
   std::vector<TrialOutcome> outcomes;
   bool interrupted = false;
@@ -223,7 +261,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     runtime::Service service(service_options, stop);
     Processes processes;
     Session session(options, asked, service, processes);
-    for (const Launch& launch : launches(options)) processes.start(launch);
+    for (const Launch& launch : launches(options, sealed)) processes.start(launch);
     service.run([&] {
       session.run(outcomes);
       session.end();
@@ -240,7 +278,9 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     return 1;
   }
   const runtime::OrdinaryWhile ordinary;
-  return report_session(options, outcomes, interrupted);
+  const int status = report_session(options, outcomes, interrupted);
+  if (!sealed.empty()) open_undeclared_effect(options, sealed);
+  return status;
 }
 
 }  // namespace stillhand::experiment

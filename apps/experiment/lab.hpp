@@ -26,7 +26,8 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
-  double match_s = 20.0;  ///< [s] patience until every endpoint has matched
+  std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
+  double match_s = 20.0;                ///< [s] patience until every endpoint has matched
 };
 
 /// Runs a whole session on this machine: starts every process, identifies, runs the trials over

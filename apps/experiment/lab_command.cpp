@@ -93,6 +93,10 @@ void add_lab_command(CLI::App& cli, int& status) {
                   "road for --motion road: A (very good) to H, by ISO 8608 [B]");
   lab->add_option("--speed-m-s", words->road_speed_m_s,
                   "speed of the vehicle on it [m/s], 0.5 to 70 [20]");
+  lab->add_option("--undeclared-effect", options->undeclared_effect,
+                  "seed of an effect that only the rig knows of, sealed until the results are "
+                  "written; 0: none")
+      ->check(check_seed);
   lab->add_option("--domain", options->domain, "DDS domain, 0 to 232")->capture_default_str();
   lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
   lab->add_option("--match-seconds", options->match_s,

@@ -16,7 +16,9 @@ namespace stillhand::experiment {
 namespace {
 
 // Everything that a session writes, logs aside.
-constexpr const char* kResults[]{"session.mcap", "summary.json", "model.json", "screen.avi"};
+constexpr const char* kResults[]{
+    "session.mcap", "summary.json",           "model.json",
+    "screen.avi",   "undeclared_effect.json", "undeclared_effect.sha256"};
 
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;

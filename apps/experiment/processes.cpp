@@ -4,9 +4,11 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -34,9 +36,9 @@ std::string last_line(const std::filesystem::path& log) {
 
 class SpawnSettings {
  public:
-  explicit SpawnSettings(const std::filesystem::path& log) {
+  SpawnSettings(const std::filesystem::path& log, int standard_input) {
     posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions_, standard_input, STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log.c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0644);
     posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
@@ -57,6 +59,35 @@ class SpawnSettings {
 
   posix_spawn_file_actions_t actions_;
   posix_spawnattr_t attributes_;
+};
+
+/// A pipe that gives a text and then ends: unlike arguments and environment it shows in no listing
+/// of processes, and once read it is nowhere.
+class TextToRead {
+ public:
+  explicit TextToRead(const std::string& text) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+      throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
+    }
+    end_ = ends[0];
+    // A few words always fit: a pipe takes PIPE_BUF bytes, 512 at least, without a reader.
+    const auto size = static_cast<ssize_t>(text.size());
+    const bool written = size <= PIPE_BUF && write(ends[1], text.data(), text.size()) == size;
+    close(ends[1]);
+    if (!written) {
+      close(end_);
+      throw std::runtime_error("cannot write to a pipe");
+    }
+  }
+  ~TextToRead() { close(end_); }
+  TextToRead(const TextToRead&) = delete;
+  TextToRead& operator=(const TextToRead&) = delete;
+
+  [[nodiscard]] int end() const { return end_; }
+
+ private:
+  int end_;
 };
 
 }  // namespace
@@ -85,7 +116,8 @@ void Processes::start(const Launch& launch) {
   argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const SpawnSettings settings(launch.log);
+  const TextToRead input(launch.standard_input);
+  const SpawnSettings settings(launch.log, input.end());
   pid_t pid = 0;
   const int error = posix_spawn(&pid, launch.executable.c_str(), &settings.actions_,
                                 &settings.attributes_, argv.data(), environ);
@@ -93,6 +125,7 @@ void Processes::start(const Launch& launch) {
     throw std::system_error(error, std::generic_category(), "cannot start " + launch.name);
   }
   children_.push_back({launch, pid});
+  children_.back().launch.standard_input.clear();
 }
 
 Ended Processes::ended(const Child& child, int wait_status) const {

@@ -16,6 +16,7 @@ struct Launch {
   std::filesystem::path executable;
   std::vector<std::string> arguments;  ///< without the program's name
   std::filesystem::path log;           ///< standard output and error go here
+  std::string standard_input;          ///< what it reads there, a few words at most; then it ends
 };
 
 /// How a process ended.

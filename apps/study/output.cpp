@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "report/draw.hpp"
+#include "rig/sealed_file.hpp"
 #include "study/figures.hpp"
 #include "study/study_report.hpp"
 
@@ -14,9 +15,9 @@ namespace {
 
 // Every file that any study writes.
 std::vector<std::string> every_name() {
-  std::vector<std::string> names{"report.html",  "summary.json", "metrics.csv",
-                                 "subjects.csv", "models.csv",   "moving_averages.csv",
-                                 "open_loop.csv"};
+  std::vector<std::string> names{"report.html",   "summary.json",   "metrics.csv",
+                                 "subjects.csv",  "models.csv",     "moving_averages.csv",
+                                 "open_loop.csv", rig::kSealedFile, rig::kCommitmentFile};
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
@@ -30,6 +31,10 @@ void write_study(const StudyRecord& record, report::StagedFolder& folder) {
   const auto drawings = report::render(study_figures(record), folder.path());
   study_report(record, drawings).write(folder.path() / "report.html");
   folder.write("summary.json", summary_json(record));
+  if (!record.sealed.empty()) {
+    folder.write(rig::kCommitmentFile, rig::digest_line(record.sealed, rig::kSealedFile));
+    folder.write(rig::kSealedFile, record.sealed);
+  }
   folder.publish(every_name());
 }
 

@@ -13,6 +13,7 @@ namespace stillhand::study {
 struct StudyRecord {
   StudyOptions options;
   std::string command_line;
+  std::string sealed;  ///< undeclared_effect.json; empty: there is no effect
   std::vector<SubjectResult> results;
   Analysis analysis;
   double wall_s = 0.0;

@@ -13,6 +13,7 @@
 #include "contract/config_error.hpp"
 #include "experiment/progress.hpp"
 #include "report/draw.hpp"
+#include "rig/sealed_file.hpp"
 #include "runtime/stop.hpp"
 #include "settings/load.hpp"
 #include "study/output.hpp"
@@ -41,6 +42,10 @@ int run(StudyRecord& record, const Words& words) {
   runtime::Stop stop;
   report::StagedFolder folder(words.out);
   report::require_gnuplot();
+  if (record.options.undeclared_effect != 0) {
+    record.sealed = rig::sealed_text(sealed_effect(record.options).open(), rig::new_nonce());
+    std::printf("undeclared effect sealed, sha256 %s\n", rig::sha256(record.sealed).c_str());
+  }
   experiment::ProgressLine progress;
   const auto start = std::chrono::steady_clock::now();
   record.results = run_study(record.options, [&](std::int64_t done, std::int64_t all) {
@@ -103,6 +108,10 @@ void add_study_command(CLI::App& cli, int& status) {
                    "condition E: damping added to the stick [N s/m]")
       ->check(CLI::Range(0.0, 49.0))
       ->capture_default_str();
+  study
+      ->add_option("--undeclared-effect", options.undeclared_effect,
+                   "seed of an effect that only the rigs know of, opened with the results; 0: none")
+      ->check(experiment::check_seed);
   study->add_option("--threads", options.threads, "0: one a core; the result is the same")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();

@@ -135,6 +135,12 @@ bool is_calibrated(const StudyOptions& options) {
          options.protocol.trial_s == 180.0 && options.protocol.identify_s == 120.0;
 }
 
+rig::SealedEffect sealed_effect(const StudyOptions& options) {
+  rig::RigConfig rig;
+  rig.body = mean_subject(options.population).body;
+  return {options.undeclared_effect, rig};
+}
+
 void check_subject(const StudyOptions& options, std::int64_t index) {
   const Subject subject = draw_subject(options.population, options.seed, index);
   try {
@@ -154,7 +160,8 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   result.subject = draw_subject(options.population, options.seed, index);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const std::uint64_t seed = subject_seed(options.seed, index);
-  experiment::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery);
+  experiment::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery,
+                                 sealed_effect(options));
   for (const PlannedTrial& planned : trials) {
     if (planned.trial.phase == TrialPhase::kPegged) {
       result.identification = identified(loop.run(planned).pegged);
@@ -164,7 +171,7 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
     result.order += planned.label;
     if (own_rig(planned.label)) {
       experiment::InProcessLoop other(configs_of(options, result.subject, planned.label), seed,
-                                      kKeepEvery);
+                                      kKeepEvery, sealed_effect(options));
       result.trials[planned.label] = evaluated(other.run(planned), planned);
     } else {
       result.trials[planned.label] = evaluated(loop.run(planned), planned);
@@ -176,7 +183,8 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
 TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
                             std::int64_t index, const signal::DifferenceModel& control_model) {
   experiment::InProcessLoop loop(configs_of(options, result.subject, 'C'),
-                                 subject_seed(options.seed, index), kKeepEvery);
+                                 subject_seed(options.seed, index), kKeepEvery,
+                                 sealed_effect(options));
   use(loop, control_model);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const auto planned = std::find_if(trials.begin(), trials.end(),

@@ -26,6 +26,7 @@ struct StudyOptions {
   double arm_rest_stiffness_n_m = 500.0;  ///< condition F
   double arm_rest_damping_n_s_m = 30.0;   ///< condition F
   bool wrong_models = false;              ///< C again with other people's models
+  std::uint64_t undeclared_effect = 0;    ///< seed of what only the rigs are told of; 0: nothing
   unsigned threads = 0;                   ///< 0: one a core
 };
 
@@ -59,6 +60,10 @@ struct SubjectResult {
   std::string order;                    ///< in which the conditions were run
   std::map<char, TrackedTrial> wrong;  ///< 'O' another subject's model, 'M' the mean of all others'
 };
+
+/// The undeclared effect of this study's rigs: the same for every subject, sized against the mean
+/// one.
+rig::SealedEffect sealed_effect(const StudyOptions& options);
 
 /// Draws subject `index` and makes a rig of it for every condition, as a check.
 /// @throws ConfigError "population" with the subject's number and what is out of range.

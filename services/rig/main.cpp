@@ -1,10 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <string_view>
+
+#include "contract/config_error.hpp"
+#include "rig/sealed_file.hpp"
 #include "rig/shell.hpp"
+#include "settings/load.hpp"
+
+namespace {
+
+using namespace stillhand;
+
+std::string text_for(const rig::SealedSeed& sealed, const rig::RigConfig& config) {
+  return rig::sealed_text(rig::SealedEffect(sealed.seed, config).open(), sealed.nonce);
+}
+
+/// The effect of a session that is over, drawn anew and written down: no bus, no session.
+int open_effect(int argc, char** argv) {
+  CLI::App cli("stillhand-rig: writes the undeclared effect of a session that is over");
+  bool open = false;
+  std::filesystem::path config;
+  std::filesystem::path out;
+  std::string verdict;
+  cli.add_flag("--open-undeclared-effect", open, "the seed comes on standard input")->required();
+  cli.add_option("--config", config, "folder with the settings of each service")->required();
+  cli.add_option("--out", out, "folder of the session")->required();
+  cli.add_option("--verdict", verdict, "file of that folder that was written without the truth");
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    const auto sealed = rig::read_sealed_seed(std::cin);
+    const auto settings = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
+    rig::open_effect(out, text_for(sealed, settings), verdict);
+    return 0;
+  } catch (const ConfigError& error) {
+    std::cerr << "stillhand-rig: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand-rig: " << error.what() << '\n';
+    return 1;
+  }
+}
+
+/// Reads the seed, writes the commitment, and keeps the effect from everybody.
+rig::SealedEffect sealed_effect(const runtime::Service& service) {
+  const auto sealed = rig::read_sealed_seed(std::cin);
+  const auto config = service.config<rig::RigConfig>();
+  rig::commit_effect(service.options().out, text_for(sealed, config));
+  return {sealed.seed, config};
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  return stillhand::runtime::run_service("rig", argc, argv,
-                                         [](stillhand::runtime::Service& service) {
-                                           stillhand::rig::Shell shell(service);
-                                           shell.run();
-                                         });
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) == "--open-undeclared-effect") return open_effect(argc, argv);
+  }
+  bool holds_effect = false;
+  return runtime::run_service(
+      "rig", argc, argv,
+      [&](runtime::Service& service) {
+        rig::Shell shell(service, holds_effect ? sealed_effect(service) : rig::SealedEffect());
+        shell.run();
+      },
+      [&](CLI::App& cli, runtime::ServiceOptions&) {
+        cli.add_flag("--undeclared-effect", holds_effect,
+                     "holds an effect that nothing else is told of; its seed comes on standard "
+                     "input, its digest goes to --out");
+      });
 }

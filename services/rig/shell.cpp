@@ -2,6 +2,7 @@
 #include "rig/shell.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace stillhand::rig {
 namespace {
@@ -19,9 +20,9 @@ RigConfig seeded(RigConfig config, std::uint64_t seed) {
 
 }  // namespace
 
-Shell::Shell(runtime::Service& service)
+Shell::Shell(runtime::Service& service, SealedEffect effect)
     : service_(service),
-      core_(seeded(service.config<RigConfig>(), service.options().seed)),
+      core_(seeded(service.config<RigConfig>(), service.options().seed), std::move(effect)),
       raw_(service.bus().publisher<stillhand_msgs::RawSample>(topics::kRawSample)),
       truth_(service.bus().publisher<stillhand_msgs::RigTruth>(topics::kRigTruth)) {
   for (auto& command : commands_) command.tick(-1);

@@ -18,7 +18,8 @@ namespace stillhand::rig {
 /// that everybody else answers to, so it alone runs a loop of its own.
 class Shell {
  public:
-  explicit Shell(runtime::Service& service);
+  /// @param effect  what nothing but this rig is told of; empty: nothing
+  Shell(runtime::Service& service, SealedEffect effect);
   void run();
 
  private:

@@ -27,21 +27,61 @@ double grip_force(const ChainParameters& p, double stretch_m, double stretch_m_s
   return p.grip_stiffness_n_m * stretch_m + p.grip_damping_n_s_m * stretch_m_s;
 }
 
+ChainPlace place(const HeldChain::State& x) noexcept {
+  return {x[kTrunk], x[kTrunkRate], x[kArm], x[kArmRate], 0.0, 0.0};
+}
+ChainPlace place(const FreeChain::State& x) noexcept {
+  return {x[kTrunk], x[kTrunkRate], x[kArm], x[kArmRate], x[kStick], x[kStickRate]};
+}
+
+/// Adds `share` of the forces; `on_stick` is G of the stick's mass, null with the stick held.
+template <std::size_t N>
+void add_forces(std::array<double, N>& x, const ForceColumns<N>& columns,
+                const std::array<double, N>* on_stick, const ChainForces& f,
+                double share) noexcept {
+  for (std::size_t i = 0; i < N; ++i) {
+    double sum = columns.trunk[i] * f.trunk_n + columns.arm[i] * f.arm_n;
+    if (on_stick != nullptr) sum += (*on_stick)[i] * (f.hand_n + f.stick_n);
+    x[i] += share * sum;
+  }
+}
+
+/// Eq. RG-13: adds to `ahead` what the effect's forces do over the tick, as their mean of both
+/// ends.
+template <std::size_t N>
+void apply(EffectOnChain& effect, const std::array<double, N>& from, std::array<double, N>& ahead,
+           const ForceColumns<N>& columns, const std::array<double, N>* on_stick,
+           const ChainParameters& p, double mean_acceleration_m_s2) noexcept {
+  if (!effect.acts()) return;
+  const ChainForces first = effect.forces(place(from), p);
+  effect.age();
+  add_forces(ahead, columns, on_stick, first, 1.0);
+  effect.move(place(from), place(ahead), mean_acceleration_m_s2);
+  const ChainForces last = effect.forces(place(ahead), p);
+  add_forces(ahead, columns, on_stick, first, -0.5);
+  add_forces(ahead, columns, on_stick, last, 0.5);
+}
+
 }  // namespace
 
 Body::Muscles Body::muscles(const BodyConfig& body, const StickConfig& stick, bool relaxed,
                             double period_s) {
   const auto parameters = chain_parameters(body, stick, relaxed);
-  return {parameters, free_chain(parameters, period_s), held_chain(parameters, period_s)};
+  return {parameters, free_chain(parameters, period_s), held_chain(parameters, period_s),
+          free_force_columns(parameters, period_s), held_force_columns(parameters, period_s)};
 }
 
-Body::Body(const BodyConfig& body, const StickConfig& stick, double period_s)
+Body::Body(const BodyConfig& body, const StickConfig& stick, double period_s,
+           const ChainEffect& effect)
     : stick_(checked(body, stick)),
       period_s_(period_s),
       stop_m_(stick.stop_angle_rad * stick.lever_m),
       seating_keep_(std::exp(-period_s / stick.peg_seat_time_s)),
+      friction_n_(stick.coulomb_friction_n + effect.friction_n),
       relaxed_(muscles(body, stick, true, period_s)),
-      tense_(muscles(body, stick, false, period_s)) {}
+      tense_(muscles(body, stick, false, period_s)),
+      effect_(effect, period_s),
+      copy_effect_(effect, period_s) {}
 
 double Body::seating_velocity() const noexcept {
   const double tau_s = stick_.peg_seat_time_s;
@@ -69,8 +109,10 @@ void Body::end_at_steel() noexcept {
 }
 
 double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexcept {
-  const double applied_n = input.motor_force_n + input.volitional_force_n;
+  const double applied_n = input.motor_force_n + input.volitional_force_n + input.shaken_n;
   auto ahead = chain.free.step(x_, last_acceleration_m_s2_, input.acceleration_m_s2, applied_n);
+  apply(effect_, x_, ahead, chain.free_forces, &chain.free.from_force, chain.parameters,
+        0.5 * (last_acceleration_m_s2_ + input.acceleration_m_s2));
 
   const double stop_n = stop_force(ahead, chain.free);
   if (stop_n != 0.0) {
@@ -83,27 +125,42 @@ double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexce
   if (input.pegged) {
     brake_n = (seating_velocity() - ahead[kStickRate]) / chain.free.from_force[kStickRate];
   } else {
-    brake_n = std::clamp(-ahead[kStickRate] / chain.free.from_force[kStickRate],
-                         -stick_.coulomb_friction_n, stick_.coulomb_friction_n);
+    brake_n = std::clamp(-ahead[kStickRate] / chain.free.from_force[kStickRate], -friction_n_,
+                         friction_n_);
   }
   add_force(ahead, chain.free, brake_n);
   x_ = ahead;
   end_at_steel();
 
   const auto& p = chain.parameters;
+  const ChainForces effect = effect_.forces(place(x_), p);
   const double below_n = input.motor_force_n + stop_n + brake_n -
                          p.viscous_damping_n_s_m * x_[kStickRate] -
-                         p.centring_stiffness_n_m * x_[kStick];
+                         p.centring_stiffness_n_m * x_[kStick] + effect.stick_n;
   const double above_n = grip_force(p, x_[kArm] - x_[kStick], x_[kArmRate] - x_[kStickRate]) +
-                         input.volitional_force_n - p.cell_mass_kg * input.acceleration_m_s2;
+                         input.volitional_force_n - p.cell_mass_kg * input.acceleration_m_s2 +
+                         effect.hand_n + input.shaken_n;
   const double above_share = p.cell_mass_kg / p.stick_mass_kg;
   return (1.0 - above_share) * above_n - above_share * below_n;
 }
 
+HeldChain::State Body::held_ahead(const HeldChain::State& from, double acceleration_m_s2,
+                                  const Muscles& chain, EffectOnChain& effect) noexcept {
+  auto ahead = chain.held.step(from, last_acceleration_m_s2_, acceleration_m_s2, 0.0);
+  apply<4>(effect, from, ahead, chain.held_forces, nullptr, chain.parameters,
+           0.5 * (last_acceleration_m_s2_ + acceleration_m_s2));
+  return ahead;
+}
+
+double Body::held_force(const HeldChain::State& x, const Input& input, const ChainParameters& p,
+                        const EffectOnChain& effect) {
+  return grip_force(p, x[kArm], x[kArmRate]) - p.cell_mass_kg * input.acceleration_m_s2 +
+         effect.forces(place(x), p).hand_n + input.shaken_n;
+}
+
 void Body::stay(const Input& input, const Muscles& chain) noexcept {
-  const HeldChain::State ahead =
-      chain.held.step({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]}, last_acceleration_m_s2_,
-                      input.acceleration_m_s2, 0.0);
+  const HeldChain::State ahead = held_ahead({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]},
+                                            input.acceleration_m_s2, chain, effect_);
   x_ = {ahead[kTrunk], ahead[kTrunkRate], ahead[kArm], ahead[kArmRate], 0.0, 0.0};
 }
 
@@ -116,13 +173,12 @@ Body::Output Body::step(const Input& input) noexcept {
       input.pegged &&
       (seated_ || (std::abs(x_[kStick]) < kSeated_m && std::abs(x_[kStickRate]) < kSeated_m_s));
 
-  copy_ = chain.held.step(copy_, last_acceleration_m_s2_, input.acceleration_m_s2, 0.0);
-  const double held_n =
-      grip_force(p, copy_[kArm], copy_[kArmRate]) - p.cell_mass_kg * input.acceleration_m_s2;
+  copy_ = held_ahead(copy_, input.acceleration_m_s2, chain, copy_effect_);
+  const double held_n = held_force(copy_, input, p, copy_effect_);
   double hand_n = 0.0;
   if (seated_) {
     stay(input, chain);
-    hand_n = grip_force(p, x_[kArm], x_[kArmRate]) - p.cell_mass_kg * input.acceleration_m_s2 +
+    hand_n = held_force({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]}, input, p, effect_) +
              input.volitional_force_n;
   } else {
     hand_n = move(input, chain, flags);

@@ -5,6 +5,7 @@
 #include "contract/tick.hpp"
 #include "rig/core/body_config.hpp"
 #include "rig/core/chain.hpp"
+#include "rig/core/chain_effect.hpp"
 
 namespace stillhand::rig {
 
@@ -19,6 +20,7 @@ class Body {
     double motor_force_n;       ///< at the hand, held over the tick that ends here
     double volitional_force_n;  ///< same
     bool pegged;                ///< also: the hand is idle, muscles relaxed
+    double shaken_n = 0.0;      ///< on the hand, neither by the chain nor willed, Eq. RG-12; held
   };
   struct Output {
     double theta_rad;            ///< stick angle
@@ -29,8 +31,10 @@ class Body {
   };
 
   /// @param period_s  length of a tick [s]; other than 1 ms only to study the discretisation
+  /// @param effect    what the chain lacks, Eq. RG-13; nothing by default
   /// @throws stillhand::ConfigError when a field is outside its range.
-  Body(const BodyConfig& body, const StickConfig& stick, double period_s = kControlPeriod_s);
+  Body(const BodyConfig& body, const StickConfig& stick, double period_s = kControlPeriod_s,
+       const ChainEffect& effect = {});
 
   Output step(const Input& input) noexcept;
 
@@ -43,12 +47,20 @@ class Body {
     ChainParameters parameters;
     FreeChain free;
     HeldChain held;
+    ForceColumns<6> free_forces;
+    ForceColumns<4> held_forces;
   };
   static Muscles muscles(const BodyConfig& body, const StickConfig& stick, bool relaxed,
                          double period_s);
 
   double move(const Input& input, const Muscles& chain, Flags& flags) noexcept;
   void stay(const Input& input, const Muscles& chain) noexcept;
+  /// A tick of the chain with the stick held at 0, effect included.
+  [[nodiscard]] HeldChain::State held_ahead(const HeldChain::State& from, double acceleration_m_s2,
+                                            const Muscles& chain, EffectOnChain& effect) noexcept;
+  /// Load-cell force of a held stick with the chain at `x`, Eq. RG-5.
+  [[nodiscard]] static double held_force(const HeldChain::State& x, const Input& input,
+                                         const ChainParameters& p, const EffectOnChain& effect);
   /// Velocity at the end of the tick on the critically damped way to the centre.
   [[nodiscard]] double seating_velocity() const noexcept;
   /// Force of the rubber on a stick that would be at `ahead` without it, Eq. RG-4.
@@ -60,10 +72,13 @@ class Body {
   double period_s_;
   double stop_m_;        ///< where the rubber begins, at the hand
   double seating_keep_;  ///< exp(-dt / peg_seat_time)
+  double friction_n_;    ///< F_c and what the effect adds
   Muscles relaxed_;
   Muscles tense_;
-  FreeChain::State x_{};     ///< trunk, arm, stick
-  HeldChain::State copy_{};  ///< trunk and arm, had the stick been held at 0 all the time
+  EffectOnChain effect_;       ///< on x_
+  EffectOnChain copy_effect_;  ///< on copy_
+  FreeChain::State x_{};       ///< trunk, arm, stick
+  HeldChain::State copy_{};    ///< trunk and arm, had the stick been held at 0 all the time
   double last_acceleration_m_s2_ = 0.0;
   bool pegged_ = false;
   bool seated_ = false;  ///< the peg holds the stick at exactly 0

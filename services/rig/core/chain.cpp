@@ -76,6 +76,17 @@ LinearStep<N> discretised(const Continuous& system, double period_s) {
   return step;
 }
 
+template <std::size_t N>
+ForceColumns<N> force_columns(const ChainParameters& parameters, double period_s) {
+  Continuous system = continuous(parameters);
+  ForceColumns<N> columns;
+  system.g_column = Column::Unit(kTrunkRate) / parameters.trunk_mass_kg;
+  columns.trunk = discretised<N>(system, period_s).from_force;
+  system.g_column = Column::Unit(kArmRate) / parameters.arm_mass_kg;
+  columns.arm = discretised<N>(system, period_s).from_force;
+  return columns;
+}
+
 }  // namespace
 
 ChainParameters chain_parameters(const BodyConfig& body, const StickConfig& stick, bool relaxed) {
@@ -104,6 +115,14 @@ HeldChain held_chain(const ChainParameters& parameters, double period_s) {
 
 FreeChain free_chain(const ChainParameters& parameters, double period_s) {
   return discretised<6>(continuous(parameters), period_s);
+}
+
+ForceColumns<4> held_force_columns(const ChainParameters& parameters, double period_s) {
+  return force_columns<4>(parameters, period_s);
+}
+
+ForceColumns<6> free_force_columns(const ChainParameters& parameters, double period_s) {
+  return force_columns<6>(parameters, period_s);
 }
 
 }  // namespace stillhand::rig

@@ -59,4 +59,14 @@ enum ChainIndex : std::size_t { kTrunk = 0, kTrunkRate, kArm, kArmRate, kStick, 
 HeldChain held_chain(const ChainParameters& parameters, double period_s);
 FreeChain free_chain(const ChainParameters& parameters, double period_s);
 
+/// What a force of 1 N on a mass, constant over a tick, adds to the state at its end: G of Eq.
+/// RG-10 for the other masses.
+template <std::size_t N>
+struct ForceColumns {
+  std::array<double, N> trunk{};
+  std::array<double, N> arm{};
+};
+ForceColumns<4> held_force_columns(const ChainParameters& parameters, double period_s);
+ForceColumns<6> free_force_columns(const ChainParameters& parameters, double period_s);
+
 }  // namespace stillhand::rig

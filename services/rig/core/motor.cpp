@@ -21,23 +21,25 @@ Motor::Motor(const MotorConfig& config, double lever_m)
                        config.capstan_ratio / lever_m),
       lag_blend_(1.0 - std::exp(-kControlPeriod_s / config.lag_s)) {}
 
+bool Motor::usable(const MotorDemand& demand) const noexcept {
+  return demand.permitted && demand.valid && fresh(demand) && std::isfinite(demand.force_n);
+}
+
 Motor::Output Motor::step(const MotorDemand& demand) noexcept {
   Flags flags = kGood;
   if (!demand.permitted) flags |= kInhibited;
-  const bool fresh = demand.age_ticks >= 0 && demand.age_ticks <= max_age_ticks_;
-  const bool finite = std::isfinite(demand.force_n);
-  if (demand.valid && !fresh) flags |= kInputStale;
-  if (demand.valid && !finite) flags |= kInputInvalid;
-  const bool usable = demand.permitted && demand.valid && fresh && finite;
+  if (demand.valid && !fresh(demand)) flags |= kInputStale;
+  if (demand.valid && !std::isfinite(demand.force_n)) flags |= kInputInvalid;
+  const bool counts = usable(demand);
 
-  if (usable) {
+  if (counts) {
     const double target_n = std::clamp(demand.force_n, -current_limit_n_, current_limit_n_);
     if (target_n != demand.force_n) flags |= kSaturated;
     lagged_n_ += lag_blend_ * (target_n - lagged_n_);
   }
-  const auto out = envelope_.step(lagged_n_, usable);
+  const auto out = envelope_.step(lagged_n_, counts);
   // After a gap the lag starts from the force that acts, not from the one before the gap.
-  if (!usable) lagged_n_ = out.force_n;
+  if (!counts) lagged_n_ = out.force_n;
   return {out.force_n, flags | out.flags};
 }
 

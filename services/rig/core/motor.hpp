@@ -59,8 +59,14 @@ class Motor {
   Motor(const MotorConfig& config, double lever_m);
 
   Output step(const MotorDemand& demand) noexcept;
+  /// True when the demand counts: there, permitted, fresh and finite.
+  [[nodiscard]] bool usable(const MotorDemand& demand) const noexcept;
 
  private:
+  [[nodiscard]] bool fresh(const MotorDemand& demand) const noexcept {
+    return demand.age_ticks >= 0 && demand.age_ticks <= max_age_ticks_;
+  }
+
   signal::ForceEnvelope envelope_;
   std::int64_t max_age_ticks_;
   double current_limit_n_;  ///< force at the hand at the current limit

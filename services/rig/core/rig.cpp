@@ -2,6 +2,10 @@
 #include "rig/core/rig.hpp"
 
 #include <cmath>
+#include <utility>
+
+#include "contract/expects.hpp"
+#include "rig/core/undeclared_effect.hpp"
 
 namespace stillhand::rig {
 namespace {
@@ -18,13 +22,38 @@ signal::ForceLimits volitional_limits(const RigConfig& config) {
 
 }  // namespace
 
-Rig::Rig(const RigConfig& config)
-    : max_operator_age_ticks_(checked(config).max_operator_age_ticks),
+Rig::Rig(const RigConfig& config, SealedEffect sealed)
+    : sealed_(std::move(sealed)),
+      max_operator_age_ticks_(checked(config).max_operator_age_ticks),
       platform_(config.platform),
       motor_(config.motor, config.stick.lever_m),
       operator_envelope_(volitional_limits(config)),
-      body_(config.body, config.stick),
+      body_(config.body, config.stick, kControlPeriod_s, chain_effect()),
       sensors_(config.sensors, static_cast<std::uint64_t>(config.seed)) {}
+
+Rig::~Rig() = default;
+Rig::Rig(Rig&&) noexcept = default;
+Rig& Rig::operator=(Rig&&) noexcept = default;
+
+const ChainEffect& Rig::chain_effect() const noexcept {
+  static constexpr ChainEffect kNothing;
+  return sealed_.effect_ ? sealed_.effect_->on_chain() : kNothing;
+}
+
+OpenedEffect Rig::open_effect() {
+  STILLHAND_EXPECTS(!opened_);
+  opened_ = true;
+  return std::move(sealed_).open();
+}
+
+Motor::Output Rig::motor(const RigInput& input) noexcept {
+  MotorDemand demand{input.motor_valid, input.motor_age_ticks, input.motor_force_n,
+                     input.motor_permitted};
+  if (sealed_.effect_) {
+    demand.force_n = sealed_.effect_->motor_force(demand.force_n, motor_.usable(demand));
+  }
+  return motor_.step(demand);
+}
 
 signal::ForceEnvelope::Output Rig::volitional(const RigInput& input) noexcept {
   Flags flags = kGood;
@@ -38,20 +67,35 @@ signal::ForceEnvelope::Output Rig::volitional(const RigInput& input) noexcept {
 }
 
 RigOutput Rig::step(const RigInput& input) noexcept {
+  STILLHAND_EXPECTS(!opened_);
   const auto platform =
       platform_.step({input.command_valid, input.command_position_m, input.command_velocity_m_s,
                       input.command_acceleration_m_s2});
-  const auto motor = motor_.step(
-      {input.motor_valid, input.motor_age_ticks, input.motor_force_n, input.motor_permitted});
+  const auto driven = motor(input);
   const auto person = volitional(input);
+  UndeclaredEffect* const effect = sealed_.effect_.get();
+  UndeclaredEffect::Shaken shaken{};
+  double accel_y_m_s2 = platform.state.acceleration_m_s2;
+  double accel_z_m_s2 = kGravity_m_s2;
+  if (effect != nullptr) {
+    shaken = effect->step(platform.state);
+    // Eq. RG-23: what masses and accelerometers feel along the rolled axes.
+    const double sine = std::sin(shaken.roll_rad);
+    const double cosine = std::cos(shaken.roll_rad);
+    const double along_m_s2 = accel_y_m_s2;
+    accel_y_m_s2 = along_m_s2 * cosine - kGravity_m_s2 * sine;
+    accel_z_m_s2 = along_m_s2 * sine + kGravity_m_s2 * cosine;
+  }
   const auto body =
-      body_.step({platform.state.acceleration_m_s2, motor.force_n, person.force_n, input.pegged});
-  const auto sensed = sensors_.step({.accel_x_m_s2 = 0.0,
-                                     .accel_y_m_s2 = platform.state.acceleration_m_s2,
-                                     .accel_z_m_s2 = kGravity_m_s2,
-                                     .force_n = body.hand_force_n,
+      body_.step({accel_y_m_s2, driven.force_n, person.force_n, input.pegged, shaken.hand_n});
+  const double cell_n =
+      effect != nullptr ? effect->cell_force(body.hand_force_n) : body.hand_force_n;
+  const auto sensed = sensors_.step({.accel_x_m_s2 = shaken.accel_x_m_s2,
+                                     .accel_y_m_s2 = accel_y_m_s2,
+                                     .accel_z_m_s2 = accel_z_m_s2,
+                                     .force_n = cell_n,
                                      .theta_rad = body.theta_rad,
-                                     .roll_rad = 0.0});
+                                     .roll_rad = shaken.roll_rad});
   return {.raw = sensed.raw,
           .truth = {.platform_position_m = platform.state.position_m,
                     .platform_velocity_m_s = platform.state.velocity_m_s,
@@ -59,10 +103,10 @@ RigOutput Rig::step(const RigInput& input) noexcept {
                     .theta_rad = body.theta_rad,
                     .omega_rad_s = body.omega_rad_s,
                     .feedthrough_force_n = body.feedthrough_force_n,
-                    .motor_force_n = motor.force_n,
+                    .motor_force_n = driven.force_n,
                     .volitional_force_n = person.force_n,
                     .hand_force_n = body.hand_force_n},
-          .flags = platform.flags | motor.flags | person.flags | body.flags | sensed.flags};
+          .flags = platform.flags | driven.flags | person.flags | body.flags | sensed.flags};
 }
 
 }  // namespace stillhand::rig

@@ -9,6 +9,7 @@
 #include "rig/core/body.hpp"
 #include "rig/core/motor.hpp"
 #include "rig/core/platform.hpp"
+#include "rig/core/sealed_effect.hpp"
 #include "rig/core/sensors.hpp"
 #include "signal/force_envelope.hpp"
 
@@ -83,13 +84,25 @@ struct RigOutput {
 class Rig {
  public:
   /// @throws stillhand::ConfigError naming the first field that is out of range.
-  explicit Rig(const RigConfig& config);
+  /// @param sealed  what nothing but this rig is told of; nothing by default
+  explicit Rig(const RigConfig& config, SealedEffect sealed = {});
+  ~Rig();
+  Rig(Rig&&) noexcept;
+  Rig& operator=(Rig&&) noexcept;
 
   RigOutput step(const RigInput& input) noexcept;
 
+  /// Opens the sealed effect, once and for all: a step after it, or another opening, is a bug of
+  /// the caller and aborts.
+  [[nodiscard]] OpenedEffect open_effect();
+
  private:
   signal::ForceEnvelope::Output volitional(const RigInput& input) noexcept;
+  Motor::Output motor(const RigInput& input) noexcept;
+  [[nodiscard]] const ChainEffect& chain_effect() const noexcept;
 
+  SealedEffect sealed_;
+  bool opened_ = false;
   std::int64_t max_operator_age_ticks_;
   Platform platform_;
   Motor motor_;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "rig/core/sensor_noise.hpp"
+#include "signal/butterworth.hpp"
+
+namespace stillhand::rig {
+
+/// Seeded normal noise between two frequencies (Butterworth, order 4 at each edge, Eq. SG-4) at 1
+/// kHz, of a given RMS in the long run: y = R h * n / |h|, n white of unit variance.
+/// Never allocates or throws after construction.
+class BandNoise {
+ public:
+  struct Band {
+    double low_hz;
+    double high_hz;
+    double rms;  ///< unit of the output
+  };
+  BandNoise(std::uint64_t seed, std::uint64_t stream, const Band& band);
+
+  double step() noexcept { return gain_ * low_pass_.step(high_pass_.step(noise_())); }
+
+ private:
+  SensorNoise noise_;
+  signal::Butterworth high_pass_;
+  signal::Butterworth low_pass_;
+  double gain_;
+};
+
+}  // namespace stillhand::rig

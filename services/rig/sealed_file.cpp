@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/sealed_file.hpp"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <stdexcept>
+
+#include "contract/config_error.hpp"
+#include "recording/file_io.hpp"
+
+namespace stillhand::rig {
+namespace {
+
+std::string hexadecimal(const unsigned char* bytes, std::size_t size) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (std::size_t i = 0; i < size; ++i) {
+    text += kDigits[bytes[i] >> 4];
+    text += kDigits[bytes[i] & 15];
+  }
+  return text;
+}
+
+void write_whole(const std::filesystem::path& path, const std::string& text) {
+  if (const auto status = recording::write_file_atomically(path.string(), text); !status.ok()) {
+    throw std::runtime_error(status.text);
+  }
+}
+
+}  // namespace
+
+std::string new_nonce() {
+  std::random_device source;
+  std::array<unsigned char, 16> bytes{};
+  for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(source() & 0xffu);
+  return hexadecimal(bytes.data(), bytes.size());
+}
+
+SealedSeed read_sealed_seed(std::istream& from) {
+  SealedSeed sealed{};
+  if (!(from >> sealed.seed >> sealed.nonce) || sealed.nonce.size() != 32) {
+    throw ConfigError("--undeclared-effect", "standard input without a seed and its nonce",
+                      "what `stillhand lab --undeclared-effect SEED` sends");
+  }
+  return sealed;
+}
+
+std::string text_of(const SealedSeed& sealed) {
+  return std::to_string(sealed.seed) + " " + sealed.nonce + "\n";
+}
+
+std::string sealed_text(const OpenedEffect& effect, const std::string& nonce) {
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
+  for (const OpenedEffect::Parameter& each : effect.parameters) {
+    parameters[each.name] = {{"value", each.value}, {"unit", each.unit}};
+  }
+  nlohmann::ordered_json json{{"seed", effect.seed},   {"kind", effect.kind},
+                              {"channel", nullptr},    {"parameters", parameters},
+                              {"place", effect.place}, {"nonce", nonce}};
+  if (!effect.channel.empty()) json["channel"] = effect.channel;
+  return json.dump(2) + "\n";
+}
+
+std::string sha256(const std::string& bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
+    throw std::runtime_error("SHA-256 failed");
+  }
+  return hexadecimal(digest.data(), size);
+}
+
+std::string digest_line(const std::string& bytes, const std::string& name) {
+  return sha256(bytes) + "  " + name + "\n";
+}
+
+void commit_effect(const std::filesystem::path& folder, const std::string& text) {
+  write_whole(folder / kCommitmentFile, digest_line(text, kSealedFile));
+}
+
+void open_effect(const std::filesystem::path& folder, const std::string& text,
+                 const std::string& verdict_file) {
+  const std::string commitment = (folder / kCommitmentFile).string();
+  const std::string line = digest_line(text, kSealedFile);
+  if (!recording::read_file(commitment).starts_with(line)) {
+    throw ConfigError(commitment, "the digest of another effect",
+                      "what the rig wrote when the session began");
+  }
+  if (!verdict_file.empty()) {
+    const std::string verdict = recording::read_file((folder / verdict_file).string());
+    write_whole(commitment, line + digest_line(verdict, verdict_file));
+  }
+  write_whole(folder / kSealedFile, text);
+}
+
+}  // namespace stillhand::rig

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An effect that only the rig is told of: who can know it, what a recording shows of it, how it is opened.
+
+No other service holds its code, no file but the rig's and the in-process loop's includes it, no process of a session
+is told the seed where others can look, and a session's recording has the same shape with it as without.
+"""
+import hashlib
+import json
+import pathlib
+import re
+import subprocess
+import unittest
+
+import lab_process
+from lab_process import BUILD, SERVICES, SOURCE, STILLHAND, LabTestCase, running
+
+# Long enough not to come up by chance in a file; its effect acts on the pegged stick already.
+SEED = 90417733560021
+KINDS = ("nonlinear_stiffness", "asymmetry", "dead_zone", "time_varying_gain", "resonance", "position_ripple",
+         "coulomb_friction", "coupled_input", "tone", "delay", "output_saturation")
+SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnChain|draw_effect|EffectPlan)")
+SEALED_HEADERS = re.compile(r'#include "rig/(core/(sealed_effect|undeclared_effect|effect_draw|effect_sizing|'
+                            r'chain_effect)|sealed_file)\.hpp"')
+# Whoever steps the rig in one process, and whoever writes the sealed file.
+MAY_INCLUDE = ("services/rig/", "apps/experiment/", "apps/study/", "tests/")
+SESSION_LIMIT_S = 120
+
+
+def info(recording, out):
+    subprocess.run([str(STILLHAND), "info", str(recording), "--json", str(out)], check=True, capture_output=True)
+    return json.loads(out.read_text())
+
+
+def shape(value):
+    """Names and types of a JSON value, not its contents."""
+    if isinstance(value, dict):
+        return {key: shape(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [shape(each) for each in value[:1]]
+    return type(value).__name__
+
+
+class UndeclaredEffectTest(LabTestCase):
+    def symbols(self, program):
+        listed = subprocess.run(["nm", "-C", str(BUILD / "bin" / program)], capture_output=True, text=True, check=True)
+        return SECRET.search(listed.stdout)
+
+    def test_of_all_services_the_rig_alone_holds_the_code(self):
+        self.assertTrue(self.symbols("stillhand-rig"), "the search finds nothing where there is something")
+        for service in SERVICES:
+            if service != "rig":
+                self.assertIsNone(self.symbols(f"stillhand-{service}"), service)
+
+    def test_no_other_source_includes_it(self):
+        found = []
+        for folder in ("services", "apps", "tests"):
+            for path in (SOURCE / folder).rglob("*.[ch]pp"):
+                if SEALED_HEADERS.search(path.read_text()):
+                    found.append(str(path.relative_to(SOURCE)))
+        self.assertIn("services/rig/core/rig.hpp", found)
+        self.assertEqual([path for path in found if not path.startswith(MAY_INCLUDE)], [])
+
+    def session(self, name, *arguments):
+        lab = self.lab("--conditions", "B", "--identify-seconds", 20, "--trial-seconds", 5, "--seed", 3, *arguments,
+                       out=self.folder / name)
+        told = {}
+
+        def over():
+            for pid in running(lab.domain):
+                for listing in ("cmdline", "environ"):
+                    try:
+                        if str(SEED).encode() in pathlib.Path(f"/proc/{pid}/{listing}").read_bytes():
+                            told[running(lab.domain).get(pid)] = listing
+                    except OSError:  # it ended meanwhile
+                        pass
+            if (lab.out / "undeclared_effect.json").exists():
+                self.assertTrue((lab.out / "summary.json").exists(), "the truth came before the results")
+            return lab.process.poll() is not None
+        lab.wait_for("the end", over, SESSION_LIMIT_S, poll_s=0.2)
+        self.assertEqual(lab.process.returncode, 0, lab.errors())
+        return lab, told
+
+    def test_a_recording_does_not_tell_and_the_truth_is_the_committed_one(self):
+        plain, _ = self.session("plain")
+        sealed, told = self.session("sealed", "--undeclared-effect", SEED)
+
+        # The lab's own command line is the person's.
+        self.assertLessEqual(set(told), {"stillhand", None})
+
+        # Same topics, schemas and metadata.
+        self.assertEqual(shape(info(plain.out / "session.mcap", self.folder / "plain.json")),
+                         shape(info(sealed.out / "session.mcap", self.folder / "sealed.json")))
+        csv = self.folder / "csv"
+        subprocess.run([str(STILLHAND), "export", str(sealed.out / "session.mcap"), "--csv", str(csv)], check=True,
+                       capture_output=True)
+        texts = [path.read_text() for path in csv.rglob("*.csv")] + [(self.folder / "sealed.json").read_text()]
+        texts += [path.read_text() for path in (sealed.out / "logs").iterdir()]
+        texts += [(sealed.out / name).read_text() for name in ("summary.json", "model.json")]
+        for text in texts:
+            self.assertNotIn(str(SEED), text)
+            for kind in KINDS:
+                self.assertNotIn(kind, text)
+
+        # Opened at the end, and what was sealed at the start.
+        truth = json.loads((sealed.out / "undeclared_effect.json").read_text())
+        self.assertEqual(truth["seed"], SEED)
+        self.assertIn(truth["kind"], KINDS + ("none",))
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=sealed.out,
+                                 capture_output=True, text=True, check=False)
+        self.assertEqual(checked.returncode, 0, checked.stdout)
+        self.assertEqual(len((sealed.out / "undeclared_effect.sha256").read_text().splitlines()), 2)
+        # Another truth would not pass.
+        other = (sealed.out / "undeclared_effect.json").read_bytes().replace(b'"kind": "', b'"kind": "x')
+        self.assertNotIn(hashlib.sha256(other).hexdigest(), (sealed.out / "undeclared_effect.sha256").read_text())
+        self.assertFalse((plain.out / "undeclared_effect.sha256").exists())
+        self.assert_nothing_left(sealed)
+
+
+if __name__ == "__main__":
+    lab_process.main()
