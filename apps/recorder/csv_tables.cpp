@@ -113,6 +113,7 @@ class CsvFolder : public TableFile {
   std::unique_ptr<TableSink> add(const TopicTable& table) override {
     return std::make_unique<CsvSink>(table, folder_.path() / (table.name + ".csv"));
   }
+  void close() override {}  // each topic has a file of its own
   void publish() override { folder_.publish({}); }
 
  private:

@@ -13,7 +13,6 @@
 #include "recorder/csv_tables.hpp"
 #include "recorder/hdf5_tables.hpp"
 #include "recorder/mat_tables.hpp"
-#include "recorder/open_recording.hpp"
 #include "recording/core/topic_filter.hpp"
 #include "report/result_files.hpp"
 
@@ -102,7 +101,7 @@ std::string topics_in(const recording::McapReader& reader) {
 class Exporter {
  public:
   Exporter(const std::string& path, const ExportOptions& options)
-      : options_(options), recording_(path), schemas_(recording_) {
+      : options_(options), recording_(path, options.stopped), schemas_(recording_) {
     // Says what is wrong with a place before the work.
     const report::ResultFiles checked({{"--mat", options.mat}, {"--hdf5", options.hdf5}}, {path});
     (void)checked;
@@ -118,10 +117,15 @@ class Exporter {
     write();
     Exported exported;
     for (const auto& outlet : outlets_) {
-      for (auto& sink : outlet->sinks) sink->finish();
+      for (auto& sink : outlet->sinks) {
+        go_on_unless(options_.stopped);  // a MATLAB file is packed here, a topic at a time
+        sink->finish();
+      }
       outlet->sinks.clear();
       exported.topics.push_back(outlet->result);
     }
+    for (auto& file : files_) file->close();
+    go_on_unless(options_.stopped);
     for (auto& file : files_) file->publish();
     exported.left_out = left_out_;
     recording_.tell_loss(messages_);

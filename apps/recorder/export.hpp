@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "recorder/open_recording.hpp"
+
 namespace stillhand::recorder {
 
 struct ExportOptions {
@@ -14,6 +16,7 @@ struct ExportOptions {
   std::filesystem::path hdf5;  ///< file
   /// Names or patterns (* any text, ? one character); empty: every topic.
   std::vector<std::string> topics;
+  Stopped stopped = {};  ///< true: give up
 };
 
 /// What became of one topic.
@@ -32,9 +35,10 @@ struct Exported {
 
 /// Messages of a recording as tables, one a topic, decoded by the schema that the recording itself
 /// carries (omgidl; a topic of the catalogue whose schema is lost by this program's own).  The
-/// results appear when all are complete.  Tells on standard error what the recording has lost.
+/// results appear when all are complete, and nothing is left of them when that never happens.  Says
+/// on standard error what the recording has lost.
 /// @throws ConfigError when the recording can't be read, holds nothing that can be exported, or a
-///         result can't be made; std::runtime_error when a disk fails.
+///         result can't be made; std::runtime_error when a disk fails; Interrupted.
 Exported export_recording(const std::string& path, const ExportOptions& options);
 
 }  // namespace stillhand::recorder

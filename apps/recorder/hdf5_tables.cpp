@@ -195,11 +195,11 @@ class Hdf5File : public TableFile {
   std::unique_ptr<TableSink> add(const TopicTable& table) override {
     return std::make_unique<Hdf5Sink>(file_, table, path_);
   }
-  void publish() override {
+  void close() override {
     check(H5Fflush(file_, H5F_SCOPE_GLOBAL), path_);
     check(file_.close(), path_);
-    pending_.publish();
   }
+  void publish() override { pending_.publish(); }
 
  private:
   std::string path_;

@@ -3,8 +3,8 @@
 
 #include <matio.h>
 
-#include <list>
 #include <stdexcept>
+#include <utility>
 
 #include "recorder/column_names.hpp"
 #include "recorder/pending_file.hpp"
@@ -93,101 +93,118 @@ struct Held {
   }
 };
 
-struct HeldTable {
-  TopicTable table;
-  std::vector<Held> columns = {};
-  std::size_t bytes = 0;
+Variable empty_structure(const char* name, std::vector<const char*> fields) {
+  std::size_t size[2] = {1, 1};
+  return made(
+      Mat_VarCreateStruct(name, 2, size, fields.data(), static_cast<unsigned>(fields.size())));
+}
+
+void set(Variable& structure, const char* field, Variable value) {
+  Mat_VarSetStructFieldByName(structure.get(), field, 0, value.release());
+}
+
+/// The library's file, closed at its end.
+class OpenMat {
+ public:
+  /// @param path  where it is made  @param place  its name in messages
+  OpenMat(const std::string& path, std::string place)
+      : place_(std::move(place)),
+        file_(Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, from a recording", MAT_FT_MAT5)) {
+    check(file_ != nullptr);
+  }
+  ~OpenMat() {
+    if (file_ != nullptr) Mat_Close(file_);
+  }
+  OpenMat(const OpenMat&) = delete;
+  OpenMat& operator=(const OpenMat&) = delete;
+
+  void write(const Variable& variable) {
+    check(Mat_VarWrite(file_, variable.get(), MAT_COMPRESSION_ZLIB) == 0);
+  }
+  /// Closes now, where failing matters.
+  void close() { check(Mat_Close(std::exchange(file_, nullptr)) == 0); }
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }
+
+ private:
+  void check(bool done) const {
+    if (!done) throw std::runtime_error(place_ + ": cannot be written; is the disk full?");
+  }
+
+  std::string place_;
+  mat_t* file_;
 };
 
+// Version 5 has no way to append to a variable: a topic is held until its last row.
 class MatSink : public TableSink {
  public:
-  MatSink(HeldTable& held, const std::string& path) : held_(held), path_(path) {
+  MatSink(OpenMat& file, TopicTable table) : file_(file), table_(std::move(table)) {
     std::set<std::string> taken{"meta"};
     const auto add = [&](const std::string& name, const std::string& unit, CellKind kind) {
-      held_.columns.push_back({plain_name(name, kLongestName, taken), unit, kind});
+      columns_.push_back({plain_name(name, kLongestName, taken), unit, kind});
     };
     add("t", "s", CellKind::kReal);
     add("log_time", "ns", CellKind::kUnsigned);
     add("publish_time", "ns", CellKind::kUnsigned);
     add("sequence", "-", CellKind::kUnsigned);
-    for (const auto& column : held.table.columns) {
+    for (const auto& column : table_.columns) {
       add(column.name, column.unit, kind_without_gaps(column));
     }
   }
 
   void take(const TableRow& row) override {
-    auto column = held_.columns.begin();
-    const auto put = [&](const Cell& cell) { held_.bytes += (column++)->take(cell); };
+    auto column = columns_.begin();
+    const auto put = [&](const Cell& cell) { bytes_ += (column++)->take(cell); };
     put(static_cast<double>(row.since_start_ns) * 1e-9);
     put(row.log_time_ns);
     put(row.publish_time_ns);
     put(std::uint64_t{row.sequence});
     for (const Cell& cell : row.cells) put(cell);
-    if (held_.bytes < kMostBytes) return;
-    throw std::runtime_error(path_ + ": " + held_.table.topic +
+    if (bytes_ < kMostBytes) return;
+    throw std::runtime_error(file_.place() + ": " + table_.topic +
                              " is larger than a MATLAB file holds (2 GiB a topic); --hdf5 has no "
                              "such bound, --topics leaves topics out");
   }
-  void finish() override {}
+
+  void finish() override { file_.write(structure()); }
 
  private:
-  HeldTable& held_;
-  const std::string& path_;
-};
-
-class MatFile : public TableFile {
- public:
-  explicit MatFile(const std::string& path) : path_(path), pending_(path) {}
-
-  std::unique_ptr<TableSink> add(const TopicTable& table) override {
-    HeldTable& held = tables_.emplace_back(HeldTable{table});
-    return std::make_unique<MatSink>(held, path_);
-  }
-
-  void publish() override {
-    mat_t* file = Mat_CreateVer(pending_.path().c_str(), "MATLAB 5.0 MAT-file, from a recording",
-                                MAT_FT_MAT5);
-    bool done = file != nullptr;
-    for (HeldTable& held : tables_) {
-      if (done) done = Mat_VarWrite(file, structure(held).get(), MAT_COMPRESSION_ZLIB) == 0;
-      held.columns.clear();
-    }
-    if (file != nullptr && Mat_Close(file) != 0) done = false;
-    if (!done) throw std::runtime_error(path_ + ": cannot be written; is the disk full?");
-    pending_.publish();
-  }
-
- private:
-  static Variable empty_structure(const char* name, std::vector<const char*> fields) {
-    std::size_t size[2] = {1, 1};
-    return made(
-        Mat_VarCreateStruct(name, 2, size, fields.data(), static_cast<unsigned>(fields.size())));
-  }
-
-  static Variable structure(HeldTable& held) {
-    std::vector<const char*> columns;
-    for (const Held& column : held.columns) columns.push_back(column.name.c_str());
-    Variable units = empty_structure(nullptr, columns);
+  Variable structure() {
+    std::vector<const char*> names;
+    for (const Held& column : columns_) names.push_back(column.name.c_str());
+    Variable units = empty_structure(nullptr, names);
     Variable meta = empty_structure(nullptr, {"topic", "type", "units"});
-    columns.push_back("meta");
-    Variable out = empty_structure(held.table.name.c_str(), columns);
-    const auto set = [](Variable& into, const char* name, Variable value) {
-      Mat_VarSetStructFieldByName(into.get(), name, 0, value.release());
-    };
-    for (Held& column : held.columns) {
+    names.push_back("meta");
+    Variable out = empty_structure(table_.name.c_str(), names);
+    for (Held& column : columns_) {
       set(units, column.name.c_str(), text_variable(nullptr, column.unit));
       set(out, column.name.c_str(), column.variable());
     }
-    set(meta, "topic", text_variable(nullptr, held.table.topic));
-    set(meta, "type", text_variable(nullptr, held.table.type));
+    set(meta, "topic", text_variable(nullptr, table_.topic));
+    set(meta, "type", text_variable(nullptr, table_.type));
     set(meta, "units", std::move(units));
     set(out, "meta", std::move(meta));
     return out;
   }
 
-  std::string path_;
+  OpenMat& file_;
+  TopicTable table_;
+  std::vector<Held> columns_;
+  std::size_t bytes_ = 0;
+};
+
+class MatFile : public TableFile {
+ public:
+  explicit MatFile(const std::string& path) : pending_(path), file_(pending_.path(), path) {}
+
+  std::unique_ptr<TableSink> add(const TopicTable& table) override {
+    return std::make_unique<MatSink>(file_, table);
+  }
+  void close() override { file_.close(); }
+  void publish() override { pending_.publish(); }
+
+ private:
   PendingFile pending_;
-  std::list<HeldTable> tables_;  // sinks point at them
+  OpenMat file_;
 };
 
 }  // namespace

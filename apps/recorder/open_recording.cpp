@@ -3,13 +3,27 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "contract/config_error.hpp"
 #include "recording/core/mcap_loss.hpp"
 
 namespace stillhand::recorder {
 
-OpenRecording::OpenRecording(const std::string& file) : path(file), source(file), reader(source) {
+void go_on_unless(const Stopped& stopped) {
+  if (stopped && stopped()) throw Interrupted();
+}
+
+StoppableFile::StoppableFile(const std::string& path, Stopped stopped)
+    : FileSource(path), stopped_(std::move(stopped)) {}
+
+recording::Status StoppableFile::read_at(std::uint64_t offset, std::span<std::byte> into) {
+  go_on_unless(stopped_);
+  return FileSource::read_at(offset, into);
+}
+
+OpenRecording::OpenRecording(const std::string& file, Stopped stopped)
+    : path(file), source(file, std::move(stopped)), reader(source) {
   if (!reader.status().ok()) {
     throw ConfigError(path, reader.status().text, "a recording (MCAP, version 0)");
   }

@@ -13,6 +13,7 @@
 #include "recording/core/compression.hpp"
 #include "recording/core/mcap_loss.hpp"
 #include "report/result_files.hpp"
+#include "runtime/stop.hpp"
 
 namespace stillhand::recorder {
 namespace {
@@ -82,7 +83,9 @@ struct RecoverWords {
   std::string compression = "zstd";
 };
 
-int run_recover(RecoverWords& words) {
+int run_recover(RecoverWords words) {
+  runtime::Stop stop;
+  words.options.stopped = [&stop] { return stop.requested(); };
   words.options.compression =
       *recording::compression_of(words.compression == "none" ? "" : words.compression);
   const Recovered result = recover(words.recording, words.options);
@@ -125,7 +128,9 @@ struct ExportWords {
 };
 
 int run_export(const ExportWords& words) {
-  const ExportOptions& options = words.options;
+  runtime::Stop stop;
+  ExportOptions options = words.options;
+  options.stopped = [&stop] { return stop.requested(); };
   if (options.csv.empty() && options.mat.empty() && options.hdf5.empty()) {
     throw ConfigError("export", "no format", "--csv DIR, --mat FILE or --hdf5 FILE");
   }

@@ -11,7 +11,6 @@
 #include <system_error>
 
 #include "contract/config_error.hpp"
-#include "recorder/open_recording.hpp"
 #include "recorder/pending_file.hpp"
 #include "recording/core/mcap_writer.hpp"
 
@@ -118,7 +117,7 @@ void refuse_what_cannot_be_mended(const OpenRecording& old) {
 }  // namespace
 
 Recovered recover(const std::string& path, const RecoverOptions& options) {
-  OpenRecording old(path);
+  OpenRecording old(path, options.stopped);
   refuse_what_cannot_be_mended(old);
   Recovered result;
   result.was_whole = old.reader.verify().ok() && old.reader.damage().empty();
@@ -144,6 +143,7 @@ Recovered recover(const std::string& path, const RecoverOptions& options) {
   result.findings = findings_of(old.reader);
   copy.close(summary_of(result, path));
   refuse_what_cannot_be_mended(old);  // it may have begun to grow again
+  go_on_unless(options.stopped);
   if (in_place) {
     keep_as(place, kept);
     try {

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/mcap_format.hpp"
+#include "recorder/open_recording.hpp"
 
 namespace stillhand::recorder {
 
 struct RecoverOptions {
   std::filesystem::path out;  ///< empty: the file itself; the old one is kept as FILE.damaged
   recording::Compression compression = recording::Compression::kZstd;
+  Stopped stopped = {};  ///< true: give up
 };
 
 /// What recover() did.
@@ -28,10 +29,10 @@ struct Recovered {
 
 /// Writes everything that can be read into a whole file: messages in the order of the file, with
 /// their numbers and times, schemas, topics, metadata; and a metadata record "stillhand.recovery"
-/// that says what was lost.  The new file appears when it is complete and on the disk, and no file
-/// is written over.
+/// that says what was lost.  The new file appears when it is complete and on the disk, nothing is
+/// left of it when that never happens, and no file is written over.
 /// @throws ConfigError when the file can't be read, is still being written, or a name is taken;
-///         std::runtime_error when the disk fails: the old file is then as it was.
+///         std::runtime_error when the disk fails, Interrupted: the old file is then as it was.
 Recovered recover(const std::string& path, const RecoverOptions& options);
 
 }  // namespace stillhand::recorder

@@ -49,7 +49,7 @@ class TableSink {
  public:
   virtual ~TableSink() = default;
   virtual void take(const TableRow& row) = 0;
-  /// After the last row.
+  /// After the last row: the topic is in the file.
   virtual void finish() = 0;
 };
 
@@ -60,7 +60,9 @@ class TableFile {
   virtual ~TableFile() = default;
   /// One call a topic, before any row.
   virtual std::unique_ptr<TableSink> add(const TopicTable& table) = 0;
-  /// To its place; the sinks have finished.
+  /// The sinks have finished: everything is in the file.
+  virtual void close() = 0;
+  /// To its place, after close() of every file that is to appear with it.
   virtual void publish() = 0;
 };
 

@@ -44,8 +44,8 @@ struct MessageFilter {
 /// complete chunk with the right checksum is recovered (FORMAT.md, "Recovery").  Nothing is
 /// repaired by guessing, and nothing is dropped without an entry in damage().  Never allocates more
 /// than the options allow, whatever a length field says.
-/// The source outlives the reader.  Thread-compatible.  Throws only std::bad_alloc and what the
-/// callback throws.
+/// The source outlives the reader.  Thread-compatible.  Throws only std::bad_alloc and what source
+/// and callback throw; after what they threw it is of no more use.
 class McapReader {
  public:
   explicit McapReader(ByteSource& source, McapReaderOptions options = {});

@@ -244,5 +244,25 @@ TEST_F(ExportTest, PlacesAndNamesThatCannotBeAreRefusedBeforeTheWork) {
   EXPECT_EQ(export_recording(path("a.mcap"), {path("out"), {}, {}, {"*/ev?nt"}}).topics.size(), 1u);
 }
 
+// Ctrl-C at every moment at which it is asked for: all tables or none, and no piece of one.
+TEST_F(ExportTest, GivenUpAtAnyMomentItLeavesNothing) {
+  write_sample(path("a.mcap"));
+  bool whole = false;
+  for (int moment = 0; !whole; ++moment) {
+    ExportOptions options{path("out"), path("a.mat"), path("a.h5"), {}};
+    int asked = 0;
+    options.stopped = [&] { return asked++ == moment; };
+    try {
+      export_recording(path("a.mcap"), options);
+      whole = true;
+      EXPECT_EQ(asked, moment);
+    } catch (const Interrupted&) {
+      ASSERT_EQ(file_count(), 1u) << moment;
+    }
+  }
+  EXPECT_EQ(file_count(), 4u);
+  EXPECT_TRUE(std::filesystem::exists(path("out/stillhand_sensed.csv")));
+}
+
 }  // namespace
 }  // namespace stillhand::recorder

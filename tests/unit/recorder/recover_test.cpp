@@ -108,6 +108,26 @@ TEST_F(RecoverTest, AFileThatIsStillBeingWrittenIsRefused) {
   EXPECT_EQ(file_count(), 1u);
 }
 
+// Ctrl-C at every moment at which it is asked for.
+TEST_F(RecoverTest, GivenUpAtAnyMomentItLeavesTheOldFileAlone) {
+  const std::string before = cut_sample();
+  bool whole = false;
+  for (int moment = 0; !whole; ++moment) {
+    RecoverOptions options;
+    int asked = 0;
+    options.stopped = [&] { return asked++ == moment; };
+    try {
+      recover(path("a.mcap"), options);
+      whole = true;
+      EXPECT_EQ(asked, moment);
+    } catch (const Interrupted&) {
+      ASSERT_EQ(file_count(), 1u) << moment;
+      ASSERT_EQ(recording::read_file(path("a.mcap")), before) << moment;
+    }
+  }
+  EXPECT_EQ(file_count(), 2u);
+}
+
 // The full disk, as a bound on the size of files: the old file stays, no half file is left.
 TEST_F(RecoverTest, AFullDiskCostsNothing) {
   const std::string before = cut_sample();

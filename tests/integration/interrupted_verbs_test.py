@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ctrl-C while `stillhand export` and `stillhand recover` write: nothing is left of it, and it is said in one line."""
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import lab_process
+from lab_process import BUILD, STILLHAND
+
+LOAD = BUILD / "tests" / "bus_load"
+# Seconds of work for either verb: 2 million messages, where a signal finds its way within milliseconds.
+RATE = 100_000
+LENGTH_S = 20
+LIMIT_S = 60.0
+POLL_S = 0.01
+
+
+class InterruptedVerbsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shared = tempfile.TemporaryDirectory(prefix="stillhand-")
+        cls.addClassCleanup(shared.cleanup)
+        cls.recording = pathlib.Path(shared.name) / "long.mcap"
+        subprocess.run([str(LOAD), "--write", str(cls.recording), str(RATE), str(LENGTH_S)], check=True)
+        os.truncate(cls.recording, cls.recording.stat().st_size - 1000)  # as a crash leaves it
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def assert_interrupted(self, wanted, piece, *words):
+        """Interrupts the verb once `piece` (a pattern) has begun to grow."""
+        verb = subprocess.Popen([str(STILLHAND), *(str(word) for word in words)], stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            limit = time.monotonic() + LIMIT_S
+            while not any(path.stat().st_size > 100_000 for path in self.folder.glob(piece)):
+                self.assertIsNone(verb.poll(), "it ended by itself")
+                self.assertLess(time.monotonic(), limit, f"no {piece} of 100 kB")
+                time.sleep(POLL_S)
+            verb.send_signal(wanted)
+            output, errors = verb.communicate(timeout=LIMIT_S)
+        finally:
+            verb.kill()
+        self.assertEqual(verb.returncode, 1, errors)
+        self.assertEqual(errors, "stillhand: stopped before the end; nothing was written\n")
+        self.assertEqual(output, "")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_an_export_leaves_no_piece_of_a_table(self):
+        places = {"--csv": "out", "--hdf5": "a.h5"}
+        for option, piece in (("--csv", "out/.unfinished-*/*.csv"), ("--hdf5", "a.h5.new-*")):
+            with self.subTest(option):
+                self.assert_interrupted(signal.SIGINT, piece, "export", self.recording, option,
+                                        self.folder / places[option])
+
+    def test_a_recovery_leaves_no_piece_of_the_new_file(self):
+        before = self.recording.stat()
+        for wanted in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(wanted.name):
+                self.assert_interrupted(wanted, "whole.mcap.new-*", "recover", self.recording, "--out",
+                                        self.folder / "whole.mcap")
+        after = self.recording.stat()
+        self.assertEqual((after.st_size, after.st_mtime_ns), (before.st_size, before.st_mtime_ns))
+
+
+if __name__ == "__main__":
+    lab_process.main()
