@@ -99,13 +99,19 @@ std::optional<std::span<const std::byte>> McapReader::unpack_chunk(const Piece& 
   WireReader record(packed_);
   const auto opcode = static_cast<Opcode>(record.take<std::uint8_t>());
   const auto length = record.take<std::uint64_t>();
-  if (opcode != Opcode::kChunk || length != piece.length - kRecordHeadBytes) {
+  const bool contradicts = opcode != Opcode::kChunk || length != piece.length - kRecordHeadBytes;
+  if (contradicts) {
     add_damage(DamageKind::kBadRecord, piece.offset, 0,
                "head of a chunk contradicts the index; the index is used");
   }
   const auto content = std::span<const std::byte>(packed_).subspan(kRecordHeadBytes);
   const auto head = parse_chunk_head(content, content.size());
   if (!head) return lost(DamageKind::kBadChunk, "its fields contradict its length");
+  // Zeros are a head too: of a chunk without a record, a packing or a checksum.
+  if (head->uncompressed_crc == 0 && (contradicts || head->content_bytes() != content.size())) {
+    return lost(DamageKind::kBadChunk,
+                "its fields contradict its length, and no checksum proves it");
+  }
   if (head->uncompressed_size > options_.max_chunk_bytes) {
     return lost(DamageKind::kTooLarge, "unpacks to more than the reader may load");
   }

@@ -151,6 +151,26 @@ TEST_P(McapDamageTest, OneFlippedBitAfterACrashCostsAtMostItsChunk) {
   }
 }
 
+// What a disk gives for a page that it never wrote, from smaller than the head of a chunk to larger
+// than a chunk, at every place.
+TEST_P(McapDamageTest, APageOfZerosCostsTheChunksThatItTouchesAndIsSaid) {
+  for (const Bytes& whole : {closed_, crashed_}) {
+    for (const std::size_t page : {std::size_t{9}, std::size_t{100}, 2 * kChunkBytes}) {
+      for (std::size_t at = kMagic.size(); at + page <= whole.size(); ++at) {
+        Bytes file = whole;
+        std::fill_n(file.begin() + static_cast<std::ptrdiff_t>(at), page, std::byte{0});
+        MemorySource source(file);
+        McapReader sut(source);
+        ASSERT_TRUE(sut.status().ok()) << at;
+        const std::size_t lost = lost_chunks(messages_of(sut));
+        // A page touches as many chunks as fit into it, and one more at each end.
+        ASSERT_LE(lost, page / kChunkBytes + 2) << at;
+        ASSERT_TRUE(lost == 0 || sut.lost_bytes() > 0) << at;
+      }
+    }
+  }
+}
+
 TEST_P(McapDamageTest, ATailOfZerosAfterALossOfPowerIsDropped) {
   Bytes file = crashed_;
   file.resize(file.size() + 5000);
