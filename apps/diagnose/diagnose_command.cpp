@@ -59,6 +59,19 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& tas
   if (error) std::rethrow_exception(error);
 }
 
+// A recording given twice would be held out and fitted to at once.
+void check_different(const std::vector<std::string>& recordings) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code error;
+      if (std::filesystem::equivalent(recordings[i], recordings[j], error)) {
+        throw ConfigError("REC", recordings[i] + " and " + recordings[j] + ", the same file",
+                          "each recording once");
+      }
+    }
+  }
+}
+
 diagnosis::Measurement read_all(const Words& words) {
   std::vector<diagnosis::Measurement> parts;
   for (const std::string& path : words.recordings) {
@@ -69,12 +82,13 @@ diagnosis::Measurement read_all(const Words& words) {
 
 int run(const Words& words) {
   runtime::Stop stop;
+  check_different(words.recordings);
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.recordings.begin(), words.recordings.end()});
   std::optional<report::StagedFolder> folder;
   if (!words.report.empty()) {
     report::require_gnuplot();
-    folder.emplace(words.report);
+    folder.emplace(words.report, "--report");
   }
   const diagnosis::Measurement measurement = read_all(words);
   experiment::ProgressLine progress;
@@ -137,9 +151,11 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--trial", words->read.trial,
                    "of a session's recording: number of the trial, or its condition's letter");
-  verb->add_option("--save", words->save, "file for the augmented model, for `stillhand predict`");
-  verb->add_option("--json", words->json, "file for the verdict");
-  verb->add_option("--report", words->report, "folder for a page with figures");
+  verb->add_option("--save", words->save, "file for the augmented model, for `stillhand predict`")
+      ->check(report::check_name);
+  verb->add_option("--json", words->json, "file for the verdict")->check(report::check_name);
+  verb->add_option("--report", words->report, "folder for a page with figures")
+      ->check(report::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

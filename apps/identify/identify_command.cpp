@@ -67,8 +67,10 @@ void add_identify_command(CLI::App& cli, int& status) {
   verb->add_option(
       "--trial", words->read.trial,
       "of a session: number, or letter of its condition (I, A, B, C) [identification]");
-  verb->add_option("--save", words->save, "file of the model, as the cancellation reads it");
-  verb->add_option("--json", words->json, "file of everything that was found");
+  verb->add_option("--save", words->save, "file of the model, as the cancellation reads it")
+      ->check(report::check_name);
+  verb->add_option("--json", words->json, "file of everything that was found")
+      ->check(report::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

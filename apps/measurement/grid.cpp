@@ -17,6 +17,8 @@ using diagnosis::Measurement;
 
 constexpr double kLeastStretch_s = 1.0;
 constexpr std::size_t kLeastStretch_samples = 20;
+// What a hand does lies between 0.1 and 10 Hz: a slower recording can't show it.
+constexpr double kLeastRate_hz = 5.0;
 
 // "1 row", "2 rows"
 std::string counted(double count, const std::string& what) {
@@ -61,6 +63,14 @@ std::size_t grid_size(const RowPlaces& places) {
   std::size_t samples = 0;
   for (const RowStretch& stretch : places.stretches) samples += stretch.grid_samples;
   return samples;
+}
+
+// A table with 't [s]' above milliseconds looks like one of a very slow sensor.
+void check_rate(const std::string& source, double rate_hz) {
+  if (rate_hz >= kLeastRate_hz) return;
+  throw ConfigError(source + ", time", figure(1.0 / rate_hz) + " s between rows",
+                    "at most " + figure(1.0 / kLeastRate_hz) +
+                        " s; are the times in milliseconds, where 't [s]' says seconds?");
 }
 
 void check_size(const recording::Recording& rows, std::size_t samples, std::size_t most_values) {
@@ -144,6 +154,7 @@ void check_use(const Measurement& measurement, std::size_t rows, double rate_hz)
 Measurement on_grid(recording::Recording rows, std::size_t most_values) {
   const std::size_t row_count = rows.row_count();
   RowPlaces places = place_rows(rows);
+  check_rate(rows.source, places.rate_hz);
   rows.time_s = {};
   Measurement out;
   out.source = rows.source;

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "contract/config_error.hpp"
 #include "diagnosis/model_file.hpp"
 #include "measurement/read.hpp"
 #include "predict/predict.hpp"
@@ -25,7 +24,6 @@ struct Words {
 };
 
 int run(const Words& words) {
-  if (words.out.empty()) throw ConfigError("--out", "nothing", "the CSV file to write");
   report::ResultFiles files({{"--out", words.out}}, {words.model, words.recording});
   const diagnosis::Model model =
       diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
@@ -54,7 +52,9 @@ void add_predict_command(CLI::App& cli, int& status) {
   verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
   verb->add_option("--trial", words->read.trial,
                    "of a session's recording: number of the trial, or its condition's letter");
-  verb->add_option("--out", words->out, "CSV file of the prediction")->required();
+  verb->add_option("--out", words->out, "CSV file of the prediction")
+      ->required()
+      ->check(report::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

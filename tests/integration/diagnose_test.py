@@ -113,6 +113,41 @@ class DiagnoseTest(unittest.TestCase):
                 self.assertIn(said, self.refused("diagnose", path, "--json", out))
                 self.assertFalse(out.exists())
 
+    def test_times_in_milliseconds_are_refused_by_every_verb(self):
+        path, model = self.folder / "ms.csv", self.folder / "model.json"
+        run = stillhand("diagnose", self.planted("none"), "--most-effects", 0, "--save", model)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        path.write_text("t [s],a_y [m/s^2],f [N]\n" + "".join(
+            f"{10 * n},{math.sin(n * 0.37)},{math.cos(n * 0.11)}\n" for n in range(3000)))
+        for words in (("diagnose", path), ("identify", path), ("predict", model, path, "--out", self.folder / "p.csv")):
+            with self.subTest(words[0]):
+                said = self.refused(*words)
+                self.assertIn("ms.csv, time", said)
+                self.assertIn("milliseconds", said)
+
+    def test_places_that_cannot_be_written_are_refused_before_anything_is_read(self):
+        file, gone = self.folder / "file", self.folder / "gone.csv"
+        file.write_text("earlier")
+        wrong = [("--report", file), ("--report", file / "below"), ("--report", "/proc/none"), ("--report", ""),
+                 ("--json", self.folder), ("--json", self.folder / "no" / "out.json"), ("--json", ""),
+                 ("--save", self.folder), ("--save", self.folder / "no" / "model.json"), ("--save", "")]
+        # A recording that isn't there would be refused instead, were it read first.
+        for option, place in wrong:
+            with self.subTest(f"diagnose {option} {place}"):
+                self.assertIn(option, self.refused("diagnose", gone, option, place))
+        for option, place in wrong[4:]:
+            with self.subTest(f"identify {option} {place}"):
+                self.assertIn(option, self.refused("identify", gone, option, place))
+        for place in (self.folder, self.folder / "no" / "p.csv", ""):
+            with self.subTest(f"predict {place}"):
+                self.assertIn("--out", self.refused("predict", gone, gone, "--out", place))
+        self.assertEqual(file.read_text(), "earlier")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["file"])
+
+    def test_a_recording_given_twice_is_refused(self):
+        recording = self.planted("none")
+        self.assertIn("the same file", self.refused("diagnose", recording, recording.parent / "." / recording.name))
+
     def test_broken_mcap_files_are_refused_in_one_line(self):
         for name, content in {"magic": b"\x89MCAP0\r\n", "half_magic": b"\x89MCAP", "noise": b"\x89MCAP0\r\n" + bytes(range(256)) * 20,
                               "binary": bytes(range(256)) * 20}.items():

@@ -131,6 +131,12 @@ TEST_F(IdentifyCommandTest, AnOrderOutOfRangeIsAUsageError) {
   EXPECT_THROW(run({}), CLI::ParseError);
 }
 
+// An unset variable of a script, not a wish for no file.
+TEST_F(IdentifyCommandTest, AnEmptyNameIsAUsageError) {
+  EXPECT_THROW(run({at("ride.csv"), "--json", ""}), CLI::ParseError);
+  EXPECT_THROW(run({at("ride.csv"), "--save", ""}), CLI::ParseError);
+}
+
 TEST_F(IdentifyCommandTest, EarlierResultsAreReplaced) {
   std::ofstream(at("out.json")) << "earlier";
   run({at("ride.csv"), "--json", at("out.json")});

@@ -134,6 +134,25 @@ TEST(GridTest, TooFewRowsAreRefusedWithTheirNumber) {
   EXPECT_EQ(error_of(rows_at(times(50, [](int) { return true; }))), "no error");
 }
 
+// 100 Hz printed in milliseconds is 0.1 Hz in seconds.
+TEST(GridTest, TimesInMillisecondsAreRefusedWithTheFileAndWhatIsLikely) {
+  std::vector<double> time_s = times(200, [](int) { return true; });
+  for (double& t : time_s) t *= 1000.0;
+  EXPECT_THAT(error_of(rows_at(time_s)),
+              testing::AllOf(HasSubstr("ride.csv, time: got 10 s between rows"),
+                             HasSubstr("milliseconds")));
+}
+
+TEST(GridTest, TheSlowestRateIsFiveRowsASecond) {
+  const auto at_rate = [](double rate_hz) {
+    std::vector<double> time_s;
+    for (int i = 0; i < 200; ++i) time_s.push_back(i / rate_hz);
+    return rows_at(time_s);
+  };
+  EXPECT_EQ(on_grid(at_rate(5.0), kPlenty).rate_hz, 5.0);
+  EXPECT_THAT(error_of(at_rate(4.0)), HasSubstr("got 0.25 s between rows, want at most 0.2 s"));
+}
+
 TEST(GridTest, ManyStretchesTooShortToUseAreRefused) {
   EXPECT_THAT(error_of(rows_at(times(3000, [](int i) { return i % 30 < 15; }))),
               HasSubstr("0 usable samples in 1500 rows"));
