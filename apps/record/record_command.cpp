@@ -8,6 +8,7 @@
 #include "contract/config_error.hpp"
 #include "record/record.hpp"
 #include "recording/keep_options.hpp"
+#include "recording/within.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/profiles_path.hpp"
 #include "runtime/real_time.hpp"
@@ -79,14 +80,14 @@ void add_record_command(CLI::App& cli, int& status) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--duration", words->duration_s, "stop after that long [s]")
-      ->check(CLI::Range(0.001, kMostSeconds));
+      ->check(recording::within(0.001, kMostSeconds));
   verb->add_option("--rotate-s", words->rotate_s, "go on in another file after that long [s]")
-      ->check(CLI::Range(0.1, kMostSeconds));
+      ->check(recording::within(0.1, kMostSeconds));
   verb->add_option("--rotate-mb", words->rotate_mb, "go on in another file after that much [MB]")
-      ->check(CLI::Range(0.1, kMostMb));
+      ->check(recording::within(0.1, kMostMb));
   verb->add_option("--window", words->window_s,
                    "keep only that much in memory until something triggers [s]")
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(recording::within(0.1, 3600.0));
   verb->add_option("--trigger", options.triggers,
                    "a signal beyond a threshold writes the window: TOPIC.FIELD>VALUE or <VALUE, "
                    "|FIELD| for its magnitude; may be repeated")

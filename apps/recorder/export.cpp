@@ -89,14 +89,6 @@ class Schemas {
   std::map<std::string, std::unique_ptr<recording::IdlSchema>> parsed_;
 };
 
-std::string topics_in(const recording::McapReader& reader) {
-  std::string names;
-  for (const auto& [id, channel] : reader.channels()) {
-    names += (names.empty() ? "" : ", ") + channel.topic;
-  }
-  return names.empty() ? "a recording with topics" : "one of " + names;
-}
-
 // Walks over a recording: once for the lengths of lists where there are any, once for the rows.
 class Exporter {
  public:
@@ -150,7 +142,8 @@ class Exporter {
     if (!matched) {
       throw options_.topics.empty()
           ? ConfigError(recording_.path, "a recording without a topic", "one that holds messages")
-          : ConfigError("--topics", "no topic of that name", topics_in(recording_.reader));
+          : ConfigError("--topics", "no topic of that name",
+                        recording::one_of_topics(recording_.reader.channels()));
     }
   }
 

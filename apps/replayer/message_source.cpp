@@ -69,7 +69,7 @@ Stretch MessageSource::wait_next() {
   return stretch;
 }
 
-std::vector<std::string> MessageSource::damage() const {
+std::vector<recording::Damage> MessageSource::damage() const {
   const std::lock_guard lock(mutex_);
   return damage_;
 }
@@ -85,8 +85,7 @@ bool MessageSource::publish(Stretch stretch, const std::stop_token& stop) {
     return ready_.size() < kReadAhead || request_.generation != stretch.generation;
   });
   if (!wanted || request_.generation != stretch.generation) return false;
-  damage_.clear();
-  for (const recording::Damage& damage : reader_.damage()) damage_.push_back(damage.text);
+  damage_ = reader_.damage();
   ready_.push_back(std::move(stretch));
   changed_.notify_all();
   return true;

@@ -47,7 +47,7 @@ class MessageSource {
   /// The same, once it is there.
   Stretch wait_next();
   /// Damage met so far.
-  [[nodiscard]] std::vector<std::string> damage() const;
+  [[nodiscard]] std::vector<recording::Damage> damage() const;
 
  private:
   struct Request {
@@ -69,7 +69,7 @@ class MessageSource {
   std::condition_variable_any changed_;
   Request request_;
   std::deque<Stretch> ready_;
-  std::vector<std::string> damage_;
+  std::vector<recording::Damage> damage_;
   std::jthread reading_;
 };
 

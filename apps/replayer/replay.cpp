@@ -4,24 +4,22 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cinttypes>
 #include <cstdio>
-#include <set>
 
 #include "contract/config_error.hpp"
-#include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
-#include "recording/core/same_definition.hpp"
-#include "recording/qos_texts.hpp"
+#include "recording/core/mcap_loss.hpp"
 #include "replayer/keyboard.hpp"
 #include "replayer/player.hpp"
 #include "replayer/remote.hpp"
+#include "replayer/route_plan.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/playback.hpp"
 
 namespace stillhand::replayer {
 
-using recording::Channel;
 using recording::ChannelId;
 
 namespace {
@@ -32,99 +30,15 @@ constexpr std::int64_t kStatusInterval_ns = runtime::kNsPerSecond / 10;
 constexpr std::int64_t kMatchPoll_ns = 10'000'000;
 constexpr std::int64_t kAcknowledge_ns = 2 * runtime::kNsPerSecond;
 
-/// Recorded channel to writer on the bus.
-struct Route {
-  std::string topic;
-  std::size_t writer;
-};
-
-std::string mapped(const ReplayOptions& options, const std::string& topic) {
-  const auto found = options.remap.find(topic);
-  return found == options.remap.end() ? topic : found->second;
-}
-
-/// Why a channel cannot be written, or "".
-std::string refusal(const Channel& channel, const recording::McapReader& reader) {
-  if (channel.message_encoding != recording::kMessageEncoding) {
-    return "its messages are \"" + channel.message_encoding + "\", not CDR";
-  }
-  const auto schema = reader.schemas().find(channel.schema_id);
-  if (schema == reader.schemas().end()) return "its type is not in the file";
-  const std::string& type = schema->second.name;
-  if (!runtime::Playback::knows(type)) return "its type " + type + " is not known here";
-  const std::string_view text(reinterpret_cast<const char*>(schema->second.bytes.data()),
-                              schema->second.bytes.size());
-  const std::string_view ours = topics::idl_of(type);
-  if (text == ours) return {};
-  try {
-    const std::string difference = recording::definition_difference(
-        recording::parse_idl(text, "schema of " + type), recording::parse_idl(ours, "idl"), type);
-    return difference.empty() ? "" : type + " is another version's: " + difference;
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-}
-
-runtime::WriterQos qos_for(const Channel& channel, const runtime::Playback& playback) {
-  if (const auto recorded = recording::qos_of(channel.metadata)) return *recorded;
-  // Recordings of a session name the profile.
-  if (const auto name = channel.metadata.find("qos_profile"); name != channel.metadata.end()) {
-    if (const auto profile = playback.profile(name->second)) return *profile;
-  }
-  if (const topics::Topic* row = topics::find(channel.topic); row != nullptr) {
-    if (const auto profile = playback.profile(std::string(topics::profile_of(row->pattern)))) {
-      return *profile;
-    }
-  }
-  runtime::WriterQos qos;
-  qos.reliable = true;
-  return qos;
-}
-
-/// What a late reader is owed after a seek: the last one of a state.
-bool is_latched(const runtime::WriterQos& qos) {
-  return qos.reliable && qos.durability != runtime::Durability::kVolatile && qos.depth == 1;
-}
-
-struct Plan {
-  std::map<ChannelId, Route> routes;
-  std::vector<ChannelId> wanted;
-  std::vector<ChannelId> latched;
-};
-
-Plan plan_routes(const ReplayOptions& options, const recording::McapReader& reader,
-                 runtime::Playback& playback) {
-  Plan plan;
-  std::set<std::string> refused;  // once for all writers of a topic
-  for (const auto& [id, channel] : reader.channels()) {
-    if (!options.topics.wants(channel.topic)) continue;
-    if (const std::string why = refusal(channel, reader); !why.empty()) {
-      refused.insert(channel.topic + ": " + why);
-      continue;
-    }
-    const runtime::WriterQos qos = qos_for(channel, playback);
-    const std::string topic = mapped(options, channel.topic);
-    plan.routes[id] = {
-        topic, playback.add_writer(topic, reader.schemas().at(channel.schema_id).name, qos)};
-    plan.wanted.push_back(id);
-    if (is_latched(qos)) plan.latched.push_back(id);
-  }
-  if (plan.wanted.empty()) {
-    throw ConfigError(options.file, refused.empty() ? "no topic that matches" : *refused.begin(),
-                      "a recording with topics to play");
-  }
-  for (const std::string& each : refused) std::fprintf(stderr, "not played: %s\n", each.c_str());
-  return plan;
-}
-
 /// Every writer of the topic: each is found by itself.
-bool has_readers(const std::string& topic, const Plan& plan, const runtime::Playback& playback) {
+bool has_readers(const std::string& topic, const RoutePlan& plan,
+                 const runtime::Playback& playback) {
   return std::ranges::all_of(plan.routes, [&](const auto& route) {
     return route.second.topic != topic || playback.matched(route.second.writer) > 0;
   });
 }
 
-void wait_for_readers(const ReplayOptions& options, const Plan& plan,
+void wait_for_readers(const ReplayOptions& options, const RoutePlan& plan,
                       const runtime::Playback& playback, const runtime::Stop& stop) {
   const std::int64_t limit_ns = runtime::monotonic_ns() + options.wait_limit_ns;
   for (const std::string& topic : options.wait_for) {
@@ -175,18 +89,29 @@ void tell_progress(const Player& player, std::uint64_t first_ns, std::uint64_t l
                player.rate().text().c_str(), player.paused() ? "  paused" : "", player.released());
 }
 
+/// "12.5", "0.000000001"
+std::string seconds(std::uint64_t ns) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9f", static_cast<double>(ns) / 1e9);
+  std::string trimmed = text.data();
+  trimmed.erase(trimmed.find_last_not_of('0') + 1);
+  if (trimmed.back() == '.') trimmed.pop_back();
+  return trimmed;
+}
+
 /// Log times to play, of a recording that has messages.
 std::pair<std::uint64_t, std::uint64_t> span_of(const ReplayOptions& options,
                                                 const recording::Statistics& totals) {
-  const auto at = [&](const std::optional<std::int64_t>& since_start_ns, std::uint64_t otherwise) {
-    if (!since_start_ns) return otherwise;
-    return std::min(totals.start_time_ns + static_cast<std::uint64_t>(*since_start_ns),
-                    totals.end_time_ns);
-  };
-  const std::uint64_t first_ns = at(options.start_ns, totals.start_time_ns);
-  const std::uint64_t last_ns = at(options.end_ns, totals.end_time_ns);
-  if (first_ns > last_ns) throw ConfigError("--start", "later than --end", "--start before --end");
-  return {first_ns, last_ns};
+  const std::uint64_t length_ns = totals.end_time_ns - totals.start_time_ns;
+  const auto start_ns = static_cast<std::uint64_t>(options.start_ns.value_or(0));
+  const std::uint64_t end_ns =
+      options.end_ns ? std::min(static_cast<std::uint64_t>(*options.end_ns), length_ns) : length_ns;
+  if (start_ns > length_ns) {
+    throw ConfigError("--start", seconds(start_ns) + " s",
+                      "at most " + seconds(length_ns) + " s, the length of " + options.file);
+  }
+  if (start_ns > end_ns) throw ConfigError("--start", "later than --end", "--start before --end");
+  return {totals.start_time_ns + start_ns, totals.start_time_ns + end_ns};
 }
 
 }  // namespace
@@ -201,9 +126,10 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
     throw ConfigError(options.file, "no messages", "a recording with messages");
   }
   const auto [first_ns, last_ns] = span_of(options, reader.statistics());
+  check_names(options, reader);
   runtime::Playback playback(options.profiles, options.domain,
                              "stillhand-replay/" + std::to_string(getpid()));
-  const Plan plan = plan_routes(options, reader, playback);
+  const RoutePlan plan = plan_routes(options, reader, playback);
   for (const std::string& topic : options.wait_for) {
     if (std::ranges::none_of(plan.routes, [&](const auto& r) { return r.second.topic == topic; })) {
       throw ConfigError("--wait-for", topic, "a topic that is played");
@@ -263,10 +189,12 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
                 "the rate\n",
                 player.held_up());
   }
-  const std::vector<std::string> damage = source.damage();
-  for (const std::string& line : damage) std::fprintf(stderr, "damaged: %s\n", line.c_str());
+  const std::vector<recording::Damage> damage = source.damage();
+  const std::string loss =
+      recording::loss_line(options.file, damage, std::nullopt, file.being_written());
+  if (!loss.empty()) std::fprintf(stderr, "stillhand: %s\n", loss.c_str());
   if (refused > 0) std::fprintf(stderr, "%" PRIu64 " messages were refused by DDS\n", refused);
-  return damage.empty() && refused == 0 ? 0 : 1;
+  return recording::lost_bytes(damage) == 0 && refused == 0 ? 0 : 1;
 }
 
 }  // namespace stillhand::replayer

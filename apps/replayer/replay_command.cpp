@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "contract/config_error.hpp"
+#include "recording/within.hpp"
 #include "replayer/replay.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/profiles_path.hpp"
@@ -79,9 +80,9 @@ void add_replay_command(CLI::App& cli, int& status) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--start", words->start_s, "begin there [s] from the recording's start")
-      ->check(CLI::Range(0.0, kMostSeconds));
+      ->check(recording::within(0.0, kMostSeconds));
   verb->add_option("--end", words->end_s, "end there [s] from the recording's start")
-      ->check(CLI::Range(0.0, kMostSeconds));
+      ->check(recording::within(0.0, kMostSeconds));
   verb->add_flag("--loop", options.loop, "begin again at the end");
   verb->add_flag("--paused", options.begin_paused, "begin paused");
   verb->add_option("--wait-for", options.wait_for,
@@ -89,7 +90,7 @@ void add_replay_command(CLI::App& cli, int& status) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--wait-seconds", words->wait_s, "patience of --wait-for [s]")
-      ->check(CLI::Range(0.0, kMostSeconds))
+      ->check(recording::within(0.0, kMostSeconds))
       ->capture_default_str();
   verb->add_option("--remote", words->remote,
                    "instead: tell the replay on this domain: play, pause, step, stop, \"seek S\", "

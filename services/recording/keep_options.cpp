@@ -2,7 +2,8 @@
 #include "recording/keep_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
+
+#include "recording/within.hpp"
 
 namespace stillhand::recording {
 namespace {
@@ -36,7 +37,7 @@ void add_keep_options(CLI::App& cli, KeepOptions& options) {
       "wait for the disk after each chunk: a loss of power loses no more than a kill");
   cli.add_option("--min-free-mb", options.min_free_mb,
                  "stop, with a whole file, when less is left on the disk [MB]")
-      ->check(CLI::Range(0.0, kMostMb))
+      ->check(within(0.0, kMostMb))
       ->capture_default_str();
 }
 

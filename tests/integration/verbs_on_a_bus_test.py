@@ -96,6 +96,47 @@ class Bus(unittest.TestCase):
         return [dict(zip(titles, line.split(","))) for line in lines[1:]]
 
 
+class RefusedTest(Bus):
+    """What a person can mend: one line, status 2, before anything is written or played."""
+
+    def assert_refused(self, *words):
+        before = sorted(self.folder.iterdir())
+        answer = stillhand(*words, "--domain", self.domain)
+        self.assertEqual((answer.returncode, answer.stdout), (2, ""), words)
+        self.assertEqual(len(answer.stderr.splitlines()), 1, answer.stderr)
+        self.assertEqual(sorted(self.folder.iterdir()), before, words)
+        return answer.stderr
+
+    def test_what_is_no_number_of_seconds_or_bytes(self):
+        file = self.folder / "a.mcap"
+        for option in ("--duration", "--rotate-s", "--rotate-mb", "--window", "--min-free-mb"):
+            for value in ("nan", "inf", "-1"):
+                self.assertIn(f"{option}: got {value}, want", self.assert_refused("record", "--out", file, option, value))
+        self.write_load()
+        for option in ("--start", "--end", "--wait-seconds", "--rate"):
+            for value in ("nan", "inf", "-1"):
+                self.assertIn(f"{option}: got {value}, want", self.assert_refused("replay", self.file, option, value))
+
+    def test_a_start_behind_the_end_names_the_length(self):
+        self.write_load()
+        # The last of 2000 messages, one each millisecond.
+        self.assertIn("--start: got 2 s, want at most 1.999 s, the length of", self.assert_refused(
+            "replay", self.file, "--start", 2))
+        self.assertIn("--start before --end", self.assert_refused("replay", self.file, "--start", 1.5, "--end", 1))
+
+    def test_a_topic_that_is_not_there_is_answered_by_those_that_are(self):
+        self.write_load()
+        topics = "one of " + ", ".join(f"load/{i}" for i in range(10))
+        for words in (("--remap", "laod/3=load/4"), ("--topics", "laod/*"), ("--block", "*")):
+            self.assertIn(topics, self.assert_refused("replay", self.file, *words))
+        self.assertIn("--remap: got load/3, which is not played", self.assert_refused(
+            "replay", self.file, "--remap", "load/3=x", "--block", "load/3"))
+
+    def write_load(self):
+        self.file = self.folder / "load.mcap"
+        subprocess.run([str(LOAD), "--write", str(self.file), "1000", "2"], check=True)
+
+
 class RecordTest(Bus):
     def setUp(self):
         super().setUp()
@@ -265,6 +306,22 @@ class ReplayTest(Bus):
         self.assertEqual(self.messages(heard), {"other/three": self.RATE * self.LENGTH_S // 10})
         ticks = [int(row["tick"]) for row in self.rows(heard, "other/three")]
         self.assertEqual(ticks, list(range(len(ticks))))
+
+    def test_what_a_recording_has_lost_is_told_in_one_line(self):
+        whole = self.file.read_bytes()
+        middle = len(whole) // 2
+        blank = 64 * 1024  # more than the message indexes between two chunks
+        holed = whole[:middle] + bytes(blank) + whole[middle + blank:]
+        # What is gone: a part of the index at the end; half of all; a chunk or two.
+        for content, status, words in ((whole[:-1000], 0, "nothing in it is lost"),
+                                       (whole[:middle], 1, "cut off, as after a crash"),
+                                       (holed, 1, "damaged in ")):
+            with self.subTest(words):
+                self.file.write_bytes(content)
+                replay = stillhand("replay", self.file, "--domain", self.domain, "--topics", "load/0", "--rate", 100)
+                self.assertEqual(replay.returncode, status, replay.stderr)
+                self.assertEqual(len(replay.stderr.splitlines()), 1, replay.stderr)
+                self.assertIn(words, replay.stderr)
 
     def test_keys_of_a_terminal_control_it(self):
         # What the replay says of itself ten times a second, as a recording that grows.

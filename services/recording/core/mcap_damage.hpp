@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace stillhand::recording {
 
@@ -27,5 +28,12 @@ struct Damage {
   std::uint64_t lost_bytes;  ///< [B] of the file that are not delivered because of it
   std::string text;          ///< one line for a person
 };
+
+/// [B] that are not delivered because of all of it.
+inline std::uint64_t lost_bytes(const std::vector<Damage>& damage) noexcept {
+  std::uint64_t sum = 0;
+  for (const Damage& each : damage) sum += each.lost_bytes;
+  return sum;
+}
 
 }  // namespace stillhand::recording

@@ -26,9 +26,8 @@ std::string byte_count(std::uint64_t bytes) {
   return text.data();
 }
 
-std::string loss_line(const std::string& path, const McapReader& reader,
+std::string loss_line(const std::string& path, const std::vector<Damage>& damage,
                       std::optional<std::uint64_t> messages, bool being_written) {
-  const std::vector<Damage>& damage = reader.damage();
   const std::string read =
       messages ? std::to_string(*messages) + " messages read" : std::string("the rest is read");
   if (being_written) return path + ": still being written; " + read;
@@ -39,7 +38,7 @@ std::string loss_line(const std::string& path, const McapReader& reader,
   const bool cut = std::ranges::all_of(damage, [](const Damage& each) {
     return is_harmless(each) || each.kind == DamageKind::kCutOff;
   });
-  const std::string lost = byte_count(reader.lost_bytes()) + " lost";
+  const std::string lost = byte_count(lost_bytes(damage)) + " lost";
   if (cut) return path + ": cut off, as after a crash; " + lost + " at its end, " + read;
   const auto worst = std::ranges::max_element(damage, {}, &Damage::lost_bytes);
   const auto findings =

@@ -120,10 +120,6 @@ const Metadata* McapReader::find_metadata(std::string_view name) const noexcept 
   return found == metadata_.end() ? nullptr : &*found;
 }
 
-std::uint64_t McapReader::lost_bytes() const noexcept {
-  std::uint64_t sum = 0;
-  for (const Damage& damage : damage_) sum += damage.lost_bytes;
-  return sum;
-}
+std::uint64_t McapReader::lost_bytes() const noexcept { return recording::lost_bytes(damage_); }
 
 }  // namespace stillhand::recording

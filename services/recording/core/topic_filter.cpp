@@ -2,6 +2,7 @@
 #include "recording/core/topic_filter.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace stillhand::recording {
 
@@ -36,6 +37,14 @@ bool TopicFilter::wants(std::string_view topic) const noexcept {
   };
   return (allow.empty() || std::ranges::any_of(allow, matches)) &&
          std::ranges::none_of(block, matches);
+}
+
+std::string one_of_topics(const std::map<ChannelId, Channel>& channels) {
+  std::set<std::string> topics;  // each writer of a topic has a channel
+  for (const auto& [id, channel] : channels) topics.insert(channel.topic);
+  std::string text;
+  for (const std::string& topic : topics) text += (text.empty() ? "one of " : ", ") + topic;
+  return text.empty() ? "a recording with topics" : text;
 }
 
 }  // namespace stillhand::recording

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "recording/core/mcap_format.hpp"
+
 namespace stillhand::recording {
 
 /// `*` stands for any run of characters, a slash included, `?` for any one; the rest for itself.
@@ -18,5 +20,8 @@ struct TopicFilter {
 
   [[nodiscard]] bool wants(std::string_view topic) const noexcept;
 };
+
+/// "one of a, b": every topic of a recording, for messages on a name that is none of them.
+std::string one_of_topics(const std::map<ChannelId, Channel>& channels);
 
 }  // namespace stillhand::recording

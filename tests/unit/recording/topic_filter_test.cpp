@@ -39,5 +39,12 @@ TEST(TopicFilterTest, BlockedWinsOverAllowedAndNothingAllowedMeansAll) {
   EXPECT_FALSE(sut.wants("other/sensed"));
 }
 
+TEST(TopicFilterTest, TheTopicsOfARecordingAreNamedOnceEach) {
+  const std::map<ChannelId, Channel> channels{
+      {0, {0, 0, "b", "cdr", {}}}, {1, {1, 0, "a", "cdr", {}}}, {7, {7, 0, "b", "cdr", {}}}};
+  EXPECT_EQ(one_of_topics(channels), "one of a, b");
+  EXPECT_EQ(one_of_topics({}), "a recording with topics");
+}
+
 }  // namespace
 }  // namespace stillhand::recording
