@@ -7,6 +7,8 @@
 #include <cinttypes>
 #include <cstdio>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "contract/config_error.hpp"
 #include "idl/cdr.hpp"
@@ -150,18 +152,39 @@ Totals tell_topics(const std::map<std::string, recording::TopicTally>& topics) {
   return totals;
 }
 
+/// What became of everything, for people.  @returns whether nothing is missing
+bool tell_end(const recording::BusRecording& recorded, const runtime::Tap& tap,
+              const recording::Status& closed, std::uint32_t domain) {
+  if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K");
+  const Totals totals = tell_topics(recorded.tally().topics(tap.writers()));
+  const recording::TapeStatus end = recorded.tape().status();
+  std::printf("%" PRIu64 " messages in %u file%s, the last %s\n", end.written, end.parts,
+              end.parts == 1 ? "" : "s", end.file.c_str());
+  if (end.passed_over > 0) {
+    std::printf("%" PRIu64 " messages passed over: paused, or outside the event window\n",
+                end.passed_over);
+  }
+  const std::vector<std::string> trouble = tap.trouble();
+  for (const std::string& line : trouble) warn(line);
+  if (totals.lost > 0) warn(std::to_string(totals.lost) + " messages lost on their way here");
+  if (end.dropped > 0) warn(std::to_string(end.dropped) + " messages received and not written");
+  if (tap.unattributed() > 0) {
+    warn(std::to_string(tap.unattributed()) + " messages of writers that were never announced");
+  }
+  if (totals.received == 0) warn("nothing was heard on domain " + std::to_string(domain));
+  if (!closed.ok()) warn(closed.text);
+  return closed.ok() && trouble.empty() && totals.lost == 0 && end.dropped == 0 &&
+         tap.unattributed() == 0 && totals.received > 0;
+}
+
 }  // namespace
 
 int run_record(const RecordOptions& options, runtime::Stop& stop) {
-  recording::TapeOptions tape_options = options.tape;
-  tape_options.session = recording::session_texts(options.domain, "stillhand record");
-  recording::BusRecording recorded(std::move(tape_options));
-  recording::Tape& tape = recorded.tape();
-  const recording::Tally& tally = recorded.tally();
-  const recording::TrialLog& trials = recorded.trials();
-
   std::vector<FieldTrigger> triggers;
   for (const std::string& text : options.triggers) triggers.emplace_back(text);
+  // Made once nothing can be refused any more, so that a refusal leaves no file; gone after the
+  // tap.
+  std::optional<recording::BusRecording> recorded;
 
   runtime::Tap::Options tap_options;
   tap_options.name = "stillhand-record/" + std::to_string(getpid());
@@ -170,18 +193,25 @@ int run_record(const RecordOptions& options, runtime::Stop& stop) {
   tap_options.wanted = [&options](const std::string& topic) { return options.topics.wants(topic); };
   tap_options.on_sample = [&](const runtime::FoundWriter& writer,
                               const runtime::TappedSample& sample) {
-    recorded.take(writer, sample);
+    recorded->take(writer, sample);
     for (FieldTrigger& trigger : triggers) {
-      if (trigger.step(writer, sample)) tape.trigger(trigger.text());
+      if (trigger.step(writer, sample)) recorded->tape().trigger(trigger.text());
     }
     if (options.trigger_on_deadline && is_missed_deadline(writer, sample)) {
-      tape.trigger("a missed deadline");
+      recorded->tape().trigger("a missed deadline");
     }
   };
   runtime::Tap tap(tap_options);
-
   Remote remote(runtime::outsider("record", options.domain, options.profiles, false),
                 topics::kRecorderCommand, topics::kRecorderStatus);
+  recording::TapeOptions tape_options = options.tape;
+  tape_options.session = recording::session_texts(options.domain, "stillhand record");
+  recorded.emplace(std::move(tape_options));
+  tap.start();
+
+  recording::Tape& tape = recorded->tape();
+  const recording::Tally& tally = recorded->tally();
+  const recording::TrialLog& trials = recorded->trials();
   RequiredTopics required(options.required);
   const std::int64_t began_ns = runtime::monotonic_ns();
   std::int64_t told_ns = 0;
@@ -209,28 +239,8 @@ int run_record(const RecordOptions& options, runtime::Stop& stop) {
   if (remote.asked()) {
     remote.tell_last(status_of(remote, tape.status(), tally.topics({}), required.missing()));
   }
-
-  if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K");
-  const Totals totals = tell_topics(tally.topics(tap.writers()));
-  const recording::TapeStatus end = tape.status();
-  std::printf("%" PRIu64 " messages in %u file%s, the last %s\n", end.written, end.parts,
-              end.parts == 1 ? "" : "s", end.file.c_str());
-  if (end.passed_over > 0) {
-    std::printf("%" PRIu64 " messages passed over: paused, or outside the event window\n",
-                end.passed_over);
-  }
-  const std::vector<std::string> trouble = tap.trouble();
-  for (const std::string& line : trouble) warn(line);
-  if (totals.lost > 0) warn(std::to_string(totals.lost) + " messages lost on their way here");
-  if (end.dropped > 0) warn(std::to_string(end.dropped) + " messages received and not written");
-  if (tap.unattributed() > 0) {
-    warn(std::to_string(tap.unattributed()) + " messages of writers that were never announced");
-  }
-  if (totals.received == 0) warn("nothing was heard on domain " + std::to_string(options.domain));
-  if (!closed.ok()) warn(closed.text);
-  const bool good = closed.ok() && trouble.empty() && totals.lost == 0 && end.dropped == 0 &&
-                    tap.unattributed() == 0 && totals.received > 0 && required.missing().empty();
-  return good ? 0 : 1;
+  const bool whole = tell_end(*recorded, tap, closed, options.domain);
+  return whole && required.missing().empty() ? 0 : 1;
 }
 
 int run_remote(const std::string& action, const RecordOptions& options, runtime::Stop& stop) {

@@ -19,6 +19,7 @@ class BusRecording {
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
 
   [[nodiscard]] Tape& tape() noexcept { return tape_; }
+  [[nodiscard]] const Tape& tape() const noexcept { return tape_; }
   [[nodiscard]] const Tally& tally() const noexcept { return tally_; }
   [[nodiscard]] const TrialLog& trials() const noexcept { return trials_; }
 

@@ -22,9 +22,9 @@ TapeOptions options_of(const runtime::ServiceOptions& service, const KeepOptions
 
 }  // namespace
 
-Shell::Shell(runtime::Service& service, const KeepOptions& keep)
-    : service_(service), recording_(options_of(service.options(), keep)) {
+Shell::Shell(runtime::Service& service, const KeepOptions& keep) : service_(service) {
   for (const topics::Topic* topic : topics::kCatalogue) subscribe(*topic);
+  recording_.emplace(options_of(service.options(), keep));
   service.on_trial([&](const Trial& trial, const auto&) { service.note_armed(trial.number); });
 }
 
@@ -35,8 +35,8 @@ void Shell::subscribe(const topics::Topic& topic) {
       [this, stream](std::span<const std::byte> bytes,
                      const runtime::Arrival& arrival) -> runtime::detail::SampleClock {
         if (arrival.writer != nullptr) {
-          recording_.take(*arrival.writer, {arrival.writer_number, arrival.sequence,
-                                            arrival.source_ns, arrival.logged_ns, bytes});
+          recording_->take(*arrival.writer, {arrival.writer_number, arrival.sequence,
+                                             arrival.source_ns, arrival.logged_ns, bytes});
         } else {
           unattributed_.fetch_add(1, std::memory_order_relaxed);
         }
@@ -48,10 +48,10 @@ void Shell::subscribe(const topics::Topic& topic) {
 
 // A trial that nobody keeps is no trial: with the tape the process ends, run() says why.
 void Shell::watch() {
-  while (!service_.stop().requested() && !recording_.tape().stopped()) {
+  while (!service_.stop().requested() && !recording_->tape().stopped()) {
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWatch_ns);
   }
-  if (recording_.tape().stopped()) {
+  if (recording_->tape().stopped()) {
     service_.note_event(stillhand_msgs::EVENT_NOTE,
                         "recording stopped: the file cannot be written");
   }
@@ -59,10 +59,10 @@ void Shell::watch() {
 
 void Shell::run() {
   service_.run([this] { watch(); });
-  if (const Status status = recording_.tape().close(); !status.ok()) {
+  if (const Status status = recording_->tape().close(); !status.ok()) {
     throw std::runtime_error(status.text);
   }
-  const TapeStatus end = recording_.tape().status();
+  const TapeStatus end = recording_->tape().status();
   const std::uint64_t missing = end.dropped + unattributed_.load(std::memory_order_relaxed);
   if (missing > 0) {
     throw std::runtime_error(end.file + ": " + std::to_string(missing) +

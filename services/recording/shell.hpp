@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include "recording/bus_recording.hpp"
 #include "recording/keep_options.hpp"
@@ -24,7 +25,7 @@ class Shell {
   void watch();
 
   runtime::Service& service_;
-  BusRecording recording_;
+  std::optional<BusRecording> recording_;  // made last, so that a refusal leaves no file
   std::atomic<std::uint64_t> unattributed_{0};
 };
 

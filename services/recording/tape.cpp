@@ -73,7 +73,12 @@ Tape::Tape(TapeOptions options)
     throw ConfigError(options_.path, mib(left) + " left on the disk",
                       "at least " + mib(options_.min_free_bytes) + ", or a smaller --min-free-mb");
   }
-  if (!open_part()) throw std::runtime_error(status_.stopped);
+  if (!open_part()) {
+    part_.reset();
+    std::error_code none;
+    std::filesystem::remove(options_.path, none);  // this tape made it, and nothing is in it
+    throw std::runtime_error(status_.stopped);
+  }
   writing_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 

@@ -56,7 +56,8 @@ struct TapeStatus {
 /// the disk allows and `stopped` says why; what comes later is dropped and counted.
 class Tape {
  public:
-  /// @throws ConfigError when the file cannot be made or the disk is too full to begin.
+  /// @throws ConfigError when the file cannot be made or the disk is too full to begin;
+  ///         std::runtime_error when it cannot be written.  Either leaves no file behind.
   explicit Tape(TapeOptions options);
   ~Tape();
   Tape(const Tape&) = delete;

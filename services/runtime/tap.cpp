@@ -208,6 +208,9 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
       throw missing_profile(impl_->options.profiles, "data_reader", profile_of(each));
     }
   }
+}
+
+void Tap::start() {
   impl_->opening =
       std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->open_readers(stop); });
 }

@@ -16,6 +16,7 @@ namespace stillhand::runtime {
 /// waits for.  Readers are made for each wanted topic as its writers are found, one for each
 /// combination of reliability and durability, so that every writer matches and none is read twice.
 ///
+/// Made, it has looked at all that can be refused; it hears nothing before start().
 /// on_sample() runs in DDS's receiving thread, one call at a time for each reader; writers() is for
 /// any thread.  Endpoint errors after the start are in trouble().
 class Tap {
@@ -34,6 +35,8 @@ class Tap {
   Tap(const Tap&) = delete;
   Tap& operator=(const Tap&) = delete;
 
+  /// Once.
+  void start();
   /// No on_sample() runs after this returns.
   void stop();
   /// Every writer found so far, in the order of finding; those that left stay.

@@ -101,8 +101,8 @@ class RefusedTest(Bus):
 
     def assert_refused(self, *words):
         before = sorted(self.folder.iterdir())
-        answer = stillhand(*words, "--domain", self.domain)
-        self.assertEqual((answer.returncode, answer.stdout), (2, ""), words)
+        answer = stillhand(words[0], "--domain", self.domain, *words[1:])
+        self.assertEqual(answer.returncode, 2, words)
         self.assertEqual(len(answer.stderr.splitlines()), 1, answer.stderr)
         self.assertEqual(sorted(self.folder.iterdir()), before, words)
         return answer.stderr
@@ -116,6 +116,21 @@ class RefusedTest(Bus):
         for option in ("--start", "--end", "--wait-seconds", "--rate"):
             for value in ("nan", "inf", "-1"):
                 self.assertIn(f"{option}: got {value}, want", self.assert_refused("replay", self.file, option, value))
+
+    def test_a_recording_that_is_refused_leaves_no_file_and_takes_none(self):
+        file = self.folder / "a.mcap"
+        broken = self.folder / "broken.xml"
+        broken.write_text("<dds><profiles>")
+        empty = self.folder / "empty.xml"
+        empty.write_text('<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles/></dds>')
+        for words in (("--domain", 233), ("--profiles", self.folder / "nowhere.xml"), ("--profiles", broken),
+                      ("--profiles", empty), ("--trigger", "x", "--window", 1), ("--trigger", "a.b>1"),
+                      ("--trigger", "stillhand/sensed.no_field>1", "--window", 1), ("--min-free-mb", 1e9)):
+            self.assert_refused("record", "--out", file, *words)
+        file.write_text("of somebody else")
+        self.assertIn("a.mcap", self.assert_refused("record", "--out", file))
+        self.assert_refused("record", "--out", file, "--domain", 233)
+        self.assertEqual(file.read_text(), "of somebody else")
 
     def test_a_start_behind_the_end_names_the_length(self):
         self.write_load()

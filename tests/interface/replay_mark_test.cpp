@@ -192,6 +192,7 @@ TEST_F(ReplayMarkTest, ATapHearsAReplayWithItsMarkBytesAndQos) {
     heard.assign(sample.bytes.begin(), sample.bytes.end());
   };
   Tap sut(options);
+  sut.start();
   const auto sent = command_bytes(12345);
   ASSERT_TRUE(eventually([&] {
     replay.write(writer, sent);

@@ -3,9 +3,12 @@
 #include "recording/tape.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
+#include <stdexcept>
 
 #include "contract/config_error.hpp"
 #include "recording/core/mcap_reader.hpp"
@@ -192,6 +195,19 @@ TEST_F(TapeTest, ADiskThatIsTooFullIsRefusedBeforeTheRun) {
   full.min_free_bytes = UINT64_MAX;
   EXPECT_THROW(Tape{full}, ConfigError);
   EXPECT_FALSE(std::filesystem::exists(full.path));
+}
+
+// A bound on the size of files stands in for the disk.
+TEST_F(TapeTest, AFileThatCannotBeWrittenIsNotLeftBehind) {
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  const rlimit none{0, old.rlim_max};
+  const auto disposition = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+  EXPECT_THROW(Tape{options()}, std::runtime_error);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
+  std::signal(SIGXFSZ, disposition);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
 TEST(QosTextsTest, EveryPolicyComesBackFromItsText) {
