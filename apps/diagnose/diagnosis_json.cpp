@@ -87,12 +87,17 @@ ordered_json body_json(const diagnosis::Model& model) {
 }
 
 [[gnu::format(printf, 2, 3)]] void print(std::string& text, const char* format, ...) {
-  char line[600];
   std::va_list arguments;
+  std::va_list again;
   va_start(arguments, format);
-  std::vsnprintf(line, sizeof(line), format, arguments);
+  va_copy(again, arguments);
+  const auto length = static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments));
   va_end(arguments);
-  text += line;
+  const std::size_t before = text.size();
+  text.resize(before + length + 1);  // and the end that vsnprintf writes
+  std::vsnprintf(text.data() + before, length + 1, format, again);
+  va_end(again);
+  text.pop_back();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string_view>
 
 #include "contract/config_error.hpp"
 #include "measurement/grid.hpp"
@@ -30,6 +31,41 @@ bool is_mcap(const std::string& path) {
   return begin == kMagic;
 }
 
+// Length in bytes of the character that the text begins with; 0: it is no UTF-8 (RFC 3629).
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead < 0xC2   ? 0
+                             : lead < 0xE0 ? 2
+                             : lead < 0xF0 ? 3
+                             : lead < 0xF5 ? 4
+                                           : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80U) return 0;
+  }
+  // Longer than it need be, a surrogate, beyond U+10FFFF.
+  if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F) ||
+      (lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) > 0x8F)) {
+    return 0;
+  }
+  return length;
+}
+
+// Names and units go on into JSON and HTML; rows are numbers.
+void check_titles(const std::string& path, std::string_view text) {
+  const std::string_view header = text.substr(0, text.find('\n'));
+  for (std::size_t i = 0; i < header.size();) {
+    const std::size_t length = character_length(header.substr(i));
+    if (length == 0) {
+      throw ConfigError(path + ":1:" + std::to_string(i + 1), "a title that is no UTF-8",
+                        "CSV text in UTF-8");
+    }
+    i += length;
+  }
+}
+
 // Before the table is built: what it will hold.
 void check_table_size(const std::string& path, const std::string& text, std::size_t most_values) {
   const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
@@ -54,6 +90,7 @@ recording::Recording read_table(const std::string& path, std::size_t most_values
   }
   const std::string text = recording::read_file(path);
   check_table_size(path, text, most_values);
+  check_titles(path, text);
   return recording::parse_csv(text, path);
 }
 

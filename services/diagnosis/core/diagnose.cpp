@@ -44,21 +44,21 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return left.dot(right) / std::max(left.norm() * right.norm(), 1e-300);
 }
 
-void check_excitation(const Signals& signals) {
+void check_excitation(const Signals& signals, const std::string& source) {
   const auto constant = [](const Signal& signal) {
     return !(signal.deviation > 1e-12 * (std::abs(signal.mean) + 1e-300));
   };
   if (constant(signals.output())) {
-    throw ConfigError("output '" + signals.output().name + "'", "a constant signal",
+    throw ConfigError(source + ", output '" + signals.output().name + "'", "a constant signal",
                       "one that moves");
   }
   for (const Signal& input : signals.inputs()) {
     if (constant(input)) {
-      throw ConfigError("input '" + input.name + "'", "a constant signal",
+      throw ConfigError(source + ", input '" + input.name + "'", "a constant signal",
                         "one that moves: without excitation there is nothing to fit");
     }
     if (std::abs(correlation(input.values, signals.output().values)) > 1.0 - 1e-12) {
-      throw ConfigError("output '" + signals.output().name + "'",
+      throw ConfigError(source + ", output '" + signals.output().name + "'",
                         "the input '" + input.name + "' itself, scaled", "a measured answer to it");
     }
   }
@@ -228,7 +228,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   diagnosis.sample_rate_hz = working.rate_hz;
   const Signals signals(working, options.inputs, options.output);
   diagnosis.output_unit = signals.output().unit;
-  check_excitation(signals);
+  check_excitation(signals, working.source);
   const Blocks blocks = make_blocks(signals);
   step("baseline");
   diagnosis.baseline = chosen_baseline(signals, blocks, options, diagnosis.model_class);

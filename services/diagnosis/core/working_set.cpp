@@ -2,7 +2,9 @@
 #include "diagnosis/core/working_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "signal/butterworth.hpp"
 #include "signal/spectrum.hpp"
@@ -16,6 +18,12 @@ constexpr double kCutoff = 0.4;  // of the new rate
 constexpr std::size_t kPieces = 40;
 constexpr std::size_t kShortestPiece = 50;
 constexpr std::size_t kSegment = 4096;
+
+std::string figure(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
 
 // [Hz] above which lies a thousandth of the inputs' power.
 double highest_excited_hz(const Measurement& measurement, const std::vector<std::string>& inputs) {
@@ -122,8 +130,8 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
     }
     result.stretches.push_back({kept.first, result.weight.size(), kept.start_s});
   }
-  result.notes.push_back("the inputs end far below " + std::to_string(measurement.rate_hz / 2.0) +
-                         " Hz: worked at " + std::to_string(result.rate_hz) + " Hz");
+  result.notes.push_back("the inputs end far below " + figure(measurement.rate_hz / 2.0) +
+                         " Hz: worked at " + figure(result.rate_hz) + " Hz");
   return result;
 }
 

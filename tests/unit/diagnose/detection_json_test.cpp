@@ -61,5 +61,12 @@ TEST(DetectionJsonTest, TheVerdictHoldsBothResidualsAnswersAndTheirThresholds) {
   }
 }
 
+// A note may name many recordings.
+TEST(DetectionJsonTest, ALineOfTheTableIsAsLongAsItMustBe) {
+  diagnosis::Diagnosis diagnosis;
+  diagnosis.notes = {std::string(3000, 'x') + "end", "after it"};
+  EXPECT_TRUE(diagnosis_table(diagnosis).ends_with("xend\nnote          after it\n"));
+}
+
 }  // namespace
 }  // namespace stillhand::diagnose

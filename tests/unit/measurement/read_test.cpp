@@ -134,6 +134,18 @@ TEST(ReadTest, ATextIsRefused) {
   EXPECT_THAT(complaint("Dear reader,\n\nthis is a letter.\n"), StartsWith(":1:1: got the column"));
 }
 
+// Latin-1, as spreadsheets write it; and characters that a strict reader of JSON refuses.
+TEST(ReadTest, ATitleThatIsNoUtf8IsRefusedWithItsPlace) {
+  for (const char* odd :
+       {"\xB0", "\xC0\xB0", "\xE0\x80\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xC3"}) {
+    EXPECT_THAT(complaint(std::string("t [s],temp [") + odd + "C]\n0,1\n0.01,1\n"),
+                StartsWith(":1:13: got a title that is no UTF-8"));
+  }
+  std::string good = table(100);
+  good.replace(0, good.find('\n'), "t [s],\u0101_y [m/s\u00B2],\u20AC [\U0001F600],temp [\u00B0C]");
+  EXPECT_EQ(read_measurement(file_of(good)).channels[2].unit, "\u00B0C");
+}
+
 TEST(ReadTest, BinaryContentIsRefused) {
   EXPECT_THAT(complaint(std::string("\x7f"
                                     "ELF\0\1\2\3",
