@@ -93,13 +93,12 @@ RecordingInfo info_of(OpenRecording& recording) {
   recording::McapReader& reader = recording.reader;
   auto channels = channels_of(reader);
   RecordingInfo info;
-  check(reader.for_each_message({}, [&](const recording::MessageView& message) {
+  check(reader.verify([&](const recording::MessageView& message) {
     channels.at(message.channel.id).take(message);
     const std::uint64_t time_ns = message.log_time_ns;
     info.start_ns = info.messages == 0 ? time_ns : std::min(info.start_ns, time_ns);
     info.end_ns = std::max(info.end_ns, time_ns);
     ++info.messages;
-    return true;
   }));
   info.path = recording.path;
   info.bytes = recording.source.size();

@@ -46,7 +46,7 @@ struct RecordingInfo {
   std::uint64_t lost_bytes = 0;
 };
 
-/// Reads all of it.  @throws std::runtime_error when the disk fails.
+/// Reads all of it, and checks every checksum.  @throws std::runtime_error when the disk fails.
 RecordingInfo info_of(OpenRecording& recording);
 
 std::string info_text(const RecordingInfo& info);

@@ -138,6 +138,10 @@ Recovered recover(const std::string& path, const RecoverOptions& options) {
   recording::FileSink sink(pending.path());
   Copy copy(old.reader, sink, options.compression);
   result.messages = copy.copy_messages();
+  if (result.messages == 0 && old.reader.metadata().empty()) {
+    throw std::runtime_error(path + ": no message and no metadata in it can be read; nothing was " +
+                             "written");
+  }
   result.lost_bytes = old.reader.lost_bytes();
   result.attachments = old.reader.statistics().attachment_count;
   result.findings = findings_of(old.reader);

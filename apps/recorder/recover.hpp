@@ -32,7 +32,8 @@ struct Recovered {
 /// that says what was lost.  The new file appears when it is complete and on the disk, nothing is
 /// left of it when that never happens, and no file is written over.
 /// @throws ConfigError when the file can't be read, is still being written, or a name is taken;
-///         std::runtime_error when the disk fails, Interrupted: the old file is then as it was.
+///         std::runtime_error when there is nothing to recover or the disk fails, Interrupted: the
+///         old file is then as it was.
 Recovered recover(const std::string& path, const RecoverOptions& options);
 
 }  // namespace stillhand::recorder

@@ -11,8 +11,15 @@ namespace stillhand::recording {
 McapReader::McapReader(ByteSource& source, McapReaderOptions options)
     : source_(source), options_(options), window_(source) {
   if (is_newer()) return;
-  read_header();
-  if (!open_by_summary() && window_.status().ok()) scan();
+  const bool sound_header = read_header();
+  if (open_by_summary()) {
+    if (!sound_header) {
+      add_damage(DamageKind::kBadRecord, kMagic.size(), 0,
+                 "the header cannot be read: profile and program are not known");
+    }
+  } else if (window_.status().ok()) {
+    scan();
+  }
   if (status_.ok()) status_ = window_.status();
   if (!status_.ok()) {
     forget();
@@ -48,23 +55,25 @@ bool McapReader::is_newer() {
   return true;
 }
 
-void McapReader::read_header() {
+// False where a header should be and is none; a file that does not begin well is told of here.
+bool McapReader::read_header() {
   const auto magic = window_.view(0, kMagic.size());
   if (!std::ranges::equal(magic, std::as_bytes(std::span(kMagic)))) {
     add_damage(DamageKind::kNoMagic, 0, 0, "the file does not begin as an MCAP file");
-    return;
+    return true;
   }
   const std::uint64_t left = source_.size() - kMagic.size();
   WireReader head(window_.view(kMagic.size(), std::min(left, kRecordHeadBytes)));
   const auto opcode = static_cast<Opcode>(head.take<std::uint8_t>());
   const auto length = head.take<std::uint64_t>();
   if (!head.ok() || opcode != Opcode::kHeader || length > left - kRecordHeadBytes ||
-      length > options_.max_chunk_bytes) {
-    return;  // scan() or verify() tells
+      !scan_header(length)) {
+    return false;
   }
   WireReader in(window_.view(kMagic.size() + kRecordHeadBytes, length));
   profile_ = in.take_text();
   library_ = in.take_text();
+  return true;
 }
 
 void McapReader::add_damage(DamageKind kind, std::uint64_t offset, std::uint64_t lost_bytes,
@@ -93,9 +102,12 @@ void McapReader::define(Channel channel, std::uint64_t offset) {
   }
 }
 
-Status McapReader::verify() {
+Status McapReader::verify(const std::function<void(const MessageView&)>& take) {
   if (!status_.ok()) return status_;
-  const Status walked = for_each_message({}, [](const MessageView&) { return true; });
+  const Status walked = for_each_message({}, [&take](const MessageView& message) {
+    if (take) take(message);
+    return true;
+  });
   if (!walked.ok() || !data_end_) return walked;
   constexpr std::uint64_t kBlockBytes = 1 << 20;
   std::uint32_t crc = 0;

@@ -73,7 +73,8 @@ class McapReader {
                           const std::function<bool(const MessageView&)>& take);
 
   /// Reads the whole file and checks every checksum; findings go to damage().
-  Status verify();
+  /// @param take  gets every message on the way, as from for_each_message(); empty: nobody does
+  Status verify(const std::function<void(const MessageView&)>& take = {});
 
   /// What was found so far: at opening, and by for_each_message() and verify().
   [[nodiscard]] const std::vector<Damage>& damage() const noexcept { return damage_; }
@@ -114,7 +115,7 @@ class McapReader {
   // mcap_reader.cpp
   std::optional<char> version_at(std::uint64_t offset);
   bool is_newer();
-  void read_header();
+  bool read_header();
   void define(Schema schema, std::uint64_t offset);
   void define(Channel channel, std::uint64_t offset);
   void add_damage(DamageKind kind, std::uint64_t offset, std::uint64_t lost_bytes,

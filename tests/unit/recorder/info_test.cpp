@@ -113,6 +113,26 @@ TEST_F(InfoTest, WhatIsNoRecordingIsRefusedInWords) {
               HasSubstr("no regular file"));
 }
 
+// The header by itself: with its index the file is read without it.
+TEST_F(InfoTest, ADamagedHeaderIsSaid) {
+  write_sample(path("a.mcap"));
+  const std::string bytes = recording::read_file(path("a.mcap"));
+  // Behind the magic: opcode, length (8 bytes), length of the profile's text (4), its text.
+  for (const std::size_t at : {8u, 9u, 17u, 22u}) {
+    std::string broken = bytes;
+    broken[at] = static_cast<char>(broken[at] ^ 0x40);
+    ASSERT_TRUE(recording::write_file_atomically(path("b.mcap"), broken).ok());
+    OpenRecording recording(path("b.mcap"));
+    const RecordingInfo sut = info_of(recording);
+    EXPECT_FALSE(sut.whole) << at;
+    EXPECT_EQ(sut.messages, 204u) << at;
+    EXPECT_THAT(info_text(sut), HasSubstr("damaged where nothing is lost")) << at;
+    const bool text_alone = at == 22u;  // still a header, of another profile: the checksum tells
+    EXPECT_EQ(sut.damage.front().offset, text_alone ? 0u : 8u) << at;
+    EXPECT_EQ(sut.program, text_alone ? "stillhand" : "") << at;
+  }
+}
+
 // A record that says 4 GiB, in a file of a few kB: refused by its number, nothing allocated.
 TEST_F(InfoTest, ALengthFieldOf4GiBIsRefusedAndTheRestIsRead) {
   write_sample(path("a.mcap"));

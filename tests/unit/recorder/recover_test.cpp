@@ -83,6 +83,33 @@ TEST_F(RecoverTest, ADamagedChunkIsLostAloneAndNamed) {
   EXPECT_THAT(sut.findings, testing::Contains(HasSubstr("chunk lost")));
 }
 
+TEST_F(RecoverTest, WhereNothingCanBeReadNothingIsWritten) {
+  const std::string magic("\x89MCAP0\r\n");
+  for (const std::string& bytes : {magic, magic + magic, magic + std::string(5000, '\0')}) {
+    ASSERT_TRUE(recording::write_file_atomically(path("a.mcap"), bytes).ok());
+    for (const std::string& out : {path("b.mcap"), std::string()}) {
+      EXPECT_THAT([&] { recover(path("a.mcap"), {out}); },
+                  testing::ThrowsMessage<std::runtime_error>(
+                      HasSubstr("a.mcap: no message and no metadata in it can be read")));
+      EXPECT_EQ(recording::read_file(path("a.mcap")), bytes);
+      EXPECT_EQ(file_count(), 1u);
+    }
+  }
+}
+
+// Killed before its first message: what is known of the session is kept.
+TEST_F(RecoverTest, MetadataAloneIsRecovered) {
+  {
+    recording::FileSink sink(path("a.mcap"));
+    recording::McapWriter writer(sink);
+    ASSERT_TRUE(writer.add_metadata("stillhand.session", {{"seed", "7"}}).ok());
+    ASSERT_TRUE(writer.flush_chunk().ok());
+  }
+  EXPECT_EQ(recover(path("a.mcap"), {}).messages, 0u);
+  OpenRecording mended(path("a.mcap"));
+  EXPECT_NE(mended.reader.find_metadata("stillhand.session"), nullptr);
+}
+
 TEST_F(RecoverTest, NoFileIsWrittenOver) {
   const std::string before = cut_sample();
   for (const char* name : {"taken", "a.mcap.damaged"}) {

@@ -241,6 +241,16 @@ TEST(McapReaderTest, ReportsMessagesOfAnUndefinedChannel) {
   EXPECT_EQ(sut.lost_bytes(), 9u + 22u + 100u);
 }
 
+TEST(McapReaderTest, VerifyGivesTheMessagesThatItReads) {
+  const Bytes file = tests::recorded_file(10, Compression::kNone, 400);
+  MemorySource source(file);
+  McapReader sut(source);
+  std::vector<std::uint32_t> sequences;
+  ASSERT_TRUE(
+      sut.verify([&](const MessageView& message) { sequences.push_back(message.sequence); }).ok());
+  EXPECT_EQ(sequences, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
 TEST(McapReaderTest, RefusesWhatIsNoMcapFile) {
   for (const std::string text : {"", "x", "t [s],f [N]\n0,1\n", "\x89MCAP1\r\n"}) {
     MemorySource source(std::as_bytes(std::span(text)));
