@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiment/in_process.hpp"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,20 @@ sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
   return {tick,          raw.accel_x_v,   raw.accel_y_v,
           raw.accel_z_v, raw.load_cell_v, raw.encoder_counts,
           raw.roll_rad};
+}
+
+// design.md section 3.
+recording::Recording empty_table(TrialPhase phase) {
+  recording::Recording rows;
+  rows.rate_hz = kControlRateHz;
+  rows.columns = {{"a_x", "m/s^2", {}}, {"a_y", "m/s^2", {}}, {"a_z", "m/s^2", {}},
+                  {"roll", "rad", {}},  {"theta", "rad", {}}, {"omega", "rad/s", {}},
+                  {"f", "N", {}},       {"f_motor", "N", {}}};
+  if (phase == TrialPhase::kTracking) {
+    rows.columns.push_back({"x_r", "m", {}});
+    rows.columns.push_back({"x_p", "m", {}});
+  }
+  return rows;
 }
 
 }  // namespace
@@ -47,7 +62,11 @@ InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tic
       keep_every_(keep_every) {}
 
 cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
-  return canceller_.load_model(model.control);
+  return canceller_.load_model(cancellation::augmented(model.control));
+}
+
+cancellation::Refusal InProcessLoop::use_model(const cancellation::AugmentedModel& model) {
+  return canceller_.load_model(model);
 }
 
 void InProcessLoop::arm(const PlannedTrial& planned) {
@@ -66,6 +85,7 @@ TrialSignals InProcessLoop::run(PlannedTrial planned) {
   arm(planned);
   TrialSignals signals;
   signals.pegged.rate_hz = kControlRateHz;
+  if (keeps_measured_) signals.measured = empty_table(planned.trial.phase);
   signals.tracking.rate_hz = kControlRateHz / static_cast<double>(keep_every_);
   while (tick_ <
          planned.trial.start_tick + planned.trial.duration_ticks + planned.trial.ramp_ticks) {
@@ -98,8 +118,12 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
   const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
   const bool enabled = planned.cancellation && tracking;
   const cancellation::CancellerOutput cancelled =
-      canceller_.step({tick, sensed.accel_y_m_s2, sensed.theta_rad, sensed.omega_rad_s,
-                       sensed.flags, enabled, covered});
+      canceller_.step({tick,
+                       {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
+                        sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
+                       sensed.flags,
+                       enabled,
+                       covered});
   motor_force_n_ = cancelled.force_n;
   const double command_rad =
       planned.command_filter ? command_filter_.step(sensed.theta_rad, cancelled.predicted_force_n)
@@ -116,6 +140,7 @@ void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sen
     signals.pegged.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
     signals.pegged.force_n.push_back(sensed.force_n);
   }
+  if (keeps_measured_) keep_row(sensed, shown, signals.measured);
   if ((tick_ - planned.trial.start_tick) % keep_every_ != 0) return;
   if (planned.trial.phase == TrialPhase::kTracking) {
     signals.tracking.target_m.push_back(shown.target_m);
@@ -123,6 +148,16 @@ void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sen
   }
   signals.feedthrough_n.push_back(truth.feedthrough_force_n);
   signals.motor_n.push_back(truth.motor_force_n);
+}
+
+void InProcessLoop::keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,
+                             recording::Recording& rows) const {
+  const std::array<double, 10> row{sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
+                                   sensed.roll_rad,     sensed.theta_rad,    sensed.omega_rad_s,
+                                   sensed.force_n,      motor_force_n_,      shown.target_m,
+                                   shown.cursor_m};
+  rows.time_s.push_back(static_cast<double>(tick_) / kControlRateHz);
+  for (std::size_t i = 0; i < rows.columns.size(); ++i) rows.columns[i].values.push_back(row[i]);
 }
 
 }  // namespace stillhand::experiment

@@ -13,6 +13,7 @@
 #include "identification/core/identifier.hpp"
 #include "identification/core/tracking_metrics.hpp"
 #include "motion/core/motion_generator.hpp"
+#include "recording/core/recording.hpp"
 #include "rig/core/rig.hpp"
 #include "sensing/core/conditioner.hpp"
 
@@ -37,6 +38,7 @@ struct TrialSignals {
   identification::TrackingRecord tracking;
   std::vector<double> feedthrough_n;  ///< true f'_b
   std::vector<double> motor_n;        ///< motor force applied
+  recording::Recording measured;      ///< every channel that a session's recording has, 1 kHz
 };
 
 /// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f').
@@ -55,10 +57,17 @@ class InProcessLoop {
   InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every = 1,
                 rig::SealedEffect effect = {});
 
+  /// From now on run() keeps `measured` too.
+  void keep_measured() noexcept { keeps_measured_ = true; }
   /// Runs one trial from its first ramp to its last; start_tick is set by the loop.
   TrialSignals run(PlannedTrial planned);
   /// The model the canceller uses from now on.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
+  cancellation::Refusal use_model(const cancellation::AugmentedModel& model);
+  /// Gain and phase that the canceller follows.
+  [[nodiscard]] const cancellation::AdaptiveGain::Pair& weights() const noexcept {
+    return canceller_.weights();
+  }
   /// What the rig held, once the verdict on it is out: no trial runs after it.
   [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
 
@@ -67,6 +76,8 @@ class InProcessLoop {
   void tick_once(const PlannedTrial& planned, TrialSignals& signals);
   void keep(const PlannedTrial& planned, const sensing::Sensed& sensed, const rig::RigTruth& truth,
             const display::TrackingSample& shown, TrialSignals& signals) const;
+  void keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,
+                recording::Recording& rows) const;
 
   CoreConfigs configs_;
   rig::Rig rig_;
@@ -77,6 +88,7 @@ class InProcessLoop {
   human_operator::CrossoverOperator operator_;
   cancellation::CommandFilter command_filter_;
   Tick keep_every_;
+  bool keeps_measured_ = false;
   Tick tick_ = 0;
   double motor_force_n_ = 0.0;
   double operator_force_n_ = 0.0;

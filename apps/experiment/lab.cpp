@@ -115,7 +115,11 @@ std::vector<Launch> launches(const LabOptions& options, const std::string& seale
       launch.arguments.insert(launch.arguments.end(), words);
     };
     if (options.real_time) add({"--real-time"});
-    if (service == "recorder") add({"--out", (options.out / "session.mcap").string()});
+    if (service == "recorder") {
+      add({"--out", (options.out / "session.mcap").string()});
+      const std::vector<std::string> words = recording::keep_words(options.keep);
+      launch.arguments.insert(launch.arguments.end(), words.begin(), words.end());
+    }
     if (service == "rig" && !sealed.empty()) {
       add({"--undeclared-effect", "--out", options.out.string()});
       launch.standard_input = sealed;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiment/protocol.hpp"
+#include "recording/keep_options.hpp"
 #include "runtime/stop.hpp"
 
 namespace stillhand::experiment {
@@ -28,6 +29,7 @@ struct LabOptions {
   Operator who = Operator::kSimulated;
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
+  recording::KeepOptions keep;          ///< of the session's recording
 };
 
 /// Runs a whole session on this machine: starts every process, identifies, runs the trials over

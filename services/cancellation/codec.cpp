@@ -6,9 +6,9 @@ namespace stillhand::cancellation {
 CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted) {
   CancellerInput input{};
   input.tick = sensed.tick();
-  input.accel_y_m_s2 = sensed.accel_y_m_s2();
-  input.theta_rad = sensed.theta_rad();
-  input.omega_rad_s = sensed.omega_rad_s();
+  // In Channel's order.
+  input.sensed = {sensed.accel_x_m_s2(), sensed.accel_y_m_s2(), sensed.accel_z_m_s2(),
+                  sensed.roll_rad(),     sensed.theta_rad(),    sensed.omega_rad_s()};
   input.sensed_flags = sensed.flags();
   input.enabled = enabled;
   input.permitted = permitted;

@@ -37,7 +37,7 @@ void Shell::note_when_armed() {
 
 void Shell::on_model(const stillhand_msgs::FeedthroughModel& message) {
   if (!message.usable()) return;
-  const Refusal refusal = core_.load_model(from_idl(message));
+  const Refusal refusal = core_.load_model(augmented(from_idl(message)));
   if (refusal == Refusal::kNone) {
     model_ = message.model();
     service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");

@@ -72,7 +72,7 @@ Replay replay_cancellation(const SessionRecording& session, const SessionSetting
       if (model == session.models.end()) {
         throw NotRecorded("model " + std::to_string(offered + 1) + " is not in the recording");
       }
-      if (model->usable()) core.load_model(cancellation::from_idl(*model));
+      if (model->usable()) core.load_model(cancellation::augmented(cancellation::from_idl(*model)));
     }
     const msgs::Sensed& sample = sensed.at(tick);
     const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());

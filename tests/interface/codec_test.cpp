@@ -187,9 +187,15 @@ TEST(MotionCodecTest, EveryKindOfMotionKeepsItsName) {
 }
 
 TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
-  const auto [tick, accel, theta, omega, flags, enabled, permitted] =
-      cancellation::from_idl(sensed_message(), true, false);
-  EXPECT_EQ(std::tuple(tick, accel, theta, omega, flags), std::tuple(7, 0.5, 1.5, 2.5, 9u));
+  stillhand_msgs::Sensed message = sensed_message();
+  message.accel_x_m_s2(0.1);
+  message.accel_z_m_s2(0.2);
+  message.roll_rad(0.3);
+  const auto [tick, sensed, flags, enabled, permitted] =
+      cancellation::from_idl(message, true, false);
+  EXPECT_EQ(tick, 7);
+  EXPECT_EQ(sensed, (cancellation::ChannelSample{0.1, 0.5, 0.2, 0.3, 1.5, 2.5}));
+  EXPECT_EQ(flags, 9u);
   EXPECT_EQ(std::tuple(enabled, permitted), std::tuple(true, false));
 }
 

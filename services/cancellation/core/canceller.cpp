@@ -16,36 +16,39 @@ const Config& checked(const Config& config) {
 
 Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {}
 
-Refusal Canceller::load_model(const ControlRateModel& model) noexcept {
-  const ModelCheck check = check_model(model, config_.max_model_gain_n_s2_m);
+Refusal Canceller::load_model(const AugmentedModel& model) noexcept {
+  const ModelCheck check =
+      check_model(model, {config_.max_model_gain_n_s2_m, config_.max_path_force_n});
   if (check.refusal != Refusal::kNone) return check.refusal;
-  const ModelFilter filter(model, check.settle_ticks);
-  const bool fading = incoming_.loaded() && settle_left_ == 0;
+  const Law law{ModelFilter(model, check.settle_ticks),
+                model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()};
+  const bool fading = incoming_.filter.loaded() && settle_left_ == 0;
   if (fading) {
     // Replacing a filter that already drives would be a step in the force.
-    pending_ = filter;
+    pending_ = law;
   } else {
-    incoming_ = filter;
-    settle_left_ = filter.settle_ticks();
+    incoming_ = law;
+    settle_left_ = law.filter.settle_ticks();
     fade_done_ = 0;
   }
   return Refusal::kNone;
 }
 
 void Canceller::restart() noexcept {
-  if (pending_.loaded()) incoming_ = pending_;
-  if (incoming_.loaded()) active_ = incoming_;
-  incoming_ = pending_ = ModelFilter();
-  held_m_s2_ = 0.0;
+  if (pending_.filter.loaded()) incoming_ = pending_;
+  if (incoming_.filter.loaded()) active_ = incoming_;
+  incoming_ = pending_ = Law();
+  held_.fill(0.0);
   engaged_ = 0;
   fade_done_ = 0;
   settle_left_ = 0;
-  if (active_.loaded()) {
+  if (active_.filter.loaded()) {
     // From rest again: settle, then fade in from no model at all.
     incoming_ = active_;
-    incoming_.reset();
-    active_ = ModelFilter();
-    settle_left_ = incoming_.settle_ticks();
+    incoming_.filter.reset();
+    incoming_.adaptive.reset();
+    active_ = Law();
+    settle_left_ = incoming_.filter.settle_ticks();
   }
 }
 
@@ -69,6 +72,7 @@ bool Canceller::catch_up(Tick tick, Flags& flags) noexcept {
   }
   // Unsigned: the distance of two 64-bit ticks always fits.
   const auto lost = static_cast<std::uint64_t>(tick) - static_cast<std::uint64_t>(last_tick_) - 1;
+  const Tick before = last_tick_;
   last_tick_ = tick;
   if (lost == 0) return true;
   flags |= kInputGap;
@@ -76,32 +80,47 @@ bool Canceller::catch_up(Tick tick, Flags& flags) noexcept {
   const std::uint64_t bridged = std::min(lost, most);
   for (std::uint64_t i = 0; i < bridged; ++i) {
     count_absent();
-    predict(held_m_s2_);
+    predict(held_, before + 1 + static_cast<Tick>(i));
   }
   return true;
 }
 
-double Canceller::sound_acceleration(const CancellerInput& input, Flags& flags) noexcept {
+const ChannelSample& Canceller::sound_sample(const CancellerInput& input, Flags& flags) noexcept {
   constexpr Flags kUnsound = kInputInvalid | kInputStale | kFault;
-  const bool in_range = std::abs(input.accel_y_m_s2) <= config_.max_acceleration_m_s2;
+  constexpr auto kMain = static_cast<std::size_t>(Channel::kAccelY);
+  const bool in_range =
+      std::abs(input.sensed[kMain]) <= config_.max_acceleration_m_s2 &&
+      std::ranges::all_of(input.sensed, [](double value) { return std::isfinite(value); });
   flags |= input.sensed_flags & kUnsound;
   if (!in_range) flags |= kInputInvalid;
   if (in_range && (input.sensed_flags & kUnsound) == 0) {
     absent_ = 0;
-    held_m_s2_ = input.accel_y_m_s2;
+    for (std::size_t i = 0; i < kChannels; ++i) {
+      // The bounds of check_model() hold up to here.
+      const double most = i == kMain ? config_.max_acceleration_m_s2 : kChannelFacts[i].full_scale;
+      held_[i] = std::clamp(input.sensed[i], -most, most);
+    }
   } else {
     count_absent();
   }
-  return held_m_s2_;
+  return held_;
 }
 
-double Canceller::predict(double accel_m_s2) noexcept {
-  const double before_n = active_.step(accel_m_s2);
-  if (!incoming_.loaded()) return before_n;
-  const double after_n = incoming_.step(accel_m_s2);
+Canceller::Predicted Canceller::predict(const ChannelSample& sample, Tick tick) noexcept {
+  const double theta_rad = sample[static_cast<std::size_t>(Channel::kTheta)];
+  // What moves the hand while a force comes or goes isn't the model's doing.
+  const bool adapts = engaged_ == config_.fade_ticks && !incoming_.filter.loaded();
+  const auto ask = [&](Law& law) {
+    const double force_n = law.filter.step(sample, tick);
+    return Predicted{force_n, law.adaptive.step(force_n, theta_rad, adapts)};
+  };
+  const Predicted before = ask(active_);
+  if (!incoming_.filter.loaded()) return before;
+  const Predicted after = ask(incoming_);
   const double weight = static_cast<double>(fade_done_) / static_cast<double>(config_.fade_ticks);
   advance_fade();
-  return before_n + weight * (after_n - before_n);
+  return {before.force_n + weight * (after.force_n - before.force_n),
+          before.against_n + weight * (after.against_n - before.against_n)};
 }
 
 void Canceller::advance_fade() noexcept {
@@ -112,34 +131,33 @@ void Canceller::advance_fade() noexcept {
   } else {
     active_ = incoming_;
     incoming_ = pending_;
-    pending_ = ModelFilter();
-    settle_left_ = incoming_.settle_ticks();
+    pending_ = Law();
+    settle_left_ = incoming_.filter.settle_ticks();
     fade_done_ = 0;
   }
 }
 
 CancellerOutput Canceller::step(const CancellerInput& input) noexcept {
   Flags flags = kGood;
-  double predicted_n = 0.0;
+  Predicted predicted;
   const bool new_sample = catch_up(input.tick, flags);
-  if (new_sample) predicted_n = predict(sound_acceleration(input, flags));
-  if (!std::isfinite(predicted_n)) {
+  if (new_sample) predicted = predict(sound_sample(input, flags), input.tick);
+  if (!std::isfinite(predicted.force_n) || !std::isfinite(predicted.against_n)) {
     flags |= kFault;
-    predicted_n = 0.0;
+    predicted = {};
     restart();
   }
-  const bool has_model = active_.loaded() || incoming_.loaded();
-  if (!has_model) flags |= kNoModel;
+  if (!has_model()) flags |= kNoModel;
   if (!input.permitted) flags |= kInhibited;
   const bool sound = new_sample && (flags & (kInputInvalid | kInputStale | kFault)) == 0;
-  const bool acting = input.enabled && input.permitted && has_model && sound;
+  const bool acting = input.enabled && input.permitted && has_model() && sound;
   // Falls as fast as the envelope, so that one bad sample costs no more than one tick of its ramp.
   const std::int64_t fall = config_.fade_ticks / config_.limits.ramp_ticks + 1;
   engaged_ = acting ? std::min(engaged_ + 1, config_.fade_ticks)
                     : std::max<std::int64_t>(engaged_ - fall, 0);
   const double share = static_cast<double>(engaged_) / static_cast<double>(config_.fade_ticks);
-  const auto limited = envelope_.step(-config_.gain * share * predicted_n, acting);
-  return {limited.force_n, predicted_n, flags | limited.flags};
+  const auto limited = envelope_.step(-config_.gain * share * predicted.against_n, acting);
+  return {limited.force_n, predicted.force_n, flags | limited.flags};
 }
 
 }  // namespace stillhand::cancellation

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "cancellation/core/adaptive_gain.hpp"
 #include "cancellation/core/model_check.hpp"
 #include "cancellation/core/model_filter.hpp"
 #include "contract/config_field.hpp"
@@ -13,13 +14,11 @@
 namespace stillhand::cancellation {
 
 struct CancellerInput {
-  Tick tick;            ///< of the sensed sample
-  double accel_y_m_s2;  ///< [m/s^2] platform, + right
-  double theta_rad;     ///< [rad] stick; not used by this law
-  double omega_rad_s;   ///< [rad/s] stick; not used by this law
-  Flags sensed_flags;   ///< of the sensed sample
-  bool enabled;         ///< the trial asks for cancellation
-  bool permitted;       ///< interlock closed
+  Tick tick;             ///< of the sensed sample
+  ChannelSample sensed;  ///< platform and stick; indexed by Channel
+  Flags sensed_flags;    ///< of the sensed sample
+  bool enabled;          ///< the trial asks for cancellation
+  bool permitted;        ///< interlock closed
 };
 struct CancellerOutput {
   double force_n;            ///< [N] motor force wanted at the hand, + right, after limits
@@ -31,6 +30,7 @@ struct Config {
   signal::ForceLimits limits;
   double gain = 1.0;
   double max_model_gain_n_s2_m = 60.0;
+  double max_path_force_n = 10.0;
   double max_acceleration_m_s2 = 60.0;
   std::int64_t fade_ticks = 250;
   std::int64_t max_hold_ticks = 50;
@@ -41,6 +41,9 @@ struct Config {
     visit("gain", self.gain, Range{0.0, 1.2}, "[-] share of the predicted force that is cancelled");
     visit("max_model_gain_n_s2_m", self.max_model_gain_n_s2_m, Range{1.0, 200.0},
           "[N s^2/m] largest |H| of a model, any frequency; paper IV-A: 3.2 at 0 Hz");
+    visit("max_path_force_n", self.max_path_force_n, Range{0.0, 25.0},
+          "[N] most that a model may ask for from any channel but a_y at its full scale, or from a "
+          "tone");
     visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 500.0},
           "[m/s^2] a larger magnitude is no platform motion (paper III-C: peak 7.5) but a fault");
     visit("fade_ticks", self.fade_ticks, Range{50.0, 5000.0},
@@ -54,6 +57,8 @@ struct Config {
 ///
 ///   f_hat = H a_y,   wanted = -gain f_hat,   force = ForceEnvelope(wanted)   (Eq. SG-6)
 ///
+/// H may be an augmented model (Eq. CC-6 to CC-9) that reads further channels, and gain and phase
+/// are followed where the model says so (Eq. CC-10).
 /// The force leaves zero only while enabled, permitted, with a model and a sound sample.  A lost or
 /// unsound sample holds the last acceleration (Eq. CC-2); a run longer than max_hold_ticks starts
 /// the filter anew.  After an interruption the force fades in again; a new model settles beside the
@@ -66,38 +71,56 @@ class Canceller {
   explicit Canceller(const Config& config);
 
   /// Checks a model and, if sound, takes it at the next step.  Never throws; a refused model leaves
-  /// the one in use as it is.  Takes tens of microseconds (gain scan): keep it out of a deadline.
-  Refusal load_model(const ControlRateModel& model) noexcept;
+  /// the one in use as it is.  Takes tens of microseconds (gain scan), milliseconds with a spring
+  /// inside the body (trial run): keep it out of a deadline.
+  Refusal load_model(const AugmentedModel& model) noexcept;
 
   /// True once a model was taken, even while it still settles.
-  [[nodiscard]] bool has_model() const noexcept { return active_.loaded() || incoming_.loaded(); }
+  [[nodiscard]] bool has_model() const noexcept {
+    return active_.filter.loaded() || incoming_.filter.loaded();
+  }
 
   CancellerOutput step(const CancellerInput& input) noexcept;
 
+  /// Gain and phase followed, Eq. CC-10; 1 and 0 for a model that doesn't adapt.
+  [[nodiscard]] const AdaptiveGain::Pair& weights() const noexcept {
+    return (incoming_.filter.loaded() ? incoming_ : active_).adaptive.weights();
+  }
+
  private:
+  /// A model with what is followed of it.
+  struct Law {
+    ModelFilter filter;
+    AdaptiveGain adaptive;
+  };
+  struct Predicted {
+    double force_n = 0.0;    ///< f_hat
+    double against_n = 0.0;  ///< what the motor should take away, Eq. CC-10
+  };
+
   /// Forgets all motion, as at the start; the newest model stays.
   void restart() noexcept;
   /// Brings the filters to the tick before `tick`; false when that tick is not a new one.
   bool catch_up(Tick tick, Flags& flags) noexcept;
-  /// The acceleration to use at this tick: the sample's, or the one held.
-  double sound_acceleration(const CancellerInput& input, Flags& flags) noexcept;
+  /// What to use at this tick: the sample, or the one held.
+  const ChannelSample& sound_sample(const CancellerInput& input, Flags& flags) noexcept;
   /// One more tick without a sound sample.
   void count_absent() noexcept;
   /// Prediction of one tick, Eq. CC-3.
-  double predict(double accel_m_s2) noexcept;
+  Predicted predict(const ChannelSample& sample, Tick tick) noexcept;
   /// Takes the step from settling to fading to done.
   void advance_fade() noexcept;
 
   Config config_;
   signal::ForceEnvelope envelope_;
-  ModelFilter active_;
-  ModelFilter incoming_;  ///< settles, then is faded in
-  ModelFilter pending_;   ///< came while another was fading in
+  Law active_;
+  Law incoming_;  ///< settles, then is faded in
+  Law pending_;   ///< came while another was fading in
   std::int64_t settle_left_ = 0;
   std::int64_t fade_done_ = 0;
   std::int64_t engaged_ = 0;  ///< ticks that the force has been acting, up to fade_ticks
   std::int64_t absent_ = 0;   ///< ticks since the last sound sample
-  double held_m_s2_ = 0.0;
+  ChannelSample held_{};
   Tick last_tick_ = 0;
   bool started_ = false;
 };

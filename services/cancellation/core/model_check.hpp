@@ -4,23 +4,28 @@
 #include <cstdint>
 #include <string_view>
 
+#include "cancellation/core/augmented_model.hpp"
 #include "signal/difference_model.hpp"
 
 namespace stillhand::cancellation {
 
-/// Feedthrough model at the control rate.
+/// The paper's feedthrough model at the control rate.
 using ControlRateModel = signal::DifferenceModel;
 
 /// Why a model was not taken.
 enum class Refusal : std::uint8_t {
-  kNone,       ///< taken
-  kMalformed,  ///< sizes differ, empty, d_0 not 1
-  kNotFinite,  ///< a coefficient is NaN or infinite
-  kWrongRate,  ///< not exactly 1000 Hz
-  kOrder,      ///< above ModelFilter::kMaxOrder
-  kUnstable,   ///< a pole on or outside the unit circle
-  kSettling,   ///< slower than kMaxSettle_ticks to settle to 1 %
-  kGain,       ///< |H| above the bound at some frequency
+  kNone,        ///< taken
+  kMalformed,   ///< sizes differ, empty, d_0 not 1, a table that isn't one
+  kNotFinite,   ///< a number is NaN or infinite
+  kWrongRate,   ///< not exactly 1000 Hz
+  kOrder,       ///< above ModelFilter::kMaxOrder
+  kUnstable,    ///< a pole on or outside the unit circle
+  kSettling,    ///< slower than kMaxSettle_ticks to settle to 1 %
+  kGain,        ///< |H| above the bound at some frequency
+  kTooMany,     ///< more inputs, paths, waves or table values than ModelFilter has room for
+  kPath,        ///< a further channel, a path beside the body or a wave above its bound
+  kLoop,        ///< the spring inside the body: unstable at one of its slopes, or in a trial run
+  kCompliance,  ///< the hand that the adaptation counts on is none
 };
 /// One line for a person.
 std::string_view describe(Refusal refusal) noexcept;
@@ -29,16 +34,22 @@ std::string_view describe(Refusal refusal) noexcept;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.
 inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
+/// What a model may ask for at most; from the process's own settings.
+struct ModelBounds {
+  double max_gain_n_s2_m;   ///< |H| from a_y
+  double max_path_force_n;  ///< from any other channel at its full scale, path or wave
+};
+
 struct ModelCheck {
   Refusal refusal;
   std::int64_t settle_ticks;  ///< slowest pole's time to 1 %; 0 when refused
 };
 
-/// README Eq. CC-4.  Stability by the reflection coefficients (Eq. SG-13) and by the poles, which
-/// fail differently when coefficients are ill conditioned; both must agree.  Gain at 0 Hz, at
-/// 500 Hz, on 400 frequencies between and at each pole's own, so that no narrow peak is missed.
-/// Never throws.
-/// @param max_gain_n_s2_m  bound on |H|
-ModelCheck check_model(const ControlRateModel& model, double max_gain_n_s2_m) noexcept;
+/// README Eq. CC-4 and CC-14.  Stability by the reflection coefficients (Eq. SG-13) and by the
+/// poles, which fail differently when coefficients are ill conditioned; both must agree.  Gain at
+/// 0 Hz, at 500 Hz, on 400 frequencies between and at each pole's own, so that no narrow peak is
+/// missed.  A spring inside the body: stable with each of its slopes, and a trial run through the
+/// motion's band stays bounded and dies away.  Never throws.  Takes up to some milliseconds.
+ModelCheck check_model(const AugmentedModel& model, const ModelBounds& bounds) noexcept;
 
 }  // namespace stillhand::cancellation

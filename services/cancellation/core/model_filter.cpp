@@ -2,13 +2,107 @@
 #include "cancellation/core/model_filter.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
 
 namespace stillhand::cancellation {
+namespace {
 
-ModelFilter::ModelFilter(const signal::DifferenceModel& model, std::int64_t settle_ticks) noexcept
-    : order_(model.order()), settle_ticks_(settle_ticks), loaded_(true) {
-  std::copy(model.numerator.begin(), model.numerator.end(), c_.begin());
-  std::copy(model.denominator.begin(), model.denominator.end(), d_.begin());
+template <typename Taps>
+void copy(const std::vector<double>& from, Taps& to) {
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
+}  // namespace
+
+AugmentedModel augmented(const signal::DifferenceModel& model) {
+  AugmentedModel whole;
+  whole.rate_hz = model.rate_hz;
+  whole.denominator = model.denominator;
+  whole.inputs = {{Channel::kAccelY, {}, model.numerator}};
+  return whole;
+}
+
+signal::DifferenceModel path_model(const AugmentedModel& model, const InputPath& input) {
+  return {model.rate_hz, input.numerator, model.denominator};
+}
+
+ModelFilter::ModelFilter(const AugmentedModel& model, std::int64_t settle_ticks) noexcept
+    : order_(model.denominator.size() - 1),
+      output_(model.output),
+      settle_ticks_(settle_ticks),
+      loaded_(true) {
+  copy(model.denominator, d_);
+  for (const InputPath& input : model.inputs) {
+    Input& to = inputs_[inputs_used_++];
+    to.channel = static_cast<std::size_t>(input.channel);
+    to.map = ValueTable(input.map);
+    copy(input.numerator, to.c);
+  }
+  if (model.loop) {
+    loop_ = true;
+    of_output_ = model.loop->n.empty();
+    copy(model.loop->e, e_);
+    copy(model.loop->n, n_);
+    copy(model.loop->m, m_);
+    phi_ = ValueTable(model.loop->phi);
+  }
+  for (const DirectPath& path : model.paths) {
+    const double blend = path.lag_s > 0.0 ? -std::expm1(-kControlPeriod_s / path.lag_s) : 1.0;
+    paths_[paths_used_++] = {static_cast<std::size_t>(path.channel), blend, ValueTable(path.map),
+                             path.gain};
+  }
+  for (const Wave& wave : model.waves) {
+    waves_[waves_used_++] = {wave.channel ? static_cast<std::size_t>(*wave.channel) : kChannels,
+                             2.0 * std::numbers::pi * wave.frequency, wave.sine_n, wave.cosine_n};
+  }
+}
+
+void ModelFilter::reset() noexcept {
+  s_.fill(0.0);
+  t_.fill(0.0);
+  lagged_.fill(0.0);
+}
+
+double ModelFilter::body(const ChannelSample& sample) noexcept {
+  std::array<double, kMostInputs> v{};
+  for (std::size_t k = 0; k < inputs_used_; ++k) {
+    v[k] = inputs_[k].map(sample[inputs_[k].channel]);
+  }
+  double y = inputs_[0].c[0] * v[0] + s_[0];
+  for (std::size_t k = 1; k < inputs_used_; ++k) y += inputs_[k].c[0] * v[k];
+  double phi = 0.0;
+  if (loop_) {
+    const double z = of_output_ ? y : n_[0] * v[0] + t_[0];
+    phi = phi_(z);
+    y += e_[0] * phi;
+    for (std::size_t i = 1; i <= order_; ++i) {
+      t_[i - 1] = n_[i] * v[0] + m_[i] * phi - d_[i] * z + t_[i];
+    }
+  }
+  for (std::size_t i = 1; i <= order_; ++i) {
+    double next = inputs_[0].c[i] * v[0] - d_[i] * y + s_[i];
+    for (std::size_t k = 1; k < inputs_used_; ++k) next += inputs_[k].c[i] * v[k];
+    s_[i - 1] = next + e_[i] * phi;
+  }
+  return y;
+}
+
+double ModelFilter::step(const ChannelSample& sample, Tick tick) noexcept {
+  double force_n = output_(body(sample));
+  for (std::size_t k = 0; k < paths_used_; ++k) {
+    const Path& path = paths_[k];
+    lagged_[k] += path.blend * (sample[path.channel] - lagged_[k]);
+    force_n += path.gain * path.map(lagged_[k]);
+  }
+  for (std::size_t k = 0; k < waves_used_; ++k) {
+    const Turning& wave = waves_[k];
+    const double at = wave.channel < kChannels ? sample[wave.channel]
+                                               : static_cast<double>(tick) * kControlPeriod_s;
+    force_n += wave.sine_n * std::sin(wave.turn * at) + wave.cosine_n * std::cos(wave.turn * at);
+  }
+  return force_n;
 }
 
 }  // namespace stillhand::cancellation

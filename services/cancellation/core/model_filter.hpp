@@ -5,41 +5,78 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "signal/difference_model.hpp"
+#include "cancellation/core/augmented_model.hpp"
+#include "cancellation/core/value_table.hpp"
+#include "contract/tick.hpp"
 
 namespace stillhand::cancellation {
 
-/// A difference model as a running filter of fixed size, transposed direct form II of Eq. SG-12:
+/// An augmented model as a running filter of fixed size, README Eq. CC-6 to CC-9, transposed direct
+/// form II of Eq. SG-12 with further inputs:
 ///
-///   f[n] = c_0 a[n] + s_1,   s_i = c_i a[n] - d_i f[n] + s_{i+1},   s_{p+1} = 0
+///   z = n_0 v_1 + t_1,   t_i = n_i v_1 + m_i phi(z) - d_i z + t_{i+1}
+///   y = sum_k c_k0 v_k + e_0 phi(z) + s_1,
+///   s_i = sum_k c_ki v_k + e_i phi(z) - d_i y + s_{i+1}
 ///
 /// Trusts its model: Canceller::load_model() checks it first.  step() allocates nothing.
 class ModelFilter {
  public:
   static constexpr std::size_t kMaxOrder = 12;
+  static constexpr std::size_t kMostInputs = 4;
+  static constexpr std::size_t kMostPaths = 6;
+  static constexpr std::size_t kMostWaves = 6;
 
   ModelFilter() = default;
-  /// @param model         order at most kMaxOrder
+  /// @param model         within the sizes above
   /// @param settle_ticks  time for a transient from rest to fall to 1 %
-  ModelFilter(const signal::DifferenceModel& model, std::int64_t settle_ticks) noexcept;
+  ModelFilter(const AugmentedModel& model, std::int64_t settle_ticks) noexcept;
 
   [[nodiscard]] bool loaded() const noexcept { return loaded_; }
   [[nodiscard]] std::int64_t settle_ticks() const noexcept { return settle_ticks_; }
 
-  double step(double accel_m_s2) noexcept {
-    const double force_n = c_[0] * accel_m_s2 + s_[0];
-    for (std::size_t i = 1; i <= order_; ++i) {
-      s_[i - 1] = c_[i] * accel_m_s2 - d_[i] * force_n + s_[i];
-    }
-    return force_n;
-  }
-  void reset() noexcept { s_.fill(0.0); }
+  /// @return f^ at this tick [N]
+  double step(const ChannelSample& sample, Tick tick) noexcept;
+  void reset() noexcept;
 
  private:
-  std::array<double, kMaxOrder + 1> c_{};
-  std::array<double, kMaxOrder + 1> d_{};
-  std::array<double, kMaxOrder + 1> s_{};  ///< the last one stays 0
+  using Taps = std::array<double, kMaxOrder + 1>;
+  struct Input {
+    std::size_t channel;
+    ValueTable map;
+    Taps c;
+  };
+  struct Path {
+    std::size_t channel;
+    double blend;  ///< of the lag, 1: none
+    ValueTable map;
+    double gain;
+  };
+  struct Turning {
+    std::size_t channel;  ///< kChannels: time
+    double turn;          ///< [rad a unit]
+    double sine_n, cosine_n;
+  };
+
+  double body(const ChannelSample& sample) noexcept;
+
+  std::array<Input, kMostInputs> inputs_{};
+  std::array<Path, kMostPaths> paths_{};
+  std::array<Turning, kMostWaves> waves_{};
+  std::size_t inputs_used_ = 0;
+  std::size_t paths_used_ = 0;
+  std::size_t waves_used_ = 0;
   std::size_t order_ = 0;
+  Taps d_{};
+  Taps e_{};
+  Taps n_{};
+  Taps m_{};
+  ValueTable phi_;
+  ValueTable output_;
+  bool loop_ = false;
+  bool of_output_ = false;
+  Taps s_{};  ///< the last one stays 0
+  Taps t_{};  ///< the last one stays 0
+  std::array<double, kMostPaths> lagged_{};
   std::int64_t settle_ticks_ = 0;
   bool loaded_ = false;
 };

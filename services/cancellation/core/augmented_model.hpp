@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "signal/difference_model.hpp"
+
+namespace stillhand::cancellation {
+
+/// What of a sensed sample a model may read.
+enum class Channel : std::uint8_t { kAccelX, kAccelY, kAccelZ, kRoll, kTheta, kOmega };
+
+inline constexpr std::size_t kChannels = 6;
+
+struct ChannelFacts {
+  std::string_view name;  ///< as in recordings
+  std::string_view unit;
+  double full_scale;  ///< [unit] largest magnitude that a model is asked about
+};
+/// Sensors' ranges: 1.7 g, a quarter turn of roll, the stick's stop, and a hand's fastest swing.
+inline constexpr std::array<ChannelFacts, kChannels> kChannelFacts{{{"a_x", "m/s^2", 16.67},
+                                                                    {"a_y", "m/s^2", 16.67},
+                                                                    {"a_z", "m/s^2", 16.67},
+                                                                    {"roll", "rad", 0.8},
+                                                                    {"theta", "rad", 0.6},
+                                                                    {"omega", "rad/s", 15.0}}};
+
+/// One tick of them, indexed by Channel.
+using ChannelSample = std::array<double, kChannels>;
+
+/// A memoryless map as a table: straight lines between values at even distances from `low` to
+/// `high`, the outer lines going on beyond.  Empty: the identity.
+struct ValueMap {
+  double low = 0.0;
+  double high = 0.0;
+  std::vector<double> values;
+};
+
+/// What drives the body, README Eq. CC-6: a channel, through a map, with its own numerator.
+struct InputPath {
+  Channel channel = Channel::kAccelY;
+  ValueMap map;
+  std::vector<double> numerator;  ///< c_0 .. c_p [N a unit of the channel]
+};
+
+/// A nonlinear spring inside the body, README Eq. CC-7; by powers of q^-1, each p + 1 long.
+struct LoopPath {
+  std::vector<double> e;  ///< from phi to the force
+  std::vector<double> n;  ///< from the first input to z; empty: z is the body's force
+  std::vector<double> m;  ///< from phi to z, the first 0
+  ValueMap phi;
+};
+
+/// A path beside the body, README Eq. CC-8: gain * map(lag(channel)).
+struct DirectPath {
+  Channel channel = Channel::kAccelX;
+  double lag_s = 0.0;  ///< of a first-order lag; 0: none
+  ValueMap map;
+  double gain = 0.0;  ///< [N a unit of the map]
+};
+
+/// Periodic in a channel (cogging) or, without one, in time (a tone), README Eq. CC-9.
+struct Wave {
+  std::optional<Channel> channel;  ///< none: time, tick 0 at 0 s
+  double frequency = 0.0;          ///< [1/unit of the channel] or [Hz]
+  double sine_n = 0.0;
+  double cosine_n = 0.0;
+};
+
+/// How the stick gives way to a force at the hand while tracking, M x'' + B x' + K x = f: what the
+/// adaptation judges the motion by, README Eq. CC-10.
+struct HandCompliance {
+  double mass_kg = 0.0;
+  double damping_n_s_m = 0.0;
+  double stiffness_n_m = 0.0;
+  double lever_m = 0.0;  ///< hand to pivot
+};
+
+/// The feedthrough force as a function of what is sensed, at the control rate: a linear body with
+/// several inputs, one spring inside it that isn't linear, and what acts beside it.
+struct AugmentedModel {
+  double rate_hz = 0.0;
+  std::vector<double> denominator;  ///< 1, d_1 .. d_p
+  std::vector<InputPath> inputs;
+  std::optional<LoopPath> loop;
+  ValueMap output;  ///< of the body's force
+  std::vector<DirectPath> paths;
+  std::vector<Wave> waves;
+  std::optional<HandCompliance> adapts;  ///< there: gain and phase are followed, Eq. CC-10
+};
+
+/// The paper's model: a_y alone.
+AugmentedModel augmented(const signal::DifferenceModel& model);
+
+/// The linear part from one input, as a difference model [N a unit of the channel].
+signal::DifferenceModel path_model(const AugmentedModel& model, const InputPath& input);
+
+}  // namespace stillhand::cancellation

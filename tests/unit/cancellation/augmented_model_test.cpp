@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// An augmented model in the canceller: Eq. CC-6 to CC-9 and CC-14.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "cancellation/core/canceller.hpp"
+#include "signal/random.hpp"
+
+namespace stillhand::cancellation {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr std::size_t kA_y = static_cast<std::size_t>(Channel::kAccelY);
+constexpr std::size_t kRoll_i = static_cast<std::size_t>(Channel::kRoll);
+constexpr ModelBounds kBounds{60.0, 10.0};
+
+// z'' = u - c z' - k z - spring(z) by Euler's two half steps: poles well inside the unit circle.
+AugmentedModel oscillator() {
+  AugmentedModel model;
+  model.rate_hz = 1000.0;
+  model.denominator = {1.0, -1.99, 0.9902};
+  model.inputs = {{Channel::kAccelY, {}, {0.0, 2e-4, 0.0}}};
+  return model;
+}
+
+ValueMap table_of(double low, double high, double (*map)(double)) {
+  ValueMap out{low, high, {}};
+  for (int i = 0; i <= 100; ++i) out.values.push_back(map(low + (high - low) * i / 100.0));
+  return out;
+}
+
+ChannelSample at(double a_y, double roll = 0.0) {
+  ChannelSample sample{};
+  sample[kA_y] = a_y;
+  sample[kRoll_i] = roll;
+  return sample;
+}
+
+TEST(ModelFilterTest, ASecondInputAddsItsOwnResponse) {
+  AugmentedModel model = oscillator();
+  model.inputs.push_back({Channel::kRoll, {}, {0.0, 1e-3, 1e-3}});
+  ModelFilter both(model, 1);
+  ModelFilter first(augmented(path_model(model, model.inputs[0])), 1);
+  ModelFilter second(augmented(path_model(model, model.inputs[1])), 1);
+  signal::Gaussian draw(1, 1);
+  for (Tick n = 0; n < 2000; ++n) {
+    const double a_y = draw();
+    const double roll = 0.1 * draw();
+    ASSERT_NEAR(both.step(at(a_y, roll), n), first.step(at(a_y), n) + second.step(at(roll), n),
+                1e-12);
+  }
+}
+
+TEST(ModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
+  const ValueTable table({-1.0, 1.0, {2.0, 0.0, 4.0}});
+  EXPECT_DOUBLE_EQ(table(-1.0), 2.0);
+  EXPECT_DOUBLE_EQ(table(-0.5), 1.0);
+  EXPECT_DOUBLE_EQ(table(0.5), 2.0);
+  EXPECT_DOUBLE_EQ(table(2.0), 8.0);
+  EXPECT_DOUBLE_EQ(table(-2.0), 4.0);
+  EXPECT_DOUBLE_EQ(ValueTable()(0.3), 0.3);
+}
+
+TEST(ModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
+  // Against the plain difference equations A z = N v + M phi(z), A y = C v + E phi(z).
+  AugmentedModel model = oscillator();
+  const auto cube = [](double z) { return z * z * z; };
+  LoopPath loop;
+  loop.e = {0.01, -0.02, 0.005};
+  loop.n = {0.0, 1e-3, 1e-3};
+  loop.m = {0.0, -2e-4, 0.0};
+  loop.phi = table_of(-2.0, 2.0, cube);
+  model.loop = loop;
+  ModelFilter sut(model, 1);
+  const ValueTable phi(loop.phi);
+  double v1 = 0.0, v2 = 0.0, z1 = 0.0, z2 = 0.0, p1 = 0.0, p2 = 0.0, y1 = 0.0, y2 = 0.0;
+  signal::Gaussian draw(2, 1);
+  for (Tick n = 0; n < 3000; ++n) {
+    const double v = 3.0 * std::sin(0.02 * static_cast<double>(n)) + draw();
+    const double z = loop.n[0] * v + loop.n[1] * v1 + loop.n[2] * v2 + loop.m[1] * p1 +
+                     loop.m[2] * p2 - model.denominator[1] * z1 - model.denominator[2] * z2;
+    const double p = phi(z);
+    const auto& c = model.inputs[0].numerator;
+    const double y = c[0] * v + c[1] * v1 + c[2] * v2 + loop.e[0] * p + loop.e[1] * p1 +
+                     loop.e[2] * p2 - model.denominator[1] * y1 - model.denominator[2] * y2;
+    ASSERT_NEAR(sut.step(at(v), n), y, 1e-9 * (1.0 + std::abs(y))) << n;
+    v2 = v1, v1 = v, z2 = z1, z1 = z, p2 = p1, p1 = p, y2 = y1, y1 = y;
+  }
+  EXPECT_GT(std::abs(p1) + std::abs(p2), 0.0);
+}
+
+TEST(ModelFilterTest, PathsAndWavesActBesideTheBody) {
+  AugmentedModel model = augmented({1000.0, {0.0}, {1.0}});
+  model.paths = {{Channel::kRoll, 0.5, {}, 4.0}};
+  model.waves = {{std::nullopt, 10.0, 0.3, 0.4}, {Channel::kTheta, 14.0, 0.0, 1.0}};
+  ModelFilter sut(model, 1);
+  ChannelSample sample = at(0.0, 0.2);
+  sample[static_cast<std::size_t>(Channel::kTheta)] = 1.0 / 28.0;  // half a period
+  double force_n = 0.0;
+  for (Tick n = 0; n <= 5025; ++n) force_n = sut.step(sample, n);
+  // 10 Hz at 5.025 s: a quarter of a period; the lag has settled to 5e-5.
+  EXPECT_NEAR(force_n, 4.0 * 0.2 + 0.3 - 1.0, 1e-4);
+}
+
+Refusal refusal_of(const AugmentedModel& model) { return check_model(model, kBounds).refusal; }
+
+TEST(AugmentedModelTest, WhatIsTooStrongIsRefused) {
+  EXPECT_EQ(refusal_of(oscillator()), Refusal::kNone);
+  AugmentedModel model = oscillator();
+  model.paths = {{Channel::kRoll, 0.0, {}, 12.0}};  // 9.6 N at 0.8 rad
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.paths[0].gain = 13.0;
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model = oscillator();
+  model.waves = {{std::nullopt, 8.0, 8.0, 7.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model = oscillator();
+  model.inputs.push_back({Channel::kOmega, {}, {0.0, 1e-3, 0.0}});
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model = oscillator();
+  model.inputs[0].map = {-20.0, 20.0, {-2000.0, 0.0, 2000.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kGain);
+  model = oscillator();
+  model.output = {-20.0, 20.0, {-2000.0, 0.0, 2000.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kGain);
+}
+
+TEST(AugmentedModelTest, ASpringThatLosesStabilityAtOneSlopeIsRefused) {
+  AugmentedModel model = oscillator();
+  LoopPath loop;
+  loop.e = {0.0, 1e-4, 0.0};
+  loop.n = {0.0, 2e-4, 0.0};
+  loop.m = {0.0, -2e-4, 0.0};
+  loop.phi = table_of(-1.0, 1.0, [](double z) { return std::tanh(3.0 * z); });
+  model.loop = loop;
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.loop->m[1] = 2e-3;  // pushes away instead of back
+  EXPECT_EQ(refusal_of(model), Refusal::kLoop);
+  model.loop->m[1] = -2e-4;
+  model.loop->phi.values[40] = -1e9;
+  EXPECT_EQ(refusal_of(model), Refusal::kLoop);
+}
+
+TEST(AugmentedModelTest, WhatIsNoModelIsRefused) {
+  const auto spoilt = [](const auto& spoil) {
+    AugmentedModel model = oscillator();
+    model.loop = LoopPath{{0.0, 0.0, 0.0}, {}, {}, {-1.0, 1.0, {-1.0, 1.0}}};
+    model.paths = {{Channel::kRoll, 0.0, {}, 1.0}};
+    model.waves = {{Channel::kTheta, 10.0, 0.1, 0.1}};
+    model.adapts = HandCompliance{1.38, 9.5, 844.0, 0.1};
+    spoil(model);
+    return refusal_of(model);
+  };
+  const auto nothing = [](AugmentedModel&) {};
+  EXPECT_EQ(spoilt(nothing), Refusal::kNone);
+  EXPECT_EQ(spoilt([](auto& m) { m.inputs.clear(); }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.inputs[0].channel = Channel::kRoll; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.inputs[0].channel = static_cast<Channel>(77); }),
+            Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->e[0] = 1.0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->phi.values.resize(1); }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->phi.high = -1.0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.paths[0].lag_s = -1.0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.paths[0].gain = std::nan(""); }), Refusal::kNotFinite);
+  EXPECT_EQ(spoilt([](auto& m) { m.waves[0].frequency = HUGE_VAL; }), Refusal::kNotFinite);
+  EXPECT_EQ(spoilt([](auto& m) { m.adapts->mass_kg = std::nan(""); }), Refusal::kNotFinite);
+  EXPECT_EQ(spoilt([](auto& m) { m.adapts->stiffness_n_m = 1.0; }), Refusal::kCompliance);
+  EXPECT_EQ(spoilt([](auto& m) { m.waves.resize(7, m.waves[0]); }), Refusal::kTooMany);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->phi.values.resize(130, 1.0); }), Refusal::kTooMany);
+}
+
+TEST(CancellerTest, CostOfAFullModelIsReported) {
+  AugmentedModel model = oscillator();
+  model.inputs.resize(4, model.inputs[0]);
+  model.loop =
+      LoopPath{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {-1.0, 1.0, {-1.0, 1.0}}};
+  model.paths.resize(6, {Channel::kRoll, 0.1, {}, 1.0});
+  model.waves.resize(6, {std::nullopt, 10.0, 0.1, 0.1});
+  model.adapts = HandCompliance{1.38, 9.5, 844.0, 0.1};
+  Canceller sut{Config{}};
+  ASSERT_EQ(sut.load_model(model), Refusal::kNone);
+  double sum = 0.0;
+  constexpr Tick kSteps = 500'000;
+  const auto begin = std::chrono::steady_clock::now();
+  for (Tick n = 0; n < kSteps; ++n) {
+    sum += sut.step({n, at(std::sin(0.01 * static_cast<double>(n))), kGood, true, true}).force_n;
+  }
+  const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
+  std::printf("Canceller::step with everything %.0f ns\n", took.count() / kSteps);
+  EXPECT_TRUE(std::isfinite(sum));
+}
+
+TEST(CancellerTest, AToneIsAnsweredOnTheSampleClock) {
+  AugmentedModel model = augmented({1000.0, {0.0}, {1.0}});
+  model.waves = {{std::nullopt, 7.0, 2.0, 0.0}};
+  Canceller sut{Config{}};
+  ASSERT_EQ(sut.load_model(model), Refusal::kNone);
+  for (Tick n = 100'000; n < 104'000; ++n) {
+    if (n >= 103'000 && n < 103'010) continue;  // lost samples don't shift it
+    const auto out = sut.step({n, at(0.0), kGood, true, true});
+    if (n < 103'600) continue;
+    ASSERT_NEAR(out.force_n, -2.0 * std::sin(kTwoPi * 7.0 * static_cast<double>(n) / 1000.0), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::cancellation
