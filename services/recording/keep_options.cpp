@@ -2,6 +2,7 @@
 #include "recording/keep_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 #include "recording/within.hpp"
 
@@ -14,31 +15,50 @@ constexpr int kLeastFlush_ms = 10;
 constexpr int kMostFlush_ms = 800;
 constexpr double kBytesPerMb = 1e6;
 constexpr double kMostMb = 1e9;
+constexpr const char* kNotPacked = "none";  // what a file calls ""
 
 }  // namespace
 
 void add_keep_options(CLI::App& cli, KeepOptions& options) {
+  const std::string group = "Recording";
   cli.add_option_function<std::string>(
          "--compression",
          [&options](const std::string& name) {
-           options.compression = *compression_of(name == "none" ? "" : name);
+           options.compression = *compression_of(name == kNotPacked ? "" : name);
          },
          "of the chunks: zstd, lz4 or none [zstd]")
-      ->check(CLI::IsMember({"zstd", "lz4", "none"}));
+      ->check(CLI::IsMember({"zstd", "lz4", kNotPacked}))
+      ->group(group);
   cli.add_option_function<int>(
          "--flush-ms",
          [&options](int interval_ms) {
            options.flush_interval = std::chrono::milliseconds(interval_ms);
          },
          "to the file at least that often [ms]; a kill loses no more than this and a write [500]")
-      ->check(CLI::Range(kLeastFlush_ms, kMostFlush_ms));
+      ->check(CLI::Range(kLeastFlush_ms, kMostFlush_ms))
+      ->group(group);
   cli.add_flag_callback(
-      "--fsync", [&options] { options.durability = Durability::kPower; },
-      "wait for the disk after each chunk: a loss of power loses no more than a kill");
+         "--fsync", [&options] { options.durability = Durability::kPower; },
+         "wait for the disk after each chunk: a loss of power loses no more than a kill")
+      ->group(group);
   cli.add_option("--min-free-mb", options.min_free_mb,
                  "stop, with a whole file, when less is left on the disk [MB]")
       ->check(within(0.0, kMostMb))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(group);
+}
+
+std::vector<std::string> keep_words(const KeepOptions& options) {
+  const std::string_view packing = compression_name(options.compression);
+  std::ostringstream min_free_mb;
+  min_free_mb.precision(17);  // every bit of a double
+  min_free_mb << options.min_free_mb;
+  std::vector<std::string> words{
+      "--compression", packing.empty() ? kNotPacked : std::string(packing),
+      "--flush-ms",    std::to_string(options.flush_interval.count()),
+      "--min-free-mb", min_free_mb.str()};
+  if (options.durability == Durability::kPower) words.emplace_back("--fsync");
+  return words;
 }
 
 TapeOptions tape_options(const KeepOptions& keep, const std::string& path) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include "recording/core/compression.hpp"
 #include "recording/file_io.hpp"
@@ -26,6 +27,9 @@ struct KeepOptions {
 /// Adds --compression, --flush-ms, --fsync and --min-free-mb, which set `options` as they are
 /// parsed.
 void add_keep_options(CLI::App& cli, KeepOptions& options);
+
+/// The same as words of a command line, for a recorder that another process starts.
+std::vector<std::string> keep_words(const KeepOptions& options);
 
 /// A tape that keeps what it gets so.
 TapeOptions tape_options(const KeepOptions& keep, const std::string& path);

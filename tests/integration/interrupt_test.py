@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ctrl-C and kill -9 of the lab at several moments: it ends soon, nobody is left, what was recorded can be read."""
 import os
+import pathlib
 import resource
 import signal
+import subprocess
 import time
 
 import lab_process
-from lab_process import TRIAL_LIMIT_S, LabTestCase, quick_session, running
+from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, quick_session, running
 
 # A person at the terminal waits no longer. Measured on two busy cores (2026-11): 0.4 s before the trials, 2.3 s in one.
 INTERRUPT_LIMIT_S = 10.0
@@ -43,10 +45,16 @@ class InterruptTest(LabTestCase):
         self.assertEqual(lab.errors(), ["stillhand lab: interrupted before the first trial"])
 
     def test_interrupt_during_identification_leaves_a_readable_recording(self):
-        lab = self.start()
+        # Recorded as the lab's command line says.
+        lab = self.lab(*quick_session(self.folder / "config"), "--compression", "lz4", "--flush-ms", 50, "--fsync")
         lab.wait_for_tick(0, 1, TRIAL_LIMIT_S)
+        recorder = pathlib.Path(f"/proc/{lab.pid_of('recorder')}/cmdline").read_text().split("\0")
+        self.assertEqual(recorder[recorder.index("--flush-ms") + 1], "50")
+        self.assertIn("--fsync", recorder)
         self.assert_interrupted(lab)
         self.assert_recording_holds(lab, 0)
+        self.assertIn("chunks (lz4)", subprocess.run([str(STILLHAND), "info", str(lab.out / "session.mcap")],
+                                                     capture_output=True, text=True, check=True).stdout)
         self.assert_marked(lab, 0)
         self.assertEqual({path.name for path in lab.out.iterdir()}, {"session.mcap", "summary.json", "logs"})
 

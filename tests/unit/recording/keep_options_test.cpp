@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/keep_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+namespace stillhand::recording {
+namespace {
+
+// What a recorder's command line makes of these words.
+KeepOptions parsed(std::vector<std::string> words) {
+  CLI::App cli;
+  KeepOptions options;
+  add_keep_options(cli, options);
+  std::ranges::reverse(words);  // as CLI11 takes them
+  cli.parse(words);
+  return options;
+}
+
+void expect_same(const KeepOptions& a, const KeepOptions& b) {
+  EXPECT_EQ(a.compression, b.compression);
+  EXPECT_EQ(a.flush_interval, b.flush_interval);
+  EXPECT_EQ(a.durability, b.durability);
+  EXPECT_EQ(a.min_free_mb, b.min_free_mb);
+}
+
+TEST(KeepOptionsTest, NothingSaidIsTheDefault) { expect_same(parsed({}), KeepOptions{}); }
+
+TEST(KeepOptionsTest, AnotherProcessHearsTheSame) {
+  for (const Compression packing : {Compression::kNone, Compression::kLz4, Compression::kZstd}) {
+    for (const Durability durability : {Durability::kProcess, Durability::kPower}) {
+      const KeepOptions wanted{packing, std::chrono::milliseconds(37), durability, 1.0 / 3.0};
+      expect_same(parsed(keep_words(wanted)), wanted);
+    }
+  }
+  expect_same(parsed(keep_words({})), KeepOptions{});
+}
+
+TEST(KeepOptionsTest, WhatCannotBeIsRefused) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--compression", "gzip"},
+                                                {"--flush-ms", "9"},
+                                                {"--flush-ms", "801"},
+                                                {"--flush-ms", "nan"},
+                                                {"--min-free-mb", "nan"},
+                                                {"--min-free-mb", "-1"}}) {
+    EXPECT_THROW(parsed(words), CLI::ParseError) << words.back();
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::recording
