@@ -2,16 +2,15 @@
 #include "diagnose/diagnose_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "contract/config_error.hpp"
 #include "diagnose/diagnosis_json.hpp"
 #include "diagnose/diagnosis_report.hpp"
+#include "diagnose/on_all_cores.hpp"
 #include "diagnosis/core/diagnose.hpp"
 #include "diagnosis/model_file.hpp"
 #include "experiment/progress.hpp"
@@ -36,28 +35,6 @@ struct Words {
   std::filesystem::path json;
   std::filesystem::path report;
 };
-
-// On every core at once; the first exception is thrown again here.
-void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& task) {
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> failed{false};
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i = 0; (i = next++) < count && !failed;) {
-      try {
-        task(i);
-      } catch (...) {
-        if (!failed.exchange(true)) error = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::jthread> others;
-  const unsigned cores = std::max(std::thread::hardware_concurrency(), 1U);
-  for (unsigned i = 1; i < std::min<std::size_t>(cores, count); ++i) others.emplace_back(work);
-  work();
-  others.clear();
-  if (error) std::rethrow_exception(error);
-}
 
 // A recording given twice would be held out and fitted to at once.
 void check_different(const std::vector<std::string>& recordings) {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "closed_loop/closed_loop_command.hpp"
 #include "contract/config_error.hpp"
 #include "diagnose/diagnose_command.hpp"
 #include "experiment/conductor.hpp"
@@ -36,6 +37,7 @@ int run(int argc, char** argv) {
   stillhand::study::add_study_command(cli, status);
   stillhand::identify::add_identify_command(cli, status);
   stillhand::diagnose::add_diagnose_command(cli, status);
+  stillhand::closed_loop::add_closed_loop_command(cli, status);
   stillhand::predict::add_predict_command(cli, status);
   stillhand::recorder::add_file_commands(cli, status);
   stillhand::record::add_record_command(cli, status);

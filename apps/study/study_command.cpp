@@ -6,12 +6,12 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "contract/config_error.hpp"
 #include "experiment/progress.hpp"
+#include "report/command_line.hpp"
 #include "report/draw.hpp"
 #include "rig/sealed_file.hpp"
 #include "runtime/stop.hpp"
@@ -27,16 +27,6 @@ struct Words {
   std::filesystem::path population;
   std::filesystem::path out;
 };
-
-// The words after the program's name, for the report.
-std::string command_line() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!text.empty()) text.pop_back();
-  std::replace(text.begin(), text.end(), '\0', ' ');
-  const auto space = text.find(' ');
-  return "stillhand" + (space == std::string::npos ? std::string() : text.substr(space));
-}
 
 int run(StudyRecord& record, const Words& words) {
   runtime::Stop stop;
@@ -124,7 +114,7 @@ void add_study_command(CLI::App& cli, int& status) {
     if (!words->population.empty()) {
       record->options.population = settings::load<Population>(words->population, "population");
     }
-    record->command_line = command_line();
+    record->command_line = report::command_line();
     status = run(*record, *words);
   });
 }

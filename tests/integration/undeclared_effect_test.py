@@ -22,7 +22,8 @@ SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnCha
 SEALED_HEADERS = re.compile(r'#include "rig/(core/(sealed_effect|undeclared_effect|effect_draw|effect_sizing|'
                             r'chain_effect)|sealed_file)\.hpp"')
 # Whoever steps the rig in one process, and whoever writes the sealed file.
-MAY_INCLUDE = ("services/rig/", "apps/experiment/", "apps/study/", "tests/")
+MAY_INCLUDE = ("services/rig/", "apps/experiment/", "apps/study/", "apps/closed_loop/session.",
+               "apps/closed_loop/closed_loop_command.", "apps/closed_loop/output.", "tests/")
 SESSION_LIMIT_S = 120
 
 

@@ -111,8 +111,9 @@ Canceller::Predicted Canceller::predict(const ChannelSample& sample, Tick tick) 
   // What moves the hand while a force comes or goes isn't the model's doing.
   const bool adapts = engaged_ == config_.fade_ticks && !incoming_.filter.loaded();
   const auto ask = [&](Law& law) {
-    const double force_n = law.filter.step(sample, tick);
-    return Predicted{force_n, law.adaptive.step(force_n, theta_rad, adapts)};
+    const auto force = law.filter.step(sample, tick);
+    const double against_n = law.adaptive.step(force.feedthrough_n, theta_rad, adapts);
+    return Predicted{force.feedthrough_n + force.beside_n, against_n + force.beside_n};
   };
   const Predicted before = ask(active_);
   if (!incoming_.filter.loaded()) return before;

@@ -30,7 +30,7 @@ struct Config {
   signal::ForceLimits limits;
   double gain = 1.0;
   double max_model_gain_n_s2_m = 60.0;
-  double max_path_force_n = 10.0;
+  double max_path_force_n = 25.0;
   double max_acceleration_m_s2 = 60.0;
   std::int64_t fade_ticks = 250;
   std::int64_t max_hold_ticks = 50;
@@ -41,7 +41,7 @@ struct Config {
     visit("gain", self.gain, Range{0.0, 1.2}, "[-] share of the predicted force that is cancelled");
     visit("max_model_gain_n_s2_m", self.max_model_gain_n_s2_m, Range{1.0, 200.0},
           "[N s^2/m] largest |H| of a model, any frequency; paper IV-A: 3.2 at 0 Hz");
-    visit("max_path_force_n", self.max_path_force_n, Range{0.0, 25.0},
+    visit("max_path_force_n", self.max_path_force_n, Range{0.0, 60.0},
           "[N] most that a model may ask for from any channel but a_y at its full scale, or from a "
           "tone");
     visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 500.0},

@@ -211,7 +211,7 @@ bool trial_run_dies_away(const AugmentedModel& model, std::int64_t settle,
     ChannelSample sample{};
     const double accel = tick < kSwept ? kAccel_m_s2 * std::sin(turn) : 0.0;
     sample[static_cast<std::size_t>(Channel::kAccelY)] = accel;
-    const double force_n = std::abs(filter.step(sample, tick));
+    const double force_n = std::abs(filter.step(sample, tick).feedthrough_n);
     if (!(force_n <= bound_n)) return false;
     most_n = std::max(most_n, force_n);
     if (tick >= kSwept + quiet - 500) last_n = std::max(last_n, force_n);

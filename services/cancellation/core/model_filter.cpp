@@ -50,8 +50,9 @@ ModelFilter::ModelFilter(const AugmentedModel& model, std::int64_t settle_ticks)
   }
   for (const DirectPath& path : model.paths) {
     const double blend = path.lag_s > 0.0 ? -std::expm1(-kControlPeriod_s / path.lag_s) : 1.0;
+    const bool of_stick = path.channel == Channel::kTheta || path.channel == Channel::kOmega;
     paths_[paths_used_++] = {static_cast<std::size_t>(path.channel), blend, ValueTable(path.map),
-                             path.gain};
+                             path.gain, of_stick};
   }
   for (const Wave& wave : model.waves) {
     waves_[waves_used_++] = {wave.channel ? static_cast<std::size_t>(*wave.channel) : kChannels,
@@ -89,20 +90,22 @@ double ModelFilter::body(const ChannelSample& sample) noexcept {
   return y;
 }
 
-double ModelFilter::step(const ChannelSample& sample, Tick tick) noexcept {
-  double force_n = output_(body(sample));
+ModelFilter::Force ModelFilter::step(const ChannelSample& sample, Tick tick) noexcept {
+  Force force{output_(body(sample)), 0.0};
   for (std::size_t k = 0; k < paths_used_; ++k) {
     const Path& path = paths_[k];
     lagged_[k] += path.blend * (sample[path.channel] - lagged_[k]);
-    force_n += path.gain * path.map(lagged_[k]);
+    const double force_n = path.gain * path.map(lagged_[k]);
+    (path.of_stick ? force.beside_n : force.feedthrough_n) += force_n;
   }
   for (std::size_t k = 0; k < waves_used_; ++k) {
     const Turning& wave = waves_[k];
     const double at = wave.channel < kChannels ? sample[wave.channel]
                                                : static_cast<double>(tick) * kControlPeriod_s;
-    force_n += wave.sine_n * std::sin(wave.turn * at) + wave.cosine_n * std::cos(wave.turn * at);
+    force.beside_n +=
+        wave.sine_n * std::sin(wave.turn * at) + wave.cosine_n * std::cos(wave.turn * at);
   }
-  return force_n;
+  return force;
 }
 
 }  // namespace stillhand::cancellation

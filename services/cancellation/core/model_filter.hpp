@@ -34,8 +34,12 @@ class ModelFilter {
   [[nodiscard]] bool loaded() const noexcept { return loaded_; }
   [[nodiscard]] std::int64_t settle_ticks() const noexcept { return settle_ticks_; }
 
-  /// @return f^ at this tick [N]
-  double step(const ChannelSample& sample, Tick tick) noexcept;
+  struct Force {
+    double feedthrough_n = 0.0;  ///< of the body and the paths from the platform
+    double beside_n = 0.0;       ///< of paths from the stick and of waves: the arm has no say in it
+  };
+  /// f^ at this tick.
+  Force step(const ChannelSample& sample, Tick tick) noexcept;
   void reset() noexcept;
 
  private:
@@ -50,6 +54,7 @@ class ModelFilter {
     double blend;  ///< of the lag, 1: none
     ValueTable map;
     double gain;
+    bool of_stick;
   };
   struct Turning {
     std::size_t channel;  ///< kChannels: time

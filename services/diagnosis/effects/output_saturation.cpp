@@ -85,21 +85,36 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
                         {}});
     }
   }
-  std::vector<Proposal> all;
-  for (const Effect& start : starts) {
-    // As if the linear body had been fitted to the unlimited output: a start for the joint fit.
+  // As if the linear body had been fitted to the unlimited output: a start for the joint fit.
+  const auto fitted_from = [&](const Effect& start, const Body& body) {
     Model model = screening.model();
+    model.body = body;
     model.effects.push_back(start);
-    if (soft(start) && model.effects.size() == 1) {
-      model.body = body_before(start, screening);
-    }
     FitOptions options;
     options.max_iterations = 4;
     const FitResult fitted = fit(model, signals, screening.blocks(), options);
-    all.push_back(
-        {model.effects.back(), 1.0 - std::pow(fitted.rmse / screening.rmse(), 2), model.body});
+    return Proposal{model.effects.back(), 1.0 - std::pow(fitted.rmse / screening.rmse(), 2),
+                    model.body};
+  };
+  const Body& own = screening.model().body;
+  const bool first = screening.model().effects.empty();
+  std::vector<Proposal> softened;
+  for (const Effect& start : starts) {
+    if (soft(start)) {
+      softened.push_back(fitted_from(start, first ? body_before(start, screening) : own));
+    }
   }
-  return best_of(std::move(all), 2);
+  softened = best_of(std::move(softened), 1);
+  // The clipped output may have drawn the linear body into a hollow: from the soft limit's, too.
+  std::vector<Proposal> hard;
+  for (const Effect& start : starts) {
+    if (soft(start)) continue;
+    hard.push_back(fitted_from(start, own));
+    if (!softened.empty()) hard.push_back(fitted_from(start, *softened.front().body));
+  }
+  std::vector<Proposal> all = best_of(std::move(hard), 2);
+  for (Proposal& each : softened) all.push_back(std::move(each));
+  return best_of(std::move(all), 3);
 }
 
 }  // namespace

@@ -6,6 +6,26 @@
 
 namespace stillhand::identification {
 
+namespace {
+
+// A disturbance that isn't in the acceleration, a tone say, draws a pole beside itself that no
+// filter at 1 kHz gets right: with fewer poles there is none to spare.
+void convert_refined(IdentificationSteps& steps, int order, const ConversionBand& band) {
+  constexpr int kLeastOrder = 2;
+  while (true) {
+    try {
+      steps.control = to_control_rate(steps.refined->model, band);
+      return;
+    } catch (const ConfigError&) {
+      if (order <= kLeastOrder) throw;
+    }
+    --order;
+    steps.refined = refine_output_error(steps.record, fit_arx(steps.record, order).model);
+  }
+}
+
+}  // namespace
+
 IdentificationSteps identify_stepwise(const Record& recorded, const Config& config,
                                       bool refine_beside) {
   validate(config, "identification");
@@ -27,7 +47,7 @@ IdentificationSteps identify_stepwise(const Record& recorded, const Config& conf
   if (steps.refined_used || refine_beside) {
     steps.refined = refine_output_error(steps.record, steps.paper.model);
   }
-  if (steps.refined_used) steps.control = to_control_rate(steps.refined->model, band);
+  if (steps.refined_used) convert_refined(steps, static_cast<int>(config.order), band);
   return steps;
 }
 

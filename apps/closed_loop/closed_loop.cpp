@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "closed_loop/closed_loop.hpp"
+
+#include <algorithm>
+
+#include "contract/config_error.hpp"
+#include "contract/expects.hpp"
+
+namespace stillhand::closed_loop {
+namespace {
+
+using cancellation::AugmentedModel;
+using cancellation::Refusal;
+
+identification::Record pegged_record(const recording::Recording& measured) {
+  identification::Record record;
+  record.rate_hz = kControlRateHz;
+  record.acceleration_m_s2 = measured.find("a_y")->values;
+  record.force_n = measured.find("f")->values;
+  return record;
+}
+
+class Loop {
+ public:
+  Loop(Session& session, const LoopOptions& options) : session_(session), options_(options) {}
+
+  LoopResult run();
+
+ private:
+  void step(const std::string& name) const {
+    if (!options_.progress(name)) throw diagnosis::Interrupted();
+  }
+  void paper_trials();
+  /// False: nothing more to do.
+  bool round();
+  void try_model(Round& round, const AugmentedModel& model);
+  [[nodiscard]] bool anything_new(const Verdict& verdict) const;
+  [[nodiscard]] double best_error_mm() const { return result_.plus().metrics.rms_error_mm; }
+
+  Session& session_;
+  const LoopOptions& options_;
+  LoopResult result_;
+  experiment::PlannedTrial cancelled_{};
+  AugmentedModel best_model_;
+};
+
+void Loop::paper_trials() {
+  for (const experiment::PlannedTrial& planned : experiment::plan(options_.protocol)) {
+    const std::string label(1, planned.label);
+    step("trial " + label);
+    result_.trials.push_back(session_.run(planned, label));
+    if (planned.trial.phase == TrialPhase::kPegged) {
+      result_.paper_model = identification::identify(pegged_record(result_.trials.back().measured));
+      best_model_ = cancellation::augmented(result_.paper_model.control);
+      if (const Refusal refusal = session_.use(best_model_); refusal != Refusal::kNone) {
+        throw ConfigError("identification", std::string(cancellation::describe(refusal)),
+                          "a model that the canceller takes; a longer --identify-seconds helps");
+      }
+    }
+    if (planned.cancellation) cancelled_ = planned;
+  }
+}
+
+// The same trial again: same motion, same target, another model.
+void Loop::try_model(Round& round, const AugmentedModel& model) {
+  AugmentedModel followed = model;
+  followed.adapts = options_.hand;
+  if (const Refusal refusal = session_.use(followed); refusal != Refusal::kNone) {
+    round.outcome =
+        "the canceller refused the model: " + std::string(cancellation::describe(refusal)) +
+        "; the last good one stays";
+    return;
+  }
+  step("trial C+");
+  round.trial = session_.run(cancelled_, "C+");
+  round.kept = round.trial->metrics.rms_error_mm < best_error_mm();
+  if (round.kept) {
+    best_model_ = followed;
+    round.outcome = "the hand is stiller: kept";
+  } else {
+    session_.use(best_model_);
+    round.outcome = "the hand isn't stiller: the last good model stays";
+  }
+}
+
+bool Loop::anything_new(const Verdict& verdict) const {
+  if (result_.rounds.empty()) return true;
+  const auto& known = result_.rounds.back().verdict.findings;
+  return std::ranges::any_of(verdict.findings, [&](const Finding& finding) {
+    return std::ranges::none_of(known, [&](const Finding& other) {
+      return other.kind == finding.kind && other.where == finding.where;
+    });
+  });
+}
+
+bool Loop::round() {
+  step("diagnosis " + std::to_string(result_.rounds.size() + 1));
+  diagnosis::DiagnoseOptions diagnose;
+  diagnose.for_each = options_.for_each;
+  diagnose.progress = [&](const std::string& what) {
+    return options_.progress("diagnosis: " + what);
+  };
+  const TrialRun* newest = &result_.trial("C");
+  if (!result_.rounds.empty() && result_.rounds.back().trial) {
+    newest = &*result_.rounds.back().trial;
+  }
+  const bool first = result_.rounds.empty();
+  Round round;
+  round.verdict =
+      diagnose_all({&result_.trial("I").measured, &result_.trial("B").measured, &newest->measured},
+                   options_.declared, diagnose);
+  if (!first && !anything_new(round.verdict)) return false;
+  const bool explained =
+      round.verdict.body.verdict() != "unexplained residual" || !round.verdict.findings.empty();
+  // What can't be explained isn't put into a motor: gain and phase are followed, no more.
+  try_model(round, explained ? round.verdict.control.model
+                             : cancellation::augmented(result_.paper_model.control));
+  if (!explained) round.outcome = "something is missing that no kind explains; " + round.outcome;
+  const bool kept = round.kept;
+  result_.rounds.push_back(std::move(round));
+  if (kept) result_.final_round = result_.rounds.size() - 1;
+  return kept;
+}
+
+LoopResult Loop::run() {
+  paper_trials();
+  for (int n = 0; n < options_.most_rounds && round(); ++n) {
+  }
+  return std::move(result_);
+}
+
+}  // namespace
+
+const TrialRun& LoopResult::trial(const std::string& label) const {
+  const auto found = std::ranges::find(trials, label, &TrialRun::label);
+  STILLHAND_EXPECTS(found != trials.end());
+  return *found;
+}
+
+const TrialRun& LoopResult::plus() const {
+  for (std::size_t i = rounds.size(); i-- > 0;) {
+    if (rounds[i].kept) return *rounds[i].trial;
+  }
+  return trial("C");
+}
+
+LoopResult close_loop(Session& session, const LoopOptions& options) {
+  return Loop(session, options).run();
+}
+
+}  // namespace stillhand::closed_loop

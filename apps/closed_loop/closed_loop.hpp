@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "closed_loop/session.hpp"
+#include "closed_loop/verdict.hpp"
+#include "experiment/protocol.hpp"
+
+namespace stillhand::closed_loop {
+
+struct LoopOptions {
+  experiment::ProtocolOptions protocol;  ///< conditions are A, B, C
+  DeclaredDrive declared;
+  cancellation::HandCompliance hand;  ///< what the adaptation counts on
+  int most_rounds = 3;
+  diagnosis::ForEach for_each = diagnosis::in_order;
+  /// Before each longer step; false ends the loop (diagnosis::Interrupted).
+  std::function<bool(const std::string& step)> progress = [](const std::string&) { return true; };
+};
+
+/// One way through diagnosis, augmentation and C+.
+struct Round {
+  Verdict verdict;
+  std::optional<TrialRun> trial;  ///< C+; empty: the model was refused
+  bool kept = false;              ///< C+ beat the best before it
+  std::string outcome;            ///< one sentence
+};
+
+struct LoopResult {
+  identification::FeedthroughModel paper_model;
+  std::vector<TrialRun> trials;  ///< I, then A, B, C in the order in which they ran
+  std::vector<Round> rounds;     ///< at least one
+  std::size_t final_round = 0;   ///< whose C+ counts: the best one's
+
+  [[nodiscard]] const TrialRun& trial(const std::string& label) const;
+  /// C+ of the final round; C where no C+ was better.
+  [[nodiscard]] const TrialRun& plus() const;
+  [[nodiscard]] const Verdict& verdict() const { return rounds[final_round].verdict; }
+};
+
+/// Identifies, runs A, B and C with the paper's model, diagnoses, augments, runs C+, and again
+/// until nothing new is found or nothing helps, README "The loop".  The last good model stays.
+/// @throws ConfigError when no usable model comes out of the identification or a recording can't be
+///         diagnosed, diagnosis::Interrupted
+LoopResult close_loop(Session& session, const LoopOptions& options);
+
+}  // namespace stillhand::closed_loop

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cancellation/core/canceller.hpp"
+#include "experiment/in_process.hpp"
+#include "experiment/protocol.hpp"
+#include "identification/core/identifier.hpp"
+
+namespace stillhand::closed_loop {
+
+/// One trial as it was measured.
+struct TrialRun {
+  std::string label;  ///< "I", "A", "B", "C", "C+"
+  recording::Recording measured;
+  identification::TrackingMetrics metrics;  ///< of a tracking trial
+  double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth; last
+  cancellation::AdaptiveGain::Pair weights{1.0, 0.0};  ///< at its end
+};
+
+/// What the loop asks of a session, in one process or over DDS.
+class Session {
+ public:
+  Session() = default;
+  virtual ~Session() = default;
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Runs one trial.  @param label  what to call it  @throws ConfigError, std::runtime_error
+  virtual TrialRun run(const experiment::PlannedTrial& planned, const std::string& label) = 0;
+  /// The model that the canceller uses from the next trial on.
+  virtual cancellation::Refusal use(const cancellation::AugmentedModel& model) = 0;
+  /// undeclared_effect.json, once the verdict is out; no trial runs after it.
+  virtual std::string open_effect() = 0;
+};
+
+/// All in one process, as fast as the machine goes.
+class InProcessSession final : public Session {
+ public:
+  InProcessSession(const experiment::CoreConfigs& configs, std::uint64_t seed,
+                   std::uint64_t undeclared_effect);
+
+  TrialRun run(const experiment::PlannedTrial& planned, const std::string& label) override;
+  cancellation::Refusal use(const cancellation::AugmentedModel& model) override;
+  std::string open_effect() override;
+  /// Digest of what open_effect() will give.
+  [[nodiscard]] const std::string& commitment() const noexcept { return commitment_; }
+
+ private:
+  std::string sealed_;  ///< its text: nothing here looks into it
+  std::string commitment_;
+  experiment::InProcessLoop loop_;
+};
+
+}  // namespace stillhand::closed_loop

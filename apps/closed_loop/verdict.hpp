@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "closed_loop/control_model.hpp"
+#include "closed_loop/drive.hpp"
+#include "diagnosis/core/diagnose.hpp"
+#include "recording/core/recording.hpp"
+
+namespace stillhand::closed_loop {
+
+/// The recordings that a verdict rests on; nothing else is known of the rig.
+struct Evidence {
+  const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
+  const recording::Recording* moving = nullptr;     ///< B: the stick's own equation
+  const recording::Recording* cancelled = nullptr;  ///< C, or the newest C+: the motor's too
+};
+
+/// One effect that the paper's model lacks.
+struct Finding {
+  std::string kind;
+  std::string channel;       ///< empty: none
+  std::string where;         ///< "body", "drive", "motor path" or "load cell"
+  double explained_n = 0.0;  ///< RMS force
+  double before_n = 0.0;     ///< held-out error before and after, where it was found
+  double after_n = 0.0;
+  std::string evidence;
+};
+
+/// What is missing, and what the canceller makes of it.
+struct Verdict {
+  diagnosis::Diagnosis body;   ///< of the pegged trial, load cell's delay taken off
+  diagnosis::Diagnosis drive;  ///< of the stick's own equation
+  std::optional<Latency> latency;
+  std::vector<Finding> findings;  ///< strongest first
+  ControlModel control;
+
+  /// Kind of the strongest, or "none".
+  [[nodiscard]] std::string kind() const {
+    return findings.empty() ? std::string("none") : findings.front().kind;
+  }
+};
+
+/// Diagnoses body, drive and latency, and makes the canceller's model of them, README "The
+/// verdict".
+/// @param options  threads and progress; inputs, model and search are set here
+/// @throws ConfigError when a recording can't be diagnosed or the model can't be carried over
+Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
+                     const diagnosis::DiagnoseOptions& options);
+
+}  // namespace stillhand::closed_loop

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand close-the-loop` as a user meets it: what was missing is found, the hand is stiller, the truth comes last."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
+STILLHAND = str(BUILD / "bin" / "stillhand")
+SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3"]
+METRICS = ("rms_error", "dwell_ratio", "crossover")
+
+
+def close_the_loop(*arguments, **options):
+    return subprocess.run([STILLHAND, "close-the-loop", *map(str, arguments)], capture_output=True, text=True,
+                          timeout=240, **options)
+
+
+class CloseTheLoopTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(temporary.cleanup)
+        self.out = pathlib.Path(temporary.name) / "loop"
+
+    def summary(self, *arguments):
+        ran = close_the_loop(*SHORT, *arguments, "--out", self.out)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        return json.loads((self.out / "summary.json").read_text())
+
+    def test_what_was_missing_is_found_and_makes_the_hand_stiller(self):
+        summary = self.summary("--undeclared-effect", 9)
+        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C+"])
+        for condition in summary["conditions"].values():
+            self.assertEqual(len(condition["rms_error_mm"]["per_subject"]), 1)
+        for of in ("restoration", "restoration_c_plus"):
+            self.assertEqual(tuple(summary[of]), METRICS)
+        self.assertGreater(summary["restoration_c_plus"]["rms_error"], summary["restoration"]["rms_error"])
+        self.assertGreater(summary["conditions"]["C+"]["cancelled_share"], summary["conditions"]["C"]["cancelled_share"])
+        prediction = summary["force_prediction"]
+        self.assertLess(prediction["after_rmse_n"], 0.5 * prediction["before_rmse_n"])
+        self.assertLess(prediction["after_over_noise"], 1.3)
+        self.assertEqual((summary["verdict"]["kind"], summary["verdict"]["channel"]), ("coupled_input", "a_x"))
+        self.assertEqual((summary["truth"]["kind"], summary["truth"]["channel"]), ("coupled_input", "a_x"))
+        self.assertTrue(summary["truth"]["verdict_right"])
+        # The digests prove that the truth was there before, and that the verdict is the one it was opened for.
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
+                                 capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.assertIn("verdict.json: OK", checked.stdout)
+        self.assertEqual(json.loads((self.out / "verdict.json").read_text()), summary["verdict"])
+        report = (self.out / "report.html").read_text()
+        self.assertIn("coupled_input", report)
+        self.assertEqual(report.count("<svg"), 3)
+
+    def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
+        summary = self.summary()
+        self.assertEqual(summary["verdict"], {"kind": "none", "channel": None, "findings": []})
+        self.assertIsNone(summary["truth"])
+        errors = {name: condition["rms_error_mm"]["mean"] for name, condition in summary["conditions"].items()}
+        self.assertLessEqual(errors["C+"], errors["C"])
+        self.assertFalse((self.out / "undeclared_effect.json").exists())
+
+    def test_wrong_words_are_refused_before_anything_runs(self):
+        taken = self.out.parent / "file"
+        taken.write_text("mine\n")
+        for arguments, word in (([*SHORT, "--out", taken], "--out"),
+                                (["--trial-seconds", "1", "--out", self.out], "trial"),
+                                (["--identify-seconds", "nan", "--out", self.out], "identif"),
+                                (["--seed", "-4", "--out", self.out], "--seed"),
+                                (["--undeclared-effect", "x", "--out", self.out], "--undeclared-effect"),
+                                ([*SHORT], "--out")):
+            ran = close_the_loop(*arguments)
+            self.assertEqual(ran.returncode, 2, arguments)
+            self.assertEqual(ran.stderr.count("\n"), 1, ran.stderr)
+            self.assertIn(word, ran.stderr)
+            self.assertFalse(self.out.exists())
+        self.assertEqual(taken.read_text(), "mine\n")
+
+    def test_ctrl_c_leaves_nothing(self):
+        process = subprocess.Popen([STILLHAND, "close-the-loop", *SHORT, "--out", str(self.out)],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not self.out.exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        self.assertNotEqual(process.wait(timeout=60), 0)
+        self.assertFalse(self.out.exists())
+        process.communicate()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
