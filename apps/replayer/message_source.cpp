@@ -34,8 +34,8 @@ void add(const MessageView& message, std::uint64_t at_ns, recording::MessageBatc
 
 }  // namespace
 
-MessageSource::MessageSource(recording::FileSource& file, std::vector<ChannelId> wanted,
-                             std::vector<ChannelId> latched)
+MessageSource::MessageSource(recording::FileSource& file, const std::vector<ChannelId>& wanted,
+                             const std::vector<ChannelId>& latched)
     : reader_(file),
       wanted_(flags_of(wanted)),
       latched_(flags_of(latched)),

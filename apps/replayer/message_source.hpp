@@ -34,8 +34,8 @@ struct Stretch {
 class MessageSource {
  public:
   /// @param wanted   channels to read, by their number in the file  @param latched  of these
-  MessageSource(recording::FileSource& file, std::vector<recording::ChannelId> wanted,
-                std::vector<recording::ChannelId> latched);
+  MessageSource(recording::FileSource& file, const std::vector<recording::ChannelId>& wanted,
+                const std::vector<recording::ChannelId>& latched);
   ~MessageSource();
   MessageSource(const MessageSource&) = delete;
   MessageSource& operator=(const MessageSource&) = delete;

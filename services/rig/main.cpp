@@ -18,21 +18,21 @@ std::string text_for(const rig::SealedSeed& sealed, const rig::RigConfig& config
 
 /// The effect of a session that is over, drawn anew and written down: no bus, no session.
 int open_effect(int argc, char** argv) {
-  CLI::App cli("stillhand-rig: writes the undeclared effect of a session that is over");
-  bool open = false;
-  std::filesystem::path config;
-  std::filesystem::path out;
-  std::string verdict;
-  cli.add_flag("--open-undeclared-effect", open, "the seed comes on standard input")->required();
-  cli.add_option("--config", config, "folder with the settings of each service")->required();
-  cli.add_option("--out", out, "folder of the session")->required();
-  cli.add_option("--verdict", verdict, "file of that folder that was written without the truth");
   try {
-    cli.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return cli.exit(error) == 0 ? 0 : 2;
-  }
-  try {
+    CLI::App cli("stillhand-rig: writes the undeclared effect of a session that is over");
+    bool open = false;
+    std::filesystem::path config;
+    std::filesystem::path out;
+    std::string verdict;
+    cli.add_flag("--open-undeclared-effect", open, "the seed comes on standard input")->required();
+    cli.add_option("--config", config, "folder with the settings of each service")->required();
+    cli.add_option("--out", out, "folder of the session")->required();
+    cli.add_option("--verdict", verdict, "file of that folder that was written without the truth");
+    try {
+      cli.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return cli.exit(error) == 0 ? 0 : 2;
+    }
     const auto sealed = rig::read_sealed_seed(std::cin);
     const auto settings = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
     rig::open_effect(out, text_for(sealed, settings), verdict);

@@ -197,9 +197,8 @@ void ReaderEndpoint::on_requested_deadline_missed(
     return;
   }
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
-  const auto silent_us = static_cast<double>(
-      (monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed)) / 1000);
-  tell(BusIncident::Kind::kDeadlineMissed, "", silent_us);
+  const std::int64_t silent_ns = monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed);
+  tell(BusIncident::Kind::kDeadlineMissed, "", static_cast<double>(silent_ns) * 1e-3);
 }
 
 void ReaderEndpoint::on_liveliness_changed(

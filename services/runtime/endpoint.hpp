@@ -128,7 +128,6 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   // Receiving thread only; snapshots leave through the triple buffer.
   signal::CycleMonitor monitor_;
   LatestValue<EndpointReport> snapshot_;
-  EndpointReport last_report_{};
   std::mutex report_mutex_;
 };
 

@@ -91,7 +91,7 @@ class CycleMonitor {
     max_latency_us_ = std::max(max_latency_us_, us);
   }
 
-  static constexpr std::size_t kBins = 8 * 24;
+  static constexpr std::size_t kBins = std::size_t{8} * 24;
 
   Config config_;
   std::int64_t samples_ = 0;
