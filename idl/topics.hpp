@@ -65,6 +65,7 @@ inline constexpr std::string_view kTrialReaders[]{"motion",         "rig",     "
                                                   "identification", "recorder"};
 inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};
 inline constexpr std::string_view kModelReaders[]{"cancellation", "experiment", "recorder"};
+inline constexpr std::string_view kAugmentedModelReaders[]{"cancellation", "recorder"};
 inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
 inline constexpr std::string_view kStatusReaders[]{"rig", "cancellation", "display", "recorder",
                                                    "experiment"};
@@ -116,6 +117,12 @@ inline constexpr Topic kFeedthroughModel{
     "stillhand/feedthrough_model", "stillhand_msgs::FeedthroughModel",
     Pattern::kStateLatched,        0.0,
     who::kIdentification,          who::kModelReaders};
+inline constexpr Topic kAugmentedModel{"stillhand/augmented_model",
+                                       "stillhand_msgs::AugmentedModel",
+                                       Pattern::kStateLatched,
+                                       0.0,
+                                       who::kExperiment,
+                                       who::kAugmentedModelReaders};
 inline constexpr Topic kEvent{"stillhand/event", "stillhand_msgs::Event", Pattern::kEvent, 0.0,
                               kServices,         who::kEventReaders};
 inline constexpr Topic kServiceStatus{"stillhand/service_status",
@@ -127,10 +134,10 @@ inline constexpr Topic kServiceStatus{"stillhand/service_status",
 
 /// The whole catalogue; idl/README.md holds the same rows for people (tests/interface compares
 /// them).
-inline constexpr std::array<const Topic*, 13> kCatalogue{
-    &kPlatformCommand,  &kRawSample,     &kRigTruth,     &kSensed,       &kMotorCommand,
-    &kTrackingSample,   &kOperatorForce, &kPointer,      &kTrialControl, &kTrialAssignment,
-    &kFeedthroughModel, &kEvent,         &kServiceStatus};
+inline constexpr std::array<const Topic*, 14> kCatalogue{
+    &kPlatformCommand,  &kRawSample,      &kRigTruth, &kSensed,       &kMotorCommand,
+    &kTrackingSample,   &kOperatorForce,  &kPointer,  &kTrialControl, &kTrialAssignment,
+    &kFeedthroughModel, &kAugmentedModel, &kEvent,    &kServiceStatus};
 
 /// Remote control of `stillhand record` and `stillhand replay`: outside of every session, so that
 /// no process waits for them.

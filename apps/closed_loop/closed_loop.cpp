@@ -3,22 +3,12 @@
 
 #include <algorithm>
 
-#include "contract/config_error.hpp"
 #include "contract/expects.hpp"
 
 namespace stillhand::closed_loop {
 namespace {
 
 using cancellation::AugmentedModel;
-using cancellation::Refusal;
-
-identification::Record pegged_record(const recording::Recording& measured) {
-  identification::Record record;
-  record.rate_hz = kControlRateHz;
-  record.acceleration_m_s2 = measured.find("a_y")->values;
-  record.force_n = measured.find("f")->values;
-  return record;
-}
 
 class Loop {
  public:
@@ -41,6 +31,7 @@ class Loop {
   const LoopOptions& options_;
   LoopResult result_;
   experiment::PlannedTrial cancelled_{};
+  std::int64_t last_number_ = 0;
   AugmentedModel best_model_;
 };
 
@@ -50,13 +41,10 @@ void Loop::paper_trials() {
     step("trial " + label);
     result_.trials.push_back(session_.run(planned, label));
     if (planned.trial.phase == TrialPhase::kPegged) {
-      result_.paper_model = identification::identify(pegged_record(result_.trials.back().measured));
+      result_.paper_model = session_.identify(result_.trials.back());
       best_model_ = cancellation::augmented(result_.paper_model.control);
-      if (const Refusal refusal = session_.use(best_model_); refusal != Refusal::kNone) {
-        throw ConfigError("identification", std::string(cancellation::describe(refusal)),
-                          "a model that the canceller takes; a longer --identify-seconds helps");
-      }
     }
+    last_number_ = planned.trial.number;
     if (planned.cancellation) cancelled_ = planned;
   }
 }
@@ -65,12 +53,11 @@ void Loop::paper_trials() {
 void Loop::try_model(Round& round, const AugmentedModel& model) {
   AugmentedModel followed = model;
   followed.adapts = options_.hand;
-  if (const Refusal refusal = session_.use(followed); refusal != Refusal::kNone) {
-    round.outcome =
-        "the canceller refused the model: " + std::string(cancellation::describe(refusal)) +
-        "; the last good one stays";
+  if (const std::string refused = session_.use(followed); !refused.empty()) {
+    round.outcome = "the canceller refused the model: " + refused + "; the last good one stays";
     return;
   }
+  cancelled_.trial.number = ++last_number_;
   step("trial C+");
   round.trial = session_.run(cancelled_, "C+");
   round.kept = round.trial->metrics.rms_error_mm < best_error_mm();
@@ -104,12 +91,11 @@ bool Loop::round() {
   if (!result_.rounds.empty() && result_.rounds.back().trial) {
     newest = &*result_.rounds.back().trial;
   }
-  const bool first = result_.rounds.empty();
+  const Evidence evidence{&result_.trial("I").measured, &result_.trial("B").measured,
+                          &newest->measured};
   Round round;
-  round.verdict =
-      diagnose_all({&result_.trial("I").measured, &result_.trial("B").measured, &newest->measured},
-                   options_.declared, diagnose);
-  if (!first && !anything_new(round.verdict)) return false;
+  options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
+  if (!anything_new(round.verdict)) return false;
   const bool explained =
       round.verdict.body.verdict() != "unexplained residual" || !round.verdict.findings.empty();
   // What can't be explained isn't put into a motor: gain and phase are followed, no more.

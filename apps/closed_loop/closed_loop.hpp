@@ -20,6 +20,8 @@ struct LoopOptions {
   diagnosis::ForEach for_each = diagnosis::in_order;
   /// Before each longer step; false ends the loop (diagnosis::Interrupted).
   std::function<bool(const std::string& step)> progress = [](const std::string&) { return true; };
+  /// Runs what takes long and has no deadline.
+  std::function<void(const std::function<void()>&)> aside = [](const auto& work) { work(); };
 };
 
 /// One way through diagnosis, augmentation and C+.

@@ -7,23 +7,26 @@
 #include <memory>
 
 #include "cancellation/core/command_filter.hpp"
+#include "closed_loop/live_session.hpp"
 #include "closed_loop/output.hpp"
 #include "diagnose/on_all_cores.hpp"
 #include "diagnosis/model_file.hpp"
+#include "experiment/lab.hpp"
 #include "experiment/progress.hpp"
+#include "recording/file_io.hpp"
 #include "report/command_line.hpp"
 #include "report/draw.hpp"
 #include "report/staged_folder.hpp"
 #include "rig/sealed_file.hpp"
+#include "runtime/real_time.hpp"
 #include "runtime/stop.hpp"
 
 namespace stillhand::closed_loop {
 namespace {
 
 struct Words {
-  experiment::ProtocolOptions protocol;
-  std::uint64_t undeclared_effect = 0;
-  std::filesystem::path out;
+  experiment::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
+  bool live = false;
 };
 
 // Steps of one way through the loop, for the bar.
@@ -38,53 +41,98 @@ DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
 }
 
-int run(const Words& words) {
-  runtime::Stop stop;
-  report::StagedFolder folder(words.out);
-  report::require_gnuplot();
+// Everything but the session, for both ways.
+LoopRecord new_record(const Words& words) {
   LoopRecord record;
-  record.undeclared_effect = words.undeclared_effect;
-  record.options.protocol = words.protocol;
   record.command_line = report::command_line();
-  const experiment::CoreConfigs configs;
-  record.options.declared = declared_drive(configs.rig);
+  record.undeclared_effect = words.lab.undeclared_effect;
+  record.live = words.live;
+  record.options.protocol = words.lab.protocol;
+  record.options.declared = declared_drive(experiment::CoreConfigs{}.rig);
   record.options.hand = average_hand();
   record.options.for_each = diagnose::on_all_cores;
+  return record;
+}
+
+void write_files(const LoopRecord& record, report::StagedFolder& folder) {
+  folder.write("summary.json", summary_json(record));
+  folder.write("model.json", diagnosis::model_json(record.result.verdict().body.model));
+  const auto drawings = report::render(loop_figures(record), folder.path());
+  loop_page(record, drawings).write(folder.path() / "report.html");
+}
+
+void run_in_process(const Words& words) {
+  runtime::Stop stop;
+  report::StagedFolder folder(words.lab.out);
+  report::require_gnuplot();
+  LoopRecord record = new_record(words);
   experiment::ProgressLine progress;
   int steps = 0;
   record.options.progress = [&](const std::string& step) {
     progress.show(step, std::min(steps++ / kUsualSteps, 0.98));
     return !stop.requested();
   };
-  InProcessSession session(configs, words.protocol.seed, words.undeclared_effect);
-  if (words.undeclared_effect != 0) {
+  InProcessSession session({}, words.lab.protocol.seed, words.lab.undeclared_effect);
+  if (record.undeclared_effect != 0) {
     std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
     folder.write(rig::kCommitmentFile, session.commitment());
   }
   record.result = close_loop(session, record.options);
   progress.finish();
   folder.write(kVerdictFile, verdict_json(record.result));
-  folder.write("model.json", diagnosis::model_json(record.result.verdict().body.model));
-  if (words.undeclared_effect != 0) {
-    const std::string truth = session.open_effect();
-    rig::open_effect(folder.path(), truth, kVerdictFile);
-    record.truth = truth_of(truth);
+  if (record.undeclared_effect != 0) {
+    rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
+    record.truth = truth_of(session.open_effect());
   }
-  folder.write("summary.json", summary_json(record));
-  const auto drawings = report::render(loop_figures(record), folder.path());
-  loop_page(record, drawings).write(folder.path() / "report.html");
+  write_files(record, folder);
   folder.publish(every_name());
   print_result(record);
-  std::printf("report in %s\n", words.out.string().c_str());
-  return 0;
+}
+
+void run_live(const Words& words) {
+  runtime::Stop stop;
+  report::require_gnuplot();
+  const std::filesystem::path& out = words.lab.out;
+  const std::filesystem::path recording = out / "session.mcap";
+  LoopRecord record = new_record(words);
+  record.options.progress = [&](const std::string& /*step*/) { return !stop.requested(); };
+  record.options.aside = [](const std::function<void()>& work) {
+    const runtime::OrdinaryWhile ordinary;
+    work();
+  };
+  experiment::LiveSession live =
+      experiment::run_session(words.lab, stop, [&](experiment::LiveTrials& trials) {
+        LiveTrialSession session(trials, recording);
+        record.result = close_loop(session, record.options);
+      });
+  if (record.result.rounds.empty()) throw diagnosis::Interrupted();
+  add_cancelled_shares(recording, live.outcomes, record.result);
+  // The verdict is in place before the truth is opened.
+  if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
+                                                           verdict_json(record.result));
+      !status.ok()) {
+    throw std::runtime_error(status.text);
+  }
+  if (!live.sealed.empty()) {
+    experiment::open_undeclared_effect(words.lab, live.sealed, kVerdictFile);
+    record.truth = truth_of(recording::read_file((out / rig::kSealedFile).string()));
+  }
+  live.folder.reset();
+  report::StagedFolder folder(out);
+  write_files(record, folder);
+  folder.publish({});
+  print_result(record);
 }
 
 }  // namespace
 
 void add_closed_loop_command(CLI::App& cli, int& status) {
   auto words = std::make_shared<Words>();
-  words->protocol.identify_s = 120.0;  // paper III-A
-  words->protocol.conditions = experiment::parse_conditions("A,B,C");
+  experiment::LabOptions& lab = words->lab;
+  experiment::set_places(lab);
+  lab.headless = true;
+  lab.protocol.identify_s = 120.0;  // paper III-A
+  lab.protocol.conditions = experiment::parse_conditions("A,B,C");
   CLI::App* verb =
       cli.add_subcommand("close-the-loop",
                          "What the model lacks goes back into the canceller: identifies with the "
@@ -96,20 +144,30 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
                          "nothing new is found or nothing helps.\n"
                          "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
   verb->add_option(
-          "--undeclared-effect", words->undeclared_effect,
+          "--undeclared-effect", lab.undeclared_effect,
           "seed of an effect that only the rig knows of, opened after the verdict; 0: none")
       ->check(experiment::check_seed)
       ->capture_default_str();
-  verb->add_option("--seed", words->protocol.seed, "seed of everything else that is random")
+  verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
       ->check(experiment::check_seed)
       ->capture_default_str();
-  verb->add_option("--out", words->out, "folder of report, figures and numbers")->required();
-  verb->add_option("--trial-seconds", words->protocol.trial_s, "length of a tracking trial [s]")
+  verb->add_option("--out", lab.out, "folder of report, figures and numbers")->required();
+  verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]")
       ->capture_default_str();
-  verb->add_option("--identify-seconds", words->protocol.identify_s,
+  verb->add_option("--identify-seconds", lab.protocol.identify_s,
                    "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
-  verb->callback([words, &status] { status = run(*words); });
+  verb->add_flag("--live", words->live,
+                 "over DDS, with every process, in real time; the recording is kept");
+  verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
+      ->capture_default_str();
+  verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
+      ->capture_default_str();
+  verb->callback([words, &status] {
+    words->live ? run_live(*words) : run_in_process(*words);
+    std::printf("report in %s\n", words->lab.out.string().c_str());
+    status = 0;
+  });
 }
 
 }  // namespace stillhand::closed_loop

@@ -89,7 +89,8 @@ ordered_json round_json(const Round& round) {
                     {"weights", nullptr}};
   if (round.trial) {
     json["rms_error_mm"] = number(round.trial->metrics.rms_error_mm);
-    json["weights"] = {round.trial->weights[0], round.trial->weights[1]};
+    if (const auto& weights = round.trial->weights)
+      json["weights"] = {(*weights)[0], (*weights)[1]};
   }
   return json;
 }
@@ -155,6 +156,7 @@ std::string summary_json(const LoopRecord& record) {
       {"heldout_vaf_percent", number(result.paper_model.heldout.free_run_vaf_percent)},
       {"conversion_error", number(result.paper_model.conversion_error)}};
   const experiment::ProtocolOptions& protocol = record.options.protocol;
+  summary["live"] = record.live;
   summary["seed"] = protocol.seed;
   summary["undeclared_effect_seed"] = record.undeclared_effect;
   summary["trial_seconds"] = protocol.trial_s;

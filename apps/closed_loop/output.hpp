@@ -26,6 +26,7 @@ Truth truth_of(const std::string& sealed_text);
 struct LoopRecord {
   LoopOptions options;
   std::uint64_t undeclared_effect = 0;
+  bool live = false;  ///< over DDS
   std::string command_line;
   LoopResult result;
   std::optional<Truth> truth;  ///< empty: nothing was sealed

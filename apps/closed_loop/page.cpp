@@ -276,8 +276,10 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
     std::vector<Cell> row{std::to_string(i + 1), "–", "–", "–", each.outcome};
     if (each.trial) {
       row[1] = number(each.trial->metrics.rms_error_mm, 1);
-      row[2] = number(each.trial->weights[0], 2);
-      row[3] = number(each.trial->weights[1], 2);
+      if (const auto& weights = each.trial->weights) {
+        row[2] = number((*weights)[0], 2);
+        row[3] = number((*weights)[1], 2);
+      }
     }
     rounds.rows.push_back(row);
   }

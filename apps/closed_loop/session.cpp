@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "closed_loop/session.hpp"
 
+#include "contract/config_error.hpp"
 #include "rig/sealed_file.hpp"
 #include "signal/reference.hpp"
 
@@ -24,12 +25,11 @@ TrialRun InProcessSession::run(const experiment::PlannedTrial& planned, const st
   experiment::TrialSignals signals = loop_.run(planned);
   TrialRun out;
   out.label = label;
+  out.number = planned.trial.number;
   out.measured = std::move(signals.measured);
   out.measured.source = "trial " + label;
   if (planned.trial.phase == TrialPhase::kTracking) {
-    const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
-    out.metrics =
-        identification::tracking_metrics(signals.tracking, signal::reference_design(duration_s));
+    out.metrics = metrics_of(out.measured, planned);
     if (planned.moving) {
       out.cancelled_share = experiment::cancelled_share(signals.feedthrough_n, signals.motor_n);
     }
@@ -38,10 +38,33 @@ TrialRun InProcessSession::run(const experiment::PlannedTrial& planned, const st
   return out;
 }
 
-cancellation::Refusal InProcessSession::use(const cancellation::AugmentedModel& model) {
-  return loop_.use_model(model);
+identification::FeedthroughModel InProcessSession::identify(const TrialRun& pegged) {
+  identification::Record record;
+  record.rate_hz = kControlRateHz;
+  record.acceleration_m_s2 = pegged.measured.find("a_y")->values;
+  record.force_n = pegged.measured.find("f")->values;
+  const identification::FeedthroughModel model = identification::identify(record);
+  if (const auto refusal = loop_.use_model(model); refusal != cancellation::Refusal::kNone) {
+    throw ConfigError("identification", std::string(cancellation::describe(refusal)),
+                      "a model that the canceller takes; a longer --identify-seconds helps");
+  }
+  return model;
 }
 
-std::string InProcessSession::open_effect() { return sealed_; }
+std::string InProcessSession::use(const cancellation::AugmentedModel& model) {
+  const auto refusal = loop_.use_model(model);
+  return refusal == cancellation::Refusal::kNone ? std::string()
+                                                 : std::string(cancellation::describe(refusal));
+}
+
+identification::TrackingMetrics metrics_of(const recording::Recording& measured,
+                                           const experiment::PlannedTrial& planned) {
+  identification::TrackingRecord record;
+  record.rate_hz = kControlRateHz;
+  record.target_m = measured.find("x_r")->values;
+  record.cursor_m = measured.find("x_p")->values;
+  const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
+  return identification::tracking_metrics(record, signal::reference_design(duration_s));
+}
 
 }  // namespace stillhand::closed_loop

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "cancellation/core/canceller.hpp"
 #include "experiment/in_process.hpp"
@@ -13,11 +14,12 @@ namespace stillhand::closed_loop {
 
 /// One trial as it was measured.
 struct TrialRun {
-  std::string label;  ///< "I", "A", "B", "C", "C+"
+  std::string label;        ///< "I", "A", "B", "C", "C+"
+  std::int64_t number = 0;  ///< of the trial in its session
   recording::Recording measured;
   identification::TrackingMetrics metrics;  ///< of a tracking trial
-  double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth; last
-  cancellation::AdaptiveGain::Pair weights{1.0, 0.0};  ///< at its end
+  double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth
+  std::optional<cancellation::AdaptiveGain::Pair> weights;  ///< at its end; not told over DDS
 };
 
 /// What the loop asks of a session, in one process or over DDS.
@@ -30,11 +32,16 @@ class Session {
 
   /// Runs one trial.  @param label  what to call it  @throws ConfigError, std::runtime_error
   virtual TrialRun run(const experiment::PlannedTrial& planned, const std::string& label) = 0;
-  /// The model that the canceller uses from the next trial on.
-  virtual cancellation::Refusal use(const cancellation::AugmentedModel& model) = 0;
-  /// undeclared_effect.json, once the verdict is out; no trial runs after it.
-  virtual std::string open_effect() = 0;
+  /// The paper's model of a pegged trial, which the canceller uses from now on.
+  /// @throws ConfigError when no usable one comes out
+  virtual identification::FeedthroughModel identify(const TrialRun& pegged) = 0;
+  /// The model that the canceller uses from the next trial on.  @return why not, or empty
+  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
 };
+
+/// RMS error and the rest, from target and cursor as measured.
+identification::TrackingMetrics metrics_of(const recording::Recording& measured,
+                                           const experiment::PlannedTrial& planned);
 
 /// All in one process, as fast as the machine goes.
 class InProcessSession final : public Session {
@@ -43,8 +50,10 @@ class InProcessSession final : public Session {
                    std::uint64_t undeclared_effect);
 
   TrialRun run(const experiment::PlannedTrial& planned, const std::string& label) override;
-  cancellation::Refusal use(const cancellation::AugmentedModel& model) override;
-  std::string open_effect() override;
+  identification::FeedthroughModel identify(const TrialRun& pegged) override;
+  std::string use(const cancellation::AugmentedModel& model) override;
+  /// undeclared_effect.json, once the verdict is out.
+  [[nodiscard]] const std::string& open_effect() const noexcept { return sealed_; }
   /// Digest of what open_effect() will give.
   [[nodiscard]] const std::string& commitment() const noexcept { return commitment_; }
 

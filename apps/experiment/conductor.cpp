@@ -5,6 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "cancellation/codec.hpp"
 #include "runtime/clock.hpp"
 
 namespace stillhand::experiment {
@@ -100,7 +101,9 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Progress progress)
       progress_(std::move(progress)),
       control_(service.bus().publisher<stillhand_msgs::TrialControl>(topics::kTrialControl)),
       assignment_(
-          service.bus().publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment)) {
+          service.bus().publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment)),
+      augmented_model_(
+          service.bus().publisher<stillhand_msgs::AugmentedModel>(topics::kAugmentedModel)) {
   const auto stored = [this](auto store) {
     {
       const std::lock_guard lock(mutex_);
@@ -375,6 +378,25 @@ std::optional<stillhand_msgs::FeedthroughModel> Conductor::await_model(std::int6
     return model.has_value();
   });
   return model;
+}
+
+std::string Conductor::use(const cancellation::AugmentedModel& model) {
+  constexpr double kLimit_s = 5.0;
+  {
+    const std::lock_guard lock(mutex_);
+    seen_.events.clear();
+  }
+  auto message = cancellation::to_idl(model, cancellation::kFirstAugmentedModel + models_++);
+  augmented_model_.write(message);
+  std::string refused;
+  const bool answered = wait_for(kLimit_s, [&](Seen& seen) {
+    return std::ranges::any_of(seen.events, [&](const stillhand_msgs::Event& event) {
+      if (event.kind() == stillhand_msgs::EVENT_MODEL_REFUSED) refused = event.text().c_str();
+      return event.kind() == stillhand_msgs::EVENT_MODEL_REFUSED ||
+             event.kind() == stillhand_msgs::EVENT_MODEL_LOADED;
+    });
+  });
+  return answered ? refused : why_stopped("the canceller did not answer");
 }
 
 std::string Conductor::why_stopped(const std::string& otherwise) const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cancellation/core/augmented_model.hpp"
 #include "experiment/processes.hpp"
 #include "experiment/protocol.hpp"
 #include "idl/model.h"
@@ -74,6 +75,8 @@ class Conductor {
   TrialOutcome run(PlannedTrial planned);
   /// The model identified from a trial, or nothing when none comes within `limit_s` [s].
   std::optional<stillhand_msgs::FeedthroughModel> await_model(std::int64_t trial, double limit_s);
+  /// Gives the canceller a model and waits for its answer.  @return why it wasn't taken, or empty
+  std::string use(const cancellation::AugmentedModel& model);
   /// A process that ended, "interrupted", or else `otherwise`.
   [[nodiscard]] std::string why_stopped(const std::string& otherwise) const;
   /// Misses no longer count; processes may leave.
@@ -108,6 +111,8 @@ class Conductor {
   Progress progress_;
   runtime::Publisher<stillhand_msgs::TrialControl> control_;
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
+  runtime::Publisher<stillhand_msgs::AugmentedModel> augmented_model_;
+  std::int32_t models_ = 0;  ///< augmented ones given
   std::mutex mutex_;
   std::condition_variable news_;
   Seen seen_;

@@ -19,6 +19,7 @@
 #include "experiment/progress.hpp"
 #include "experiment/rehearsal.hpp"
 #include "experiment/results.hpp"
+#include "identification/codec.hpp"
 #include "rig/sealed_file.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/real_time.hpp"
@@ -138,41 +139,49 @@ std::vector<Launch> launches(const LabOptions& options, const std::string& seale
 }
 
 /// The session proper, once every process runs.
-class Session {
+class Session final : public LiveTrials {
  public:
   Session(const LabOptions& options, const AskedMotions& asked, runtime::Service& service,
-          Processes& processes)
+          Processes& processes, std::vector<TrialOutcome>& outcomes)
       : options_(options),
         asked_(asked),
+        outcomes_(outcomes),
         conductor_(
             service, [&processes] { return processes.reap(); },
             [this](const std::string& what, double done) { progress_.show(what, done); }) {}
 
-  /// @param outcomes  filled as trials end, so that a failure keeps what there is
-  void run(std::vector<TrialOutcome>& outcomes) {
+  void run(const Script& script) {
     conductor_.await_everybody(options_.match_s);
     if (conductor_.interrupted()) return;
     conductor_.begin_session();
-    for (const PlannedTrial& planned : plan(options_.protocol)) {
-      if (conductor_.interrupted()) break;
-      outcomes.push_back(conductor_.run(planned));
-      TrialOutcome& outcome = outcomes.back();
-      if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
-        outcome.asked = motion->second;
-      }
-      if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) require_model(outcome);
-      if (!outcome.completed) break;
-    }
+    script(*this);
     progress_.finish();
   }
   void end() { conductor_.end_session(); }
-  [[nodiscard]] bool interrupted() const { return conductor_.interrupted(); }
+
+  const TrialOutcome& run(const PlannedTrial& planned) override {
+    outcomes_.push_back(conductor_.run(planned));
+    TrialOutcome& outcome = outcomes_.back();
+    if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
+      outcome.asked = motion->second;
+    }
+    if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) take_model(outcome);
+    return outcome;
+  }
+  [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
+  std::string use(const cancellation::AugmentedModel& model) override {
+    return conductor_.use(model);
+  }
+  [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }
 
  private:
   // Without a model there is nothing to cancel with: the session ends here.
-  void require_model(TrialOutcome& outcome) {
+  void take_model(TrialOutcome& outcome) {
     const auto model = conductor_.await_model(outcome.planned.trial.number, kModelLimit_s);
-    if (model && model->usable()) return;
+    if (model && model->usable()) {
+      model_ = identification::from_idl(*model);
+      return;
+    }
     outcome.completed = false;
     outcome.aborted = model ? std::string("no usable model, a longer --identify-seconds helps: ") +
                                   model->text().c_str()
@@ -181,6 +190,8 @@ class Session {
 
   const LabOptions& options_;
   const AskedMotions& asked_;
+  std::vector<TrialOutcome>& outcomes_;
+  identification::FeedthroughModel model_;
   ProgressLine progress_;
   Conductor conductor_;
 };
@@ -214,8 +225,11 @@ AskedMotions check(const LabOptions& options) {
   return rehearse(options.protocol, ride, options.config);
 }
 
-/// The rig's executable draws the effect anew and writes it down, once the results are there.
-void open_undeclared_effect(const LabOptions& options, const std::string& sealed) {
+}  // namespace
+
+// The rig's executable draws the effect anew and writes it down.
+void open_undeclared_effect(const LabOptions& options, const std::string& sealed,
+                            const std::string& verdict) {
   constexpr std::int64_t kLimit_ns = 60'000'000'000;
   constexpr std::int64_t kPoll_ns = 20'000'000;
   Launch launch;
@@ -223,8 +237,13 @@ void open_undeclared_effect(const LabOptions& options, const std::string& sealed
   launch.executable = options.programs / "stillhand-rig";
   launch.log = options.out / "logs" / "experiment.log";
   launch.standard_input = sealed;
-  launch.arguments = {"--open-undeclared-effect", "--config",  options.config.string(), "--out",
-                      options.out.string(),       "--verdict", "summary.json"};
+  launch.arguments = {"--open-undeclared-effect",
+                      "--config",
+                      options.config.string(),
+                      "--out",
+                      options.out.string(),
+                      "--verdict",
+                      verdict};
   Processes processes;
   processes.start(launch);
   const std::int64_t limit_ns = runtime::monotonic_ns() + kLimit_ns;
@@ -239,19 +258,28 @@ void open_undeclared_effect(const LabOptions& options, const std::string& sealed
   std::printf("undeclared effect opened: %s\n", (options.out / rig::kSealedFile).string().c_str());
 }
 
-}  // namespace
+void set_places(LabOptions& options) {
+  options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  options.profiles = "qos/profiles.xml";
+  options.config = "deploy/config";
+  for (const std::filesystem::path& root : {options.programs.parent_path() / "share" / "stillhand",
+                                            std::filesystem::path(STILLHAND_SOURCE)}) {
+    if (!std::filesystem::exists(root / "qos" / "profiles.xml")) continue;
+    options.profiles = root / "qos" / "profiles.xml";
+    options.config = root / "deploy" / "config";
+    return;
+  }
+}
 
-int run_lab(const LabOptions& options, runtime::Stop& stop) {
+LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Script& script) {
   const AskedMotions asked = check(options);
   const DomainLock lock(options.domain, options.rig);
   check_port(options.domain);
-  const OutputFolder folder(options.out, options.ride);
-  const std::string sealed = options.undeclared_effect == 0
-                                 ? ""
-                                 : rig::text_of({options.undeclared_effect, rig::new_nonce()});
-
-  std::vector<TrialOutcome> outcomes;
-  bool interrupted = false;
+  LiveSession live;
+  live.folder = std::make_shared<OutputFolder>(options.out, options.ride);
+  if (options.undeclared_effect != 0) {
+    live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
+  }
   try {
     runtime::ServiceOptions service_options;
     service_options.service = "experiment";
@@ -264,26 +292,35 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     service_options.real_time = options.real_time && runtime::become_real_time();
     runtime::Service service(service_options, stop);
     Processes processes;
-    Session session(options, asked, service, processes);
-    for (const Launch& launch : launches(options, sealed)) processes.start(launch);
+    Session session(options, asked, service, processes, live.outcomes);
+    for (const Launch& launch : launches(options, live.sealed)) processes.start(launch);
     service.run([&] {
-      session.run(outcomes);
+      session.run(script);
       session.end();
-      interrupted = session.interrupted();
+      live.interrupted = session.interrupted();
       processes.end_all("recorder", kEndPatience_s);
     });
   } catch (...) {
-    if (outcomes.empty()) folder.discard();
+    if (live.outcomes.empty()) live.folder->discard();
     throw;
   }
-  if (outcomes.empty() && interrupted) {
-    folder.discard();
+  if (live.outcomes.empty() && live.interrupted) live.folder->discard();
+  return live;
+}
+
+int run_lab(const LabOptions& options, runtime::Stop& stop) {
+  const LiveSession live = run_session(options, stop, [&](LiveTrials& trials) {
+    for (const PlannedTrial& planned : plan(options.protocol)) {
+      if (trials.interrupted() || !trials.run(planned).completed) break;
+    }
+  });
+  if (live.outcomes.empty() && live.interrupted) {
     std::cerr << "stillhand lab: interrupted before the first trial\n";
     return 1;
   }
   const runtime::OrdinaryWhile ordinary;
-  const int status = report_session(options, outcomes, interrupted);
-  if (!sealed.empty()) open_undeclared_effect(options, sealed);
+  const int status = report_session(options, live.outcomes, live.interrupted);
+  if (!live.sealed.empty()) open_undeclared_effect(options, live.sealed, "summary.json");
   return status;
 }
 

@@ -2,9 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "cancellation/core/augmented_model.hpp"
+#include "experiment/conductor.hpp"
 #include "experiment/protocol.hpp"
+#include "identification/core/identifier.hpp"
 #include "recording/keep_options.hpp"
 #include "runtime/stop.hpp"
 
@@ -31,6 +37,44 @@ struct LabOptions {
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
   recording::KeepOptions keep;          ///< of the session's recording
 };
+
+/// Sets programs, profiles and config: those of the build tree or of an installed prefix.
+void set_places(LabOptions& options);
+
+/// A session over DDS while its processes run: trial by trial.
+class LiveTrials {
+ public:
+  virtual ~LiveTrials() = default;
+  /// Runs one trial; of a pegged one, to the model that it gives.  A trial that isn't completed
+  /// ends the session: run nothing behind it.
+  virtual const TrialOutcome& run(const PlannedTrial& planned) = 0;
+  /// The model identified last.
+  [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
+  /// Gives the canceller a model.  @return why it wasn't taken, or empty
+  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
+  [[nodiscard]] virtual bool interrupted() const = 0;
+};
+
+/// What happens in a session, between the processes' start and their end.
+using Script = std::function<void(LiveTrials& trials)>;
+
+class OutputFolder;
+
+/// What is left of a session whose processes have ended.
+struct LiveSession {
+  std::vector<TrialOutcome> outcomes;
+  bool interrupted = false;
+  std::string sealed;                    ///< for open_undeclared_effect()
+  std::shared_ptr<OutputFolder> folder;  ///< its own as long as this lives
+};
+
+/// Starts every process, runs the script, ends every process.  The recording is DIR/session.mcap.
+/// @throws ConfigError for what the user can mend before the run; what the script throws
+LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Script& script);
+
+/// DIR/undeclared_effect.json, once the verdict is there.  @param verdict  a file in DIR
+void open_undeclared_effect(const LabOptions& options, const std::string& sealed,
+                            const std::string& verdict);
 
 /// Runs a whole session on this machine: starts every process, identifies, runs the trials over
 /// DDS, records, computes the results from the recording, stops every process.

@@ -31,33 +31,12 @@ void take_road(const Words& words, ProtocolOptions& protocol) {
   protocol.road_speed_m_s = words.road_speed_m_s.value_or(protocol.road_speed_m_s);
 }
 
-// Where this program and the files it needs are: build tree, or an installed prefix.
-struct Places {
-  std::filesystem::path programs;
-  std::filesystem::path profiles;
-  std::filesystem::path config;
-};
-
-Places find_places() {
-  const auto programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  for (const std::filesystem::path& root :
-       {programs.parent_path() / "share" / "stillhand", std::filesystem::path(STILLHAND_SOURCE)}) {
-    if (std::filesystem::exists(root / "qos" / "profiles.xml")) {
-      return {programs, root / "qos" / "profiles.xml", root / "deploy" / "config"};
-    }
-  }
-  return {programs, "qos/profiles.xml", "deploy/config"};
-}
-
 }  // namespace
 
 void add_lab_command(CLI::App& cli, int& status) {
   auto options = std::make_shared<LabOptions>();
   auto words = std::make_shared<Words>();
-  const Places places = find_places();
-  options->programs = places.programs;
-  options->profiles = places.profiles;
-  options->config = places.config;
+  set_places(*options);
 
   CLI::App* lab = cli.add_subcommand(
       "lab",

@@ -55,9 +55,10 @@ double end_s(const Measurement& measurement) {
 void append(Measurement& whole, Measurement&& part) {
   const double later_s = end_s(whole) - part.stretches.front().start_s;
   const std::size_t before = whole.size();
+  const std::size_t recordings = whole.stretches.back().recording + 1;
   for (const Stretch& stretch : part.stretches) {
-    whole.stretches.push_back(
-        {before + stretch.first, before + stretch.end, stretch.start_s + later_s});
+    whole.stretches.push_back({before + stretch.first, before + stretch.end,
+                               stretch.start_s + later_s, recordings + stretch.recording});
   }
   for (Channel& channel : whole.channels) {
     const std::vector<double>& values = part.find(channel.name)->values;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 
 #include "contract/config_error.hpp"
@@ -20,7 +21,7 @@
 namespace stillhand::measurement {
 namespace {
 
-// A channel of the tracking topic that is there for fewer of the ticks would make most of them
+// A topic beside the sensed one that is there for fewer of the ticks would make most of them
 // missing rows.
 constexpr double kLeastShare = 0.9;
 
@@ -44,6 +45,7 @@ struct Stream {
 
 struct TrialStreams {
   Stream<7> sensed;
+  Stream<1> motor;
   Stream<2> tracking;
 };
 
@@ -63,7 +65,7 @@ TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& cho
                           std::uint32_t rig) {
   TrialStreams streams;
   recording::MessageFilter filter;
-  filter.topics = {std::string(topics::kSensed.name)};
+  filter.topics = {std::string(topics::kSensed.name), std::string(topics::kMotorCommand.name)};
   const bool tracking = chosen.trial.phase == TrialPhase::kTracking;
   if (tracking) filter.topics.emplace_back(topics::kTrackingSample.name);
   const recording::Status status =
@@ -72,6 +74,13 @@ TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& cho
           stillhand_msgs::Sensed m;
           if (from_cdr(view.bytes, m) && m.rig() == rig && chosen.holds(m.tick())) {
             take_sensed(m, streams.sensed);
+          }
+          return true;
+        }
+        if (view.channel.topic == topics::kMotorCommand.name) {
+          stillhand_msgs::MotorCommand m;
+          if (from_cdr(view.bytes, m) && m.rig() == rig && chosen.holds(m.tick())) {
+            streams.motor.take(m.tick(), {m.force_n()});
           }
           return true;
         }
@@ -86,32 +95,25 @@ TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& cho
   return streams;
 }
 
-// Keeps the entries at these places, which are in order.
-void keep(std::vector<double>& values, const std::vector<std::size_t>& places) {
-  for (std::size_t i = 0; i < places.size(); ++i) values[i] = values[places[i]];
-  values.resize(places.size());
+std::vector<Tick> in_both(const std::vector<Tick>& a, const std::vector<Tick>& b) {
+  std::vector<Tick> both;
+  std::ranges::set_intersection(a, b, std::back_inserter(both));
+  return both;
 }
 
-// The ticks that both streams have.
-void match(TrialStreams& streams) {
-  std::vector<std::size_t> of_sensed;
-  std::vector<std::size_t> of_tracking;
-  std::vector<Tick>& ticks = streams.sensed.ticks;
-  const std::vector<Tick>& others = streams.tracking.ticks;
-  for (std::size_t i = 0, j = 0; i < ticks.size(); ++i) {
-    while (j < others.size() && others[j] < ticks[i]) ++j;
-    if (j == others.size()) break;
-    if (others[j] != ticks[i]) continue;
-    of_sensed.push_back(i);
-    of_tracking.push_back(j);
+// Keeps the samples at these ticks, all of which it has.
+template <std::size_t columns>
+void keep(Stream<columns>& stream, const std::vector<Tick>& ticks) {
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    while (stream.ticks[from] != ticks[i]) ++from;
+    for (auto& values : stream.values) values[i] = values[from];
   }
-  for (std::size_t i = 0; i < of_sensed.size(); ++i) ticks[i] = ticks[of_sensed[i]];
-  ticks.resize(of_sensed.size());
-  for (auto& values : streams.sensed.values) keep(values, of_sensed);
-  for (auto& values : streams.tracking.values) keep(values, of_tracking);
+  for (auto& values : stream.values) values.resize(ticks.size());
+  stream.ticks = ticks;
 }
 
-recording::Recording table_of(TrialStreams streams, bool with_tracking) {
+recording::Recording table_of(TrialStreams streams, bool with_motor, bool with_tracking) {
   // design.md section 3.
   constexpr std::array<std::array<const char*, 2>, 7> kSensed{{{"a_x", "m/s^2"},
                                                                {"a_y", "m/s^2"},
@@ -128,6 +130,7 @@ recording::Recording table_of(TrialStreams streams, bool with_tracking) {
   for (std::size_t i = 0; i < kSensed.size(); ++i) {
     rows.columns.push_back({kSensed[i][0], kSensed[i][1], std::move(streams.sensed.values[i])});
   }
+  if (with_motor) rows.columns.push_back({"f_motor", "N", std::move(streams.motor.values[0])});
   for (std::size_t i = 0; with_tracking && i < kTracking.size(); ++i) {
     rows.columns.push_back(
         {kTracking[i][0], kTracking[i][1], std::move(streams.tracking.values[i])});
@@ -148,20 +151,28 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial)
   SessionRows out;
   out.notes = notes_of(trials, chosen);
   TrialStreams streams = read_streams(reader, chosen, trials.rig);
-  const auto sensed = static_cast<double>(streams.sensed.ticks.size());
-  const auto tracking = static_cast<double>(streams.tracking.ticks.size());
-  const bool with_tracking = tracking > 0.0 && tracking >= kLeastShare * sensed;
+  const auto enough = [&](const auto& stream) {
+    return !stream.ticks.empty() &&
+           static_cast<double>(stream.ticks.size()) >=
+               kLeastShare * static_cast<double>(streams.sensed.ticks.size());
+  };
+  const bool with_motor = enough(streams.motor);
+  const bool with_tracking = enough(streams.tracking);
   if (streams.sensed.invalid > 0) {
     const auto invalid = streams.sensed.invalid;
     out.notes.push_back(std::to_string(invalid) + (invalid == 1 ? " sample" : " samples") +
                         " without a valid reading taken as missing.");
   }
-  if (with_tracking) {
-    match(streams);
-  } else if (tracking > 0.0) {
+  if (!with_tracking && !streams.tracking.ticks.empty()) {
     out.notes.push_back("x_r and x_p left out: most of their samples are missing.");
   }
-  out.rows = table_of(std::move(streams), with_tracking);
+  std::vector<Tick> ticks = streams.sensed.ticks;
+  if (with_motor) ticks = in_both(ticks, streams.motor.ticks);
+  if (with_tracking) ticks = in_both(ticks, streams.tracking.ticks);
+  keep(streams.sensed, ticks);
+  if (with_motor) keep(streams.motor, ticks);
+  if (with_tracking) keep(streams.tracking, ticks);
+  out.rows = table_of(std::move(streams), with_motor, with_tracking);
   out.rows.source = path;
   if (out.rows.row_count() < 2) {
     throw ConfigError(path + ", trial " + chosen.name(),

@@ -16,7 +16,8 @@ struct SessionRows {
 };
 
 /// Reads the measured ticks of one trial from `stillhand/sensed` (a_x, a_y, a_z, roll, theta,
-/// omega, f) and, of a tracking trial, `stillhand/tracking_sample` (x_r, x_p).  Ticks at which one
+/// omega, f), `stillhand/motor_command` (f_motor, what is asked of the motor) and, of a tracking
+/// trial, `stillhand/tracking_sample` (x_r, x_p).  Ticks at which one
 /// of them is missing, or the sensors gave nothing valid, are missing rows.  What of a damaged file
 /// can be read is used.
 /// @param trial  as ReadOptions::trial

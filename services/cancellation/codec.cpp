@@ -2,6 +2,28 @@
 #include "cancellation/codec.hpp"
 
 namespace stillhand::cancellation {
+namespace {
+
+// The channels of core and bus have one order; a number that is none stays none, and is refused.
+Channel from_idl(stillhand_msgs::ModelChannel channel) { return static_cast<Channel>(channel); }
+stillhand_msgs::ModelChannel to_idl(Channel channel) {
+  return static_cast<stillhand_msgs::ModelChannel>(channel);
+}
+static_assert(static_cast<std::size_t>(stillhand_msgs::MODEL_OMEGA) ==
+              static_cast<std::size_t>(Channel::kOmega));
+
+ValueMap from_idl(const stillhand_msgs::ValueMap& map) {
+  return {map.low(), map.high(), map.values()};
+}
+stillhand_msgs::ValueMap to_idl(const ValueMap& map) {
+  stillhand_msgs::ValueMap message;
+  message.low(map.low);
+  message.high(map.high);
+  message.values(map.values);
+  return message;
+}
+
+}  // namespace
 
 CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted) {
   CancellerInput input{};
@@ -17,6 +39,78 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
 
 ControlRateModel from_idl(const stillhand_msgs::FeedthroughModel& message) {
   return {message.control_rate_hz(), message.control_numerator(), message.control_denominator()};
+}
+
+AugmentedModel from_idl(const stillhand_msgs::AugmentedModel& message) {
+  AugmentedModel model;
+  model.rate_hz = message.rate_hz();
+  model.denominator = message.denominator();
+  for (const auto& input : message.inputs()) {
+    model.inputs.push_back({from_idl(input.channel()), from_idl(input.table()), input.numerator()});
+  }
+  if (!message.loop().empty()) {
+    const auto& loop = message.loop().front();
+    model.loop = LoopPath{loop.e(), loop.n(), loop.m(), from_idl(loop.phi())};
+  }
+  model.output = from_idl(message.output());
+  for (const auto& path : message.paths()) {
+    model.paths.push_back(
+        {from_idl(path.channel()), path.lag_s(), from_idl(path.table()), path.gain()});
+  }
+  for (const auto& wave : message.waves()) {
+    Wave& to = model.waves.emplace_back();
+    if (wave.channel() != stillhand_msgs::MODEL_TIME) to.channel = from_idl(wave.channel());
+    to.frequency = wave.frequency();
+    to.sine_n = wave.sine_n();
+    to.cosine_n = wave.cosine_n();
+  }
+  if (message.adapts()) {
+    model.adapts = HandCompliance{message.hand_mass_kg(), message.hand_damping_n_s_m(),
+                                  message.hand_stiffness_n_m(), message.hand_lever_m()};
+  }
+  return model;
+}
+
+stillhand_msgs::AugmentedModel to_idl(const AugmentedModel& model, std::int32_t number) {
+  stillhand_msgs::AugmentedModel message;
+  message.model(number);
+  message.rate_hz(model.rate_hz);
+  message.denominator(model.denominator);
+  for (const InputPath& input : model.inputs) {
+    auto& to = message.inputs().emplace_back();
+    to.channel(to_idl(input.channel));
+    to.table(to_idl(input.map));
+    to.numerator(input.numerator);
+  }
+  if (model.loop) {
+    auto& to = message.loop().emplace_back();
+    to.e(model.loop->e);
+    to.n(model.loop->n);
+    to.m(model.loop->m);
+    to.phi(to_idl(model.loop->phi));
+  }
+  message.output(to_idl(model.output));
+  for (const DirectPath& path : model.paths) {
+    auto& to = message.paths().emplace_back();
+    to.channel(to_idl(path.channel));
+    to.lag_s(path.lag_s);
+    to.table(to_idl(path.map));
+    to.gain(path.gain);
+  }
+  for (const Wave& wave : model.waves) {
+    auto& to = message.waves().emplace_back();
+    to.channel(wave.channel ? to_idl(*wave.channel) : stillhand_msgs::MODEL_TIME);
+    to.frequency(wave.frequency);
+    to.sine_n(wave.sine_n);
+    to.cosine_n(wave.cosine_n);
+  }
+  const HandCompliance hand = model.adapts.value_or(HandCompliance{});
+  message.adapts(model.adapts.has_value());
+  message.hand_mass_kg(hand.mass_kg);
+  message.hand_damping_n_s_m(hand.damping_n_s_m);
+  message.hand_stiffness_n_m(hand.stiffness_n_m);
+  message.hand_lever_m(hand.lever_m);
+  return message;
 }
 
 stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const CancellerInput& input,

@@ -17,7 +17,12 @@ Shell::Shell(runtime::Service& service)
                                                    note_when_armed();
                                                  });
   bus.subscribe<stillhand_msgs::FeedthroughModel>(
-      topics::kFeedthroughModel, [this](const auto& message, const auto&) { on_model(message); });
+      topics::kFeedthroughModel, [this](const auto& message, const auto&) {
+        if (message.usable()) on_model(augmented(from_idl(message)), message.model());
+      });
+  bus.subscribe<stillhand_msgs::AugmentedModel>(
+      topics::kAugmentedModel,
+      [this](const auto& message, const auto&) { on_model(from_idl(message), message.model()); });
   // The canceller watches everybody's life sign through this topic; its content is not used.
   bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
                                                [](const auto&, const auto&) {});
@@ -35,11 +40,10 @@ void Shell::note_when_armed() {
   service_.note_armed(service_.trial().number);
 }
 
-void Shell::on_model(const stillhand_msgs::FeedthroughModel& message) {
-  if (!message.usable()) return;
-  const Refusal refusal = core_.load_model(augmented(from_idl(message)));
+void Shell::on_model(const AugmentedModel& model, std::int32_t number) {
+  const Refusal refusal = core_.load_model(model);
   if (refusal == Refusal::kNone) {
-    model_ = message.model();
+    model_ = number;
     service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");
     note_when_armed();
   } else {

@@ -20,7 +20,7 @@ class Shell {
 
  private:
   void on_sensed(const stillhand_msgs::Sensed& sensed);
-  void on_model(const stillhand_msgs::FeedthroughModel& message);
+  void on_model(const AugmentedModel& model, std::int32_t number);
   void note_when_armed();
 
   runtime::Service& service_;

@@ -48,6 +48,7 @@ STILLHAND_MESSAGE(Pointer)
 STILLHAND_MESSAGE(TrialControl)
 STILLHAND_MESSAGE(TrialAssignment)
 STILLHAND_MESSAGE(FeedthroughModel)
+STILLHAND_MESSAGE(AugmentedModel)
 STILLHAND_MESSAGE(Event)
 STILLHAND_MESSAGE(ServiceStatus)
 STILLHAND_MESSAGE(RecorderCommand)
@@ -63,9 +64,9 @@ const TypeTag* find_type(std::string_view type_name) {
       &type_tag<PlatformCommand>(), &type_tag<RawSample>(),        &type_tag<RigTruth>(),
       &type_tag<Sensed>(),          &type_tag<MotorCommand>(),     &type_tag<TrackingSample>(),
       &type_tag<OperatorForce>(),   &type_tag<Pointer>(),          &type_tag<TrialControl>(),
-      &type_tag<TrialAssignment>(), &type_tag<FeedthroughModel>(), &type_tag<Event>(),
-      &type_tag<ServiceStatus>(),   &type_tag<RecorderCommand>(),  &type_tag<RecorderStatus>(),
-      &type_tag<ReplayCommand>(),   &type_tag<ReplayStatus>()};
+      &type_tag<TrialAssignment>(), &type_tag<FeedthroughModel>(), &type_tag<AugmentedModel>(),
+      &type_tag<Event>(),           &type_tag<ServiceStatus>(),    &type_tag<RecorderCommand>(),
+      &type_tag<RecorderStatus>(),  &type_tag<ReplayCommand>(),    &type_tag<ReplayStatus>()};
   for (const TypeTag* tag : tags) {
     if (tag->support.get_type_name() == type_name) return tag;
   }

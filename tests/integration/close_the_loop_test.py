@@ -1,6 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand close-the-loop` as a user meets it: what was missing is found, the hand is stiller, the truth comes last."""
+"""`stillhand close-the-loop` as a user meets it: what was missing is found, the hand is stiller, the truth comes last.
+
+In one process, and once over DDS with every process.
+"""
+import csv
 import json
 import os
 import pathlib
@@ -56,6 +60,31 @@ class CloseTheLoopTest(unittest.TestCase):
         report = (self.out / "report.html").read_text()
         self.assertIn("coupled_input", report)
         self.assertEqual(report.count("<svg"), 3)
+
+    def test_over_dds_it_is_the_same_loop_and_the_recording_is_kept(self):
+        ran = close_the_loop("--live", "--domain", 71, "--undeclared-effect", 9, "--seed", 3, "--trial-seconds", 15,
+                             "--identify-seconds", 30, "--out", self.out)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertTrue(summary["live"])
+        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C+"])
+        self.assertTrue(summary["truth"]["verdict_right"], summary["verdict"])
+        # Trials this short say little of tracking; how much of the force went is plain all the same.
+        self.assertGreater(summary["conditions"]["C+"]["cancelled_share"], summary["conditions"]["C"]["cancelled_share"])
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
+                                 capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        told = self.out / "info.json"
+        subprocess.run([STILLHAND, "info", self.out / "session.mcap", "--json", told], check=True,
+                       stdout=subprocess.DEVNULL)
+        messages = {topic["topic"]: topic["messages"] for topic in json.loads(told.read_text())["topics"]}
+        self.assertGreaterEqual(messages["stillhand/augmented_model"], 1)
+        rows = self.out / "tables"
+        subprocess.run([STILLHAND, "export", self.out / "session.mcap", "--csv", rows, "--topics",
+                        "stillhand/motor_command"], check=True, stdout=subprocess.DEVNULL)
+        with open(rows / "stillhand_motor_command.csv", encoding="utf-8", newline="") as table:
+            models = {row["model [-]"] for row in csv.DictReader(table)}
+        self.assertTrue(models >= {"0", "1000"}, models)
 
     def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
         summary = self.summary()

@@ -63,6 +63,7 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
   expect_delivery<TrialControl>(topics::kTrialControl);
   expect_delivery<TrialAssignment>(topics::kTrialAssignment);
   expect_delivery<FeedthroughModel>(topics::kFeedthroughModel);
+  expect_delivery<AugmentedModel>(topics::kAugmentedModel);
   expect_delivery<Event>(topics::kEvent);
   expect_delivery<ServiceStatus>(topics::kServiceStatus);
 }

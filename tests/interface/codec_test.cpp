@@ -199,6 +199,56 @@ TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
   EXPECT_EQ(std::tuple(enabled, permitted), std::tuple(true, false));
 }
 
+TEST(CancellationCodecTest, AnAugmentedModelComesBackAsItWasSent) {
+  using namespace cancellation;
+  AugmentedModel model;
+  model.rate_hz = 1000.0;
+  model.denominator = {1.0, 0.5};
+  model.inputs = {{Channel::kAccelY, {-1.0, 2.0, {3.0, 4.0}}, {5.0, 6.0}},
+                  {Channel::kAccelX, {}, {7.0, 8.0}}};
+  model.loop = LoopPath{{1.0, 2.0}, {3.0, 4.0}, {0.0, 5.0}, {-6.0, 7.0, {8.0, 9.0}}};
+  model.output = {-10.0, 11.0, {12.0, 13.0, 14.0}};
+  model.paths = {{Channel::kOmega, 0.15, {-1.0, 1.0, {-2.0, 2.0}}, 0.16}};
+  model.waves = {{std::nullopt, 17.0, 18.0, 19.0}, {Channel::kTheta, 20.0, 21.0, 22.0}};
+  model.adapts = HandCompliance{23.0, 24.0, 25.0, 26.0};
+  const auto message = to_idl(model, 1003);
+  EXPECT_EQ(message.model(), 1003);
+  const AugmentedModel back = from_idl(message);
+  const auto same_map = [](const ValueMap& a, const ValueMap& b) {
+    return a.low == b.low && a.high == b.high && a.values == b.values;
+  };
+  EXPECT_EQ(back.rate_hz, 1000.0);
+  EXPECT_EQ(back.denominator, model.denominator);
+  ASSERT_EQ(back.inputs.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(back.inputs[i].channel, model.inputs[i].channel);
+    EXPECT_TRUE(same_map(back.inputs[i].map, model.inputs[i].map));
+    EXPECT_EQ(back.inputs[i].numerator, model.inputs[i].numerator);
+  }
+  ASSERT_TRUE(back.loop);
+  EXPECT_EQ(back.loop->e, model.loop->e);
+  EXPECT_EQ(back.loop->n, model.loop->n);
+  EXPECT_EQ(back.loop->m, model.loop->m);
+  EXPECT_TRUE(same_map(back.loop->phi, model.loop->phi));
+  EXPECT_TRUE(same_map(back.output, model.output));
+  ASSERT_EQ(back.paths.size(), 1u);
+  EXPECT_EQ(back.paths[0].channel, Channel::kOmega);
+  EXPECT_EQ(back.paths[0].lag_s, 0.15);
+  EXPECT_TRUE(same_map(back.paths[0].map, model.paths[0].map));
+  EXPECT_EQ(back.paths[0].gain, 0.16);
+  ASSERT_EQ(back.waves.size(), 2u);
+  EXPECT_FALSE(back.waves[0].channel);
+  EXPECT_EQ(back.waves[1].channel, Channel::kTheta);
+  EXPECT_EQ(back.waves[1].frequency, 20.0);
+  EXPECT_EQ(back.waves[1].sine_n, 21.0);
+  EXPECT_EQ(back.waves[1].cosine_n, 22.0);
+  ASSERT_TRUE(back.adapts);
+  EXPECT_EQ(back.adapts->mass_kg, 23.0);
+  EXPECT_EQ(back.adapts->lever_m, 26.0);
+  model.adapts.reset();
+  EXPECT_FALSE(from_idl(to_idl(model, 1)).adapts);
+}
+
 TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
   const auto command = [](bool enabled, bool permitted) {
     const auto input = cancellation::from_idl(sensed_message(), enabled, permitted);

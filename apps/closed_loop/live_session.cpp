@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "closed_loop/live_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "contract/config_error.hpp"
+#include "experiment/results.hpp"
+#include "measurement/session.hpp"
+#include "runtime/clock.hpp"
+#include "runtime/real_time.hpp"
+
+namespace stillhand::closed_loop {
+namespace {
+
+// A lost tick repeats the one before, as in the session's own results.
+recording::Recording without_gaps(const recording::Recording& rows, const Trial& trial) {
+  recording::Recording out;
+  out.rate_hz = kControlRateHz;
+  for (const recording::Column& column : rows.columns) {
+    out.columns.push_back({column.name, column.unit, {}});
+  }
+  std::size_t row = 0;
+  const auto tick_of = [&](std::size_t i) {
+    return static_cast<Tick>(std::llround(rows.time_s[i] * kControlRateHz));
+  };
+  for (Tick tick = trial.start_tick; tick < trial.start_tick + trial.duration_ticks; ++tick) {
+    while (row + 1 < rows.row_count() && tick_of(row + 1) <= tick) ++row;
+    out.time_s.push_back(static_cast<double>(tick) / kControlRateHz);
+    for (std::size_t c = 0; c < rows.columns.size(); ++c) {
+      out.columns[c].values.push_back(rows.columns[c].values[row]);
+    }
+  }
+  return out;
+}
+
+// What the recorder has written of a trial; it may be a second behind.
+recording::Recording recorded(const std::filesystem::path& file, const Trial& trial,
+                              bool tracking) {
+  constexpr int kTries = 10;
+  constexpr std::int64_t kPatience_ns = 700'000'000;
+  constexpr double kMostMissing = 0.02;
+  const auto least =
+      static_cast<std::size_t>((1.0 - kMostMissing) * static_cast<double>(trial.duration_ticks));
+  const double end_s =
+      static_cast<double>(trial.start_tick + trial.duration_ticks - 1) / kControlRateHz;
+  const runtime::OrdinaryWhile ordinary;
+  std::string why = "the recorder has not written it";
+  for (int i = 0; i < kTries; ++i) {
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kPatience_ns);
+    try {
+      const auto rows =
+          measurement::read_session_rows(file.string(), std::to_string(trial.number)).rows;
+      const bool whole = rows.row_count() >= least && rows.time_s.back() >= end_s - 0.1 &&
+                         rows.find("f_motor") != nullptr &&
+                         (!tracking || rows.find("x_p") != nullptr);
+      if (whole) return without_gaps(rows, trial);
+      why = std::to_string(rows.row_count()) + " of " + std::to_string(trial.duration_ticks) +
+            " ticks recorded";
+    } catch (const ConfigError& error) {
+      why = error.what();  // not there yet
+    }
+  }
+  throw std::runtime_error("trial " + std::to_string(trial.number) + ": " + why);
+}
+
+}  // namespace
+
+TrialRun LiveTrialSession::run(const experiment::PlannedTrial& planned, const std::string& label) {
+  const experiment::TrialOutcome& outcome = trials_.run(planned);
+  if (!outcome.completed) {
+    throw std::runtime_error("trial " + std::to_string(planned.trial.number) + " (" + label +
+                             ") is marked: " + outcome.aborted);
+  }
+  TrialRun out;
+  out.label = label;
+  out.number = planned.trial.number;
+  const bool tracking = planned.trial.phase == TrialPhase::kTracking;
+  out.measured = recorded(recording_, outcome.planned.trial, tracking);
+  out.measured.source = "trial " + label;
+  if (tracking) out.metrics = metrics_of(out.measured, planned);
+  return out;
+}
+
+identification::FeedthroughModel LiveTrialSession::identify(const TrialRun& /*pegged*/) {
+  return trials_.model();  // the identification's process has given it to the canceller already
+}
+
+std::string LiveTrialSession::use(const cancellation::AugmentedModel& model) {
+  return trials_.use(model);
+}
+
+void add_cancelled_shares(const std::filesystem::path& recording,
+                          const std::vector<experiment::TrialOutcome>& outcomes,
+                          LoopResult& result) {
+  const experiment::SessionResult session = experiment::evaluate(recording.string(), outcomes);
+  const auto add = [&](TrialRun& run) {
+    const auto trial =
+        std::ranges::find(session.trials, run.number, &experiment::TrialResult::number);
+    if (trial != session.trials.end()) run.cancelled_share = trial->cancelled_share.value_or(0.0);
+  };
+  for (TrialRun& run : result.trials) add(run);
+  for (Round& round : result.rounds) {
+    if (round.trial) add(*round.trial);
+  }
+}
+
+}  // namespace stillhand::closed_loop
