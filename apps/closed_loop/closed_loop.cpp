@@ -96,12 +96,15 @@ bool Loop::round() {
   Round round;
   options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
   if (!anything_new(round.verdict)) return false;
-  const bool explained =
-      round.verdict.body.verdict() != "unexplained residual" || !round.verdict.findings.empty();
   // What can't be explained isn't put into a motor: gain and phase are followed, no more.
-  try_model(round, explained ? round.verdict.control.model
-                             : cancellation::augmented(result_.paper_model.control));
-  if (!explained) round.outcome = "something is missing that no kind explains; " + round.outcome;
+  std::string why_not = round.verdict.not_carried;
+  if (why_not.empty() && round.verdict.findings.empty() &&
+      round.verdict.body.verdict() == "unexplained residual") {
+    why_not = "something is missing that no kind explains";
+  }
+  try_model(round, why_not.empty() ? round.verdict.control.model
+                                   : cancellation::augmented(result_.paper_model.control));
+  if (!why_not.empty()) round.outcome = why_not + ": the paper's model stays; " + round.outcome;
   const bool kept = round.kept;
   result_.rounds.push_back(std::move(round));
   if (kept) result_.final_round = result_.rounds.size() - 1;

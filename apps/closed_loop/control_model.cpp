@@ -82,11 +82,9 @@ class Conversion {
              const ControlOptions& options)
       : model_(model), signals_(signals), options_(options) {}
 
-  ControlModel run();
+  ControlModel run(const std::vector<double>& denominator);
 
  private:
-  [[nodiscard]] std::vector<double> body_poles() const;
-  void set_poles();
   void convert_inputs();
   void convert_loop(const Effect& effect);
   void convert_map(const Effect& effect);
@@ -124,30 +122,56 @@ std::vector<double> carried_poles(const std::vector<double>& denominator, double
   return {ascending.rbegin(), ascending.rend()};
 }
 
-// A real pole left of 0 turns by half the old rate and has no like at the new one: then the poles
-// are those of a fit to the response (identification ID-9).
-std::vector<double> Conversion::body_poles() const {
-  const auto& body = model_.body;
-  const std::vector<double> reversed(body.denominator.rbegin(), body.denominator.rend());
-  const bool carried = std::ranges::none_of(identification::roots(reversed), [](const Complex& z) {
-    constexpr double kMatters = 0.3;  // faster ones settle within two samples
-    return std::abs(z.imag()) <= 1e-12 && z.real() < -kMatters;
-  });
-  if (carried) return carried_poles(body.denominator, model_.rate_hz);
-  return identification::to_control_rate(
-             {model_.rate_hz, body.numerators.front(), body.denominator})
-      .model.denominator;
+// The modes beside the body.
+std::vector<std::vector<double>> modes_of(const diagnosis::Model& model) {
+  std::vector<std::vector<double>> modes;
+  for (const Effect& effect : model.effects) {
+    if (effect.kind != "resonance") continue;
+    modes.push_back(diagnosis::mode_denominator(effect.value(0), effect.value(1), model.rate_hz));
+  }
+  return modes;
 }
 
-void Conversion::set_poles() {
-  out_.model.denominator = body_poles();
-  for (const Effect& effect : model_.effects) {
+// Body and modes as one difference model, from the first input.
+identification::DifferenceModel all_of(const diagnosis::Model& model) {
+  using diagnosis::product;
+  std::vector<double> numerator = model.body.numerators.front();
+  std::vector<double> denominator = model.body.denominator;
+  for (const Effect& effect : model.effects) {
     if (effect.kind != "resonance") continue;
-    out_.model.denominator = diagnosis::product(
-        out_.model.denominator,
-        carried_poles(diagnosis::mode_denominator(effect.value(0), effect.value(1), model_.rate_hz),
-                      model_.rate_hz));
+    // c_0 (1 - q^-1) + c_1 over the mode.
+    const std::vector<double> mode =
+        diagnosis::mode_denominator(effect.value(0), effect.value(1), model.rate_hz);
+    const double c0 = effect.coefficients.at(0);
+    const std::vector<double> of_mode = product({c0 + effect.coefficients.at(1), -c0}, denominator);
+    numerator = product(numerator, mode);
+    denominator = product(denominator, mode);
+    for (std::size_t i = 0; i < of_mode.size(); ++i) numerator[i] += of_mode[i];
   }
+  return {model.rate_hz, numerator, denominator};
+}
+
+// Eq. CL-1, and where a pole has no like at the new rate (a real one left of 0 turns by half the
+// old rate): those of a fit to the response of the body, or of body and modes together
+// (identification ID-9).
+std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& model) {
+  const auto with_modes = [&](std::vector<double> denominator) {
+    for (const std::vector<double>& mode : modes_of(model)) {
+      denominator = diagnosis::product(denominator, carried_poles(mode, model.rate_hz));
+    }
+    return denominator;
+  };
+  std::vector<std::vector<double>> all{
+      with_modes(carried_poles(model.body.denominator, model.rate_hz))};
+  const auto add_fitted = [&](const identification::DifferenceModel& to_fit, const auto& extended) {
+    try {
+      all.push_back(extended(identification::to_control_rate(to_fit).model.denominator));
+    } catch (const ConfigError&) {  // no fit: one possibility less
+    }
+  };
+  add_fitted({model.rate_hz, model.body.numerators.front(), model.body.denominator}, with_modes);
+  add_fitted(all_of(model), [](std::vector<double> denominator) { return denominator; });
+  return all;
 }
 
 // Eq. CL-2: c in sum c_i D^i / A' nearest to the wanted response.
@@ -346,9 +370,9 @@ void Conversion::convert_term(const Effect& effect) {
   treat(effect, false, "no law of the canceller has this form: left alone");
 }
 
-ControlModel Conversion::run() {
+ControlModel Conversion::run(const std::vector<double>& denominator) {
   out_.model.rate_hz = kControlRateHz;
-  set_poles();
+  out_.model.denominator = denominator;
   convert_inputs();
   for (const Effect& effect : model_.effects) {
     switch (diagnosis::effect_kind(effect.kind).stage(effect)) {
@@ -375,11 +399,6 @@ ControlModel Conversion::run() {
         break;
     }
   }
-  if (!(out_.conversion_error <= options_.max_error)) {
-    throw ConfigError("the model's response at 1 kHz",
-                      "off by " + std::to_string(100.0 * out_.conversion_error) + " %",
-                      "at most " + std::to_string(100.0 * options_.max_error) + " % in the band");
-  }
   return std::move(out_);
 }
 
@@ -402,7 +421,19 @@ void add_drive_effect(const Effect& effect, double share, ControlModel& to) {
 
 ControlModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
                               const ControlOptions& options) {
-  return Conversion(model, signals, options).run();
+  constexpr double kGood = 0.01;
+  std::optional<ControlModel> best;
+  for (const std::vector<double>& denominator : possible_denominators(model)) {
+    ControlModel next = Conversion(model, signals, options).run(denominator);
+    if (!best || next.conversion_error < best->conversion_error) best = std::move(next);
+    if (best->conversion_error < kGood) break;
+  }
+  if (!(best->conversion_error <= options.max_error)) {
+    throw ConfigError("the model's response at 1 kHz",
+                      "off by " + std::to_string(100.0 * best->conversion_error) + " %",
+                      "at most " + std::to_string(100.0 * options.max_error) + " % in the band");
+  }
+  return std::move(*best);
 }
 
 }  // namespace stillhand::closed_loop

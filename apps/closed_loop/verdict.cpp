@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "contract/config_error.hpp"
 #include "contract/tick.hpp"
 #include "diagnosis/core/working_set.hpp"
 #include "measurement/grid.hpp"
@@ -96,7 +97,11 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                                    own.output);
   ControlOptions control;
   control.lead_s = out.latency ? out.latency->motor_s : declared.motor_delay_s;
-  out.control = to_control_model(out.body.model, signals, control);
+  try {
+    out.control = to_control_model(out.body.model, signals, control);
+  } catch (const ConfigError& error) {
+    out.not_carried = error.what();
+  }
 
   out.drive = diagnose_drive(*evidence.moving, declared, options);
   for (const diagnosis::FoundEffect& effect : out.drive.effects) {
@@ -104,7 +109,7 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
     if (cell_late || explained(effect) < kWorthDrive_n) continue;
     out.findings.push_back({effect.effect.kind, effect.channel, "drive", explained(effect),
                             effect.before.rmse, effect.after.rmse, effect.evidence});
-    add_drive_effect(effect.effect, kFrictionShare, out.control);
+    if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);
   }
   std::ranges::stable_sort(out.findings, std::ranges::greater{}, &Finding::explained_n);
   return out;

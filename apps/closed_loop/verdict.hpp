@@ -37,6 +37,7 @@ struct Verdict {
   std::optional<Latency> latency;
   std::vector<Finding> findings;  ///< strongest first
   ControlModel control;
+  std::string not_carried;  ///< why there is no control model, or empty
 
   /// Kind of the strongest, or "none".
   [[nodiscard]] std::string kind() const {
@@ -47,7 +48,7 @@ struct Verdict {
 /// Diagnoses body, drive and latency, and makes the canceller's model of them, README "The
 /// verdict".
 /// @param options  threads and progress; inputs, model and search are set here
-/// @throws ConfigError when a recording can't be diagnosed or the model can't be carried over
+/// @throws ConfigError when a recording can't be diagnosed
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                      const diagnosis::DiagnoseOptions& options);
 
