@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "contract/config_error.hpp"
@@ -208,6 +209,28 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
   diagnosis.final_error = held_out_error(errors.back(), variance);
 }
 
+// What a recording that was held out whole has refuted, a sentence a kind.
+void note_refuted(Diagnosis& diagnosis) {
+  std::vector<std::string> told;
+  for (const RefutedEffect& refuted : diagnosis.search.refuted) {
+    const std::string& kind = refuted.effect.kind;
+    const auto is_kind = [&](const Effect& effect) { return effect.kind == kind; };
+    if (std::ranges::any_of(diagnosis.model.effects, is_kind) ||
+        std::ranges::find(told, kind) != told.end()) {
+      continue;
+    }
+    told.push_back(kind);
+    std::string note = kind + " (" + refuted.effect.form + ") left out: recordings held out whole ";
+    for (std::size_t r = 0; r < refuted.fall.size(); ++r) {
+      std::array<char, 48> text{};
+      std::snprintf(text.data(), text.size(), "%s%zu by %+.1f %%",
+                    r == 0 ? "change with it, " : ", ", r + 1, -100.0 * refuted.fall[r]);
+      note += text.data();
+    }
+    diagnosis.notes.push_back(note);
+  }
+}
+
 }  // namespace
 
 std::string Diagnosis::verdict() const {
@@ -247,6 +270,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   diagnosis.model = diagnosis.search.model;
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
+  note_refuted(diagnosis);
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
   diagnosis.after = detected(screening, excitation);
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {

@@ -174,6 +174,25 @@ Blocks make_blocks(const Signals& signals) {
   return blocks;
 }
 
+Blocks by_recording(const Blocks& blocks, const Signals& signals) {
+  Blocks result = blocks;
+  result.folds = signals.stretches().back().recording + 1;
+  Eigen::MatrixXd samples = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(result.folds),
+                                                  static_cast<Eigen::Index>(blocks.count));
+  for (const Stretch& stretch : signals.stretches()) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      samples(static_cast<Eigen::Index>(stretch.recording),
+              static_cast<Eigen::Index>(n / blocks.length)) += 1.0;
+    }
+  }
+  for (Eigen::Index b = 0; b < samples.cols(); ++b) {
+    Eigen::Index most = 0;
+    samples.col(b).maxCoeff(&most);
+    result.fold.push_back(static_cast<std::size_t>(most));
+  }
+  return result;
+}
+
 Eigen::MatrixXd Grams::total(const Blocks& layout, int without_fold) const {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(blocks.front().rows(), blocks.front().cols());
   for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -19,7 +19,8 @@ struct Channel {
 struct Stretch {
   std::size_t first = 0;
   std::size_t end = 0;
-  double start_s = 0.0;  ///< [s] time of `first`
+  double start_s = 0.0;       ///< [s] time of `first`
+  std::size_t recording = 0;  ///< which of the recordings that were joined
 };
 
 /// What was measured: channels on one uniform grid, a stretch for every run without a long gap.

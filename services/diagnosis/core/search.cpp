@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "diagnosis/core/recordings_out.hpp"
 #include "diagnosis/core/screening.hpp"
 #include "diagnosis/core/shape_exchange.hpp"
 
@@ -160,6 +162,41 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
   return all;
 }
 
+bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
+                     std::size_t candidates, const SearchOptions& options) {
+  const Comparison comparison = compared(current, trial.held_out);
+  // Bursts lie in few blocks, whose signs say little; that they stand out has been asked already.
+  if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
+  return worth_it(comparison, options, least_fall, candidates);
+}
+
+// What only time can tell has nothing to say of another recording.
+bool asks_recordings(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);
+}
+
+// Which of them is to be added, if any: the chosen one, unless one of the recordings that were
+// joined refutes it; then the next.  Those that are refuted leave `tried`.
+std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& current,
+                                     double least_fall, const RecordingsOut& recordings,
+                                     const SearchOptions& options, SearchResult& result) {
+  const std::size_t candidates = tried.size();
+  std::vector<double> before;
+  while (!tried.empty() && std::isfinite(tried.front().rmse)) {
+    const std::size_t chosen = chosen_of(tried, current.rmse(), options);
+    const Trial& trial = tried[chosen];
+    if (!is_worth_adding(trial, current, least_fall, candidates, options)) break;
+    if (!recordings.several() || !asks_recordings(trial)) return chosen;
+    if (before.empty()) before = recordings.errors(result.model);
+    const std::vector<double> fall = falls(before, recordings.errors(trial.model));
+    if (!refuted(fall, options.least_fall)) return chosen;
+    result.refuted.push_back({trial.model.effects.back(), fall});
+    tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(chosen));
+  }
+  return std::nullopt;
+}
+
 // Drops effects that the later ones have made idle.  True when one left.
 bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
             const SearchOptions& options) {
@@ -193,28 +230,25 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
   SearchResult result;
   result.model = baseline.model;
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
+  const RecordingsOut recordings(signals, blocks);
   HeldOut current = held_out(result.model, signals, blocks);
   while (!is_rounding(current.rmse(), signals) &&
          progress("effect " + std::to_string(result.additions.size() + 1))) {
     std::vector<Trial> tried = trials(result.model, current.rmse(), signals, blocks,
                                       impulse_response, baseline.order, options, for_each);
-    if (tried.empty() || !std::isfinite(tried.front().rmse)) break;
-    const std::size_t chosen = chosen_of(tried, current.rmse(), options);
-    const Comparison comparison = compared(current, tried[chosen].held_out);
-    // Bursts lie in few blocks, whose signs say little; that they stand out has been asked already.
-    const bool bursts = passes_over_samples(tried[chosen]);
-    const bool good =
-        bursts ? 1.0 - comparison.rmse_ratio > options.large_fall
-               : worth_it(comparison, options,
-                          result.additions.empty() ? options.first_least_fall : options.least_fall,
-                          tried.size());
-    if (!good || result.additions.size() == options.most_effects) {
+    const double least_fall =
+        result.additions.empty() ? options.first_least_fall : options.least_fall;
+    const auto chosen = result.additions.size() == options.most_effects
+                            ? std::nullopt
+                            : confirmed(tried, current, least_fall, recordings, options, result);
+    if (!chosen) {
       result.last_tried = std::move(tried);
       break;
     }
-    Addition addition{current, tried[chosen].held_out, comparison, std::move(tried), chosen, {}};
-    addition.ties = tied_kinds(addition.tried, chosen, current.rmse(), options);
-    result.model = addition.tried[chosen].model;
+    const Comparison comparison = compared(current, tried[*chosen].held_out);
+    Addition addition{current, tried[*chosen].held_out, comparison, std::move(tried), *chosen, {}};
+    addition.ties = tied_kinds(addition.tried, *chosen, current.rmse(), options);
+    result.model = addition.tried[*chosen].model;
     result.additions.push_back(std::move(addition));
     if (retest(result, signals, blocks, options)) ++result.removed;
     if (result.removed > options.most_effects) break;  // it goes in circles

@@ -30,12 +30,19 @@ struct Addition {
                                   ///< `tie` and `tied_gain`
 };
 
+/// An effect that was worth adding by the blocks, but not by the recordings that were joined.
+struct RefutedEffect {
+  Effect effect;
+  std::vector<double> fall;  ///< [-] of each recording's error, held out whole
+};
+
 /// What the search found.
 struct SearchResult {
   Model model;
-  std::vector<Addition> additions;  ///< one an effect of the model, in its order
-  std::size_t removed = 0;          ///< effects that later ones made idle
-  std::vector<Trial> last_tried;    ///< after the last addition, best first: all were rejected
+  std::vector<Addition> additions;     ///< one an effect of the model, in its order
+  std::size_t removed = 0;             ///< effects that later ones made idle
+  std::vector<RefutedEffect> refuted;  ///< of all rounds
+  std::vector<Trial> last_tried;       ///< after the last addition, best first: all were rejected
 };
 
 /// Forward selection with re-testing, README "Selection": propose, fit jointly, compare on held-out

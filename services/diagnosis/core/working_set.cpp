@@ -88,7 +88,7 @@ Measurement thinned(const Measurement& measurement) {
         result.channels[c].values.insert(result.channels[c].values.end(), values.begin() + from,
                                          values.begin() + to);
       }
-      result.stretches.push_back({at, result.weight.size(), start_s});
+      result.stretches.push_back({at, result.weight.size(), start_s, stretch.recording});
     }
   }
   result.notes.push_back("of " + std::to_string(measurement.size()) + " samples " +
@@ -111,7 +111,7 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
   const signal::Butterworth low_pass(8, kCutoff * result.rate_hz, measurement.rate_hz);
   for (const Stretch& stretch : measurement.stretches) {
     if (stretch.end - stretch.first < factor) continue;
-    const Stretch kept{result.weight.size(), 0, stretch.start_s};
+    const std::size_t first = result.weight.size();
     // Whole groups only, so that a stretch never grows.
     for (std::size_t n = stretch.first; n + factor <= stretch.end; n += factor) {
       const std::size_t end = n + factor;
@@ -128,7 +128,7 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
         result.channels[c].values.push_back(smooth[n]);
       }
     }
-    result.stretches.push_back({kept.first, result.weight.size(), kept.start_s});
+    result.stretches.push_back({first, result.weight.size(), stretch.start_s, stretch.recording});
   }
   result.notes.push_back("the inputs end far below " + figure(measurement.rate_hz / 2.0) +
                          " Hz: worked at " + figure(result.rate_hz) + " Hz");

@@ -183,6 +183,19 @@ TEST(FitTest, ARecordWithTooLittleMeasuredIsRefused) {
   EXPECT_THROW(make_blocks(Signals(measurement, {"u"}, "y")), ConfigError);
 }
 
+// 250 samples in ten blocks of 25; the seam at 130 lies in block 5, of which 20 samples are the
+// second recording's.
+TEST(FitTest, AFoldOfEveryRecordingHasItsBlocks) {
+  Measurement joined =
+      made::measurement_of({{"u", "V", made::white(250, 1)}, {"y", "N", made::white(250, 2)}});
+  joined.stretches = {{0, 130, 0.0, 0}, {130, 250, 1.3, 1}};
+  const Signals signals(joined, {"u"}, "y");
+  const Blocks blocks{25, 10, 5};
+  const Blocks sut = by_recording(blocks, signals);
+  EXPECT_EQ(sut.folds, 2u);
+  for (std::size_t b = 0; b < 10; ++b) EXPECT_EQ(sut.fold_of(b), b < 5 ? 0u : 1u) << b;
+}
+
 TEST(FitTest, GramsAreTheProductsOfTheirBlocks) {
   const Eigen::MatrixXd j = Eigen::MatrixXd::Random(23, 3);
   const Eigen::VectorXd r = Eigen::VectorXd::Random(23);

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "diagnosis/core/recordings_out.hpp"
 #include "unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
@@ -152,6 +155,64 @@ TEST(SearchTest, NoMoreIsAddedThanAskedFor) {
   const Searched sut(0.25, 0.5, options);
   ASSERT_EQ(sut.result.model.effects.size(), 1u);
   EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
+}
+
+// Pieces of 20 s: y = 2 u + c v + noise, each with the c and of the recording that are told.
+SearchResult search_joined(const std::vector<double>& of_v,
+                           const std::vector<std::size_t>& recording) {
+  constexpr std::size_t kEach = 2000;
+  const std::size_t count = kEach * of_v.size();
+  const auto u = made::ride(count, 1);
+  const auto v = made::ride(count, 2);
+  std::vector<double> y = made::white(count, 4);
+  for (std::size_t n = 0; n < count; ++n) y[n] = 0.1 * y[n] + 2.0 * u[n] + of_v[n / kEach] * v[n];
+  Measurement joined = made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}});
+  joined.stretches.clear();
+  for (std::size_t r = 0; r < of_v.size(); ++r) {
+    const double start_s = static_cast<double>(r * kEach) / joined.rate_hz;
+    joined.stretches.push_back({r * kEach, (r + 1) * kEach, start_s, recording[r]});
+  }
+  const Signals signals(joined, {"u"}, "y");
+  const Blocks blocks = make_blocks(signals);
+  SearchOptions options;
+  options.most_effects = 1;
+  return search(fit_baseline(signals, blocks, 0), signals, blocks, options, in_order,
+                [](const std::string&) { return true; });
+}
+
+bool has_kind(const SearchResult& result, const std::string& kind) {
+  return std::ranges::any_of(result.model.effects,
+                             [&](const Effect& effect) { return effect.kind == kind; });
+}
+
+TEST(SearchTest, WhatEveryRecordingBearsOutIsAdded) {
+  const SearchResult sut = search_joined({0.5, 0.4, 0.6}, {0, 1, 2});
+  ASSERT_TRUE(has_kind(sut, "coupled_input"));
+  EXPECT_THAT(sut.model.effects[0].channels, ElementsAre("v"));
+  EXPECT_TRUE(sut.refuted.empty());
+}
+
+// By the blocks v explains most of what is left, and three of four bear it out; but they are of one
+// recording, and the other one does without.
+TEST(SearchTest, WhatOneRecordingAloneSupportsAndAnotherRefutesIsNotAdded) {
+  const std::vector<double> of_v{0.5, 0.5, 0.5, 0.0};
+  EXPECT_TRUE(has_kind(search_joined(of_v, {0, 0, 0, 0}), "coupled_input"));
+  const SearchResult sut = search_joined(of_v, {0, 0, 0, 1});
+  EXPECT_FALSE(has_kind(sut, "coupled_input"));
+  ASSERT_FALSE(sut.refuted.empty());
+  const RefutedEffect& first = sut.refuted.front();
+  EXPECT_EQ(first.effect.kind, "coupled_input");
+  ASSERT_EQ(first.fall.size(), 2u);
+  EXPECT_LT(first.fall[1], -1.0) << "from noise of 0.1 to 0.5 of v";
+}
+
+TEST(RecordingsOutTest, AnEffectIsRefutedThatHelpsOneAtMostAndHarmsAnother) {
+  constexpr double kLeast = 0.01;
+  EXPECT_FALSE(refuted({0.3, 0.2}, kLeast));
+  EXPECT_FALSE(refuted({0.3, 0.0}, kLeast)) << "one recording may be the only one that shows it";
+  EXPECT_FALSE(refuted({0.3, 0.2, -0.5}, kLeast)) << "two bear it out";
+  EXPECT_TRUE(refuted({0.3, -0.02}, kLeast));
+  EXPECT_TRUE(refuted({0.3, std::numeric_limits<double>::quiet_NaN()}, kLeast));
 }
 
 }  // namespace

@@ -54,6 +54,9 @@ TEST(JoinTest, EveryRecordingIsAStretchAndTimeGoesOn) {
   EXPECT_EQ(sut.stretches[1].first, 2u);
   EXPECT_DOUBLE_EQ(sut.stretches[1].start_s, 5.2);
   EXPECT_DOUBLE_EQ(sut.stretches[2].start_s, 12.2);  // 7 s later, as in its own file
+  EXPECT_EQ(sut.stretches[0].recording, 0u);
+  EXPECT_EQ(sut.stretches[1].recording, 1u);
+  EXPECT_EQ(sut.stretches[2].recording, 1u);
   EXPECT_THAT(sut.notes, ElementsAre("a.csv: 1 row missing.", "b.csv: 1 row missing."));
 }
 
