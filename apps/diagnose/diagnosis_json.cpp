@@ -16,9 +16,9 @@ using diagnosis::Diagnosis;
 using diagnosis::FoundEffect;
 using nlohmann::ordered_json;
 
-std::string joined(const std::vector<std::string>& names) {
+std::string joined(const std::vector<std::string>& names, const char* between = ",") {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
   return text;
 }
 
@@ -49,6 +49,12 @@ ordered_json parameters_json(const Diagnosis& diagnosis, const FoundEffect& foun
   return json;
 }
 
+// The evidence, and the kinds that explain the data as well.
+std::string with_ties(const FoundEffect& found) {
+  if (found.ties.empty()) return found.evidence;
+  return found.evidence + "; as good an explanation: " + joined(found.ties, ", ");
+}
+
 ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
   return {{"kind", found.effect.kind},
           {"channel", found.channel.empty() ? ordered_json(nullptr) : ordered_json(found.channel)},
@@ -56,7 +62,7 @@ ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
           {"heldout_rmse_before", found.before.rmse},
           {"heldout_rmse_after", found.after.rmse},
           {"ci95", {found.after.low, found.after.high}},
-          {"evidence", found.evidence},
+          {"evidence", with_ties(found)},
           {"form", found.effect.form},
           {"signals", found.effect.channels},
           {"p", found.p},
@@ -162,7 +168,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
           e + 1, found.effect.kind.c_str(),
           found.channel.empty() ? "" : (" (" + found.channel + ")").c_str(), found.before.rmse,
           found.after.rmse, unit.c_str(), found.after.low, found.after.high,
-          found.evidence.c_str());
+          with_ties(found).c_str());
   }
   print(text, "final         RMS error %.4g %s, VAF %.2f %%\n", diagnosis.final_error.rmse,
         unit.c_str(), diagnosis.final_error.vaf_percent);

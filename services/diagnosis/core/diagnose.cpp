@@ -200,10 +200,6 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
     found.p = compared(errors[e], errors[e + 1]).p;
     found.evidence = effect_kind(effect.kind).evidence(effect);
     found.ties = diagnosis.search.additions[e].ties;
-    if (!found.ties.empty()) {
-      found.evidence += "; as good an explanation:";
-      for (const std::string& kind : found.ties) found.evidence += " " + kind;
-    }
     diagnosis.effects.push_back(std::move(found));
   }
   diagnosis.final_error = held_out_error(errors.back(), variance);

@@ -242,7 +242,7 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
                             ? std::nullopt
                             : confirmed(tried, current, least_fall, recordings, options, result);
     if (!chosen) {
-      result.last_tried = std::move(tried);
+      if (!tried.empty() && std::isfinite(tried.front().rmse)) result.last_tried = std::move(tried);
       break;
     }
     const Comparison comparison = compared(current, tried[*chosen].held_out);

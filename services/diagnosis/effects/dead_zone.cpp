@@ -42,7 +42,7 @@ class DeadZone final : public EffectKind {
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
-    if (effect.parameters.empty()) return "nothing happens within a range: play " + effect.form;
+    if (effect.parameters.empty()) return "nothing happens within a range: " + effect.form;
     return "nothing happens within +-" + with_unit(effect.value(0), effect.parameters[0].unit) +
            ": play " + effect.form +
            (effect.channels.empty() ? std::string() : " (" + effect.channels.front() + ")");

@@ -61,6 +61,17 @@ TEST(DetectionJsonTest, TheVerdictHoldsBothResidualsAnswersAndTheirThresholds) {
   }
 }
 
+TEST(DetectionJsonTest, TheEvidenceNamesTheKindsThatTie) {
+  diagnosis::Diagnosis diagnosis;
+  diagnosis::FoundEffect found;
+  found.effect = {"drift", "linear", {}, {}, {1.0}};
+  found.evidence = "it drifts";
+  found.ties = {"tone", "delay"};
+  diagnosis.effects = {found};
+  const auto sut = nlohmann::ordered_json::parse(diagnosis_json(diagnosis));
+  EXPECT_EQ(sut["effects"][0]["evidence"], "it drifts; as good an explanation: tone, delay");
+}
+
 // A note may name many recordings.
 TEST(DetectionJsonTest, ALineOfTheTableIsAsLongAsItMustBe) {
   diagnosis::Diagnosis diagnosis;
