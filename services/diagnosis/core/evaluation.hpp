@@ -11,7 +11,7 @@ namespace stillhand::diagnosis {
 
 /// A model's free run over a measurement.
 struct FreeRun {
-  bool finite = true;                ///< false: unstable, swinging by itself, or it ran away
+  bool finite = true;                ///< false: unstable, or it ran away
   std::vector<double> body;          ///< y_b of Eq. DG-1 with feedback, before gain, terms and maps
   std::vector<double> argument;      ///< z of Eq. DG-4, with feedback
   std::vector<double> phi;           ///< phi(z)

@@ -2,7 +2,6 @@
 #include "diagnosis/core/loop.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "contract/expects.hpp"
@@ -28,8 +27,6 @@ struct Running {
   LoopMemory memory;
   Padded z;
   Padded phi;
-  double lowest = 0.0;  // of z
-  double highest = 0.0;
 };
 
 // sum_{i = from..P} taps_i newest_{-i}
@@ -93,28 +90,6 @@ bool run_stretch_of_order(const Body& body, double runaway, StretchRun& run) {
   }
 }
 
-// phi(z) / z from rest, z in the loop's own unit.
-double chord(const Nonlinearity& nonlinearity, double z) {
-  LoopMemory memory;
-  static_cast<void>(nonlinearity.phi(0.0, memory));
-  return nonlinearity.phi(z / nonlinearity.threshold, memory) / z;
-}
-
-// Eq. DG-51: in small motion about rest, and in the largest that it makes, the loop's poles keep
-// the body's bounds.
-bool keeps_poles(const Body& body, const Running& loop) {
-  const double small = 1e-6 * loop.nonlinearity.threshold;
-  const std::vector<double>& around = loop.path.of_output() ? loop.path.e : loop.path.m;
-  const std::array motions{-small, small, std::min(loop.lowest, -small),
-                           std::max(loop.highest, small)};
-  return std::ranges::all_of(motions, [&](double z) {
-    const double slope = chord(loop.nonlinearity, z);
-    Body equivalent = body;
-    for (std::size_t i = 0; i < around.size(); ++i) equivalent.denominator[i] -= slope * around[i];
-    return is_stable(equivalent);
-  });
-}
-
 }  // namespace
 
 std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept {
@@ -147,16 +122,11 @@ bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
   StretchRun of_stretch;
   of_stretch.inputs.resize(inputs.size());
   for (const Effect* effect : feedback) {
-    of_stretch.loops.push_back({effect_kind(effect->kind).feedback(*effect),
-                                loop_path(*effect, order),
-                                {},
-                                {},
-                                {},
-                                0.0,
-                                0.0});
+    of_stretch.loops.push_back(
+        {effect_kind(effect->kind).feedback(*effect), loop_path(*effect, order), {}, {}, {}});
   }
   for (auto* each : {&run.output, &run.argument, &run.phi}) each->assign(signals.size(), 0.0);
-  const bool ran = std::ranges::all_of(signals.stretches(), [&](const Stretch& stretch) {
+  return std::ranges::all_of(signals.stretches(), [&](const Stretch& stretch) {
     const auto first = static_cast<std::ptrdiff_t>(stretch.first);
     const std::size_t count = stretch.end - stretch.first;
     for (std::size_t k = 0; k < inputs.size(); ++k) {
@@ -178,15 +148,8 @@ bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
     back(of_stretch.output, run.output);
     back(of_stretch.loops.front().z, run.argument);
     back(of_stretch.loops.front().phi, run.phi);
-    for (Running& loop : of_stretch.loops) {
-      const auto [low, high] = std::ranges::minmax(loop.z);
-      loop.lowest = std::min(loop.lowest, low);
-      loop.highest = std::max(loop.highest, high);
-    }
     return bounded;
   });
-  return ran && std::ranges::all_of(of_stretch.loops,
-                                    [&](const Running& loop) { return keeps_poles(body, loop); });
 }
 
 }  // namespace stillhand::diagnosis

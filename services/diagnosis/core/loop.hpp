@@ -39,7 +39,7 @@ LoopPath loop_path(const Effect& effect, std::size_t order);
 
 /// Runs the body with its nonlinearities, every stretch from rest.
 /// @param inputs  what reaches the body, [inputs][samples]
-/// @return false when it ran away, or could swing by itself (Eq. DG-51)
+/// @return false when it ran away
 bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
               const std::vector<std::vector<double>>& inputs, const Signals& signals, LoopRun& run);
 
