@@ -87,7 +87,7 @@ int run(const Words& words) {
   progress.finish();
   if (files.wants("--save")) files.set("--save", diagnosis::model_json(result.model));
   if (files.wants("--json")) files.set("--json", diagnosis_json(result));
-  if (folder) write_report(result, measurement, words.recordings.front(), *folder);
+  if (folder) write_report(result, measurement, words.recordings, *folder);
   files.publish();
   std::fputs(diagnosis_table(result).c_str(), stdout);
   if (folder) std::printf("report in %s\n", words.report.string().c_str());

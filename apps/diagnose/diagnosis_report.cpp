@@ -23,17 +23,19 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return axis_label(name, unit);
 }
 
-Pairs facts_of(const Evidence& evidence, const std::string& recording_name) {
+Pairs facts_of(const Evidence& evidence, const std::vector<std::string>& recordings) {
   const Diagnosis& found = evidence.found;
   const diagnosis::Signals& signals = evidence.signals;
   std::string inputs;
   for (const diagnosis::Signal& input : signals.inputs()) {
     inputs += (inputs.empty() ? "" : ", ") + with_unit(input.name, input.unit);
   }
+  std::string files;
+  for (const std::string& each : recordings) files += (files.empty() ? "" : ", ") + each;
   const std::size_t order = found.baseline.model.body.order();
   Pairs facts{
       {"verdict", found.verdict()},
-      {"recording", recording_name},
+      {recordings.size() == 1 ? "recording" : "recordings, taken together", files},
       {"input", inputs},
       {"output", with_unit(signals.output().name, signals.output().unit)},
       {"sample rate", short_number(found.sample_rate_hz) + " Hz"},
@@ -132,13 +134,15 @@ void add_search(Page& page, const Evidence& evidence) {
 
 }  // namespace
 
-Page diagnosis_page(const Evidence& evidence, const std::string& recording_name,
+Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& recordings,
                     const std::vector<report::Drawing>& drawings) {
   const Diagnosis& found = evidence.found;
-  Page page("Diagnosis: " + found.options.output + " from " +
-                recording_name.substr(recording_name.find_last_of('/') + 1),
-            verdict_in_words(found));
-  page.facts(facts_of(evidence, recording_name));
+  const std::string& first = recordings.front();
+  Page page(
+      "Diagnosis: " + found.options.output + " from " + first.substr(first.find_last_of('/') + 1) +
+          (recordings.size() == 1 ? "" : " and " + std::to_string(recordings.size() - 1) + " more"),
+      verdict_in_words(found));
+  page.facts(facts_of(evidence, recordings));
   if (!found.notes.empty()) page.list(found.notes);
   add_errors(page, evidence, drawings);
   add_effects(page, evidence, drawings);
@@ -148,10 +152,10 @@ Page diagnosis_page(const Evidence& evidence, const std::string& recording_name,
 }
 
 void write_report(const Diagnosis& found, const diagnosis::Measurement& measurement,
-                  const std::string& recording_name, report::StagedFolder& folder) {
+                  const std::vector<std::string>& recordings, report::StagedFolder& folder) {
   const Evidence evidence(found, measurement);
   const auto drawings = report::render(diagnosis_figures(evidence), folder.path());
-  diagnosis_page(evidence, recording_name, drawings).write(folder.path() / "report.html");
+  diagnosis_page(evidence, recordings, drawings).write(folder.path() / "report.html");
   std::vector<std::string> names{"report.html"};
   for (const std::string& name : figure_names()) {
     for (const char* ending : {".svg", ".png"}) names.push_back(name + ending);

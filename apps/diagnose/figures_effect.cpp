@@ -5,6 +5,7 @@
 #include "diagnose/binning.hpp"
 #include "diagnose/figures.hpp"
 #include "diagnose/wording.hpp"
+#include "diagnosis/core/effect_kind.hpp"
 #include "report/text.hpp"
 
 namespace stillhand::diagnose {
@@ -41,8 +42,14 @@ Slope slope_of(const Evidence& evidence, const EffectTrace& trace) {
           std::sqrt(left / std::max(weight, 1.0) * evidence.correlation_samples / square)};
 }
 
-bool is_zero(const std::vector<double>& x) {
-  return std::ranges::all_of(x, [](double value) { return value == 0.0; });
+// Samples passed over say nothing of those that count, beyond what the refit moves.
+bool predicts(const Evidence& evidence, std::size_t which, const EffectTrace& trace) {
+  const diagnosis::Effect& effect = evidence.found.effects.at(which).effect;
+  if (diagnosis::effect_kind(effect.kind).stage(effect) == diagnosis::Stage::kWeight) return false;
+  for (std::size_t n = 0; n < trace.contribution.size(); ++n) {
+    if (evidence.after.run.weight[n] > 0.0 && trace.contribution[n] != 0.0) return true;
+  }
+  return false;
 }
 
 // Everything an effect says in one variable: its own prediction.
@@ -91,11 +98,7 @@ report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
                         .columns = 2,
                         .width_px = 980,
                         .height_px = 400};
-  std::vector<double> counted = trace.contribution;
-  for (std::size_t n = 0; n < counted.size(); ++n) {
-    if (!(evidence.after.run.weight[n] > 0.0)) counted[n] = 0.0;
-  }
-  if (is_zero(counted)) {
+  if (!predicts(evidence, which, trace)) {
     figure.columns = 1;
     return figure;
   }

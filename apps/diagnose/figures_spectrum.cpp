@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "diagnose/figures.hpp"
@@ -87,6 +88,18 @@ Series bound_line(double bound, double longest_s, bool in_legend) {
 
 }  // namespace
 
+// The axis ends below the residuals: a filtered output may end many decades further down.
+void end_below(const std::vector<Series>& residuals, Panel& panel) {
+  constexpr double kRoom = 0.3;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Series& each : residuals) {
+    for (const double y : each.y) {
+      if (y > 0.0) lowest = std::min(lowest, y);
+    }
+  }
+  if (std::isfinite(lowest)) panel.y.low = kRoom * lowest;
+}
+
 report::Figure figure_spectra(const Evidence& evidence) {
   const diagnosis::Diagnosis& found = evidence.found;
   const diagnosis::Signals& signals = evidence.signals;
@@ -117,14 +130,16 @@ report::Figure figure_spectra(const Evidence& evidence) {
     panel.x.high = output.frequency_hz.back();
   }
   panel.series.push_back(spectrum_series("output", report::Colour::kMeasured, 1.4, output));
-  panel.series.push_back(
+  std::vector<Series> residuals{
       spectrum_series("baseline's residual", kBefore, 1.6,
-                      spectrum_of(evidence.before.residual, evidence.before.run.weight, signals)));
+                      spectrum_of(evidence.before.residual, evidence.before.run.weight, signals))};
   if (!found.effects.empty()) {
-    panel.series.push_back(
+    residuals.push_back(
         spectrum_series("residual with the effects", kAfter, 1.8,
                         spectrum_of(evidence.after.residual, evidence.after.run.weight, signals)));
   }
+  end_below(residuals, panel);
+  panel.series.insert(panel.series.end(), residuals.begin(), residuals.end());
   return {.name = "residual_spectra",
           .caption = "Power spectral densities after Welch. The inputs excite " +
                      report::short_number(signals.lowest_excited_hz()) + " to " +

@@ -73,7 +73,7 @@ struct Reported {
       : measurement(recording(friction_n)),
         found(diagnosis::diagnose(measurement, static_model())) {
     report::StagedFolder staged(folder.path());
-    write_report(found, measurement, "recordings/ride.csv", staged);
+    write_report(found, measurement, {"recordings/ride.csv"}, staged);
     html = text_of(folder.path() / "report.html");
   }
 
@@ -157,7 +157,7 @@ TEST_F(DiagnosisReportTest, LinesAreDrawnWhereTheExcitationRepeats) {
   const diagnosis::Diagnosis found = diagnosis::diagnose(measurement, options);
   const TemporaryFolder folder;
   report::StagedFolder staged(folder.path());
-  write_report(found, measurement, "ride.csv", staged);
+  write_report(found, measurement, {"ride.csv"}, staged);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "detection_lines.svg"));
   const std::string html = text_of(folder.path() / "report.html");
   for (const char* part : {"excitation repeats", "periods of 10 s", "harmonics of 0.1 Hz",
@@ -176,7 +176,7 @@ TEST_F(DiagnosisReportTest, AnEarlierRunsFiguresGo) {
   const TemporaryFolder folder;
   for (const Reported* each : {with_friction_.get(), without_.get()}) {
     report::StagedFolder staged(folder.path());
-    write_report(each->found, each->measurement, "ride.csv", staged);
+    write_report(each->found, each->measurement, {"ride.csv"}, staged);
   }
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "effect_1.png"));
 }
@@ -186,18 +186,25 @@ TEST_F(DiagnosisReportTest, WhatIsLeftIsDescribed) {
   found.unexplained =
       diagnosis::Unexplained{"it depends on the moon", {0.5, 2.0}, {12.0}, {"roll"}};
   const Evidence evidence(found, without_->measurement);
-  const std::string html = diagnosis_page(evidence, "ride.csv", {}).html();
+  const std::string html = diagnosis_page(evidence, {"ride.csv"}, {}).html();
   for (const char* part : {"Unexplained residual.", "Not explained: it depends on the moon",
                            "0.5 to 2 Hz", "strongest about 12 s", "depends on roll"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
 }
 
+TEST_F(DiagnosisReportTest, EveryRecordingIsNamed) {
+  const Evidence evidence(without_->found, without_->measurement);
+  const std::string html = diagnosis_page(evidence, {"a/one.csv", "b/two.csv"}, {}).html();
+  EXPECT_THAT(html, HasSubstr("from one.csv and 1 more"));
+  EXPECT_THAT(html, HasSubstr("a/one.csv, b/two.csv"));
+}
+
 TEST_F(DiagnosisReportTest, NamesAreTextNotMarkup) {
   diagnosis::Diagnosis found = without_->found;
   found.notes = {"<b>note</b>"};
   const Evidence evidence(found, without_->measurement);
-  const std::string html = diagnosis_page(evidence, "<i>ride</i>.csv", {}).html();
+  const std::string html = diagnosis_page(evidence, {"<i>ride</i>.csv"}, {}).html();
   EXPECT_THAT(html, HasSubstr("&lt;b&gt;note"));
   EXPECT_THAT(html, Not(HasSubstr("<i>")));
 }

@@ -189,5 +189,21 @@ TEST(FigureEffectTest, TheEffectsOwnPredictionHasSlopeOne) {
   EXPECT_GE(share_within(bars, 4.0, [](double x) { return x; }), 0.9);
 }
 
+// The model that doesn't pass over the burst has another initial state, so that the two differ a
+// little where they count: nothing that the bursts would predict.
+TEST(FigureEffectTest, ABurstPredictsNothingOfWhatCounts) {
+  MadeDiagnosis made =
+      made_with(kMode,
+                {"transients",
+                 "isolated bursts",
+                 {},
+                 {{"begin_1", "s", 1.1, 0, 60, false}, {"end_1", "s", 1.5, 0, 60, false}},
+                 {}},
+                kNoise_n);
+  for (std::size_t n = 110; n < 150; ++n) made.measurement.channels[2].values[n] += 10.0;
+  const report::Figure sut = figure_effect(Evidence(made.found, made.measurement), 0);
+  EXPECT_EQ(sut.panels.size(), 1U);
+}
+
 }  // namespace
 }  // namespace stillhand::diagnose
