@@ -2,6 +2,7 @@
 #include "closed_loop/closed_loop.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contract/expects.hpp"
 
@@ -24,7 +25,8 @@ class Loop {
   /// False: nothing more to do.
   bool round();
   void try_model(Round& round, const AugmentedModel& model);
-  [[nodiscard]] bool anything_new(const Verdict& verdict) const;
+  [[nodiscard]] const TrialRun& newest_cancelled() const;
+  [[nodiscard]] bool anything_new() const;
   [[nodiscard]] double best_error_mm() const { return result_.plus().metrics.rms_error_mm; }
 
   Session& session_;
@@ -70,32 +72,33 @@ void Loop::try_model(Round& round, const AugmentedModel& model) {
   }
 }
 
-bool Loop::anything_new(const Verdict& verdict) const {
+const TrialRun& Loop::newest_cancelled() const {
+  const bool again = !result_.rounds.empty() && result_.rounds.back().trial;
+  return again ? *result_.rounds.back().trial : result_.trial("C");
+}
+
+// I and B stay as they are: what C+ can tell anew is how late its motor and load cell are.
+bool Loop::anything_new() const {
   if (result_.rounds.empty()) return true;
-  const auto& known = result_.rounds.back().verdict.findings;
-  return std::ranges::any_of(verdict.findings, [&](const Finding& finding) {
-    return std::ranges::none_of(known, [&](const Finding& other) {
-      return other.kind == finding.kind && other.where == finding.where;
-    });
-  });
+  const auto& before = result_.rounds.back().verdict.latency;
+  const auto now = measure_latency(newest_cancelled().measured, options_.declared);
+  if (!before || !now) return false;
+  return std::abs(now->motor_s - before->motor_s) >= kWorthLatency_s ||
+         std::abs(now->cell_s - before->cell_s) >= kWorthLatency_s;
 }
 
 bool Loop::round() {
+  if (!anything_new()) return false;
   step("diagnosis " + std::to_string(result_.rounds.size() + 1));
   diagnosis::DiagnoseOptions diagnose;
   diagnose.for_each = options_.for_each;
   diagnose.progress = [&](const std::string& what) {
     return options_.progress("diagnosis: " + what);
   };
-  const TrialRun* newest = &result_.trial("C");
-  if (!result_.rounds.empty() && result_.rounds.back().trial) {
-    newest = &*result_.rounds.back().trial;
-  }
   const Evidence evidence{&result_.trial("I").measured, &result_.trial("B").measured,
-                          &newest->measured};
+                          &newest_cancelled().measured};
   Round round;
   options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
-  if (!anything_new(round.verdict)) return false;
   // What can't be explained isn't put into a motor: gain and phase are followed, no more.
   std::string why_not = round.verdict.not_carried;
   if (why_not.empty() && round.verdict.findings.empty() &&

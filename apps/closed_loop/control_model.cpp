@@ -30,7 +30,7 @@ using Complex = std::complex<double>;
 using Response = std::function<Complex(double frequency_hz)>;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr int kPoints = 241;
+constexpr Eigen::Index kPoints = 241;  // of a response, each with a real and an imaginary part
 constexpr double kOuterWeight = 0.2;
 constexpr std::size_t kTableValues = 129;
 
@@ -181,11 +181,13 @@ std::vector<double> Conversion::numerator(const Response& wanted, bool late, dou
   Eigen::MatrixXd matrix(2 * kPoints, columns);
   Eigen::VectorXd right(2 * kPoints);
   std::vector<Complex> target(kPoints);
-  const auto frequency = [&](int row) { return options_.upper_hz * row / (kPoints - 1.0); };
-  const auto in_band = [&](int row) {
+  const auto frequency = [&](Eigen::Index row) {
+    return options_.upper_hz * static_cast<double>(row) / (kPoints - 1.0);
+  };
+  const auto in_band = [&](Eigen::Index row) {
     return frequency(row) >= options_.low_hz && frequency(row) <= options_.high_hz;
   };
-  for (int row = 0; row < kPoints; ++row) {
+  for (Eigen::Index row = 0; row < kPoints; ++row) {
     const double weight = in_band(row) ? 1.0 : kOuterWeight;
     const double w = kTwoPi * frequency(row) / kControlRateHz;
     const Complex delay = std::polar(1.0, -w);
@@ -210,7 +212,7 @@ std::vector<double> Conversion::numerator(const Response& wanted, bool late, dou
   if (late) powers.insert(powers.begin(), 0.0);
   double largest = scale;
   double error = 0.0;
-  for (int row = 0; row < kPoints; ++row) {
+  for (Eigen::Index row = 0; row < kPoints; ++row) {
     if (!in_band(row)) continue;
     const double w = kTwoPi * frequency(row) / kControlRateHz;
     const Complex got = polynomial_at(powers, w) / polynomial_at(out_.model.denominator, w);

@@ -17,7 +17,6 @@ namespace {
 // is known to.
 constexpr double kWorthFall = 0.2;
 constexpr double kWorthDrive_n = 0.2;
-constexpr double kWorthLatency_s = 0.005;
 // Of the friction found: what is left of it keeps the stick from hunting.
 constexpr double kFrictionShare = 0.8;
 constexpr std::size_t kMostValues = 60'000'000;

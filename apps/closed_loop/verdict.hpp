@@ -12,6 +12,9 @@
 
 namespace stillhand::closed_loop {
 
+/// [s] A shorter delay doesn't move a hand.
+inline constexpr double kWorthLatency_s = 0.005;
+
 /// The recordings that a verdict rests on; nothing else is known of the rig.
 struct Evidence {
   const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
