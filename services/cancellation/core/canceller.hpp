@@ -42,8 +42,7 @@ struct Config {
     visit("max_model_gain_n_s2_m", self.max_model_gain_n_s2_m, Range{1.0, 200.0},
           "[N s^2/m] largest |H| of a model, any frequency; paper IV-A: 3.2 at 0 Hz");
     visit("max_path_force_n", self.max_path_force_n, Range{0.0, 60.0},
-          "[N] most that a model may ask for from any channel but a_y at its full scale, or from a "
-          "tone");
+          "[N] most that a model may ask for from the stick at its full scale, or from a tone");
     visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 500.0},
           "[m/s^2] a larger magnitude is no platform motion (paper III-C: peak 7.5) but a fault");
     visit("fade_ticks", self.fade_ticks, Range{50.0, 5000.0},

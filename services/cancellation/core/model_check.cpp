@@ -157,21 +157,36 @@ double greatest(const DirectPath& path) {
   return most;
 }
 
+bool of_stick(Channel channel) { return channel == Channel::kTheta || channel == Channel::kOmega; }
+
+// Largest |H| from a channel.  The platform's accelerations are alike, and its roll tips gravity
+// over; what the stick tells is bounded by the force at its full scale.
+double gain_bound(Channel channel, const ModelBounds& bounds) {
+  constexpr double kGravity_m_s2 = 9.80665;
+  if (of_stick(channel)) return bounds.max_path_force_n / full_scale(channel);
+  return bounds.max_gain_n_s2_m * (channel == Channel::kRoll ? kGravity_m_s2 : 1.0);
+}
+
+// True for a NaN, too.
+bool too_strong(const DirectPath& path, const ModelBounds& bounds) {
+  if (of_stick(path.channel)) return !(greatest(path) <= bounds.max_path_force_n);
+  const double slope = std::abs(path.gain) * slopes_of(path.map).steepest();
+  return !(slope <= gain_bound(path.channel, bounds));
+}
+
 Refusal check_strength(const AugmentedModel& model, const std::vector<std::complex<double>>& poles,
                        const ModelBounds& bounds) {
   const double behind = slopes_of(model.output).steepest();
   for (const InputPath& input : model.inputs) {
     const double gain =
         peak_gain(path_model(model, input), poles) * slopes_of(input.map).steepest() * behind;
-    const bool main = input.channel == Channel::kAccelY;
     // Also refuses a NaN gain.
-    if (main && !(gain <= bounds.max_gain_n_s2_m)) return Refusal::kGain;
-    if (!main && !(gain * full_scale(input.channel) <= bounds.max_path_force_n)) {
-      return Refusal::kPath;
+    if (!(gain <= gain_bound(input.channel, bounds))) {
+      return input.channel == Channel::kAccelY ? Refusal::kGain : Refusal::kPath;
     }
   }
   for (const DirectPath& path : model.paths) {
-    if (!(greatest(path) <= bounds.max_path_force_n)) return Refusal::kPath;
+    if (too_strong(path, bounds)) return Refusal::kPath;
   }
   for (const Wave& wave : model.waves) {
     if (!(std::hypot(wave.sine_n, wave.cosine_n) <= bounds.max_path_force_n)) return Refusal::kPath;

@@ -36,8 +36,8 @@ inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
 /// What a model may ask for at most; from the process's own settings.
 struct ModelBounds {
-  double max_gain_n_s2_m;   ///< |H| from a_y
-  double max_path_force_n;  ///< from any other channel at its full scale, path or wave
+  double max_gain_n_s2_m;   ///< |H| from an acceleration; from roll as much for each g it tips over
+  double max_path_force_n;  ///< from theta and omega at their full scale, and of a wave
 };
 
 struct ModelCheck {

@@ -113,9 +113,16 @@ Refusal refusal_of(const AugmentedModel& model) { return check_model(model, kBou
 TEST(AugmentedModelTest, WhatIsTooStrongIsRefused) {
   EXPECT_EQ(refusal_of(oscillator()), Refusal::kNone);
   AugmentedModel model = oscillator();
-  model.paths = {{Channel::kRoll, 0.0, {}, 12.0}};  // 9.6 N at 0.8 rad
+  model.paths = {{Channel::kTheta, 0.0, {}, 16.0}};  // 9.6 N at 0.6 rad
   EXPECT_EQ(refusal_of(model), Refusal::kNone);
-  model.paths[0].gain = 13.0;
+  model.paths[0].gain = 17.0;
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model.paths = {{Channel::kAccelX, 0.0, {}, -59.0}, {Channel::kRoll, 0.1, {}, 588.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.paths[1].gain = 590.0;  // above 60 g
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model.paths[1].gain = 0.0;
+  model.paths[0].gain = -61.0;
   EXPECT_EQ(refusal_of(model), Refusal::kPath);
   model = oscillator();
   model.waves = {{std::nullopt, 8.0, 8.0, 7.0}};
