@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real bus on loopback: what a replay writes is marked, and no process of a session takes it,
 // nor anything that answers it.
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 
@@ -13,6 +11,7 @@
 #include "runtime/playback.hpp"
 #include "runtime/tap.hpp"
 #include "support/idl_fields.hpp"
+#include "support/own_domain.hpp"
 #include "support/wait.hpp"
 
 namespace stillhand::runtime {
@@ -22,22 +21,10 @@ using support::eventually;
 
 constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
 
-// Stillhand's processes hold one participant each, so what is tested goes over a transport.  Fast
-// DDS 2.9.1 besides writes into readers of its own process while they are taken down
-// (StatefulWriter::intraprocess_gap).
-const bool kOverATransport = [] {
-  eprosima::fastrtps::LibrarySettingsAttributes settings;
-  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
-  return true;
-}();
-
-std::uint32_t test_domain() { return 100 + static_cast<std::uint32_t>(getpid()) % 60; }
-
 Bus::Options options_of(const std::string& service, bool answers_replay = false) {
   Bus::Options options;
   options.service = service;
-  options.domain = test_domain();
+  options.domain = support::own_domain();
   options.profiles = kProfiles;
   options.answers_replay = answers_replay;
   return options;
@@ -72,7 +59,7 @@ struct Listener {
 
 class ReplayMarkTest : public testing::Test {
  protected:
-  Playback replay{kProfiles, test_domain(), "stillhand-replay/test"};
+  Playback replay{kProfiles, support::own_domain(), "stillhand-replay/test"};
 };
 
 WriterQos stream_qos(const Playback& replay) { return *replay.profile("stream_1khz"); }
@@ -153,7 +140,7 @@ TEST_F(ReplayMarkTest, NobodyCountsAsAliveWhileAReplayIsThereAndAgainOnceItLeft)
     sign();
     return rig.peers_alive();
   })) << "a replay that has left goes on counting";
-  const Playback back(kProfiles, test_domain(), "stillhand-replay/back");
+  const Playback back(kProfiles, support::own_domain(), "stillhand-replay/back");
   EXPECT_TRUE(eventually([&] {
     sign();
     return !rig.peers_alive();
@@ -183,7 +170,7 @@ TEST_F(ReplayMarkTest, ATapHearsAReplayWithItsMarkBytesAndQos) {
   FoundWriter found;
   Tap::Options options;
   options.name = "stillhand-record/test";
-  options.domain = test_domain();
+  options.domain = support::own_domain();
   options.profiles = kProfiles;
   options.wanted = [](const std::string& topic) { return topic == "another/topic"; };
   options.on_sample = [&](const FoundWriter& from, const TappedSample& sample) {
