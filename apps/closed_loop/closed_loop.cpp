@@ -34,7 +34,6 @@ class Loop {
   LoopResult result_;
   experiment::PlannedTrial cancelled_{};
   std::int64_t last_number_ = 0;
-  AugmentedModel best_model_;
 };
 
 void Loop::paper_trials() {
@@ -44,7 +43,7 @@ void Loop::paper_trials() {
     result_.trials.push_back(session_.run(planned, label));
     if (planned.trial.phase == TrialPhase::kPegged) {
       result_.paper_model = session_.identify(result_.trials.back());
-      best_model_ = cancellation::augmented(result_.paper_model.control);
+      result_.control_model = cancellation::augmented(result_.paper_model.control);
     }
     last_number_ = planned.trial.number;
     if (planned.cancellation) cancelled_ = planned;
@@ -64,10 +63,10 @@ void Loop::try_model(Round& round, const AugmentedModel& model) {
   round.trial = session_.run(cancelled_, "C+");
   round.kept = round.trial->metrics.rms_error_mm < best_error_mm();
   if (round.kept) {
-    best_model_ = followed;
+    result_.control_model = followed;
     round.outcome = "the hand is stiller: kept";
   } else {
-    session_.use(best_model_);
+    session_.use(result_.control_model);
     round.outcome = "the hand isn't stiller: the last good model stays";
   }
 }

@@ -34,9 +34,10 @@ struct Round {
 
 struct LoopResult {
   identification::FeedthroughModel paper_model;
-  std::vector<TrialRun> trials;  ///< I, then A, B, C in the order in which they ran
-  std::vector<Round> rounds;     ///< at least one
-  std::size_t final_round = 0;   ///< whose C+ counts: the best one's
+  std::vector<TrialRun> trials;                ///< I, then A, B, C in the order in which they ran
+  std::vector<Round> rounds;                   ///< at least one
+  std::size_t final_round = 0;                 ///< whose C+ counts: the best one's
+  cancellation::AugmentedModel control_model;  ///< that the best trial ran with
 
   [[nodiscard]] const TrialRun& trial(const std::string& label) const;
   /// C+ of the final round; C where no C+ was better.

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "cancellation/core/command_filter.hpp"
+#include "cancellation/model_file.hpp"
 #include "closed_loop/live_session.hpp"
 #include "closed_loop/output.hpp"
 #include "diagnose/on_all_cores.hpp"
@@ -32,11 +32,6 @@ struct Words {
 // Steps of one way through the loop, for the bar.
 constexpr double kUsualSteps = 14.0;
 
-cancellation::HandCompliance average_hand() {
-  const cancellation::CommandFilterConfig average;
-  return {average.mass_kg, average.damping_n_s_m, average.stiffness_n_m, average.lever_m};
-}
-
 DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
 }
@@ -54,9 +49,11 @@ LoopRecord new_record(const Words& words) {
   return record;
 }
 
-void write_files(const LoopRecord& record, report::StagedFolder& folder) {
+void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFolder& folder) {
   folder.write("summary.json", summary_json(record));
   folder.write("model.json", diagnosis::model_json(record.result.verdict().body.model));
+  folder.write(kControlModelFile,
+               cancellation::control_model_json(record.result.control_model, rig));
   const auto drawings = report::render(loop_figures(record), folder.path());
   loop_page(record, drawings).write(folder.path() / "report.html");
 }
@@ -84,7 +81,7 @@ void run_in_process(const Words& words) {
     rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
     record.truth = truth_of(session.open_effect());
   }
-  write_files(record, folder);
+  write_files(record, words.lab.rig, folder);
   folder.publish(every_name());
   print_result(record);
 }
@@ -106,7 +103,7 @@ void run_live(const Words& words) {
         record.result = close_loop(session, record.options);
       });
   if (record.result.rounds.empty()) throw diagnosis::Interrupted();
-  add_cancelled_shares(recording, live.outcomes, record.result);
+  judge_cancellation(recording, live.outcomes, record.result);
   // The verdict is in place before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
                                                            verdict_json(record.result));
@@ -119,7 +116,7 @@ void run_live(const Words& words) {
   }
   live.folder.reset();
   report::StagedFolder folder(out);
-  write_files(record, folder);
+  write_files(record, words.lab.rig, folder);
   folder.publish({});
   print_result(record);
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cancellation/core/command_filter.hpp"
 #include "contract/config_error.hpp"
 #include "contract/tick.hpp"
 #include "diagnosis/core/effect_kind.hpp"
@@ -104,6 +105,7 @@ class Conversion {
   const diagnosis::Model& model_;
   const diagnosis::Signals& signals_;
   const ControlOptions& options_;
+  double gain_ = last_gain();  ///< of the body alone: modes and paths lie beside it
   ControlModel out_;
 };
 
@@ -239,8 +241,8 @@ double Conversion::last_gain() const {
 
 Complex Conversion::body_response(std::size_t k, double frequency_hz) const {
   const double w = turn(frequency_hz);
-  Complex sum =
-      polynomial_at(model_.body.numerators[k], w) / polynomial_at(model_.body.denominator, w);
+  Complex sum = gain_ * polynomial_at(model_.body.numerators[k], w) /
+                polynomial_at(model_.body.denominator, w);
   for (const Effect& effect : model_.effects) {
     if (effect.kind == "resonance") {
       const Complex mode = polynomial_at(
@@ -262,7 +264,6 @@ double Conversion::delay_s() const {
 }
 
 void Conversion::convert_inputs() {
-  const double gain = last_gain();
   const double late_s = delay_s() - options_.lead_s;
   for (std::size_t k = 0; k < model_.inputs.size(); ++k) {
     const auto channel = channel_of(model_.inputs[k]);
@@ -270,14 +271,12 @@ void Conversion::convert_inputs() {
       throw ConfigError("the model's input", model_.inputs[k],
                         "a channel that the canceller is given");
     }
-    out_.model.inputs.push_back({*channel,
-                                 {},
-                                 numerator(
-                                     [&](double f) {
-                                       return gain * body_response(k, f) *
-                                              std::polar(1.0, -kTwoPi * f * late_s);
-                                     },
-                                     false, 0.0)});
+    out_.model.inputs.push_back(
+        {*channel,
+         {},
+         numerator(
+             [&](double f) { return body_response(k, f) * std::polar(1.0, -kTwoPi * f * late_s); },
+             false, 0.0)});
   }
 }
 
@@ -297,18 +296,21 @@ void Conversion::convert_loop(const Effect& effect) {
   diagnosis::run_all(model_, signals_, run);
   double range = 0.0;
   for (const double z : run.free.argument) range = std::max(range, std::abs(z));
-  range *= 2.0;
+  // Where z is the force itself, it is the one behind the gain.
+  const double z_gain = path.of_output() ? gain_ : 1.0;
+  range *= 2.0 * std::abs(z_gain);
   const diagnosis::Nonlinearity shape = diagnosis::effect_kind(effect.kind).feedback(effect);
   cancellation::LoopPath loop;
   // phi has the size of its own slope times z: judged by what the linear part does.
   loop.e = numerator(over_poles(path.e), path.of_output(), 0.0);
+  for (double& e : loop.e) e *= gain_;
   if (!path.of_output()) {
     loop.n = numerator(over_poles(path.n), false, 0.0);
     loop.m = numerator(over_poles(path.m), true, 0.0);
   }
   loop.phi = table(-range, range, [&](double z) {
     diagnosis::LoopMemory memory;
-    return shape.phi(z / shape.threshold, memory);
+    return shape.phi(z / (z_gain * shape.threshold), memory);
   });
   out_.model.loop = std::move(loop);
   treat(effect, true, "the spring runs inside the canceller's body");
@@ -405,6 +407,11 @@ ControlModel Conversion::run(const std::vector<double>& denominator) {
 }
 
 }  // namespace
+
+cancellation::HandCompliance average_hand() {
+  const cancellation::CommandFilterConfig average;
+  return {average.mass_kg, average.damping_n_s_m, average.stiffness_n_m, average.lever_m};
+}
 
 void add_drive_effect(const Effect& effect, double share, ControlModel& to) {
   const auto channel = channel_of(effect.channels.empty() ? "" : effect.channels.front());

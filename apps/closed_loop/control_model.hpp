@@ -33,6 +33,9 @@ struct ControlOptions {
   double lead_s = 0.0;      ///< [s] by which the motor is late: the prediction comes as much sooner
 };
 
+/// The hand that the adaptation counts on: an average person's, as the command filter's.
+cancellation::HandCompliance average_hand();
+
 /// Carries a diagnosed model to the control rate, README Eq. CL-1 to CL-4: the body's poles by
 /// z' = z^(rate/1000 Hz), each numerator by least squares on its response, springs inside the body,
 /// paths beside it and waves as they are.  Offset, drift and bursts are no feedthrough and stay

@@ -36,8 +36,8 @@ recording::Recording without_gaps(const recording::Recording& rows, const Trial&
 }
 
 // What the recorder has written of a trial; it may be a second behind.
-recording::Recording recorded(const std::filesystem::path& file, const Trial& trial,
-                              bool tracking) {
+measurement::SessionRows recorded(const std::filesystem::path& file, const Trial& trial,
+                                  bool tracking) {
   constexpr int kTries = 10;
   constexpr std::int64_t kPatience_ns = 700'000'000;
   constexpr double kMostMissing = 0.02;
@@ -50,12 +50,13 @@ recording::Recording recorded(const std::filesystem::path& file, const Trial& tr
   for (int i = 0; i < kTries; ++i) {
     runtime::sleep_until_ns(runtime::monotonic_ns() + kPatience_ns);
     try {
-      const auto rows =
-          measurement::read_session_rows(file.string(), std::to_string(trial.number)).rows;
+      measurement::SessionRows session =
+          measurement::read_session_rows(file.string(), std::to_string(trial.number));
+      const recording::Recording& rows = session.rows;
       const bool whole = rows.row_count() >= least && rows.time_s.back() >= end_s - 0.1 &&
                          rows.find("f_motor") != nullptr &&
                          (!tracking || rows.find("x_p") != nullptr);
-      if (whole) return without_gaps(rows, trial);
+      if (whole) return session;
       why = std::to_string(rows.row_count()) + " of " + std::to_string(trial.duration_ticks) +
             " ticks recorded";
     } catch (const ConfigError& error) {
@@ -77,7 +78,13 @@ TrialRun LiveTrialSession::run(const experiment::PlannedTrial& planned, const st
   out.label = label;
   out.number = planned.trial.number;
   const bool tracking = planned.trial.phase == TrialPhase::kTracking;
-  out.measured = recorded(recording_, outcome.planned.trial, tracking);
+  const Trial& trial = outcome.planned.trial;
+  const measurement::SessionRows session = recorded(recording_, trial, tracking);
+  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kWeightRate_hz);
+  for (std::size_t n = 0; n < session.weights.size(); n += kEvery) {
+    out.weights.push_back(session.weights[n]);
+  }
+  out.measured = without_gaps(session.rows, trial);
   out.measured.source = "trial " + label;
   if (tracking) out.metrics = metrics_of(out.measured, planned);
   return out;
@@ -91,14 +98,15 @@ std::string LiveTrialSession::use(const cancellation::AugmentedModel& model) {
   return trials_.use(model);
 }
 
-void add_cancelled_shares(const std::filesystem::path& recording,
-                          const std::vector<experiment::TrialOutcome>& outcomes,
-                          LoopResult& result) {
+void judge_cancellation(const std::filesystem::path& recording,
+                        const std::vector<experiment::TrialOutcome>& outcomes, LoopResult& result) {
   const experiment::SessionResult session = experiment::evaluate(recording.string(), outcomes);
   const auto add = [&](TrialRun& run) {
     const auto trial =
         std::ranges::find(session.trials, run.number, &experiment::TrialResult::number);
-    if (trial != session.trials.end()) run.cancelled_share = trial->cancelled_share.value_or(0.0);
+    if (trial == session.trials.end()) return;
+    run.cancelled_share = trial->cancelled_share.value_or(0.0);
+    run.counterforce_delay_s = trial->counterforce_delay_s.value_or(0.0);
   };
   for (TrialRun& run : result.trials) add(run);
   for (Round& round : result.rounds) {

@@ -27,10 +27,9 @@ class LiveTrialSession final : public Session {
   std::filesystem::path recording_;
 };
 
-/// Shares of cancelled force, which the rig's truth in the recording tells when the session has
-/// ended.
-void add_cancelled_shares(const std::filesystem::path& recording,
-                          const std::vector<experiment::TrialOutcome>& outcomes,
-                          LoopResult& result);
+/// Shares of cancelled force and how late it was cancelled, which the rig's truth in the recording
+/// tells when the session has ended.
+void judge_cancellation(const std::filesystem::path& recording,
+                        const std::vector<experiment::TrialOutcome>& outcomes, LoopResult& result);
 
 }  // namespace stillhand::closed_loop

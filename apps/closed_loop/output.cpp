@@ -31,6 +31,7 @@ ordered_json condition_json(const TrialRun& trial) {
   condition["crossover_reference_hz"] = number(trial.metrics.crossover_reference_hz);
   const bool cancels = trial.label.front() == 'C';
   condition["cancelled_share"] = cancels ? number(trial.cancelled_share) : ordered_json(nullptr);
+  if (cancels) condition["counterforce_delay_ms"] = number(1e3 * trial.counterforce_delay_s);
   return condition;
 }
 
@@ -89,8 +90,8 @@ ordered_json round_json(const Round& round) {
                     {"weights", nullptr}};
   if (round.trial) {
     json["rms_error_mm"] = number(round.trial->metrics.rms_error_mm);
-    if (const auto& weights = round.trial->weights)
-      json["weights"] = {(*weights)[0], (*weights)[1]};
+    const auto& weights = round.trial->weights;
+    if (!weights.empty()) json["weights"] = weights.back();
   }
   return json;
 }
@@ -181,6 +182,9 @@ void print_result(const LoopRecord& record) {
   }
   std::printf("feedthrough force cancelled: C %.1f %%, C+ %.1f %%\n",
               100.0 * result.trial("C").cancelled_share, 100.0 * result.plus().cancelled_share);
+  std::printf("the motor opposes it late by: C %.1f ms, C+ %.1f ms\n",
+              1e3 * result.trial("C").counterforce_delay_s,
+              1e3 * result.plus().counterforce_delay_s);
   const Verdict& verdict = result.verdict();
   if (verdict.findings.empty()) std::printf("the model lacks nothing that moves a hand\n");
   for (const Finding& finding : verdict.findings) {
@@ -202,9 +206,10 @@ void print_result(const LoopRecord& record) {
 }
 
 std::vector<std::string> every_name() {
-  std::vector<std::string> names{"report.html", "summary.json",   kVerdictFile,
-                                 "model.json",  rig::kSealedFile, rig::kCommitmentFile};
-  for (const char* figure : {"tracking", "force", "motion"}) {
+  std::vector<std::string> names{"report.html",       "summary.json",    kVerdictFile,
+                                 "model.json",        kControlModelFile, rig::kSealedFile,
+                                 rig::kCommitmentFile};
+  for (const char* figure : {"tracking", "force", "adaptation", "motion"}) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
   return names;

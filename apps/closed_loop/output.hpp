@@ -11,6 +11,7 @@
 namespace stillhand::closed_loop {
 
 inline constexpr const char* kVerdictFile = "verdict.json";
+inline constexpr const char* kControlModelFile = "control_model.json";
 
 /// The truth, when it is opened at the end.
 struct Truth {

@@ -134,6 +134,35 @@ report::Figure force_figure(const LoopRecord& record) {
   return figure;
 }
 
+// What the canceller followed in the newest C+; in C nothing is.
+report::Figure adaptation_figure(const LoopResult& result) {
+  report::Figure figure;
+  figure.name = "adaptation";
+  figure.caption =
+      "Gain and phase as the canceller follows them through C+: the motor takes away w₀ times the "
+      "prediction and w₁ times its derivative over Ω (1.2 Hz). 1 and 0 are the model as it is.";
+  figure.columns = 2;
+  const TrialRun& plus = result.plus();
+  std::vector<double> time;
+  for (std::size_t n = 0; n < plus.weights.size(); ++n) {
+    time.push_back(static_cast<double>(n) / kWeightRate_hz);
+  }
+  for (const std::size_t k : {0U, 1U}) {
+    report::Panel panel;
+    panel.title = k == 0 ? "gain w₀ [-]" : "phase w₁ [-]";
+    panel.x.label = "time [s]";
+    panel.legend = report::Legend::kNone;
+    std::vector<double> values;
+    for (const auto& pair : plus.weights) values.push_back(pair[k]);
+    const auto [low, high] = std::ranges::minmax(values);
+    panel.y.low = std::min(low, static_cast<double>(1 - k)) - 0.1;
+    panel.y.high = std::max(high, static_cast<double>(1 - k)) + 0.1;
+    panel.series = {line("", Colour::kConditionCPlus, time, values)};
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
 // Target and cursor, the same twelve seconds under every condition that moves.
 report::Figure motion_figure(const LoopResult& result) {
   report::Figure figure;
@@ -180,6 +209,11 @@ report::Table tracking_table(const LoopResult& result) {
   table.rows.push_back({"feedthrough force cancelled", "", "",
                         percent(result.trial("C").cancelled_share),
                         Cell(percent(result.plus().cancelled_share), Emphasis::kStrong)});
+  const auto late = [](const TrialRun& trial) {
+    return number(1e3 * trial.counterforce_delay_s, 1) + " ms";
+  };
+  table.rows.push_back({"the motor opposes it late by", "", "", late(result.trial("C")),
+                        Cell(late(result.plus()), Emphasis::kStrong)});
   return table;
 }
 
@@ -231,7 +265,8 @@ std::string lead(const LoopRecord& record) {
 }  // namespace
 
 std::vector<report::Figure> loop_figures(const LoopRecord& record) {
-  return {tracking_figure(record.result), force_figure(record), motion_figure(record.result)};
+  return {tracking_figure(record.result), force_figure(record), adaptation_figure(record.result),
+          motion_figure(record.result)};
 }
 
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings) {
@@ -276,15 +311,16 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
     std::vector<Cell> row{std::to_string(i + 1), "–", "–", "–", each.outcome};
     if (each.trial) {
       row[1] = number(each.trial->metrics.rms_error_mm, 1);
-      if (const auto& weights = each.trial->weights) {
-        row[2] = number((*weights)[0], 2);
-        row[3] = number((*weights)[1], 2);
+      if (const auto& weights = each.trial->weights; !weights.empty()) {
+        row[2] = number(weights.back()[0], 2);
+        row[3] = number(weights.back()[1], 2);
       }
     }
     rounds.rows.push_back(row);
   }
   page.table(rounds);
   page.figure(drawings.at(2));
+  page.figure(drawings.at(3));
   if (record.truth) {
     page.section("The sealed truth");
     page.paragraph("Opened after the verdict: " + record.truth->kind +

@@ -32,9 +32,14 @@ TrialRun InProcessSession::run(const experiment::PlannedTrial& planned, const st
     out.metrics = metrics_of(out.measured, planned);
     if (planned.moving) {
       out.cancelled_share = experiment::cancelled_share(signals.feedthrough_n, signals.motor_n);
+      out.counterforce_delay_s = experiment::counterforce_delay_s(
+          signals.feedthrough_n, signals.motor_n, kControlRateHz / kKeepEvery);
     }
   }
-  out.weights = loop_.weights();
+  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kKeepEvery / kWeightRate_hz);
+  for (std::size_t n = 0; n < signals.weights.size(); n += kEvery) {
+    out.weights.push_back(signals.weights[n]);
+  }
   return out;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "cancellation/core/canceller.hpp"
 #include "experiment/in_process.hpp"
@@ -12,6 +12,9 @@
 
 namespace stillhand::closed_loop {
 
+/// [Hz] What is followed takes seconds: ten values in each show its course.
+inline constexpr double kWeightRate_hz = 10.0;
+
 /// One trial as it was measured.
 struct TrialRun {
   std::string label;        ///< "I", "A", "B", "C", "C+"
@@ -19,7 +22,9 @@ struct TrialRun {
   recording::Recording measured;
   identification::TrackingMetrics metrics;  ///< of a tracking trial
   double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth
-  std::optional<cancellation::AdaptiveGain::Pair> weights;  ///< at its end; not told over DDS
+  double counterforce_delay_s = 0.0;        ///< [s] of the motor's force behind it, the same
+  std::vector<cancellation::AdaptiveGain::Pair>
+      weights;  ///< w_0, w_1 as followed, at kWeightRate_hz
 };
 
 /// What the loop asks of a session, in one process or over DDS.

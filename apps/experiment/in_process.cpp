@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include "signal/spectrum.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -47,6 +50,26 @@ double cancelled_share(const std::vector<double>& feedthrough_n,
     all += feedthrough_n[n] * feedthrough_n[n];
   }
   return 1.0 - std::sqrt(left / all);
+}
+
+double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vector<double> motor_n,
+                            double rate_hz) {
+  constexpr double kSegment_s = 4.0;
+  constexpr double kLow_hz = 0.5;
+  constexpr double kHigh_hz = 4.0;
+  for (double& force : motor_n) force = -force;
+  const auto segment = static_cast<std::size_t>(kSegment_s * rate_hz);
+  const auto spectra = signal::cross_spectra(feedthrough_n, motor_n, rate_hz, segment);
+  double moment = 0.0;
+  double square = 0.0;
+  for (std::size_t k = 0; k < spectra.frequency_hz.size(); ++k) {
+    const double f = spectra.frequency_hz[k];
+    if (f < kLow_hz || f > kHigh_hz) continue;
+    const double weight = std::abs(spectra.s_xy[k]);
+    moment -= weight * f * std::arg(spectra.s_xy[k]);
+    square += weight * f * f;
+  }
+  return moment / (2.0 * std::numbers::pi * square);
 }
 
 InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every,
@@ -130,12 +153,14 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
                              : sensed.theta_rad;
   const display::TrackingSample shown = display_.step({tick, command_rad});
   operator_force_n_ = operator_.step({tick, shown.target_m, shown.cursor_m, tracking}).force_n;
-  if (planned.trial.measures(tick)) keep(planned, sensed, rig_out.truth, shown, signals);
+  if (planned.trial.measures(tick)) {
+    keep(planned, sensed, rig_out.truth, cancelled, shown, signals);
+  }
 }
 
 void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sensed,
-                         const rig::RigTruth& truth, const display::TrackingSample& shown,
-                         TrialSignals& signals) const {
+                         const rig::RigTruth& truth, const cancellation::CancellerOutput& cancelled,
+                         const display::TrackingSample& shown, TrialSignals& signals) const {
   if (planned.trial.phase == TrialPhase::kPegged) {
     signals.pegged.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
     signals.pegged.force_n.push_back(sensed.force_n);
@@ -148,6 +173,7 @@ void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sen
   }
   signals.feedthrough_n.push_back(truth.feedthrough_force_n);
   signals.motor_n.push_back(truth.motor_force_n);
+  signals.weights.push_back(cancelled.weights);
 }
 
 void InProcessLoop::keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,

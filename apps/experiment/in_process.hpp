@@ -36,14 +36,22 @@ struct CoreConfigs {
 struct TrialSignals {
   identification::Record pegged;  ///< acceleration and force, 1 kHz, as sensed
   identification::TrackingRecord tracking;
-  std::vector<double> feedthrough_n;  ///< true f'_b
-  std::vector<double> motor_n;        ///< motor force applied
-  recording::Recording measured;      ///< every channel that a session's recording has, 1 kHz
+  std::vector<double> feedthrough_n;                      ///< true f'_b
+  std::vector<double> motor_n;                            ///< motor force applied
+  std::vector<cancellation::AdaptiveGain::Pair> weights;  ///< gain and phase, as they are followed
+  recording::Recording measured;  ///< every channel that a session's recording has, 1 kHz
 };
 
 /// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f').
 double cancelled_share(const std::vector<double>& feedthrough_n,
                        const std::vector<double>& motor_n);
+
+/// [s] By how much the motor's force comes behind the feedthrough force that it opposes, negative:
+/// ahead.  tau in arg S_xy = -2 pi f tau, x = f', y = -f_m, least squares over the lines from 0.5
+/// to 4 Hz weighted by |S_xy|; NaN when the motor did nothing.
+/// @param rate_hz  [Hz] of both
+double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vector<double> motor_n,
+                            double rate_hz);
 
 /// The closed loop of a session in one process: the same cores in catalogue order, one whole tick
 /// of delay on each of the two edges that close the loop (motor command and operator force to the
@@ -64,10 +72,6 @@ class InProcessLoop {
   /// The model the canceller uses from now on.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
   cancellation::Refusal use_model(const cancellation::AugmentedModel& model);
-  /// Gain and phase that the canceller follows.
-  [[nodiscard]] const cancellation::AdaptiveGain::Pair& weights() const noexcept {
-    return canceller_.weights();
-  }
   /// What the rig held, once the verdict on it is out: no trial runs after it.
   [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
 
@@ -75,7 +79,8 @@ class InProcessLoop {
   void arm(const PlannedTrial& planned);
   void tick_once(const PlannedTrial& planned, TrialSignals& signals);
   void keep(const PlannedTrial& planned, const sensing::Sensed& sensed, const rig::RigTruth& truth,
-            const display::TrackingSample& shown, TrialSignals& signals) const;
+            const cancellation::CancellerOutput& cancelled, const display::TrackingSample& shown,
+            TrialSignals& signals) const;
   void keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,
                 recording::Recording& rows) const;
 

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "cancellation/model_file.hpp"
 #include "contract/config_error.hpp"
 #include "experiment/conductor.hpp"
 #include "experiment/output_folder.hpp"
@@ -20,9 +21,11 @@
 #include "experiment/rehearsal.hpp"
 #include "experiment/results.hpp"
 #include "identification/codec.hpp"
+#include "recording/file_io.hpp"
 #include "rig/sealed_file.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/real_time.hpp"
+#include "settings/load.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -271,12 +274,23 @@ void set_places(LabOptions& options) {
   }
 }
 
+cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
+                                           const std::filesystem::path& config) {
+  const auto model =
+      cancellation::parse_control_model(recording::read_file(file.string()), file.string(), rig);
+  cancellation::require_sound(
+      model, settings::load<cancellation::Config>(config / "cancellation.yaml", "cancellation"),
+      file.string());
+  return model;
+}
+
 LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Script& script) {
   const AskedMotions asked = check(options);
   const DomainLock lock(options.domain, options.rig);
   check_port(options.domain);
   LiveSession live;
-  live.folder = std::make_shared<OutputFolder>(options.out, options.ride);
+  live.folder = std::make_shared<OutputFolder>(
+      options.out, std::vector<std::filesystem::path>{options.ride, options.model});
   if (options.undeclared_effect != 0) {
     live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
   }
@@ -309,9 +323,15 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
 }
 
 int run_lab(const LabOptions& options, runtime::Stop& stop) {
+  std::optional<cancellation::AugmentedModel> model;
+  if (!options.model.empty()) model = control_model(options.model, options.rig, options.config);
   const LiveSession live = run_session(options, stop, [&](LiveTrials& trials) {
     for (const PlannedTrial& planned : plan(options.protocol)) {
       if (trials.interrupted() || !trials.run(planned).completed) break;
+      if (!model || planned.trial.phase != TrialPhase::kPegged) continue;
+      if (const std::string refused = trials.use(*model); !refused.empty()) {
+        throw std::runtime_error(options.model.string() + ": " + refused);
+      }
     }
   });
   if (live.outcomes.empty() && live.interrupted) {

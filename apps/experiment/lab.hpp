@@ -33,6 +33,7 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
+  std::filesystem::path model;          ///< control model for C; empty: the session's own
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
   recording::KeepOptions keep;          ///< of the session's recording
@@ -40,6 +41,12 @@ struct LabOptions {
 
 /// Sets programs, profiles and config: those of the build tree or of an installed prefix.
 void set_places(LabOptions& options);
+
+/// A control model from a file, as the canceller would take it.
+/// @param config  folder of the services' settings
+/// @throws ConfigError when it isn't one, is of another rig, or the canceller would refuse it
+cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
+                                           const std::filesystem::path& config);
 
 /// A session over DDS while its processes run: trial by trial.
 class LiveTrials {

@@ -72,6 +72,9 @@ void add_lab_command(CLI::App& cli, int& status) {
                   "road for --motion road: A (very good) to H, by ISO 8608 [B]");
   lab->add_option("--speed-m-s", words->road_speed_m_s,
                   "speed of the vehicle on it [m/s], 0.5 to 70 [20]");
+  lab->add_option("--model", options->model,
+                  "control model that condition C uses instead of the session's own, as "
+                  "`stillhand close-the-loop` and `stillhand control-model` write it");
   lab->add_option("--undeclared-effect", options->undeclared_effect,
                   "seed of an effect that only the rig knows of, sealed until the results are "
                   "written; 0: none")

@@ -31,13 +31,14 @@ std::vector<std::filesystem::path> session_files(const std::filesystem::path& fo
 
 }  // namespace
 
-OutputFolder::OutputFolder(const std::filesystem::path& path, const std::filesystem::path& ride)
+OutputFolder::OutputFolder(const std::filesystem::path& path,
+                           const std::vector<std::filesystem::path>& inputs)
     : path_(path) {
   make();
   try {
     prove_writable();
     lock();
-    refuse_if_needed(ride);
+    for (const std::filesystem::path& input : inputs) refuse_if_needed(input);
     clear();
     std::error_code error;
     std::filesystem::create_directories(path_ / "logs", error);
@@ -94,15 +95,15 @@ void OutputFolder::lock() {
   }
 }
 
-void OutputFolder::refuse_if_needed(const std::filesystem::path& ride) const {
-  if (ride.empty()) return;
+void OutputFolder::refuse_if_needed(const std::filesystem::path& input) const {
+  if (input.empty()) return;
   for (const std::filesystem::path& file : session_files(path_)) {
     std::error_code error;
-    if (std::filesystem::equivalent(file, ride, error)) {
+    if (std::filesystem::equivalent(file, input, error)) {
       throw ConfigError("--out",
                         path_.string() + ", whose " + file.filename().string() +
-                            " is the ride and would be replaced",
-                        "another folder than the ride's");
+                            " is read by this session and would be replaced",
+                        "another folder");
     }
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace stillhand::experiment {
 
@@ -10,10 +11,10 @@ namespace stillhand::experiment {
 /// taken away.
 class OutputFolder {
  public:
-  /// @param ride  recorded ride of this session, or empty; it is not to be cleared away
-  /// @throws ConfigError when the folder cannot be made or written, holds the ride, or another lab
-  ///         uses it.
-  OutputFolder(const std::filesystem::path& path, const std::filesystem::path& ride);
+  /// @param inputs  files that the session reads; empty ones don't count
+  /// @throws ConfigError when the folder cannot be made or written, an input would be cleared away,
+  ///         or another lab uses it.
+  OutputFolder(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -25,7 +26,7 @@ class OutputFolder {
   void make();
   void prove_writable() const;
   void lock();
-  void refuse_if_needed(const std::filesystem::path& ride) const;
+  void refuse_if_needed(const std::filesystem::path& input) const;
   void clear() const;
 
   std::filesystem::path path_;

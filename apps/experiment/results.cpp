@@ -42,18 +42,38 @@ double rms(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double cancelled_share(const SessionRecording& session, const Trial& trial) {
+std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& session,
+                                                      const Trial& trial) {
+  std::vector<double> late_us;
+  for (const stillhand_msgs::MotorCommand& command : session.motor_commands) {
+    if (!trial.measures(command.tick()) || command.acquired_ns() == 0) continue;
+    late_us.push_back(1e-3 * static_cast<double>(command.stamp_ns() - command.acquired_ns()));
+  }
+  if (late_us.empty()) return std::nullopt;
+  std::ranges::sort(late_us);
+  const auto quantile = [&](double share) {
+    return late_us[static_cast<std::size_t>(share * static_cast<double>(late_us.size() - 1))];
+  };
+  return TrialResult::Latency{quantile(0.5), quantile(0.99), late_us.back()};
+}
+
+void judge_cancellation(const SessionRecording& session, const PlannedTrial& planned,
+                        TrialResult& result) {
+  const Trial& trial = planned.trial;
   std::int64_t missing = 0;
   const auto feedthrough = measured(
       session.rig_truths, trial, [](const auto& truth) { return truth.feedthrough_force_n(); },
       missing);
   const auto motor = measured(
       session.rig_truths, trial, [](const auto& truth) { return truth.motor_force_n(); }, missing);
-  return experiment::cancelled_share(feedthrough, motor);
+  result.cancelled_share = experiment::cancelled_share(feedthrough, motor);
+  if (!planned.cancellation) return;
+  result.counterforce_delay_s = counterforce_delay_s(feedthrough, motor, kControlRateHz);
+  result.sensor_to_command = sensor_to_command(session, trial);
 }
 
 TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
-  TrialResult result{planned.trial.number, planned.label, {}, 0, std::nullopt};
+  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}};
   identification::TrackingRecord record;
   record.rate_hz = kControlRateHz;
   record.target_m = measured(
@@ -64,7 +84,7 @@ TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& 
       session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); }, again);
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
   result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
-  if (planned.moving) result.cancelled_share = cancelled_share(session, planned.trial);
+  if (planned.moving) judge_cancellation(session, planned, result);
   return result;
 }
 

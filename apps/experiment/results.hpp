@@ -23,6 +23,15 @@ struct TrialResult {
   /// force the body would exert with the stick held, f_m the motor's; only where the platform
   /// moves.
   std::optional<double> cancelled_share;
+  /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
+  std::optional<double> counterforce_delay_s;
+  /// From a sample's acquisition to the command that answers it, by their stamps; the same.
+  struct Latency {
+    double p50_us = 0.0;
+    double p99_us = 0.0;
+    double max_us = 0.0;
+  };
+  std::optional<Latency> sensor_to_command;
 };
 
 /// What the model predicts of the pegged trial's true feedthrough force, as residual share

@@ -42,6 +42,13 @@ ordered_json condition_json(const TrialResult& trial) {
   condition["crossover_reference_hz"] = number(trial.metrics.crossover_reference_hz);
   condition["cancelled_share"] =
       trial.cancelled_share ? number(*trial.cancelled_share) : ordered_json(nullptr);
+  if (trial.counterforce_delay_s) {
+    condition["counterforce_delay_ms"] = number(1e3 * *trial.counterforce_delay_s);
+  }
+  if (const auto& latency = trial.sensor_to_command) {
+    condition["sensor_to_command_us"] = {
+        {"p50", latency->p50_us}, {"p99", latency->p99_us}, {"max", latency->max_us}};
+  }
   return condition;
 }
 
@@ -138,6 +145,8 @@ ordered_json summary_json(const LabOptions& options, const std::vector<TrialOutc
   summary["manova"] = nullptr;
   summary["restoration"] = restoration_json(result);
   summary["identification"] = identification_json(result);
+  summary["control_model"] =
+      options.model.empty() ? ordered_json(nullptr) : ordered_json(options.model.string());
   summary["trials"] = ordered_json::array();
   for (const TrialOutcome& outcome : outcomes) {
     summary["trials"].push_back(trial_json(outcome, options.protocol));
@@ -156,7 +165,7 @@ ordered_json summary_json(const LabOptions& options, const std::vector<TrialOutc
   return summary;
 }
 
-void print_table(const SessionResult& result) {
+void print_table(const SessionResult& result, const std::filesystem::path& control_model) {
   std::printf("\n%-22s %9s %9s %9s   %9s   %s\n", "", "A", "B", "C", "restored",
               "paper (12 subjects): A, B, C, restored");
   for (const Metric& metric : kMetrics) {
@@ -183,6 +192,7 @@ void print_table(const SessionResult& result) {
     std::printf("feedthrough model: VAF on held-out pegged data %.2f %%\n",
                 result.model->heldout_vaf_percent());
   }
+  if (!control_model.empty()) std::printf("C ran %s instead\n", control_model.c_str());
   for (const TrialResult& trial : result.trials) {
     if (trial.label == 'C' && trial.cancelled_share) {
       std::printf("feedthrough force cancelled while tracking: %.1f %%\n",
@@ -232,7 +242,7 @@ int report_session(const LabOptions& options, const std::vector<TrialOutcome>& o
   }
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
-  print_table(result);
+  print_table(result, options.model);
   print_motion(outcomes, options.protocol);
   std::int64_t lost = 0;
   for (const auto& [topic, count] : result.lost_ticks) lost += count;

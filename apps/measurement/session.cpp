@@ -45,7 +45,7 @@ struct Stream {
 
 struct TrialStreams {
   Stream<7> sensed;
-  Stream<1> motor;
+  Stream<3> motor;  // force, w_0, w_1
   Stream<2> tracking;
 };
 
@@ -80,7 +80,7 @@ TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& cho
         if (view.channel.topic == topics::kMotorCommand.name) {
           stillhand_msgs::MotorCommand m;
           if (from_cdr(view.bytes, m) && m.rig() == rig && chosen.holds(m.tick())) {
-            streams.motor.take(m.tick(), {m.force_n()});
+            streams.motor.take(m.tick(), {m.force_n(), m.gain_weight(), m.phase_weight()});
           }
           return true;
         }
@@ -170,7 +170,12 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial)
   if (with_motor) ticks = in_both(ticks, streams.motor.ticks);
   if (with_tracking) ticks = in_both(ticks, streams.tracking.ticks);
   keep(streams.sensed, ticks);
-  if (with_motor) keep(streams.motor, ticks);
+  if (with_motor) {
+    keep(streams.motor, ticks);
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      out.weights.push_back({streams.motor.values[1][i], streams.motor.values[2][i]});
+    }
+  }
   if (with_tracking) keep(streams.tracking, ticks);
   out.rows = table_of(std::move(streams), with_motor, with_tracking);
   out.rows.source = path;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace stillhand::measurement {
 /// One trial of a session's recording as rows, and what to say about it.
 struct SessionRows {
   recording::Recording rows;
+  /// Gain and phase that the canceller followed, a row each; none without its topic.  Beside the
+  /// rows: it is no measurement.
+  std::vector<std::array<double, 2>> weights;
   std::vector<std::string> notes;
   std::string loss;  ///< one line on what the file has lost; empty: it is whole
 };

@@ -15,20 +15,6 @@ namespace {
 
 using diagnosis::Measurement;
 
-constexpr double kSameRate = 1e-3;
-
-// How many samples of the recording are one of the model's.
-std::size_t rate_factor(const diagnosis::Model& model, const Measurement& measurement) {
-  const double ratio = measurement.rate_hz / model.rate_hz;
-  const double whole = std::round(ratio);
-  if (whole < 1.0 || std::abs(ratio - whole) > kSameRate * whole) {
-    throw ConfigError(
-        measurement.source, "samples at " + std::to_string(measurement.rate_hz) + " Hz",
-        "the model's rate, " + std::to_string(model.rate_hz) + " Hz, or a whole multiple of it");
-  }
-  return static_cast<std::size_t>(whole);
-}
-
 // Cubic through the four nearest (Catmull and Rom); the ends are held.
 std::vector<double> spread_out(const std::vector<double>& x, const Measurement& from,
                                const Measurement& to, std::size_t factor) {
@@ -73,7 +59,7 @@ Prediction predict(const diagnosis::Model& model, const Measurement& measurement
     whole.channels.push_back(
         {model.output, model.output_unit, std::vector<double>(whole.size(), 0.0)});
   }
-  const std::size_t factor = rate_factor(model, whole);
+  const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
   const Measurement working = factor == 1 ? whole : diagnosis::decimated(whole, factor);
   const diagnosis::Signals signals(working, model.inputs, model.output);
   diagnosis::FreeRun run;

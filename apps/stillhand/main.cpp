@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "closed_loop/closed_loop_command.hpp"
+#include "closed_loop/control_model_command.hpp"
 #include "contract/config_error.hpp"
 #include "diagnose/diagnose_command.hpp"
 #include "experiment/conductor.hpp"
@@ -38,6 +39,7 @@ int run(int argc, char** argv) {
   stillhand::identify::add_identify_command(cli, status);
   stillhand::diagnose::add_diagnose_command(cli, status);
   stillhand::closed_loop::add_closed_loop_command(cli, status);
+  stillhand::closed_loop::add_control_model_command(cli, status);
   stillhand::predict::add_predict_command(cli, status);
   stillhand::recorder::add_file_commands(cli, status);
   stillhand::record::add_record_command(cli, status);

@@ -120,6 +120,8 @@ stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const Cancell
   message.acquired_ns(sensed.acquired_ns());
   message.force_n(output.force_n);
   message.predicted_force_n(output.predicted_force_n);
+  message.gain_weight(output.weights[0]);
+  message.phase_weight(output.weights[1]);
   message.model(model);
   message.enabled(input.enabled);
   message.permitted(input.permitted);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "settings/json_entry.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "contract/config_error.hpp"
@@ -12,6 +13,17 @@ JsonEntry JsonEntry::at(const std::string& key) const {
   const auto found = json_.find(key);
   if (found == json_.end()) throw ConfigError(path_ + "." + key, "no such entry", "one");
   return {*found, path_ + "." + key};
+}
+
+void JsonEntry::allow_only(std::initializer_list<std::string_view> keys) const {
+  if (!json_.is_object()) refuse("an object");
+  for (const auto& [key, value] : json_.items()) {
+    if (std::ranges::find(keys, std::string_view(key)) != keys.end()) continue;
+    std::string known;
+    for (const std::string_view each : keys)
+      known += (known.empty() ? "" : ", ") + std::string(each);
+    throw ConfigError(path_ + "." + key, "an entry that has no meaning here", "one of " + known);
+  }
 }
 
 double JsonEntry::number() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ class JsonEntry {
 
   /// All of these throw stillhand::ConfigError naming the path, what is there and what is wanted.
   [[nodiscard]] JsonEntry at(const std::string& key) const;
+  /// Refuses an object with any other key: what wouldn't be read isn't passed over in silence.
+  void allow_only(std::initializer_list<std::string_view> keys) const;
+  [[nodiscard]] bool is_null() const { return json_.is_null(); }
   [[nodiscard]] double number() const;  ///< finite
   [[nodiscard]] std::size_t count() const;
   [[nodiscard]] bool boolean() const;

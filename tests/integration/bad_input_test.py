@@ -169,7 +169,7 @@ class BadInputTest(LabTestCase):
         self.assert_refused([str(ride)], "--motion", "ride", "--ride", ride, out=out)  # no recording
         ride.unlink()
         (out / "screen.avi").write_text("\n".join(["t [s],a_y [m/s^2]", *RIDE_ROWS]))
-        self.assert_refused(["--out", str(out), "screen.avi is the ride"], "--trial-seconds", 5, "--motion", "ride",
+        self.assert_refused(["--out", str(out), "screen.avi is read by this session"], "--trial-seconds", 5, "--motion", "ride",
                             "--ride", out / "screen.avi", out=out)
         self.assertTrue((out / "screen.avi").exists())
 

@@ -59,7 +59,7 @@ class CloseTheLoopTest(unittest.TestCase):
         self.assertEqual(json.loads((self.out / "verdict.json").read_text()), summary["verdict"])
         report = (self.out / "report.html").read_text()
         self.assertIn("coupled_input", report)
-        self.assertEqual(report.count("<svg"), 3)
+        self.assertEqual(report.count("<svg"), 4)
 
     def test_over_dds_it_is_the_same_loop_and_the_recording_is_kept(self):
         ran = close_the_loop("--live", "--domain", 71, "--undeclared-effect", 9, "--seed", 3, "--trial-seconds", 15,
@@ -85,6 +85,45 @@ class CloseTheLoopTest(unittest.TestCase):
         with open(rows / "stillhand_motor_command.csv", encoding="utf-8", newline="") as table:
             models = {row["model [-]"] for row in csv.DictReader(table)}
         self.assertTrue(models >= {"0", "1000"}, models)
+        self.assertEqual(len(summary["rounds"][0]["weights"]), 2)
+
+        # The model that it ends with is a file that the next session's canceller takes.
+        again = self.out.parent / "again"
+        ran = subprocess.run([STILLHAND, "lab", "--model", self.out / "control_model.json", "--conditions", "C", "--seed", "4",
+                              "--trial-seconds", "10", "--identify-seconds", "30", "--headless", "--domain", "71", "--out",
+                              again], capture_output=True, text=True, timeout=240)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("control_model.json", ran.stdout)
+        condition = json.loads((again / "summary.json").read_text())["conditions"]["C"]
+        self.assertGreater(condition["sensor_to_command_us"]["p50"], 0.0)
+        subprocess.run([STILLHAND, "export", again / "session.mcap", "--csv", rows, "--topics", "stillhand/motor_command"],
+                       check=True, stdout=subprocess.DEVNULL)
+        with open(rows / "stillhand_motor_command.csv", encoding="utf-8", newline="") as table:
+            ran_with = {row["model [-]"] for row in csv.DictReader(table) if row["enabled [-]"] in ("1", "true")}
+        self.assertEqual(ran_with, {"1000"})
+
+    def test_a_diagnosed_model_reaches_the_canceller_as_a_file(self):
+        self.summary("--undeclared-effect", 9)
+        good = self.out / "control_model.json"
+        text = good.read_text()
+        edited = json.loads(text)
+        edited["denominator"][1:3] = [-2.2, 1.3]
+        for name, content, word in (("unstable", json.dumps(edited), "unit circle"),
+                                    ("rig", text.replace('"rig": 1', '"rig": 2'), "rig"),
+                                    ("newer", text.replace('"version": 1', '"version": 9'), "version"),
+                                    ("forged", text.replace('"rig": 1', '"max_force_n": 90, "rig": 1'), "max_force_n"),
+                                    ("cut", text[:200], "JSON"),
+                                    ("diagnosed", (self.out / "model.json").read_text(), "control-model")):
+            file = self.out.parent / f"{name}.json"
+            file.write_text(content)
+            lab = self.out.parent / "lab"
+            ran = subprocess.run([STILLHAND, "lab", "--model", file, "--conditions", "C", "--headless", "--out", lab],
+                                 capture_output=True, text=True, timeout=60)
+            self.assertEqual(ran.returncode, 2, name)
+            self.assertEqual(ran.stderr.count("\n"), 1, ran.stderr)
+            self.assertIn(str(file), ran.stderr)
+            self.assertIn(word, ran.stderr)
+            self.assertFalse(lab.exists())
 
     def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
         summary = self.summary()

@@ -252,7 +252,8 @@ TEST(CancellationCodecTest, AnAugmentedModelComesBackAsItWasSent) {
 TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
   const auto command = [](bool enabled, bool permitted) {
     const auto input = cancellation::from_idl(sensed_message(), enabled, permitted);
-    return fields_of(cancellation::to_idl({3.5, 4.5, 10}, input, sensed_message(), 11));
+    return fields_of(
+        cancellation::to_idl({3.5, 4.5, 10, {0.75, 0.125}}, input, sensed_message(), 11));
   };
   EXPECT_EQ(command(true, false), (Fields{{"rig", "0"},
                                           {"tick", "7"},
@@ -260,12 +261,14 @@ TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
                                           {"acquired_ns", "8"},
                                           {"force_n", "3.5"},
                                           {"predicted_force_n", "4.5"},
+                                          {"gain_weight", "0.75"},
+                                          {"phase_weight", "0.125"},
                                           {"model", "11"},
                                           {"enabled", "true"},
                                           {"permitted", "false"},
                                           {"flags", "10"}}));
-  EXPECT_EQ(command(false, true).at(7).second, "false");
-  EXPECT_EQ(command(false, true).at(8).second, "true");
+  EXPECT_EQ(command(false, true).at(9).second, "false");
+  EXPECT_EQ(command(false, true).at(10).second, "true");
 }
 
 TEST(DisplayCodecTest, TickAndAngleReachTheCore) {

@@ -17,8 +17,7 @@ const Config& checked(const Config& config) {
 Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {}
 
 Refusal Canceller::load_model(const AugmentedModel& model) noexcept {
-  const ModelCheck check =
-      check_model(model, {config_.max_model_gain_n_s2_m, config_.max_path_force_n});
+  const ModelCheck check = check_model(model, bounds(config_));
   if (check.refusal != Refusal::kNone) return check.refusal;
   const Law law{ModelFilter(model, check.settle_ticks),
                 model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()};
@@ -158,7 +157,7 @@ CancellerOutput Canceller::step(const CancellerInput& input) noexcept {
                     : std::max<std::int64_t>(engaged_ - fall, 0);
   const double share = static_cast<double>(engaged_) / static_cast<double>(config_.fade_ticks);
   const auto limited = envelope_.step(-config_.gain * share * predicted.against_n, acting);
-  return {limited.force_n, predicted.force_n, flags | limited.flags};
+  return {limited.force_n, predicted.force_n, flags | limited.flags, weights()};
 }
 
 }  // namespace stillhand::cancellation

@@ -24,6 +24,7 @@ struct CancellerOutput {
   double force_n;            ///< [N] motor force wanted at the hand, + right, after limits
   double predicted_force_n;  ///< [N] f_hat, + right
   Flags flags;
+  AdaptiveGain::Pair weights;  ///< w_0, w_1 [-], Eq. CC-10
 };
 
 struct Config {
@@ -51,6 +52,11 @@ struct Config {
           "[ticks] longest run of missing samples bridged by holding the last; then start anew");
   }
 };
+
+/// What these settings let a model ask for.
+inline ModelBounds bounds(const Config& config) noexcept {
+  return {config.max_model_gain_n_s2_m, config.max_path_force_n};
+}
 
 /// Cancels biodynamic feedthrough, README Eq. CC-1 (paper III: the motor acts against f_hat):
 ///

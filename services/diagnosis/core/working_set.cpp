@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "contract/config_error.hpp"
 #include "signal/butterworth.hpp"
 #include "signal/spectrum.hpp"
 
@@ -133,6 +134,17 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
   result.notes.push_back("the inputs end far below " + figure(measurement.rate_hz / 2.0) +
                          " Hz: worked at " + figure(result.rate_hz) + " Hz");
   return result;
+}
+
+std::size_t rate_factor(const Measurement& measurement, double rate_hz) {
+  constexpr double kSame = 1e-3;
+  const double ratio = measurement.rate_hz / rate_hz;
+  const double whole = std::round(ratio);
+  if (whole < 1.0 || std::abs(ratio - whole) > kSame * whole) {
+    throw ConfigError(measurement.source, "samples at " + figure(measurement.rate_hz) + " Hz",
+                      "the model's rate, " + figure(rate_hz) + " Hz, or a whole multiple of it");
+  }
+  return static_cast<std::size_t>(whole);
 }
 
 Measurement working_set(const Measurement& measurement, const std::vector<std::string>& inputs) {

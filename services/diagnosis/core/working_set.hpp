@@ -20,6 +20,10 @@ inline constexpr std::size_t kMostSamples = 80'000;
 /// @param inputs  names of the channels whose band counts; those that aren't there are passed over
 Measurement working_set(const Measurement& measurement, const std::vector<std::string>& inputs);
 
+/// How many of its samples are one at `rate_hz`.
+/// @throws stillhand::ConfigError when that is no whole number.
+std::size_t rate_factor(const Measurement& measurement, double rate_hz);
+
 /// Every stretch at a whole fraction of the rate, as above.  @param factor  2 or more
 Measurement decimated(const Measurement& measurement, std::size_t factor);
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "signal/reference.hpp"
 
@@ -45,6 +46,29 @@ Session run_session(std::uint64_t seed) {
     session.signals[planned.label] = std::move(signals);
   }
   return session;
+}
+
+TEST(CounterforceDelayTest, IsThatOfTheMotorsForceBehindTheOneItOpposes) {
+  constexpr double kRate_hz = 1000.0;
+  std::vector<double> feedthrough(60'000);
+  for (const double f : {0.7, 1.3, 2.1, 3.2}) {
+    for (std::size_t n = 0; n < feedthrough.size(); ++n) {
+      feedthrough[n] +=
+          std::sin(2.0 * std::numbers::pi * f * static_cast<double>(n) / kRate_hz + 3.0 * f);
+    }
+  }
+  // Opposed in full 12 ms late, and by less 12 ms ahead: the size has no say.
+  const std::vector<double> all(feedthrough.begin() + 100, feedthrough.end() - 100);
+  std::vector<double> late;
+  std::vector<double> ahead;
+  for (std::size_t n = 100; n + 100 < feedthrough.size(); ++n) {
+    late.push_back(-feedthrough[n - 12]);
+    ahead.push_back(-0.4 * feedthrough[n + 12]);
+  }
+  EXPECT_NEAR(counterforce_delay_s(all, late, kRate_hz), 0.012, 1e-4);
+  EXPECT_NEAR(counterforce_delay_s(all, ahead, kRate_hz), -0.012, 1e-4);
+  EXPECT_TRUE(
+      std::isnan(counterforce_delay_s(all, std::vector<double>(all.size(), 0.0), kRate_hz)));
 }
 
 class InProcessLoopTest : public testing::TestWithParam<std::uint64_t> {};

@@ -43,7 +43,7 @@ class OutputFolderTest : public testing::Test {
   }
   [[nodiscard]] std::string refusal(const Path& ride = {}) const {
     try {
-      const OutputFolder sut(folder, ride);
+      const OutputFolder sut(folder, {ride});
     } catch (const ConfigError& error) {
       return error.what();
     }
@@ -77,10 +77,10 @@ TEST_F(OutputFolderTest, AnEarlierSessionsResultsAreTakenAwayAndNothingElse) {
 TEST_F(OutputFolderTest, TheRideOfThisSessionIsNotReplaced) {
   write("session.mcap");
   EXPECT_THAT(refusal(folder / "session.mcap"),
-              AllOf(StartsWith("--out: got "), HasSubstr("session.mcap is the ride")));
+              AllOf(StartsWith("--out: got "), HasSubstr("session.mcap is read by this session")));
   // By another name too.
   std::filesystem::create_symlink(folder / "session.mcap", folder / "ride.mcap");
-  EXPECT_THAT(refusal(folder / "ride.mcap"), HasSubstr("session.mcap is the ride"));
+  EXPECT_THAT(refusal(folder / "ride.mcap"), HasSubstr("session.mcap is read by this session"));
   EXPECT_THAT(content(), ElementsAre("ride.mcap", "session.mcap"));
 }
 

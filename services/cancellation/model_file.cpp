@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cancellation/model_file.hpp"
+
+#include <algorithm>
+
+#include "cancellation/core/model_filter.hpp"
+#include "cancellation/core/value_table.hpp"
+#include "contract/config_error.hpp"
+#include "settings/json_entry.hpp"
+
+namespace stillhand::cancellation {
+namespace {
+
+using Json = settings::JsonEntry::Json;
+using Entry = settings::JsonEntry;
+
+constexpr const char* kFormat = "stillhand control model";
+constexpr std::size_t kMostNumbers = ModelFilter::kMaxOrder + 1;
+// More than the filter has room for is check_model()'s to refuse; this keeps a file's size bounded.
+constexpr std::size_t kMostParts = 64;
+
+std::string_view name_of(Channel channel) {
+  return kChannelFacts[static_cast<std::size_t>(channel)].name;
+}
+
+Json json_of(const ValueMap& map) {
+  if (map.values.empty()) return nullptr;
+  return {{"low", map.low}, {"high", map.high}, {"values", map.values}};
+}
+
+ValueMap map_of(const Entry& entry) {
+  if (entry.is_null()) return {};
+  entry.allow_only({"low", "high", "values"});
+  return {entry.at("low").number(), entry.at("high").number(),
+          entry.at("values").numbers(2, ValueTable::kMostValues)};
+}
+
+Channel channel_of(const Entry& entry) {
+  const std::string name = entry.text();
+  const auto* const fact = std::ranges::find(kChannelFacts, name, &ChannelFacts::name);
+  if (fact == kChannelFacts.end()) entry.refuse("a_x, a_y, a_z, roll, theta or omega");
+  return static_cast<Channel>(fact - kChannelFacts.begin());
+}
+
+Json json_of(const std::optional<LoopPath>& loop) {
+  if (!loop) return nullptr;
+  return {{"e", loop->e}, {"n", loop->n}, {"m", loop->m}, {"phi", json_of(loop->phi)}};
+}
+
+LoopPath loop_of(const Entry& entry) {
+  entry.allow_only({"e", "n", "m", "phi"});
+  return {entry.at("e").numbers(1, kMostNumbers), entry.at("n").numbers(0, kMostNumbers),
+          entry.at("m").numbers(0, kMostNumbers), map_of(entry.at("phi"))};
+}
+
+Json json_of(const std::optional<HandCompliance>& hand) {
+  if (!hand) return nullptr;
+  return {{"mass_kg", hand->mass_kg},
+          {"damping_n_s_m", hand->damping_n_s_m},
+          {"stiffness_n_m", hand->stiffness_n_m},
+          {"lever_m", hand->lever_m}};
+}
+
+HandCompliance hand_of(const Entry& entry) {
+  entry.allow_only({"mass_kg", "damping_n_s_m", "stiffness_n_m", "lever_m"});
+  return {entry.at("mass_kg").number(), entry.at("damping_n_s_m").number(),
+          entry.at("stiffness_n_m").number(), entry.at("lever_m").number()};
+}
+
+}  // namespace
+
+std::string control_model_json(const AugmentedModel& model, std::uint32_t rig) {
+  Json inputs = Json::array();
+  for (const InputPath& input : model.inputs) {
+    inputs.push_back({{"channel", name_of(input.channel)},
+                      {"map", json_of(input.map)},
+                      {"numerator", input.numerator}});
+  }
+  Json paths = Json::array();
+  for (const DirectPath& path : model.paths) {
+    paths.push_back({{"channel", name_of(path.channel)},
+                     {"lag_s", path.lag_s},
+                     {"map", json_of(path.map)},
+                     {"gain", path.gain}});
+  }
+  Json waves = Json::array();
+  for (const Wave& wave : model.waves) {
+    waves.push_back({{"channel", wave.channel ? Json(name_of(*wave.channel)) : Json(nullptr)},
+                     {"frequency", wave.frequency},
+                     {"sine_n", wave.sine_n},
+                     {"cosine_n", wave.cosine_n}});
+  }
+  const Json json{{"format", kFormat},
+                  {"version", kModelFormatVersion},
+                  {"rig", rig},
+                  {"rate_hz", model.rate_hz},
+                  {"denominator", model.denominator},
+                  {"inputs", inputs},
+                  {"loop", json_of(model.loop)},
+                  {"output", json_of(model.output)},
+                  {"paths", paths},
+                  {"waves", waves},
+                  {"adapts", json_of(model.adapts)}};
+  std::string text = json.dump(2) + "\n";
+  // A number that isn't finite would be written as null: what can't be read isn't written.
+  static_cast<void>(parse_control_model(text, "model", rig));
+  return text;
+}
+
+AugmentedModel parse_control_model(std::string_view json, const std::string& origin,
+                                   std::uint32_t rig) {
+  const Json whole = settings::parsed_json(json, origin, "JSON of a stillhand control model");
+  const Entry top(whole, origin);
+  if (top.at("format").text() != kFormat) {
+    top.at("format").refuse(
+        "\"stillhand control model\", as `stillhand control-model` and `stillhand close-the-loop` "
+        "write");
+  }
+  if (top.at("version").count() != kModelFormatVersion) {
+    top.at("version").refuse("1: a newer stillhand wrote this file");
+  }
+  // Whoever adds a limit to the file shall not believe that it counts.
+  top.allow_only({"format", "version", "rig", "rate_hz", "denominator", "inputs", "loop", "output",
+                  "paths", "waves", "adapts"});
+  if (top.at("rig").count() != rig) {
+    top.at("rig").refuse("rig " + std::to_string(rig) + ", which the model is wanted for");
+  }
+  AugmentedModel model;
+  model.rate_hz = top.at("rate_hz").number();
+  model.denominator = top.at("denominator").numbers(1, kMostNumbers);
+  for (const Entry& input : top.at("inputs").entries(1, kMostParts)) {
+    input.allow_only({"channel", "map", "numerator"});
+    model.inputs.push_back({channel_of(input.at("channel")), map_of(input.at("map")),
+                            input.at("numerator").numbers(1, kMostNumbers)});
+  }
+  if (const Entry loop = top.at("loop"); !loop.is_null()) model.loop = loop_of(loop);
+  model.output = map_of(top.at("output"));
+  for (const Entry& path : top.at("paths").entries(0, kMostParts)) {
+    path.allow_only({"channel", "lag_s", "map", "gain"});
+    model.paths.push_back({channel_of(path.at("channel")), path.at("lag_s").number(),
+                           map_of(path.at("map")), path.at("gain").number()});
+  }
+  for (const Entry& wave : top.at("waves").entries(0, kMostParts)) {
+    wave.allow_only({"channel", "frequency", "sine_n", "cosine_n"});
+    Wave& to = model.waves.emplace_back();
+    if (const Entry channel = wave.at("channel"); !channel.is_null()) {
+      to.channel = channel_of(channel);
+    }
+    to.frequency = wave.at("frequency").number();
+    to.sine_n = wave.at("sine_n").number();
+    to.cosine_n = wave.at("cosine_n").number();
+  }
+  if (const Entry hand = top.at("adapts"); !hand.is_null()) model.adapts = hand_of(hand);
+  return model;
+}
+
+void require_sound(const AugmentedModel& model, const Config& settings, const std::string& origin) {
+  const Refusal refusal = check_model(model, bounds(settings)).refusal;
+  if (refusal == Refusal::kNone) return;
+  throw ConfigError(origin, std::string(describe(refusal)), "a model that the canceller takes");
+}
+
+}  // namespace stillhand::cancellation

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// A control model as a file: what was written is read back bit for bit, and what was tampered with
+// is refused by name.
+#include "cancellation/model_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::cancellation {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+// Something in every part.
+AugmentedModel full_model() {
+  AugmentedModel model;
+  model.rate_hz = 1000.0;
+  model.denominator = {1.0, -1.99, 0.9902};
+  const ValueMap map{-2.0, 2.0, {-1.0 / 3.0, 0.0, 0.1}};
+  model.inputs = {{Channel::kAccelY, map, {0.0, 2e-4, 1e-5}},
+                  {Channel::kRoll, {}, {1e-4, 0.0, 0.0}}};
+  model.loop = LoopPath{{0.1, 0.2, 0.3}, {0.0, 1e-4, 0.0}, {0.0, 1e-5, 0.0}, map};
+  model.output = map;
+  model.paths = {{Channel::kOmega, 0.05, map, -0.8}};
+  model.waves = {{Channel::kTheta, 12.0, 0.1, 0.2}, {std::nullopt, 9.3, 0.3, 0.4}};
+  model.adapts = HandCompliance{1.4, 30.0, 900.0, 0.09};
+  return model;
+}
+
+std::string refusal(const std::string& text, std::uint32_t rig = 1) {
+  try {
+    parse_control_model(text, "m.json", rig);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+std::string changed(const std::function<void(Json&)>& change) {
+  Json json = Json::parse(control_model_json(full_model(), 1));
+  change(json);
+  return json.dump();
+}
+
+TEST(ControlModelFileTest, EveryNumberIsReadBackAsItWasWritten) {
+  const std::string text = control_model_json(full_model(), 7);
+  const AugmentedModel back = parse_control_model(text, "m.json", 7);
+  EXPECT_EQ(control_model_json(back, 7), text);
+  EXPECT_EQ(back.inputs[0].map.values, full_model().inputs[0].map.values);
+  EXPECT_EQ(back.loop->e, full_model().loop->e);
+  EXPECT_EQ(back.paths[0].channel, Channel::kOmega);
+  EXPECT_EQ(back.waves[0].channel, Channel::kTheta);
+  EXPECT_FALSE(back.waves[1].channel);
+  EXPECT_EQ(back.adapts->lever_m, 0.09);
+}
+
+TEST(ControlModelFileTest, ThePapersModelNeedsNoneOfTheParts) {
+  AugmentedModel model;
+  model.rate_hz = 1000.0;
+  model.denominator = {1.0};
+  model.inputs = {{Channel::kAccelY, {}, {3.2}}};
+  const AugmentedModel back = parse_control_model(control_model_json(model, 1), "m.json", 1);
+  EXPECT_FALSE(back.loop);
+  EXPECT_FALSE(back.adapts);
+  EXPECT_TRUE(back.output.values.empty());
+}
+
+TEST(ControlModelFileTest, AnotherRigANewerVersionAndAForgedLimitAreRefusedByName) {
+  const std::string text = control_model_json(full_model(), 1);
+  EXPECT_THAT(refusal(text, 2), AllOf(HasSubstr("m.json.rig"), HasSubstr("rig 2")));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["version"] = 2; })),
+              AllOf(HasSubstr("m.json.version"), HasSubstr("newer")));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["max_force_n"] = 60.0; })),
+              HasSubstr("m.json.max_force_n"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["adapts"]["max_gain"] = 9.0; })),
+              HasSubstr("m.json.adapts.max_gain"));
+}
+
+TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
+  EXPECT_THAT(refusal("{"), HasSubstr("line 1"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("m.json"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["format"] = "stillhand model"; })),
+              HasSubstr("m.json.format"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["inputs"][0]["channel"] = "a_q"; })),
+              AllOf(HasSubstr("m.json.inputs[0].channel"), HasSubstr("a_q")));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["inputs"][1].erase("numerator"); })),
+              HasSubstr("m.json.inputs[1].numerator"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["waves"][1]["sine_n"] = nullptr; })),
+              HasSubstr("m.json.waves[1].sine_n"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["denominator"] = Json::array(); })),
+              HasSubstr("m.json.denominator"));
+  EXPECT_THAT(refusal(changed([](Json& json) {
+                json["output"]["values"] = std::vector<double>(100'000, 0.0);
+              })),
+              HasSubstr("m.json.output.values"));
+}
+
+TEST(ControlModelFileTest, WhatTheCancellerWouldRefuseIsSaid) {
+  const Config settings;
+  const auto why = [&](const AugmentedModel& model) {
+    try {
+      require_sound(model, settings, "m.json");
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("sound");
+  };
+  AugmentedModel model;
+  model.rate_hz = 1000.0;
+  model.denominator = {1.0, -1.99, 0.9902};
+  model.inputs = {{Channel::kAccelY, {}, {0.0, 2e-4, 0.0}}};
+  EXPECT_EQ(why(model), "sound");
+  AugmentedModel unstable = model;
+  unstable.denominator = {1.0, -2.02, 1.03};
+  EXPECT_THAT(why(unstable), AllOf(HasSubstr("m.json"), HasSubstr("unit circle")));
+  AugmentedModel strong = model;
+  strong.inputs[0].numerator[1] = 1.0;
+  EXPECT_THAT(why(strong), HasSubstr("gain"));
+}
+
+}  // namespace
+}  // namespace stillhand::cancellation
