@@ -142,6 +142,27 @@ TEST(ControlModelTest, EffectsBesideTheBodyGiveTheSameForce) {
   EXPECT_TRUE(control.treatments[0].cancelled);
 }
 
+TEST(ControlModelTest, AGainIsThatOfTheBodyAtTheRecordsEndAndNotOfTheModesBesideIt) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.effects.push_back(
+      {"time_varying_gain", "linear", {}, {{"change", "-", -0.5, -3.0, 3.0}}, {}});
+  model.effects.push_back(
+      {"resonance",
+       "beside the body",
+       {"a_y"},
+       {{"frequency", "Hz", 3.2, 0.5, 45.0}, {"damping_ratio", "-", 0.3, 0.0, 1.0}},
+       {-0.06, 0.05}});
+  const ControlModel control = to_control_model(model, motion.signals());
+  // What the gain is on average over the last tenth of the record.
+  diagnosis::Model at_the_end = model;
+  at_the_end.effects.erase(at_the_end.effects.begin());
+  for (double& b : at_the_end.body.numerators.front()) b *= 1.0 - 0.5 * 0.9;
+  EXPECT_LT(difference(at_the_end, control.model, motion), 0.01);
+  for (double& c : at_the_end.effects.front().coefficients) c *= 1.0 - 0.5 * 0.9;
+  EXPECT_GT(difference(at_the_end, control.model, motion), 0.05);
+}
+
 TEST(ControlModelTest, WhatCantBeCancelledIsSaid) {
   const Motion motion;
   diagnosis::Model model = two_modes();
