@@ -171,6 +171,7 @@ report::Figure motion_figure(const LoopResult& result) {
   figure.columns = 1;
   const auto conditions = shown(result);
   figure.height_px = 200 * static_cast<int>(conditions.size());
+  double largest = 0.0;  // one scale for all: they are to be compared
   for (const Shown& each : conditions) {
     const recording::Recording& rows = each.trial->measured;
     const auto count = static_cast<std::size_t>(kExcerpt_s * rows.rate_hz);
@@ -185,7 +186,14 @@ report::Figure motion_figure(const LoopResult& result) {
     panel.series = {
         line("target", Colour::kTarget, time, part(rows.find("x_r")->values, from, count, 20, 1e3)),
         line("cursor", each.colour, time, part(rows.find("x_p")->values, from, count, 20, 1e3))};
+    for (const report::Series& series : panel.series) {
+      for (const double y : series.y) largest = std::max(largest, std::abs(y));
+    }
     figure.panels.push_back(std::move(panel));
+  }
+  for (report::Panel& panel : figure.panels) {
+    panel.y.low = -1.05 * largest;
+    panel.y.high = 1.05 * largest;
   }
   return figure;
 }

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Another host's clock from two-way exchanges, Eq. CK-1 to CK-5: against clocks that are known.
+#include "clock/core/clock_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "signal/random.hpp"
+
+namespace stillhand::clock {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kEvery_ns = kSecond_ns / 4;
+
+// Two hosts and the network between them; the other's clock is days ahead, as boots are.
+struct Network {
+  double drift = 0.0;  ///< [s/s]
+  std::int64_t offset_ns = 300'000 * kSecond_ns;
+  double way_us = 80.0;
+  double jitter_us = 30.0;  ///< exponential, each way
+  double held_up = 0.0;     ///< share of messages that wait up to 20 ms more
+  std::int64_t now_ns = 7'000 * kSecond_ns;
+  signal::Gaussian draw{1, 1};
+
+  std::int64_t other(std::int64_t own_ns) const {
+    return own_ns + offset_ns +
+           std::llround(drift * static_cast<double>(own_ns - 7'000 * kSecond_ns));
+  }
+  double uniform() { return 0.5 * std::erfc(draw() / std::sqrt(2.0)); }
+  std::int64_t way_ns() {
+    double us = way_us - jitter_us * std::log(uniform());
+    if (uniform() < held_up) us += 20'000.0 * uniform();
+    return std::llround(1e3 * us);
+  }
+  Exchange exchange() {
+    now_ns += kEvery_ns;
+    const std::int64_t there_ns = now_ns + way_ns();
+    const std::int64_t answered_ns = there_ns + 20'000;
+    const std::int64_t back_ns = answered_ns + way_ns();
+    return {now_ns, other(there_ns), other(answered_ns), back_ns};
+  }
+};
+
+void run(ClockComparison& sut, Network& network, int exchanges) {
+  for (int i = 0; i < exchanges; ++i) sut.take(network.exchange());
+}
+
+double error_ns(const ClockComparison& sut, const Network& network) {
+  return static_cast<double>(sut.offset(network.now_ns)->offset_ns -
+                             (network.other(network.now_ns) - network.now_ns));
+}
+
+TEST(ClockComparisonTest, SaysNothingBeforeEightExchanges) {
+  ClockComparison sut;
+  Network network;
+  run(sut, network, 7);
+  EXPECT_FALSE(sut.offset(network.now_ns));
+  run(sut, network, 1);
+  EXPECT_TRUE(sut.offset(network.now_ns));
+}
+
+TEST(ClockComparisonTest, TheOffsetLiesWithinItsUncertaintyThoughOneExchangeInFiveIsHeldUp) {
+  int within = 0;
+  constexpr int kRuns = 200;
+  for (int i = 0; i < kRuns; ++i) {
+    ClockComparison sut;
+    Network network;
+    network.held_up = 0.1;
+    network.draw = signal::Gaussian(static_cast<std::uint64_t>(i) + 1, 1);
+    run(sut, network, 64);
+    const ClockOffset offset = *sut.offset(network.now_ns);
+    within += std::abs(error_ns(sut, network)) <= offset.uncertainty_ns ? 1 : 0;
+    EXPECT_LT(offset.uncertainty_ns, 200e3);
+    EXPECT_EQ(offset.steps, 0);
+  }
+  EXPECT_EQ(within, kRuns);
+}
+
+TEST(ClockComparisonTest, AWayThatIsAlwaysLongerThanTheWayBackStaysWithinTheUncertainty) {
+  ClockComparison sut;
+  Network network;
+  for (int i = 0; i < 64; ++i) {
+    Exchange exchange = network.exchange();
+    exchange.received_ns += 300'000;  // the way there takes 0.3 ms more
+    exchange.answered_ns += 300'000;
+    exchange.back_ns += 300'000;
+    sut.take(exchange);
+  }
+  const double error = error_ns(sut, network);
+  EXPECT_NEAR(error, 150e3, 40e3);
+  EXPECT_LE(std::abs(error), sut.offset(network.now_ns)->uncertainty_ns);
+}
+
+TEST(ClockComparisonTest, ADriftOf50PpmIsNoticedAndMeasured) {
+  ClockComparison sut;
+  Network network;
+  network.drift = 50e-6;
+  network.held_up = 0.1;
+  run(sut, network, 64);
+  const ClockOffset offset = *sut.offset(network.now_ns);
+  EXPECT_NEAR(offset.drift_ppm, 50.0, 3.0 * offset.drift_sigma_ppm);
+  EXPECT_LT(offset.drift_sigma_ppm, 8.0);
+  EXPECT_TRUE(offset.drifts());
+  EXPECT_LE(std::abs(error_ns(sut, network)), offset.uncertainty_ns);
+  EXPECT_EQ(offset.steps, 0);
+}
+
+TEST(ClockComparisonTest, AClockThatKeepsTimeIsNeverSaidToDriftOrJump) {
+  ClockComparison sut;
+  Network network;
+  network.drift = 5e-6;
+  network.held_up = 0.3;
+  for (int i = 0; i < 4 * 3600; ++i) {
+    EXPECT_FALSE(sut.take(network.exchange())) << i;
+    if (const auto offset = sut.offset(network.now_ns)) {
+      EXPECT_FALSE(offset->drifts()) << i;
+    }
+  }
+}
+
+class ClockStepTest : public testing::TestWithParam<std::int64_t> {};
+
+TEST_P(ClockStepTest, IsNoticedWithinThreeExchangesAndTheNewOffsetIsRight) {
+  ClockComparison sut;
+  Network network;
+  network.held_up = 0.1;
+  run(sut, network, 100);
+  network.offset_ns += GetParam();
+  int needed = 0;
+  while (needed < 20 && !sut.take(network.exchange())) ++needed;
+  EXPECT_LE(needed, 6);  // one or two of them may have been held up
+  run(sut, network, 16);
+  const ClockOffset offset = *sut.offset(network.now_ns);
+  EXPECT_EQ(offset.steps, 1);
+  EXPECT_NEAR(static_cast<double>(offset.last_step_ns), static_cast<double>(GetParam()), 10.5e6);
+  EXPECT_LE(std::abs(error_ns(sut, network)), offset.uncertainty_ns);
+}
+INSTANTIATE_TEST_SUITE_P(ForthAndBack, ClockStepTest,
+                         testing::Values(20'000'000, -20'000'000, 3600 * kSecond_ns));
+
+TEST(ClockComparisonTest, WhatIsNoExchangeIsPassedOver) {
+  ClockComparison sut;
+  Network network;
+  run(sut, network, 20);
+  const ClockOffset before = *sut.offset(network.now_ns);
+  const Exchange good = network.exchange();
+  sut.take({good.back_ns, good.received_ns, good.answered_ns, good.asked_ns});
+  sut.take({good.asked_ns, good.answered_ns, good.received_ns, good.back_ns});
+  sut.take({good.asked_ns - 5 * kSecond_ns, good.received_ns, good.answered_ns, good.back_ns});
+  sut.take({0, 0, 0, 0});
+  const ClockOffset after = *sut.offset(network.now_ns - kEvery_ns);
+  EXPECT_EQ(before.offset_ns, after.offset_ns);
+  EXPECT_EQ(before.steps, after.steps);
+}
+
+}  // namespace
+}  // namespace stillhand::clock
