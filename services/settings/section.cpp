@@ -8,13 +8,13 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numeric>
 #include <optional>
 #include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "contract/config_error.hpp"
+#include "settings/nearest.hpp"
 
 namespace stillhand::settings {
 namespace {
@@ -73,22 +73,6 @@ Entry converted(const YAML::Node& node, const std::string& source_name, int dept
   return entry;
 }
 
-// Edit distance of Levenshtein (1966): insertions, deletions, substitutions, each one.
-std::size_t edit_distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < to.size(); ++j) {
-      const std::size_t substituted = diagonal + (from[i] == to[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
 std::string shown(double value) {
   std::ostringstream text;
   text << value;
@@ -111,6 +95,8 @@ std::optional<Number> number_from(const Entry& entry) {
   return value;
 }
 
+}  // namespace
+
 std::string got_of(const Entry& entry) {
   switch (entry.kind) {
     case Entry::Kind::kNull:
@@ -124,8 +110,6 @@ std::string got_of(const Entry& entry) {
   }
   return entry.quoted ? "\"" + entry.text + "\"" : entry.text;
 }
-
-}  // namespace
 
 Entry parse_text(const std::string& yaml, const std::string& source_name) {
   YAML::Node root;
@@ -225,12 +209,10 @@ void SectionReader::operator()(std::string_view name, std::string& value, Range 
 void SectionReader::refuse_unknown() const {
   for (const Entry& child : section_.children) {
     if (std::find(names_.begin(), names_.end(), child.key) != names_.end()) continue;
-    const auto nearest =
-        std::min_element(names_.begin(), names_.end(), [&](const auto& a, const auto& b) {
-          return edit_distance(child.key, a) < edit_distance(child.key, b);
-        });
-    throw ConfigError(child.key_place + ": " + scope_ + "." + child.key, "an unknown key",
-                      nearest == names_.end() ? "no keys here" : "\"" + *nearest + "\" perhaps");
+    const std::vector<std::string_view> known(names_.begin(), names_.end());
+    throw ConfigError(
+        child.key_place + ": " + scope_ + "." + child.key, "an unknown key",
+        known.empty() ? "no keys here" : "\"" + nearest(child.key, known) + "\" perhaps");
   }
 }
 

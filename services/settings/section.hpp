@@ -31,6 +31,9 @@ Entry parse_text(const std::string& yaml, const std::string& source_name);
 /// @throws stillhand::ConfigError also when the file is missing or unreadable.
 Entry parse_file(const std::filesystem::path& file);
 
+/// What stands there, for messages: its text, "nothing", "a map" or "a list".
+std::string got_of(const Entry& entry);
+
 /// Visitor of a Config's `fields()` that overwrites the fields the section names.
 class SectionReader {
  public:
@@ -53,12 +56,14 @@ class SectionReader {
     }
   }
 
+  /// The entry of that name, which is known from now on, or nullptr: for what is no field, a list.
+  const Entry* find(std::string_view name);
+
   /// Call after the last field.  @throws stillhand::ConfigError naming the first key that no field
   /// has, and the nearest name that one has.
   void refuse_unknown() const;
 
  private:
-  const Entry* find(std::string_view name);
   [[noreturn]] void fail(const Entry& entry, const std::string& want) const;
 
   const Entry& section_;

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inventory's file: what each key may hold, and what must fit together.
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "contract/config_error.hpp"
+#include "deploy/inventory.hpp"
+#include "deploy/inventory_values.hpp"
+#include "idl/topics.hpp"
+#include "settings/nearest.hpp"
+#include "settings/section.hpp"
+
+namespace stillhand::deploy {
+namespace {
+
+using settings::Entry;
+using settings::SectionReader;
+
+constexpr double kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
+
+struct SeenHost {
+  std::string path;
+  const Entry& name;
+  const Entry& address;
+};
+
+/// Reads one file; each member reads one kind of entry.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : top_(settings::parse_file(file)) {
+    inventory_.file = file;
+  }
+
+  Inventory read() {
+    SectionReader reader(top_, "inventory");
+    inventory_.lab = name_in(required(reader, top_, "inventory", "lab", "lab: a name for the lab"),
+                             "inventory.lab");
+    std::int64_t domain = 0;
+    reader("domain", domain, Range{0, kMaxDomain}, "DDS domain");
+    inventory_.domain = static_cast<std::uint32_t>(domain);
+    read_discovery(reader);
+    read_security(reader);
+    if (const Entry* rigs = reader.find("rigs")) {
+      read_rigs(*rigs);
+    } else {
+      inventory_.rigs.push_back({"1", 1});
+    }
+    const Entry& hosts = required(reader, top_, "inventory", "hosts", "hosts: a list of machines");
+    reader.refuse_unknown();
+    read_hosts(hosts);
+    refuse_absent_services(hosts);
+    return std::move(inventory_);
+  }
+
+ private:
+  void read_discovery(SectionReader& reader) {
+    const Entry* entry = reader.find("discovery");
+    if (entry == nullptr) return;
+    for (const auto each : {Discovery::kPeers, Discovery::kServer, Discovery::kMulticast}) {
+      if (entry->text != name_of(each)) continue;
+      inventory_.discovery = each;
+      return;
+    }
+    refuse(*entry, "inventory.discovery", "peers, server or multicast");
+  }
+
+  void read_security(SectionReader& reader) {
+    const Entry* entry = reader.find("security");
+    if (entry == nullptr) return;
+    const std::string want = "a folder with the lab's keys, as seen from the inventory";
+    inventory_.security =
+        inventory_.file.parent_path() / text_of(*entry, "inventory.security", want);
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(inventory_.security, ignored)) {
+      throw ConfigError(entry->place + ": inventory.security",
+                        "no folder " + inventory_.security.string(), want);
+    }
+    // Measured: a stranger exchanged every sample with a secured service through a plain server.
+    if (inventory_.discovery == Discovery::kServer) {
+      throw ConfigError(entry->place + ": inventory.security",
+                        "keys together with a discovery server, through which strangers get in",
+                        "discovery: peers or multicast");
+    }
+  }
+
+  void read_rigs(const Entry& list) {
+    const std::string want = "a list of rigs, each {name: left, number: 1}";
+    const auto& items = items_of(list, "inventory.rigs", want);
+    if (items.empty()) refuse(list, "inventory.rigs", want);
+    std::vector<std::pair<const Entry*, const Entry*>> seen;  // name and number
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string path = item_path("rigs", i);
+      SectionReader reader(items[i], path);
+      const Entry& name = required(reader, items[i], path, "name", "name: what people call it");
+      const Entry& number =
+          required(reader, items[i], path, "number", "number: its key on the bus");
+      std::int64_t value = 0;
+      reader("number", value, Range{1, std::numeric_limits<std::uint32_t>::max()}, "key");
+      reader.refuse_unknown();
+      inventory_.rigs.push_back({name_in(name, path + ".name"), static_cast<std::uint32_t>(value)});
+      for (std::size_t k = 0; k < i; ++k) {
+        if (inventory_.rigs[k].name == inventory_.rigs[i].name) {
+          refuse_second(name, path + ".name", *seen[k].first, "each rig by a name of its own");
+        }
+        if (inventory_.rigs[k].number == inventory_.rigs[i].number) {
+          refuse_second(number, path + ".number", *seen[k].second,
+                        "each rig by a number of its own");
+        }
+      }
+      seen.emplace_back(&name, &number);
+    }
+  }
+
+  void read_hosts(const Entry& list) {
+    const std::string want = "a list of machines, each with name, address and services";
+    const auto& items = items_of(list, "inventory.hosts", want);
+    if (items.empty()) refuse(list, "inventory.hosts", want);
+    for (std::size_t i = 0; i < items.size(); ++i) read_host(items[i], item_path("hosts", i));
+  }
+
+  void read_host(const Entry& item, const std::string& path) {
+    SectionReader reader(item, path);
+    Host host;
+    const Entry& name = required(reader, item, path, "name", "name: what people call the machine");
+    const Entry& address = required(reader, item, path, "address", "address: its IPv4 address");
+    host.name = name_in(name, path + ".name");
+    host.address = address_in(address, path + ".address");
+    for (const SeenHost& seen : seen_) {
+      if (seen.name.text == host.name) {
+        refuse_second(name, path + ".name", seen.name, "each host by a name of its own");
+      }
+      if (seen.address.text == host.address) {
+        refuse_second(address, path + ".address", seen.address,
+                      "each host at an address of its own");
+      }
+    }
+    seen_.push_back({path, name, address});
+    refuse_loopback_beside_others();
+    read_start(reader, item, path, host);
+    read_prefix(reader, path, host);
+    const Entry* services = reader.find("services");
+    reader.refuse_unknown();
+    // A host without any only watches: its tools find the others, and they it.
+    if (services != nullptr) read_services(*services, path + ".services", host);
+    inventory_.hosts.push_back(std::move(host));
+  }
+
+  // Nobody else reaches it there.
+  void refuse_loopback_beside_others() const {
+    if (seen_.size() < 2) return;
+    for (const SeenHost& seen : seen_) {
+      if (seen.address.text.starts_with("127.")) {
+        refuse(seen.address, seen.path + ".address", "an address at which the others reach it");
+      }
+    }
+  }
+
+  void read_start(SectionReader& reader, const Entry& item, const std::string& path, Host& host) {
+    const Entry* start = reader.find("start");
+    if (start == nullptr) {
+      if (here_ != nullptr) {
+        throw ConfigError(item.place + ": " + path, "no \"start\", as the host at " + here_->place,
+                          "start: [ssh, NAME] for every host but this machine");
+      }
+      here_ = &item;
+      return;
+    }
+    const std::string want = "a list of words before a command, such as [ssh, rig-pc]";
+    const auto& words = items_of(*start, path + ".start", want);
+    if (words.empty()) refuse(*start, path + ".start", want);
+    for (const Entry& word : words) host.start.push_back(text_of(word, path + ".start", want));
+  }
+
+  static void read_prefix(SectionReader& reader, const std::string& path, Host& host) {
+    const Entry* prefix = reader.find("prefix");
+    if (prefix == nullptr) {
+      host.prefix = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+      return;
+    }
+    const std::string want = "an absolute path under which bin/stillhand is, such as /usr";
+    host.prefix = text_of(*prefix, path + ".prefix", want);
+    if (!host.prefix.is_absolute()) refuse(*prefix, path + ".prefix", want);
+  }
+
+  void read_services(const Entry& list, const std::string& path, Host& host) {
+    const auto& items = items_of(list, path, "a list of services, such as [rig, sensing]");
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string at = item_path(path, i);
+      Placement placement = read_placement(items[i], at);
+      const auto [place, fresh] =
+          placed_.try_emplace({placement.service, placement.rig}, &items[i]);
+      if (!fresh) {
+        throw ConfigError(
+            items[i].place + ": " + at,
+            "a second " + placement.service + " for rig " + inventory_.rig(placement.rig).name,
+            "each service once a rig; the first stands at " + place->second->place);
+      }
+      host.services.push_back(std::move(placement));
+    }
+  }
+
+  Placement read_placement(const Entry& item, const std::string& path) {
+    const std::string form = "{service: rig, rig: " + inventory_.rigs.front().name + "}";
+    if (item.kind != Entry::Kind::kMap) {
+      if (inventory_.rigs.size() > 1) refuse(item, path, form + ", as there are several rigs");
+      return {service_in(item, path), inventory_.rigs.front().number};
+    }
+    SectionReader reader(item, path);
+    const Entry& service = required(reader, item, path, "service", form);
+    const Entry& rig = required(reader, item, path, "rig", form);
+    reader.refuse_unknown();
+    return {service_in(service, path + ".service"), rig_in(rig, path + ".rig")};
+  }
+
+  static std::string service_in(const Entry& entry, const std::string& path) {
+    std::string service = text_of(entry, path, "the name of a service");
+    if (std::ranges::find(topics::kServices, service) == topics::kServices.end()) {
+      refuse(entry, path,
+             "a service: \"" + settings::nearest(service, topics::kServices) + "\" perhaps");
+    }
+    return service;
+  }
+
+  std::uint32_t rig_in(const Entry& entry, const std::string& path) const {
+    const std::string name = text_of(entry, path, "the name of a rig");
+    const auto found = std::ranges::find(inventory_.rigs, name, &Rig::name);
+    if (found != inventory_.rigs.end()) return found->number;
+    std::vector<std::string_view> names;
+    for (const Rig& rig : inventory_.rigs) names.push_back(rig.name);
+    refuse(entry, path, "one of the rigs: \"" + settings::nearest(name, names) + "\" perhaps");
+  }
+
+  void refuse_absent_services(const Entry& hosts) const {
+    for (const Rig& rig : inventory_.rigs) {
+      for (const std::string_view service : topics::kServices) {
+        if (placed_.contains({std::string(service), rig.number})) continue;
+        throw ConfigError(hosts.place + ": inventory.hosts",
+                          "no host that runs " + std::string(service) + " for rig " + rig.name,
+                          "each of the nine services on exactly one host for each rig");
+      }
+    }
+  }
+
+  Entry top_;
+  Inventory inventory_;
+  std::vector<SeenHost> seen_;
+  const Entry* here_ = nullptr;  ///< the host without words before a command
+  std::map<std::pair<std::string, std::uint32_t>, const Entry*> placed_;
+};
+
+}  // namespace
+
+Inventory read_inventory(const std::filesystem::path& file) { return Reader(file).read(); }
+
+}  // namespace stillhand::deploy
