@@ -38,6 +38,9 @@ inline constexpr std::array<std::string_view, 9> kServices{
 /// One row of the catalogue.
 struct Topic {
   std::string_view name;  ///< DDS topic name
+/// Identity of what listens to a secured bus from outside of a session (deploy/security).
+inline constexpr std::string_view kTap = "tap";
+
   std::string_view type;  ///< DDS type name
   Pattern pattern;
   double rate_hz;  ///< [Hz] nominal, 0 = when something happens

@@ -20,6 +20,7 @@
 #include "recording/session_texts.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/remote_control.hpp"
+#include "runtime/security.hpp"
 #include "runtime/tap.hpp"
 
 namespace stillhand::record {
@@ -177,6 +178,12 @@ bool tell_end(const recording::BusRecording& recorded, const runtime::Tap& tap,
          tap.unattributed() == 0 && totals.received > 0;
 }
 
+runtime::Bus::Options outsider(const std::string& verb, const RecordOptions& options) {
+  runtime::Bus::Options bus = runtime::outsider(verb, options.domain, options.profiles, false);
+  bus.security = options.security;
+  return bus;
+}
+
 }  // namespace
 
 int run_record(const RecordOptions& options, runtime::Stop& stop) {
@@ -201,9 +208,14 @@ int run_record(const RecordOptions& options, runtime::Stop& stop) {
       recorded->tape().trigger("a missed deadline");
     }
   };
+  tap_options.security = options.security;
   runtime::Tap tap(tap_options);
-  Remote remote(runtime::outsider("record", options.domain, options.profiles, false),
-                topics::kRecorderCommand, topics::kRecorderStatus);
+  if (!options.security.empty()) {
+    const std::string warning =
+        runtime::expiry_warning(runtime::Identity::of(options.security, "record"));
+    if (!warning.empty()) warn(warning);
+  }
+  Remote remote(outsider("record", options), topics::kRecorderCommand, topics::kRecorderStatus);
   recording::TapeOptions tape_options = options.tape;
   tape_options.session = recording::session_texts(options.domain, "stillhand record");
   recorded.emplace(std::move(tape_options));
@@ -256,8 +268,8 @@ int run_remote(const std::string& action, const RecordOptions& options, runtime:
   stillhand_msgs::RecorderCommand command;
   command.action(known->second);
   const auto status = runtime::ask<stillhand_msgs::RecorderCommand, stillhand_msgs::RecorderStatus>(
-      runtime::outsider("remote", options.domain, options.profiles, false),
-      topics::kRecorderCommand, topics::kRecorderStatus, command, kAnswer_ns, stop);
+      outsider("remote", options), topics::kRecorderCommand, topics::kRecorderStatus, command,
+      kAnswer_ns, stop);
   if (!status) {
     warn("no recorder answers on domain " + std::to_string(options.domain));
     return 1;

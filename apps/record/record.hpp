@@ -22,6 +22,7 @@ struct RecordOptions {
   std::optional<std::int64_t> duration_ns;  ///< [ns] nothing: until a signal
   std::uint32_t domain = 0;
   std::filesystem::path profiles;
+  std::filesystem::path security;  ///< see runtime::Bus::Options
 };
 
 /// Records until the duration is over, a signal comes or the tape stops.  Tells what was received,

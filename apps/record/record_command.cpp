@@ -101,6 +101,9 @@ void add_record_command(CLI::App& cli, int& status) {
   verb->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
+  verb->add_option("--security", options.security,
+                   "folder of certificates (deploy/security/make.sh), of which this verb is the "
+                   "tap; none: no security");
   verb->callback([words, &status] { status = run(*words); });
 }
 

@@ -25,7 +25,7 @@ namespace edds = eprosima::fastdds::dds;
 struct Bus::Impl {
   explicit Impl(const Bus::Options& options)
       : peers(options.service, options.rig, options.answers_replay,
-              options.serialized ? &writers : nullptr) {}
+              options.serialized ? &writers : nullptr, !options.security.empty()) {}
   ~Impl() {
     if (participant == nullptr) return;
     participant->delete_contained_entities();
@@ -54,9 +54,9 @@ struct Bus::Impl {
 
 Bus::Bus(Options options) : options_(std::move(options)) {
   impl_ = std::make_unique<Impl>(options_);
-  impl_->participant = create_participant(options_.profiles, options_.domain,
-                                          Peers::participant_name(options_.rig, options_.service),
-                                          options_.answers_replay, &impl_->peers);
+  impl_->participant = create_participant(
+      options_.profiles, options_.domain, Peers::participant_name(options_.rig, options_.service),
+      options_.answers_replay, Identity::of(options_.security, options_.service), &impl_->peers);
   // Endpoints wait for start(): a callback must not run before its owner is complete.
   edds::PublisherQos publisher_qos;
   publisher_qos.entity_factory().autoenable_created_entities = false;
@@ -165,7 +165,13 @@ void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& to
 }
 
 void Bus::start() {
-  for (const auto& endpoint : impl_->endpoints) endpoint->enable();
+  for (const auto& endpoint : impl_->endpoints) {
+    if (endpoint->enable()) continue;
+    const std::string name(endpoint->topic().name);
+    throw BusError("Fast DDS does not let " + options_.service +
+                   (endpoint->writes() ? " write " : " read ") + name +
+                   (options_.security.empty() ? "" : ": do its permissions allow it?"));
+  }
 }
 
 void Bus::stop_receiving() {

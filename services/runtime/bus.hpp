@@ -118,10 +118,14 @@ class Bus {
     /// This process takes what a replay writes, and carries the replay's mark itself, so that no
     /// rig takes what it answers.  Others drop every sample of a marked writer.
     bool answers_replay = false;
+    /// A folder that deploy/security/make.sh wrote: only who holds a certificate of its authority
+    /// is heard and hears, each with its own topics.  Empty: no security.
+    std::filesystem::path security;
     std::function<void(const BusIncident&)> on_incident;
   };
 
-  /// @throws ConfigError for a bad domain or profile file; BusError when DDS refuses.
+  /// @throws ConfigError for a bad domain, profile file or security folder; BusError when DDS
+  /// refuses.
   explicit Bus(Options options);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -158,7 +162,8 @@ class Bus {
       const topics::Topic& topic,
       std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample);
 
-  /// Endpoints start to receive; call once, after every publisher() and subscribe().
+  /// Endpoints start to receive; call once, after every publisher() and subscribe().  @throws
+  /// BusError for a topic that this service may not write or read (Options::security).
   void start();
   /// No callback of a subscription runs after this returns.  Publishers stay usable.
   void stop_receiving();

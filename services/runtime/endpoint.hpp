@@ -33,7 +33,8 @@ class Endpoint {
   Endpoint& operator=(const Endpoint&) = delete;
 
   virtual bool write(void* /*message*/) { return false; }
-  virtual void enable() = 0;
+  /// @returns false when DDS refuses, as for a topic that is not this service's on a secured bus.
+  [[nodiscard]] virtual bool enable() = 0;
   /// Deletes a reader, once its running callback has returned; nothing for a writer.
   virtual void close_reader(eprosima::fastdds::dds::Subscriber& /*owner*/) {}
   virtual EndpointReport report() = 0;
@@ -64,7 +65,9 @@ class WriterEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   using Endpoint::Endpoint;
 
   bool write(void* message) override;
-  void enable() override { writer->enable(); }
+  bool enable() override {
+    return writer->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+  }
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return true; }
 
@@ -96,7 +99,9 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
                  const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
                  Deliver deliver, const FoundWriters* writers);
 
-  void enable() override { reader->enable(); }
+  bool enable() override {
+    return reader->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+  }
   void close_reader(eprosima::fastdds::dds::Subscriber& owner) override;
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return false; }

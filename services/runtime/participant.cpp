@@ -44,9 +44,10 @@ ConfigError missing_profile(const std::filesystem::path& profiles, const char* k
 
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
-                                            bool marked,
+                                            bool marked, const Identity& identity,
                                             edds::DomainParticipantListener* listener) {
   if (domain > kMaxDomain) throw ConfigError("domain", std::to_string(domain), "0 to 232");
+  if (!identity.none()) check_identity(identity, domain);
   edds::Log::SetVerbosity(edds::Log::Kind::Error);
   load_profiles(profiles);
   auto* factory = edds::DomainParticipantFactory::get_instance();
@@ -57,11 +58,17 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   }
   qos.name(name);
   if (marked) qos.user_data().data_vec(replay_mark());
+  if (!identity.none()) secure(qos, identity);
   auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
   if (participant == nullptr) {
     throw BusError("Fast DDS opened no participant on domain " + std::to_string(domain) +
                    ": are its UDP ports free and the addresses in " + profiles.string() +
                    " those of this machine?");
+  }
+  if (!identity.none() && !is_secured(*participant, identity)) {
+    factory->delete_participant(participant);
+    throw BusError("Fast DDS opened a participant without the security of " +
+                   identity.folder.string());
   }
   return participant;
 }

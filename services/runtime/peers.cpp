@@ -10,14 +10,17 @@ namespace stillhand::runtime {
 
 using eprosima::fastrtps::rtps::GuidPrefix_t;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
+using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 
-Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWriters* writers)
+Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWriters* writers,
+             bool secured)
     : self_(std::move(self)),
       prefix_(participant_name(rig, "")),
       answers_replay_(answers_replay),
-      writers_(writers) {}
+      writers_(writers),
+      secured_(secured) {}
 
 std::string Peers::participant_name(std::uint32_t rig, const std::string& service) {
   return "stillhand/" + std::to_string(rig) + "/" + service;
@@ -37,8 +40,21 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* 
   } else {
     services_.erase(info.info.m_guid.guidPrefix);
     marked_now_.erase(info.info.m_guid.guidPrefix);
-    replay_present_.store(!marked_now_.empty(), std::memory_order_release);
+    authenticated_.erase(info.info.m_guid.guidPrefix);
+    refresh_replay();
   }
+}
+
+void Peers::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                        ParticipantAuthenticationInfo&& info) {
+  if (info.status != ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) return;
+  const std::lock_guard lock(mutex_);
+  authenticated_.insert(info.guid.guidPrefix);
+  refresh_replay();
+}
+
+bool Peers::counts(const GuidPrefix_t& participant) const {
+  return !secured_ || authenticated_.count(participant) != 0;
 }
 
 // Comes before the writer is matched, unlike the discovery of its participant, which Fast DDS tells
@@ -56,7 +72,14 @@ void Peers::mark(const GuidPrefix_t& participant) {
   marked_now_.insert(participant);
   ever_marked_.insert(participant);
   replay_seen_.store(true, std::memory_order_release);
-  replay_present_.store(true, std::memory_order_release);
+  refresh_replay();
+}
+
+void Peers::refresh_replay() {
+  const bool present =
+      std::any_of(marked_now_.begin(), marked_now_.end(),
+                  [this](const GuidPrefix_t& participant) { return counts(participant); });
+  replay_present_.store(present, std::memory_order_release);
 }
 
 bool Peers::refuses(const InstanceHandle_t& writer) const {
@@ -107,7 +130,9 @@ std::vector<std::string> Peers::lost() const {
 std::vector<std::string> Peers::duplicates() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, int> count{{self_, 1}};
-  for (const auto& [prefix, service] : services_) ++count[service];
+  for (const auto& [prefix, service] : services_) {
+    if (counts(prefix)) ++count[service];
+  }
   std::vector<std::string> twice;
   for (const auto& [service, times] : count) {
     if (times > 1) twice.push_back(service);

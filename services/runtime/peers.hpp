@@ -25,8 +25,9 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// @param answers_replay  this process takes what a replay writes, and is marked itself
   /// @param writers  to be told of every writer, or nullptr
+  /// @param secured  anybody may announce any name; only who has shown a certificate counts
   Peers(std::string self, std::uint32_t rig, bool answers_replay = false,
-        FoundWriters* writers = nullptr);
+        FoundWriters* writers = nullptr, bool secured = false);
 
   static std::string participant_name(std::uint32_t rig, const std::string& service);
 
@@ -35,6 +36,10 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
 
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+
+  void onParticipantAuthentication(
+      eprosima::fastdds::dds::DomainParticipant* participant,
+      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
 
   /// Service of this rig that owns an endpoint, or "" for a stranger or another rig's.
   [[nodiscard]] std::string service_of(
@@ -63,6 +68,8 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
 
  private:
   void refresh();
+  void refresh_replay();
+  [[nodiscard]] bool counts(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;
   void mark(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);
 
   std::string self_;
@@ -73,6 +80,8 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   std::set<std::string> ever_alive_;
   bool answers_replay_;
   FoundWriters* writers_;
+  bool secured_;
+  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> authenticated_;
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> marked_now_;
   // Never forgotten: a sample may outlive its writer in a reader's history.
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> ever_marked_;

@@ -56,7 +56,7 @@ struct Playback::Impl {
 Playback::Playback(const std::filesystem::path& profiles, std::uint32_t domain,
                    const std::string& name)
     : impl_(std::make_unique<Impl>()) {
-  impl_->participant = create_participant(profiles, domain, name, true, nullptr);
+  impl_->participant = create_participant(profiles, domain, name, true, {}, nullptr);
   impl_->publisher = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
   if (impl_->publisher == nullptr) throw BusError("Fast DDS gave no publisher");
 }

@@ -9,6 +9,7 @@
 #include "runtime/real_time.hpp"
 #include "runtime/reporting.hpp"
 
+#include "runtime/security.hpp"
 namespace stillhand::runtime {
 namespace {
 
@@ -31,6 +32,12 @@ stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
 }
 
 Trial from_idl(const stillhand_msgs::TrialControl& message) {
+void warn_of_expiry(const ServiceOptions& options) {
+  if (options.security.empty()) return;
+  const std::string warning = expiry_warning({options.security, options.service});
+  if (!warning.empty()) std::cerr << "stillhand-" << options.service << ": " << warning << '\n';
+}
+
   Trial trial;
   trial.number = message.trial();
   trial.phase = message.phase() == stillhand_msgs::PHASE_PEGGED     ? TrialPhase::kPegged
@@ -67,6 +74,7 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   bus_options.serialized = options_.serialized;
   bus_options.answers_replay = options_.answers_replay;
   bus_options.on_incident = [this](const BusIncident& incident) {
+  bus_options.security = options_.security;
     Note note{event_kind(incident.kind),
               incident.topic,
               tick_.load(std::memory_order_relaxed),
@@ -146,6 +154,8 @@ int run_service(const std::string& name, int argc, char** argv,
   cli.add_option("--out", options.out, "folder or file this process may write");
   cli.add_flag("--real-time", options.real_time, "ask for SCHED_FIFO");
   cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
+  cli.add_option("--security", options.security,
+                 "folder of certificates (deploy/security/make.sh); none: no security");
   if (more_options) more_options(cli, options);
   try {
     cli.parse(argc, argv);
@@ -159,6 +169,7 @@ int run_service(const std::string& name, int argc, char** argv,
     Service service(options, stop);
     body(service);
     return 0;
+    warn_of_expiry(options);
   } catch (const ConfigError& error) {
     std::cerr << "stillhand-" << name << ": " << error.what() << '\n';
     return 2;

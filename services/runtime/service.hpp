@@ -28,6 +28,7 @@ struct ServiceOptions {
   std::uint64_t seed = 1;          ///< seed of everything random in this process
   std::filesystem::path profiles;  ///< QoS profiles
   std::filesystem::path config;    ///< folder of <service>.yaml
+  std::filesystem::path security;  ///< see Bus::Options
   bool real_time = false;          ///< ask for a real-time scheduling policy
   bool serialized = false;         ///< see Bus::Options
   bool answers_replay = false;     ///< see Bus::Options

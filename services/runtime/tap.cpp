@@ -192,8 +192,9 @@ void Tap::Impl::tell(std::string line) {
 
 Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
   // Checked before the run: the readers themselves come when their writers do.
-  impl_->participant = create_participant(impl_->options.profiles, impl_->options.domain,
-                                          impl_->options.name, false, impl_.get());
+  impl_->participant =
+      create_participant(impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
+                         {impl_->options.security, std::string(topics::kTap)}, impl_.get());
   impl_->subscriber = impl_->participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
   edds::Publisher* profiles = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
   if (impl_->subscriber == nullptr || profiles == nullptr) {

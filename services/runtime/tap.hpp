@@ -25,11 +25,13 @@ class Tap {
     std::string name;                ///< of the participant
     std::uint32_t domain = 0;        ///< DDS domain, 0 to 232
     std::filesystem::path profiles;  ///< qos/profiles.xml
+    std::filesystem::path security;  ///< see Bus::Options; it shows topics::kTap's certificate
     std::function<bool(const std::string& topic)> wanted;
     std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
   };
 
-  /// @throws ConfigError for a bad domain or profile file; BusError when DDS refuses.
+  /// @throws ConfigError for a bad domain, profile file or security folder; BusError when DDS
+  /// refuses.
   explicit Tap(Options options);
   ~Tap();
   Tap(const Tap&) = delete;

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes a lab's DDS Security documents, unsigned, from the catalogue; deploy/security/make.sh
+// signs them. stillhand-permissions FOLDER LAB NOT_BEFORE NOT_AFTER DOMAIN_FROM DOMAIN_TO
+// governance.xml and permissions_<identity>.xml into FOLDER, and each identity on a line of its
+// own.
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "idl/topics.hpp"
+
+namespace {
+
+namespace topics = stillhand::topics;
+
+struct Lab {
+  std::string folder, name, not_before, not_after, domains;
+};
+
+/// Who may write and read what.
+struct Rights {
+  std::string identity;
+  std::set<std::string> publishes, subscribes;
+};
+
+bool is_among(std::span<const std::string_view> names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Rights rights_of(std::string_view service) {
+  Rights rights{std::string(service), {}, {}};
+  for (const topics::Topic* topic : topics::kCatalogue) {
+    if (is_among(topic->writers, service)) rights.publishes.emplace(topic->name);
+    if (is_among(topic->readers, service)) rights.subscribes.emplace(topic->name);
+  }
+  return rights;
+}
+
+/// What listens from outside of a session, `stillhand record`: reads everything, and writes only
+/// its own remote control, which no process of a session reads.
+Rights rights_of_tap() {
+  Rights rights{std::string(topics::kTap), {}, {}};
+  for (const topics::Topic* topic : topics::kCatalogue) rights.subscribes.emplace(topic->name);
+  for (const topics::Topic* topic : {&topics::kRecorderCommand, &topics::kRecorderStatus}) {
+    rights.publishes.emplace(topic->name);
+    rights.subscribes.emplace(topic->name);
+  }
+  return rights;
+}
+
+std::string topic_list(const char* verb, const std::set<std::string>& names) {
+  if (names.empty()) return "";
+  std::string text = std::string("        <") + verb + ">\n          <topics>\n";
+  for (const std::string& name : names) text += "            <topic>" + name + "</topic>\n";
+  return text + "          </topics>\n        </" + verb + ">\n";
+}
+
+// The order of elements is that of the schema; Fast DDS refuses any other.
+std::string permissions(const Lab& lab, const Rights& rights) {
+  return R"(<?xml version="1.0" encoding="UTF-8"?>
+<dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
+     xsi:noNamespaceSchemaLocation="http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_permissions.xsd">
+  <permissions>
+    <grant name=")" +
+         rights.identity + R"(">
+      <subject_name>CN=)" +
+         rights.identity + ",O=" + lab.name + R"(</subject_name>
+      <validity>
+        <not_before>)" +
+         lab.not_before + R"(</not_before>
+        <not_after>)" +
+         lab.not_after + R"(</not_after>
+      </validity>
+      <allow_rule>
+)" + lab.domains +
+         topic_list("publish", rights.publishes) + topic_list("subscribe", rights.subscribes) +
+         R"(      </allow_rule>
+      <default>DENY</default>
+    </grant>
+  </permissions>
+</dds>
+)";
+}
+
+std::string topic_rule(std::string_view name, const char* metadata) {
+  return R"(        <topic_rule>
+          <topic_expression>)" +
+         std::string(name) + R"(</topic_expression>
+          <enable_discovery_protection>true</enable_discovery_protection>
+          <enable_liveliness_protection>true</enable_liveliness_protection>
+          <enable_read_access_control>true</enable_read_access_control>
+          <enable_write_access_control>true</enable_write_access_control>
+          <metadata_protection_kind>)" +
+         metadata + R"(</metadata_protection_kind>
+          <data_protection_kind>NONE</data_protection_kind>
+        </topic_rule>
+)";
+}
+
+// Why each kind is what it is: README.md, "What is protected".
+std::string governance(const Lab& lab) {
+  std::string text =
+      R"(<?xml version="1.0" encoding="UTF-8"?>
+<dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
+     xsi:noNamespaceSchemaLocation="http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_governance.xsd">
+  <domain_access_rules>
+    <domain_rule>
+)" + lab.domains +
+      R"(      <allow_unauthenticated_participants>false</allow_unauthenticated_participants>
+      <enable_join_access_control>true</enable_join_access_control>
+      <discovery_protection_kind>SIGN</discovery_protection_kind>
+      <liveliness_protection_kind>SIGN</liveliness_protection_kind>
+      <rtps_protection_kind>NONE</rtps_protection_kind>
+      <topic_access_rules>
+)";
+  for (const topics::Topic* topic : topics::kCatalogue) {
+    const bool in_the_loop = topic->pattern == topics::Pattern::kStream1khz;
+    text += topic_rule(topic->name, in_the_loop ? "SIGN" : "ENCRYPT");
+  }
+  return text + topic_rule("*", "ENCRYPT") + R"(      </topic_access_rules>
+    </domain_rule>
+  </domain_access_rules>
+</dds>
+)";
+}
+
+void write(const std::string& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 7) {
+    std::cerr << "stillhand-permissions: got " << argc - 1
+              << " arguments, want FOLDER LAB NOT_BEFORE NOT_AFTER DOMAIN_FROM DOMAIN_TO\n";
+    return 2;
+  }
+  try {
+    const Lab lab{argv[1], argv[2], argv[3], argv[4],
+                  std::string("      <domains><id_range><min>") + argv[5] + "</min><max>" +
+                      argv[6] + "</max></id_range></domains>\n"};
+    std::vector<Rights> all{rights_of_tap()};
+    for (const std::string_view service : topics::kServices) all.push_back(rights_of(service));
+    write(lab.folder + "/governance.xml", governance(lab));
+    for (const Rights& rights : all) {
+      write(lab.folder + "/permissions_" + rights.identity + ".xml", permissions(lab, rights));
+      std::cout << rights.identity << '\n';
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand-permissions: " << error.what() << '\n';
+    return 1;
+  }
+}
