@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inventory's file: what each key may hold, and what must fit together.
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <map>
 #include <utility>
@@ -179,9 +180,17 @@ class Reader {
       host.prefix = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
       return;
     }
-    const std::string want = "an absolute path under which bin/stillhand is, such as /usr";
+    // It stands in systemd's command lines, where blanks, quotes, % and $ have a meaning.
+    const std::string want =
+        "an absolute path under which bin/stillhand is, such as /usr, of letters, digits and /._+-";
     host.prefix = text_of(*prefix, path + ".prefix", want);
-    if (!host.prefix.is_absolute()) refuse(*prefix, path + ".prefix", want);
+    const auto plain = [](unsigned char c) {
+      return std::isalnum(c) != 0 ||
+             std::string_view("/._+-").find(static_cast<char>(c)) != std::string_view::npos;
+    };
+    if (!host.prefix.is_absolute() || !std::ranges::all_of(host.prefix.string(), plain)) {
+      refuse(*prefix, path + ".prefix", want);
+    }
   }
 
   void read_services(const Entry& list, const std::string& path, Host& host) {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/checks.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <sstream>
+
+namespace stillhand::deploy {
+namespace {
+
+Finding good(std::string check, std::string what) {
+  return {std::move(check), State::kGood, std::move(what), {}};
+}
+Finding wrong(std::string check, std::string what, std::string mend) {
+  return {std::move(check), State::kWrong, std::move(what), std::move(mend)};
+}
+Finding not_checked(std::string check, std::string what, std::string mend = {}) {
+  return {std::move(check), State::kNotChecked, std::move(what), std::move(mend)};
+}
+
+template <typename Number>
+std::optional<Number> number_at(std::string_view text, int base = 10) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  Number value{};
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+  if (error != std::errc{}) return std::nullopt;
+  return value;
+}
+
+/// Ports of "32768 60999" or of "8080,9148-9160".
+using PortRange = std::pair<std::uint32_t, std::uint32_t>;
+
+std::vector<PortRange> reserved_ranges(std::string_view text) {
+  std::vector<PortRange> ranges;
+  std::istringstream items{std::string(text)};
+  for (std::string item; std::getline(items, item, ',');) {
+    const auto from = number_at<std::uint32_t>(item);
+    if (!from) continue;
+    const auto dash = item.find('-');
+    const auto to = dash == std::string::npos
+                        ? from
+                        : number_at<std::uint32_t>(std::string_view(item).substr(dash + 1));
+    ranges.emplace_back(*from, to.value_or(*from));
+  }
+  return ranges;
+}
+
+bool covers(const std::vector<PortRange>& ranges, std::uint32_t port) {
+  return std::ranges::any_of(
+      ranges, [&](const PortRange& each) { return each.first <= port && port <= each.second; });
+}
+
+}  // namespace
+
+Finding check_address(const Host& host, const std::vector<std::string>& own) {
+  if (std::ranges::find(own, host.address) != own.end()) {
+    return good("address", host.address + " is on an interface");
+  }
+  return wrong("address",
+               fmt::format("{} is on no interface of this machine (it has {})", host.address,
+                           fmt::join(own, ", ")),
+               fmt::format("give the interface that address (ip addr add {}/24 dev NAME), or write "
+                           "one of its own into the inventory",
+                           host.address));
+}
+
+Finding check_clock(const std::optional<ClockState>& clock) {
+  if (!clock) return not_checked("clock", "the kernel tells nothing of its clock");
+  if (!clock->unsynchronised) {
+    return good("clock",
+                fmt::format("synchronised, at most {:.1f} ms off", clock->worst_error_s * 1e3));
+  }
+  return wrong("clock", "not synchronised with any other",
+               "sudo apt install chrony; with a server of the lab: \"server ADDRESS iburst\" in "
+               "/etc/chrony/conf.d/lab.conf, then sudo systemctl restart chrony; chronyc tracking");
+}
+
+Finding check_real_time(const Rights& rights) {
+  constexpr std::uint64_t kWanted = 40;  // as runtime::become_real_time() asks for
+  if (rights.all || rights.real_time_priority >= kWanted) {
+    return good("real-time", "SCHED_FIFO is granted");
+  }
+  return wrong("real-time",
+               fmt::format("the largest real-time priority granted is {}, {} is asked for",
+                           rights.real_time_priority, kWanted),
+               fmt::format("echo '@stillhand - rtprio {}' | sudo tee -a "
+                           "/etc/security/limits.d/stillhand.conf; sudo groupadd -f stillhand; "
+                           "sudo adduser $USER stillhand; log in again",
+                           kWanted));
+}
+
+Finding check_memory_lock(const Rights& rights) {
+  constexpr std::uint64_t kWanted = std::uint64_t{1} << 30;  // some times what a process uses
+  if (rights.all || rights.locked_memory >= kWanted) return good("memory-lock", "large enough");
+  return wrong("memory-lock",
+               fmt::format("{} kB may be locked, want no limit", rights.locked_memory / 1024),
+               "echo '@stillhand - memlock unlimited' | sudo tee -a "
+               "/etc/security/limits.d/stillhand.conf; log in again");
+}
+
+Finding check_buffers(std::string_view rmem_max, std::string_view wmem_max, const Buffers& wanted) {
+  const auto receive = number_at<std::uint64_t>(rmem_max);
+  const auto send = number_at<std::uint64_t>(wmem_max);
+  if (!receive || !send) return not_checked("buffers", "the kernel tells no limits of them");
+  if (*receive >= wanted.receive && *send >= wanted.send) {
+    return good("buffers", fmt::format("{} bytes to receive, {} to send", *receive, *send));
+  }
+  return wrong(
+      "buffers",
+      fmt::format("net.core.rmem_max is {}, wmem_max {}; profiles.xml asks for {} and {}", *receive,
+                  *send, wanted.receive, wanted.send),
+      "sudo cp HOST/sysctl.conf /etc/sysctl.d/60-stillhand.conf (deploy generate makes it); sudo "
+      "sysctl --system");
+}
+
+// "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout
+// inode"
+std::vector<TakenPort> taken_ports(std::string_view proc_net_udp, std::uint32_t first,
+                                   std::uint32_t last) {
+  constexpr std::size_t kLocal = 1;
+  constexpr std::size_t kInode = 9;
+  std::vector<TakenPort> taken;
+  std::istringstream lines{std::string(proc_net_udp)};
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream columns(line);
+    std::vector<std::string> words;
+    for (std::string word; columns >> word;) words.push_back(word);
+    if (words.size() <= kInode) continue;
+    const auto colon = words[kLocal].find(':');
+    if (colon == std::string::npos) continue;
+    const auto port =
+        number_at<std::uint32_t>(std::string_view(words[kLocal]).substr(colon + 1), 16);
+    const auto inode = number_at<std::uint64_t>(words[kInode]);
+    if (port && inode && *port >= first && *port <= last) taken.push_back({*port, *inode, {}});
+  }
+  return taken;
+}
+
+Finding check_ports(const std::vector<TakenPort>& taken) {
+  std::set<std::string> others;
+  bool unknown = false;
+  for (const TakenPort& each : taken) {
+    if (each.program.starts_with("stillhand") || each.program.starts_with("fast-discovery")) {
+      continue;
+    }
+    if (each.program.empty()) unknown = true;
+    others.insert(
+        fmt::format("{} ({})", each.port, each.program.empty() ? "of another user" : each.program));
+  }
+  if (others.empty()) return good("ports", "none of the domain's is taken by another program");
+  const std::string list = fmt::format("taken: UDP {}", fmt::join(others, ", "));
+  if (unknown) return not_checked("ports", list, "only root sees whose: sudo ss -ulnp");
+  return wrong("ports", list, "end that program, or give the lab another domain");
+}
+
+Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
+                              std::uint32_t first, std::uint32_t last) {
+  const auto from = number_at<std::uint32_t>(range);
+  const auto gap = range.find_first_of(" \t");
+  const auto to = gap == std::string_view::npos ? std::nullopt
+                                                : number_at<std::uint32_t>(range.substr(gap + 1));
+  if (!from || !to) return not_checked("any-port", "the kernel tells no range of such ports");
+  const std::vector<PortRange> kept = reserved_ranges(reserved);
+  for (std::uint32_t port = std::max(first, *from); port <= std::min(last, *to); ++port) {
+    if (covers(kept, port)) continue;
+    return wrong("any-port",
+                 fmt::format("programs that ask for any port may get {}, one of the domain's {} to "
+                             "{}",
+                             port, first, last),
+                 fmt::format("sudo sysctl -w net.ipv4.ip_local_reserved_ports={}-{} (HOST/"
+                             "sysctl.conf has it), or a domain below 100",
+                             first, last));
+  }
+  return good("any-port", "nobody is given one of the domain's by chance");
+}
+
+Finding check_governor(const std::vector<std::string>& governors) {
+  if (governors.empty()) return not_checked("governor", "the processors tell none");
+  std::set<std::string> slow;
+  for (const std::string& each : governors) {
+    const std::string name = each.substr(0, each.find('\n'));
+    if (name != "performance") slow.insert(name);
+  }
+  if (slow.empty()) return good("governor", "performance");
+  return wrong("governor",
+               fmt::format("{}: the clock speed follows the load", fmt::join(slow, ", ")),
+               "sudo apt install linux-cpupower; sudo cpupower frequency-set -g performance");
+}
+
+Finding tell_reachability(const Inventory& inventory, const Host& host) {
+  std::vector<std::string> others;
+  for (const Host& each : inventory.hosts) {
+    if (each.name != host.name) others.push_back("ping -c 1 " + each.address);
+  }
+  if (others.empty()) return good("others", "there are none");
+  return not_checked("others", "whether they can be reached",
+                     fmt::format("{}", fmt::join(others, "; ")));
+}
+
+}  // namespace stillhand::deploy

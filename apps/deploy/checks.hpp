@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "deploy/profiles.hpp"
+
+namespace stillhand::deploy {
+
+enum class State : std::uint8_t { kGood, kWrong, kNotChecked };
+
+/// What one check found.
+struct Finding {
+  std::string check;  ///< one word
+  State state;
+  std::string what;  ///< what is there
+  std::string mend;  ///< how to mend it; empty when there is nothing to mend
+};
+
+/// The checks of a machine.  Each judges what it is given; machine.hpp reads it.  None blames what
+/// it could not read: that is kNotChecked.
+
+/// @param own  IPv4 addresses of this machine's interfaces
+Finding check_address(const Host& host, const std::vector<std::string>& own);
+
+/// What the kernel's clock discipline says (adjtimex).
+struct ClockState {
+  bool unsynchronised;   ///< STA_UNSYNC
+  double worst_error_s;  ///< [s] maxerror
+};
+Finding check_clock(const std::optional<ClockState>& clock);
+
+/// What a process of this user may ask for.
+struct Rights {
+  std::uint64_t real_time_priority;  ///< RLIMIT_RTPRIO, hard
+  std::uint64_t locked_memory;       ///< RLIMIT_MEMLOCK, hard [bytes]; ~0: no limit
+  bool all;                          ///< CAP_SYS_NICE and CAP_IPC_LOCK, such as root's
+};
+Finding check_real_time(const Rights& rights);
+Finding check_memory_lock(const Rights& rights);
+
+/// @param rmem_max, wmem_max  text of /proc/sys/net/core/...
+Finding check_buffers(std::string_view rmem_max, std::string_view wmem_max, const Buffers& wanted);
+
+/// A UDP socket on one of the domain's ports.
+struct TakenPort {
+  std::uint32_t port;
+  std::uint64_t inode;
+  std::string program;  ///< its owner's name; empty: unknown
+};
+/// Sockets of /proc/net/udp with a local port from `first` to `last`.
+std::vector<TakenPort> taken_ports(std::string_view proc_net_udp, std::uint32_t first,
+                                   std::uint32_t last);
+/// Other programs than stillhand's on them.
+Finding check_ports(const std::vector<TakenPort>& taken);
+
+/// @param range, reserved  text of /proc/sys/net/ipv4/ip_local_port_range, ip_local_reserved_ports
+Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
+                              std::uint32_t first, std::uint32_t last);
+
+/// @param governors  text of each /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor
+Finding check_governor(const std::vector<std::string>& governors);
+
+/// A ping needs rights, and a closed port tells nothing: only what to type.
+Finding tell_reachability(const Inventory& inventory, const Host& host);
+
+}  // namespace stillhand::deploy

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace stillhand::deploy {
+
+/// Adds the verb `deploy` with its own verbs `generate` and `check`; `status` is its exit status
+/// after parsing.
+void add_deploy_command(CLI::App& cli, int& status);
+
+}  // namespace stillhand::deploy

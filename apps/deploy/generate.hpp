@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deploy/generated_file.hpp"
+#include "deploy/profiles.hpp"
+
+namespace stillhand::deploy {
+
+/// Everything a host needs: the same inventory and profiles give the same text.
+std::vector<GeneratedFile> files_of(const Inventory& inventory, const Host& host,
+                                    const LabProfiles& profiles);
+
+/// Writes out/HOST/ for every host, all of them or none; generated files of an earlier run that are
+/// no longer made go.  @return folders of earlier runs whose host the inventory no longer has
+/// @throws ConfigError when a folder can't be written, std::runtime_error when a file can't.
+std::vector<std::filesystem::path> generate(const Inventory& inventory, const LabProfiles& profiles,
+                                            const std::filesystem::path& out);
+
+}  // namespace stillhand::deploy

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/host_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "deploy/ports.hpp"
+
+namespace stillhand::deploy {
+
+GeneratedFile firewall_of(const Inventory& inventory, const Host& host) {
+  std::string addresses = "127.0.0.0/8";
+  for (const Host& each : inventory.hosts) {
+    if (!each.address.starts_with("127.")) addresses += ", " + each.address;
+  }
+  std::string table = "stillhand_" + inventory.lab;
+  std::ranges::replace(table, '-', '_');  // which nft takes for a minus
+  const DomainPorts ports(inventory.domain);
+  const std::string range =
+      fmt::format("{}-{}", ports.first, ports.last(participants_sought(inventory)));
+  return {"firewall.nft",
+          fmt::format(R"(#!/usr/sbin/nft -f
+# {0}
+# The ports of DDS domain {1} are the lab's own: whatever else comes to them is dropped. Where other rules drop by
+# default, they need besides:
+#   udp dport {2} ip saddr {{ {3} }} accept
+table inet {4}
+delete table inet {4}
+table inet {4} {{
+  chain input {{
+    type filter hook input priority filter; policy accept;
+    udp dport {2} ip saddr != {{ {3} }} drop
+    udp dport {2} meta nfproto ipv6 drop
+  }}
+}}
+)",
+                      generated_note(inventory, host), inventory.domain, range, addresses, table)};
+}
+
+GeneratedFile sysctl_of(const Inventory& inventory, const Host& host, const Buffers& buffers) {
+  const DomainPorts ports(inventory.domain);
+  return {"sysctl.conf", fmt::format(R"(# {}
+# Without them the kernel cuts the buffers that profiles.xml asks for, and a burst is lost.
+net.core.rmem_max = {}
+net.core.wmem_max = {}
+# Programs that ask for any port get none of the domain's.
+net.ipv4.ip_local_reserved_ports = {}-{}
+)",
+                                     generated_note(inventory, host), buffers.receive, buffers.send,
+                                     ports.first, ports.last(participants_sought(inventory)))};
+}
+
+}  // namespace stillhand::deploy

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/machine.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <linux/capability.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "deploy/ports.hpp"
+
+namespace stillhand::deploy {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Empty where there is none, or no right to read it.
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::optional<ClockState> clock_state() {
+  timex state{};  // no modes: it only tells
+  if (adjtimex(&state) < 0) return std::nullopt;
+  return ClockState{(state.status & STA_UNSYNC) != 0, static_cast<double>(state.maxerror) * 1e-6};
+}
+
+bool has_all_rights() {
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct data[_LINUX_CAPABILITY_U32S_3]{};
+  if (syscall(SYS_capget, &header, data) != 0) return false;
+  const auto has = [&](unsigned right) { return (data[0].effective & (1U << right)) != 0; };
+  return has(CAP_SYS_NICE) && has(CAP_IPC_LOCK);
+}
+
+Rights rights() {
+  rlimit priority{};
+  rlimit memory{};
+  getrlimit(RLIMIT_RTPRIO, &priority);
+  getrlimit(RLIMIT_MEMLOCK, &memory);
+  return {priority.rlim_max, memory.rlim_max, has_all_rights()};
+}
+
+// Programs by the inode of a socket that they hold; of other users' root alone sees them.
+std::map<std::uint64_t, std::string> owners_of_sockets() {
+  std::map<std::uint64_t, std::string> owners;
+  std::error_code ignored;
+  for (const auto& process : fs::directory_iterator("/proc", ignored)) {
+    std::error_code error;
+    for (const auto& file : fs::directory_iterator(process.path() / "fd", error)) {
+      const std::string target = fs::read_symlink(file.path(), error).string();
+      constexpr std::string_view kSocket = "socket:[";
+      if (error || !target.starts_with(kSocket)) continue;
+      std::string name = text_of(process.path() / "comm");
+      owners[std::stoull(target.substr(kSocket.size()))] = name.substr(0, name.find('\n'));
+    }
+  }
+  return owners;
+}
+
+std::vector<TakenPort> taken_ports_with_owners(std::uint32_t first, std::uint32_t last) {
+  std::vector<TakenPort> taken = taken_ports(text_of("/proc/net/udp"), first, last);
+  if (taken.empty()) return taken;
+  const auto owners = owners_of_sockets();
+  for (TakenPort& each : taken) {
+    if (const auto owner = owners.find(each.inode); owner != owners.end()) {
+      each.program = owner->second;
+    }
+  }
+  return taken;
+}
+
+std::vector<std::string> governors() {
+  std::vector<std::string> texts;
+  std::error_code ignored;
+  for (const auto& cpu : fs::directory_iterator("/sys/devices/system/cpu", ignored)) {
+    std::string text = text_of(cpu.path() / "cpufreq" / "scaling_governor");
+    if (!text.empty()) texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+}  // namespace
+
+std::vector<std::string> own_addresses() {
+  std::vector<std::string> addresses;
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return addresses;
+  for (const ifaddrs* each = list; each != nullptr; each = each->ifa_next) {
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN]{};
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr, text,
+              sizeof(text));
+    addresses.emplace_back(text);
+  }
+  freeifaddrs(list);
+  return addresses;
+}
+
+std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
+                                   const Buffers& buffers) {
+  const DomainPorts ports(inventory.domain);
+  const std::uint32_t last = ports.last(participants_sought(inventory));
+  const Rights granted = rights();
+  const fs::path net = "/proc/sys/net";
+  return {check_address(host, own_addresses()),
+          check_clock(clock_state()),
+          check_real_time(granted),
+          check_memory_lock(granted),
+          check_buffers(text_of(net / "core/rmem_max"), text_of(net / "core/wmem_max"), buffers),
+          check_ports(taken_ports_with_owners(ports.first, last)),
+          check_ephemeral_ports(text_of(net / "ipv4/ip_local_port_range"),
+                                text_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
+          check_governor(governors()),
+          tell_reachability(inventory, host)};
+}
+
+}  // namespace stillhand::deploy

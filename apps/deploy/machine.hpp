@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deploy/checks.hpp"
+
+namespace stillhand::deploy {
+
+/// IPv4 addresses of this machine's interfaces, in the system's order.
+std::vector<std::string> own_addresses();
+
+/// Every check, of this machine as that host.  Reads /proc, /sys and the folder of keys.
+std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
+                                   const Buffers& buffers);
+
+}  // namespace stillhand::deploy

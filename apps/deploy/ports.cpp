@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/ports.hpp"
+
+#include <algorithm>
+
+#include "deploy/inventory.hpp"
+
+namespace stillhand::deploy {
+
+std::uint32_t participants_sought(const Inventory& inventory) {
+  constexpr std::size_t kTools = 7;
+  std::size_t most = 16;
+  for (const Host& host : inventory.hosts) most = std::max(most, host.services.size() + kTools);
+  return static_cast<std::uint32_t>(most);
+}
+
+}  // namespace stillhand::deploy

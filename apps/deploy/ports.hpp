@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace stillhand::deploy {
+
+struct Inventory;
+
+/// UDP ports of a DDS domain, RTPS 2.2, 9.6.1.1, with the default parameters: a block of 250 for
+/// each domain.
+///
+///   multicast, discovery   7400 + 250 domain          user data   + 1
+///   participant p, discovery  + 10 + 2 p              user data   + 11 + 2 p
+struct DomainPorts {
+  explicit constexpr DomainPorts(std::uint32_t domain) : first(7400 + 250 * domain) {}
+
+  [[nodiscard]] constexpr std::uint32_t multicast() const { return first; }
+  /// Of the discovery server: none of the block's ports that the standard uses.
+  [[nodiscard]] constexpr std::uint32_t server() const { return first + 2; }
+  /// Last port of a host with `participants`.
+  [[nodiscard]] constexpr std::uint32_t last(std::uint32_t participants) const {
+    return first + 11 + 2 * (participants - 1);
+  }
+
+  std::uint32_t first;
+};
+
+/// How many participants of one host are looked for: what the fullest runs, and half a dozen for
+/// tools (`stillhand record`) and for processes whose predecessor still holds its port; 16 at
+/// least.
+std::uint32_t participants_sought(const Inventory& inventory);
+
+}  // namespace stillhand::deploy

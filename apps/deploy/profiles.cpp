@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/profiles.hpp"
+
+#include <tinyxml2.h>
+
+#include "contract/config_error.hpp"
+#include "deploy/generated_file.hpp"
+#include "deploy/ports.hpp"
+#include "recording/file_io.hpp"
+
+namespace stillhand::deploy {
+namespace {
+
+using tinyxml2::XMLDocument;
+using tinyxml2::XMLElement;
+using tinyxml2::XMLNode;
+
+// Of the only server of a lab; its clients must name the same.
+constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
+constexpr const char* kTransport = "lab_udp";
+
+/// What is replaced in the document.
+struct Parts {
+  XMLElement* transport;
+  XMLElement* used_transport;
+  XMLElement* rtps;
+  XMLElement* builtin;
+  XMLElement* discovery;
+};
+
+XMLElement* descend(XMLNode* from, std::initializer_list<const char*> names) {
+  XMLNode* at = from;
+  for (const char* name : names) {
+    if (at != nullptr) at = at->FirstChildElement(name);
+  }
+  return at == nullptr ? nullptr : at->ToElement();
+}
+
+Parts parts_of(XMLDocument& document, const std::filesystem::path& file) {
+  XMLElement* profiles = descend(&document, {"dds", "profiles"});
+  XMLElement* rtps = descend(profiles, {"participant", "rtps"});
+  const Parts parts{descend(profiles, {"transport_descriptors", "transport_descriptor"}),
+                    descend(rtps, {"userTransports", "transport_id"}), rtps,
+                    descend(rtps, {"builtin"}), descend(rtps, {"builtin", "discovery_config"})};
+  if (parts.transport == nullptr || parts.used_transport == nullptr || parts.discovery == nullptr) {
+    throw ConfigError(file.string(),
+                      "profiles without a transport_descriptor, or a participant without "
+                      "userTransports and discovery_config",
+                      "those of qos/profiles.xml");
+  }
+  return parts;
+}
+
+// The child of that name with that text, a new one at the end where there is none.
+void set(XMLElement* parent, const char* name, const std::string& text) {
+  XMLElement* child = parent->FirstChildElement(name);
+  if (child == nullptr) child = parent->InsertNewChildElement(name);
+  child->SetText(text.c_str());
+}
+
+void add_locator(XMLElement* list, const std::string& address, std::uint32_t port) {
+  XMLElement* udp = list->InsertNewChildElement("locator")->InsertNewChildElement("udpv4");
+  if (!address.empty()) set(udp, "address", address);
+  if (port != 0) set(udp, "port", std::to_string(port));
+}
+
+void set_transport(const Parts& parts, const Inventory& inventory, const Host& host) {
+  set(parts.transport, "transport_id", kTransport);
+  parts.used_transport->SetText(kTransport);
+  set(parts.transport, "maxInitialPeersRange", std::to_string(participants_sought(inventory)));
+  // What stands around the old list speaks of one machine.
+  for (XMLNode* child = parts.transport->FirstChild(); child != nullptr;) {
+    XMLNode* next = child->NextSibling();
+    if (child->ToComment() != nullptr) parts.transport->DeleteChild(child);
+    child = next;
+  }
+  XMLElement* list = parts.transport->FirstChildElement("interfaceWhiteList");
+  if (list == nullptr) list = parts.transport->InsertNewChildElement("interfaceWhiteList");
+  list->DeleteChildren();
+  list->InsertNewChildElement("address")->SetText(host.address.c_str());
+  // In the lists of all hosts or of none; here it keeps what stays on the host off its network.
+  if (host.address != "127.0.0.1") list->InsertNewChildElement("address")->SetText("127.0.0.1");
+}
+
+// With a unicast locator of their own, even an empty one (the standard port), participants open no
+// multicast one.
+void add_unicast_only(XMLElement* builtin) {
+  add_locator(builtin->InsertNewChildElement("metatrafficUnicastLocatorList"), "", 0);
+}
+
+// No ports: Fast DDS fills in those of the domain's first maxInitialPeersRange participants, so
+// that the file serves every domain.
+void add_peers(XMLElement* builtin, const Inventory& inventory) {
+  XMLElement* list = builtin->InsertNewChildElement("initialPeersList");
+  for (const Host& host : inventory.hosts) add_locator(list, host.address, 0);
+}
+
+// SUPER_CLIENT: a plain client learns only of endpoints that match its own, and `stillhand record`
+// looks for all.
+void add_client(XMLElement* discovery, const Inventory& inventory) {
+  set(discovery, "discoveryProtocol", "SUPER_CLIENT");
+  XMLElement* server = discovery->InsertNewChildElement("discoveryServersList")
+                           ->InsertNewChildElement("RemoteServer");
+  server->SetAttribute("prefix", kServerPrefix);
+  add_locator(server->InsertNewChildElement("metatrafficUnicastLocatorList"),
+              inventory.hosts.front().address, DomainPorts(inventory.domain).server());
+}
+
+std::string printed(const XMLDocument& document) {
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
+void add_note(XMLDocument& document, const Inventory& inventory, const Host& host) {
+  XMLElement* dds = document.RootElement();
+  const std::string note = " " + generated_note(inventory, host) + " ";
+  document.InsertAfterChild(dds->PreviousSibling(), document.NewComment(note.c_str()));
+}
+
+}  // namespace
+
+LabProfiles::LabProfiles(const std::filesystem::path& base)
+    : file_(base), base_(recording::read_file(base.string())) {
+  XMLDocument document;
+  if (document.Parse(base_.c_str(), base_.size()) != tinyxml2::XML_SUCCESS) {
+    throw ConfigError(file_.string(), document.ErrorStr(), "well-formed XML");
+  }
+  const Parts parts = parts_of(document, file_);
+  const auto bytes = [&](const char* name) -> std::uint64_t {
+    const XMLElement* child = parts.transport->FirstChildElement(name);
+    return child == nullptr ? 0 : child->Unsigned64Text();
+  };
+  buffers_ = {bytes("sendBufferSize"), bytes("receiveBufferSize")};
+}
+
+std::string LabProfiles::of(const Inventory& inventory, const Host& host) const {
+  XMLDocument document;
+  document.Parse(base_.c_str(), base_.size());
+  const Parts parts = parts_of(document, file_);
+  add_note(document, inventory, host);
+  set_transport(parts, inventory, host);
+  switch (inventory.discovery) {
+    case Discovery::kPeers:
+      add_unicast_only(parts.builtin);
+      add_peers(parts.builtin, inventory);
+      break;
+    case Discovery::kServer:
+      add_unicast_only(parts.builtin);
+      add_client(parts.discovery, inventory);
+      break;
+    case Discovery::kMulticast:
+      break;
+  }
+  return printed(document);
+}
+
+std::string LabProfiles::of_server(const Inventory& inventory) const {
+  XMLDocument document;
+  document.Parse(base_.c_str(), base_.size());
+  const Parts parts = parts_of(document, file_);
+  const Host& host = inventory.hosts.front();
+  add_note(document, inventory, host);
+  set_transport(parts, inventory, host);
+  set(parts.rtps, "prefix", kServerPrefix);
+  set(parts.discovery, "discoveryProtocol", "SERVER");
+  add_locator(parts.builtin->InsertNewChildElement("metatrafficUnicastLocatorList"), host.address,
+              DomainPorts(inventory.domain).server());
+  return printed(document);
+}
+
+}  // namespace stillhand::deploy

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// systemd units.  No watchdog: the processes don't notify systemd; what is late or gone the lab's
+// own supervision tells (ARCHITECTURE.md, "Safety chain").
+#include <fmt/format.h>
+
+#include "deploy/host_files.hpp"
+
+namespace stillhand::deploy {
+namespace {
+
+constexpr int kPriority = 40;  // as runtime::become_real_time() asks for (unit.deploy.units)
+
+// Fast DDS lists the interfaces by netlink; without homes a program in one could not start.
+std::string hardening(const Host& host, bool shows_a_screen) {
+  const bool at_home =
+      host.prefix.string().starts_with("/home/") || host.prefix.string().starts_with("/root/");
+  return fmt::format(R"(NoNewPrivileges=yes
+CapabilityBoundingSet=
+ProtectSystem=strict
+ProtectHome={}
+PrivateTmp={}
+ProtectKernelTunables=yes
+ProtectKernelModules=yes
+ProtectKernelLogs=yes
+ProtectControlGroups=yes
+ProtectClock=yes
+RestrictNamespaces=yes
+RestrictSUIDSGID=yes
+RestrictAddressFamilies=AF_INET AF_INET6 AF_NETLINK AF_UNIX
+LockPersonality=yes
+SystemCallArchitectures=native
+)",
+                     at_home || shows_a_screen ? "read-only" : "yes",
+                     shows_a_screen ? "no" : "yes");  // the screen's socket is in /tmp
+}
+
+std::string head(const Inventory& inventory, const Host& host, const std::string& description,
+                 bool forever) {
+  return fmt::format(R"(# {}
+[Unit]
+Description={}, lab {}
+Documentation=man:stillhand(1)
+Wants=network-online.target
+After=network-online.target time-sync.target
+PartOf=stillhand.target
+{}
+[Service]
+Type=exec
+User=stillhand
+Restart={}
+RestartSec=1
+)",
+                     generated_note(inventory, host), description, inventory.lab,
+                     "StartLimitIntervalSec=60\nStartLimitBurst=5\n",
+                     forever ? "always" : "on-failure");
+}
+
+std::string command_of(const Inventory& inventory, const Host& host, const Placement& placement) {
+  const std::string folder = installed_folder(inventory);
+  std::string command = fmt::format(
+      "{0}/bin/stillhand-{1} --domain {2} --rig {3} --profiles {4}/profiles.xml "
+      "--config ${{STILLHAND_CONFIG}} --real-time",
+      host.prefix.string(), placement.service, inventory.domain, placement.rig, folder);
+  if (!inventory.security.empty()) command += " --security " + folder + "/security";
+  return command;
+}
+
+// A file of its own for each start: the recorder writes over none.
+std::string recorder_command(const Inventory& inventory, const std::string& command) {
+  return "/bin/sh -c 'exec " + command + " --out /var/lib/stillhand/" + inventory.lab +
+         "/$$(date -u +%%Y%%m%%dT%%H%%M%%SZ).mcap'";
+}
+
+GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placement& placement) {
+  const std::string& rig = inventory.rig(placement.rig).name;
+  const bool screen = placement.service == "display";
+  const bool recorder = placement.service == "recorder";
+  std::string text =
+      head(inventory, host, fmt::format("Stillhand {} of rig {}", placement.service, rig), false);
+  // 2: a setting, file or certificate is refused; trying again mends none.
+  text += "RestartPreventExitStatus=2\n";
+  text += fmt::format("Environment=STILLHAND_CONFIG={}/share/stillhand/deploy/config\n",
+                      host.prefix.string());
+  if (screen) {
+    text +=
+        "# Whose graphical session shows the screen: User, DISPLAY and XAUTHORITY by `systemctl "
+        "edit`.\nEnvironment=DISPLAY=:0\n";
+  }
+  if (recorder) text += "StateDirectory=stillhand/" + inventory.lab + "\n";
+  const std::string command = command_of(inventory, host, placement);
+  text += "ExecStart=" + (recorder ? recorder_command(inventory, command) : command) + "\n";
+  text += fmt::format(
+      "CPUSchedulingPolicy=fifo\nCPUSchedulingPriority={0}\nLimitRTPRIO={0}\n"
+      "LimitMEMLOCK=infinity\n",
+      kPriority);
+  text += hardening(host, screen) + "\n[Install]\nWantedBy=stillhand.target\n";
+  return {fmt::format("stillhand-{}@{}.service", placement.service, rig), std::move(text)};
+}
+
+GeneratedFile server_unit(const Inventory& inventory, const Host& host) {
+  return {"stillhand-discovery.service",
+          head(inventory, host, "Stillhand discovery server", true) +
+              fmt::format("# Of the Debian package fastdds-tools.\n"
+                          "ExecStart=/usr/bin/fast-discovery-server -i 0 -x "
+                          "{}/discovery_server.xml\n",
+                          installed_folder(inventory)) +
+              hardening(host, false) + "\n[Install]\nWantedBy=stillhand.target\n"};
+}
+
+}  // namespace
+
+std::vector<GeneratedFile> units_of(const Inventory& inventory, const Host& host) {
+  std::vector<GeneratedFile> units;
+  if (inventory.discovery == Discovery::kServer && &host == &inventory.hosts.front()) {
+    units.push_back(server_unit(inventory, host));
+  }
+  for (const Placement& placement : host.services) {
+    if (placement.service != "experiment") units.push_back(unit_of(inventory, host, placement));
+  }
+  std::string wants;
+  for (const GeneratedFile& unit : units) wants += "Wants=" + unit.name + "\n";
+  units.push_back({"stillhand.target",
+                   fmt::format("# {}\n[Unit]\nDescription=Stillhand on {}, lab {}\n{}\n[Install]\n"
+                               "WantedBy=multi-user.target\n",
+                               generated_note(inventory, host), host.name, inventory.lab, wants)});
+  return units;
+}
+
+}  // namespace stillhand::deploy

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/generate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "contract/config_error.hpp"
+#include "deploy/host_files.hpp"
+#include "runtime/real_time.hpp"
+#include "unit/deploy/sample_inventory.hpp"
+
+namespace stillhand::deploy {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::UnorderedElementsAre;
+
+namespace fs = std::filesystem;
+
+const LabProfiles& profiles() {
+  static const LabProfiles loaded(STILLHAND_SOURCE "/qos/profiles.xml");
+  return loaded;
+}
+
+Inventory example() { return read_inventory(STILLHAND_SOURCE "/deploy/inventory.example.yaml"); }
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
+  return names;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A unit's settings; of a key that stands several times the values, one a line.
+std::map<std::string, std::string> settings_of(const std::string& unit) {
+  std::map<std::string, std::string> settings;
+  std::istringstream lines(unit);
+  for (std::string line; std::getline(lines, line);) {
+    const auto equals = line.find('=');
+    if (line.empty() || line.front() == '#' || equals == std::string::npos) continue;
+    std::string& value = settings[line.substr(0, equals)];
+    value += (value.empty() ? "" : "\n") + line.substr(equals + 1);
+  }
+  return settings;
+}
+
+std::map<std::string, std::string> unit_named(const Inventory& inventory, const std::string& host,
+                                              const std::string& name) {
+  for (const GeneratedFile& unit : units_of(inventory, *inventory.find_host(host))) {
+    if (unit.name == name) return settings_of(unit.text);
+  }
+  ADD_FAILURE() << "no " << name;
+  return {};
+}
+
+TEST(GenerateTest, EveryHostHasAFolderWithWhatItRuns) {
+  const SampleFolder folder;
+  EXPECT_THAT(generate(example(), profiles(), folder.path() / "made"), IsEmpty());
+  EXPECT_THAT(names_in(folder.path() / "made"),
+              UnorderedElementsAre("rig-pc", "screen-pc", "desk"));
+  EXPECT_THAT(
+      names_in(folder.path() / "made" / "rig-pc"),
+      UnorderedElementsAre("profiles.xml", "firewall.nft", "sysctl.conf", "stillhand.target",
+                           "stillhand-rig@1.service", "stillhand-sensing@1.service",
+                           "stillhand-motion@1.service", "stillhand-cancellation@1.service"));
+}
+
+TEST(GenerateTest, TheExperimentHasNoUnitSinceAPersonStartsIt) {
+  const SampleFolder folder;
+  generate(example(), profiles(), folder.path());
+  EXPECT_THAT(names_in(folder.path() / "desk"), AllOf(Contains("stillhand-recorder@1.service"),
+                                                      Not(Contains(HasSubstr("experiment")))));
+}
+
+TEST(GenerateTest, TheSameInventoryGivesTheSameFiles) {
+  const SampleFolder folder;
+  generate(example(), profiles(), folder.path() / "one");
+  generate(example(), profiles(), folder.path() / "two");
+  for (const std::string host : {"rig-pc", "screen-pc", "desk"}) {
+    const auto names = names_in(folder.path() / "one" / host);
+    ASSERT_EQ(names, names_in(folder.path() / "two" / host));
+    for (const std::string& name : names) {
+      const std::string text = text_of(folder.path() / "one" / host / name);
+      EXPECT_EQ(text, text_of(folder.path() / "two" / host / name)) << name;
+      EXPECT_THAT(text, HasSubstr("from inventory.example.yaml for host " + host)) << name;
+    }
+  }
+}
+
+TEST(GenerateTest, AServiceThatMovedLeavesNoUnitBehindAndOtherFilesStay) {
+  const SampleFolder folder;
+  Inventory inventory = example();
+  generate(inventory, profiles(), folder.path());
+  std::ofstream(folder.path() / "desk" / "notes.txt") << "mine";
+  auto& services = inventory.hosts[2].services;
+  inventory.hosts[1].services.push_back(services.front());
+  services.erase(services.begin());  // identification
+  generate(inventory, profiles(), folder.path());
+  EXPECT_THAT(names_in(folder.path() / "desk"),
+              AllOf(Not(Contains("stillhand-identification@1.service")), Contains("notes.txt")));
+  EXPECT_THAT(names_in(folder.path() / "screen-pc"),
+              Contains("stillhand-identification@1.service"));
+}
+
+TEST(GenerateTest, AFolderOfAHostThatIsGoneIsNamed) {
+  const SampleFolder folder;
+  Inventory inventory = example();
+  generate(inventory, profiles(), folder.path());
+  inventory.hosts.pop_back();
+  EXPECT_THAT(generate(inventory, profiles(), folder.path()), ElementsAre(folder.path() / "desk"));
+}
+
+TEST(GenerateTest, WhereOneHostCannotBeWrittenNothingIs) {
+  const SampleFolder folder;
+  const fs::path made = folder.path() / "made";
+  fs::create_directory(made);
+  std::ofstream(made / "desk") << "a file where the last folder is to be";
+  EXPECT_THROW(generate(example(), profiles(), made), ConfigError);
+  EXPECT_THAT(names_in(made), ElementsAre("desk"));
+}
+
+TEST(UnitsTest, AProcessIsToldItsLabAndRig) {
+  const Inventory inventory = sample_inventory(two_rigs());
+  auto sut = unit_named(inventory, "two", "stillhand-sensing@right.service");
+  EXPECT_THAT(sut["ExecStart"], AllOf(HasSubstr("/bin/stillhand-sensing --domain 3 --rig 7 "),
+                                      HasSubstr("--profiles /etc/stillhand/pair/profiles.xml"),
+                                      HasSubstr("--real-time"), Not(HasSubstr("--security"))));
+  EXPECT_THAT(sut["Description"], HasSubstr("sensing of rig right, lab pair"));
+}
+
+TEST(UnitsTest, KeysAreGivenWhereThereAreSome) {
+  Inventory inventory = example();
+  inventory.security = "hall-3-keys";
+  EXPECT_THAT(unit_named(inventory, "rig-pc", "stillhand-rig@1.service")["ExecStart"],
+              HasSubstr("--security /etc/stillhand/hall-3/security"));
+}
+
+// The process asks for the priority itself, too: both must be the same, and the limit must let it.
+TEST(UnitsTest, ThePriorityIsWhatAProcessAsksFor) {
+  auto sut = unit_named(example(), "rig-pc", "stillhand-rig@1.service");
+  EXPECT_EQ(sut["CPUSchedulingPolicy"], "fifo");
+  EXPECT_EQ(sut["LimitRTPRIO"], sut["CPUSchedulingPriority"]);
+  EXPECT_EQ(sut["LimitMEMLOCK"], "infinity");
+  bool granted = false;
+  sched_param parameter{};
+  std::thread([&] {
+    granted = runtime::become_real_time();
+    sched_getparam(0, &parameter);
+  }).join();
+  if (!granted) GTEST_SKIP() << "no right to SCHED_FIFO here";
+  EXPECT_EQ(sut["CPUSchedulingPriority"], std::to_string(parameter.sched_priority));
+}
+
+TEST(UnitsTest, AProcessThatDiesComesBackButOneThatRefusesItsSettingsDoesNot) {
+  auto sut = unit_named(example(), "rig-pc", "stillhand-rig@1.service");
+  EXPECT_EQ(sut["Restart"], "on-failure");
+  EXPECT_EQ(sut["RestartPreventExitStatus"], "2");
+  EXPECT_FALSE(sut.contains("WatchdogSec"));  // no process notifies systemd
+}
+
+TEST(UnitsTest, TheTargetWantsEveryUnitOfTheHost) {
+  const Inventory inventory = example();
+  EXPECT_EQ(unit_named(inventory, "screen-pc", "stillhand.target")["Wants"],
+            "stillhand-display@1.service\nstillhand-human_operator@1.service");
+}
+
+TEST(UnitsTest, ADiscoveryServerRunsOnTheFirstHostAlone) {
+  Inventory inventory = example();
+  inventory.discovery = Discovery::kServer;
+  EXPECT_THAT(unit_named(inventory, "rig-pc", "stillhand-discovery.service")["ExecStart"],
+              HasSubstr("/etc/stillhand/hall-3/discovery_server.xml"));
+  EXPECT_THAT(unit_named(inventory, "desk", "stillhand.target")["Wants"],
+              Not(HasSubstr("discovery")));
+}
+
+TEST(UnitsTest, AProgramInAHomeCanBeReached) {
+  Inventory inventory = example();
+  EXPECT_EQ(unit_named(inventory, "rig-pc", "stillhand-rig@1.service")["ProtectHome"], "yes");
+  inventory.hosts[0].prefix = "/home/lab/stillhand";
+  EXPECT_EQ(unit_named(inventory, "rig-pc", "stillhand-rig@1.service")["ProtectHome"], "read-only");
+}
+
+TEST(HostFilesTest, TheFirewallLetsTheLabsHostsToItsPortsAlone) {
+  const Inventory inventory = example();
+  const std::string sut = firewall_of(inventory, inventory.hosts[0]).text;
+  // Domain 12, 16 participants: 7400 + 3000, to + 11 + 2 15.
+  EXPECT_THAT(sut, HasSubstr("udp dport 10400-10441 ip saddr != { 127.0.0.0/8, 192.168.7.1, "
+                             "192.168.7.2, 192.168.7.3 } drop"));
+  EXPECT_THAT(sut, HasSubstr("table inet stillhand_hall_3 {"));
+}
+
+TEST(HostFilesTest, TheKernelHasRoomForTheProfilesBuffers) {
+  const Inventory inventory = example();
+  const std::string sut = sysctl_of(inventory, inventory.hosts[0], {1000, 5000}).text;
+  EXPECT_THAT(
+      sut, AllOf(HasSubstr("net.core.rmem_max = 5000\n"), HasSubstr("net.core.wmem_max = 1000\n"),
+                 HasSubstr("net.ipv4.ip_local_reserved_ports = 10400-10441\n")));
+}
+
+}  // namespace
+}  // namespace stillhand::deploy
