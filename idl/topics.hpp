@@ -13,6 +13,7 @@ enum class Pattern {
   kStreamSlow,    ///< "stream_slow": 10 to 60 Hz, newest sample counts, liveliness
   kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last one
   kEvent,         ///< "event": reliable, every one counts
+  kExchange,      ///< "exchange": best effort, what comes late is worth nothing
 };
 
 constexpr std::string_view profile_of(Pattern pattern) {
@@ -25,6 +26,8 @@ constexpr std::string_view profile_of(Pattern pattern) {
       return "state_latched";
     case Pattern::kEvent:
       return "event";
+    case Pattern::kExchange:
+      return "exchange";
   }
   return "";
 }
@@ -35,12 +38,12 @@ inline constexpr std::array<std::string_view, 9> kServices{
     "motion",         "rig",      "sensing",   "cancellation", "display", "human_operator",
     "identification", "recorder", "experiment"};
 
-/// One row of the catalogue.
-struct Topic {
-  std::string_view name;  ///< DDS topic name
 /// Identity of what listens to a secured bus from outside of a session (deploy/security).
 inline constexpr std::string_view kTap = "tap";
 
+/// One row of the catalogue.
+struct Topic {
+  std::string_view name;  ///< DDS topic name
   std::string_view type;  ///< DDS type name
   Pattern pattern;
   double rate_hz;  ///< [Hz] nominal, 0 = when something happens
@@ -69,6 +72,9 @@ inline constexpr std::string_view kTrialReaders[]{"motion",         "rig",     "
 inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};
 inline constexpr std::string_view kModelReaders[]{"cancellation", "experiment", "recorder"};
 inline constexpr std::string_view kAugmentedModelReaders[]{"cancellation", "recorder"};
+inline constexpr std::string_view kAllButExperiment[]{"motion",         "rig",     "sensing",
+                                                      "cancellation",   "display", "human_operator",
+                                                      "identification", "recorder"};
 inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
 inline constexpr std::string_view kStatusReaders[]{"rig", "cancellation", "display", "recorder",
                                                    "experiment"};
@@ -135,12 +141,23 @@ inline constexpr Topic kServiceStatus{"stillhand/service_status",
                                       kServices,
                                       who::kStatusReaders};
 
+inline constexpr Topic kClockQuestion{"stillhand/clock_question", "stillhand_msgs::ClockQuestion",
+                                      Pattern::kExchange,         4.0,
+                                      who::kExperiment,           who::kAllButExperiment};
+inline constexpr Topic kClockAnswer{"stillhand/clock_answer", "stillhand_msgs::ClockAnswer",
+                                    Pattern::kExchange,       4.0,
+                                    who::kAllButExperiment,   who::kEventReaders};
+inline constexpr Topic kClockOffset{"stillhand/clock_offset", "stillhand_msgs::ClockOffset",
+                                    Pattern::kExchange,       1.0,
+                                    who::kExperiment,         who::kAllButExperiment};
+
 /// The whole catalogue; idl/README.md holds the same rows for people (tests/interface compares
 /// them).
-inline constexpr std::array<const Topic*, 14> kCatalogue{
-    &kPlatformCommand,  &kRawSample,      &kRigTruth, &kSensed,       &kMotorCommand,
-    &kTrackingSample,   &kOperatorForce,  &kPointer,  &kTrialControl, &kTrialAssignment,
-    &kFeedthroughModel, &kAugmentedModel, &kEvent,    &kServiceStatus};
+inline constexpr std::array<const Topic*, 17> kCatalogue{
+    &kPlatformCommand,  &kRawSample,      &kRigTruth, &kSensed,        &kMotorCommand,
+    &kTrackingSample,   &kOperatorForce,  &kPointer,  &kTrialControl,  &kTrialAssignment,
+    &kFeedthroughModel, &kAugmentedModel, &kEvent,    &kServiceStatus, &kClockQuestion,
+    &kClockAnswer,      &kClockOffset};
 
 /// Remote control of `stillhand record` and `stillhand replay`: outside of every session, so that
 /// no process waits for them.

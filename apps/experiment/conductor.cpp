@@ -46,6 +46,10 @@ const char* name_of(stillhand_msgs::EventKind kind) {
       return "model loaded";
     case stillhand_msgs::EVENT_INCOMPATIBLE_QOS:
       return "incompatible QoS";
+    case stillhand_msgs::EVENT_CLOCK_STEPPED:
+      return "clock stepped";
+    case stillhand_msgs::EVENT_CLOCK_DRIFTS:
+      return "clock drifts";
     case stillhand_msgs::EVENT_NOTE:
       return "note";
   }

@@ -56,7 +56,8 @@ SessionRecording read_session(const std::string& path) {
       {topics::kFeedthroughModel.name, into(session.models)},
       {topics::kAugmentedModel.name, into(session.augmented_models)},
       {topics::kEvent.name, into(session.events)},
-      {topics::kServiceStatus.name, into(session.statuses)}};
+      {topics::kServiceStatus.name, into(session.statuses)},
+      {topics::kClockOffset.name, into(session.clock_offsets)}};
   const recording::Status status =
       reader.for_each_message({}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);

@@ -7,6 +7,7 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "contract/config_error.hpp"
@@ -46,6 +47,8 @@ struct Bus::Impl {
   Peers peers;
   std::atomic<bool> supervising{false};
   std::vector<std::unique_ptr<detail::Endpoint>> endpoints;
+  std::mutex clock_mutex;
+  std::map<std::string, std::int64_t> clock_offsets_ns;  ///< by service, against the experiment's
   std::map<std::string, edds::Topic*> topics;
   edds::DomainParticipant* participant = nullptr;
   edds::Publisher* publisher = nullptr;
@@ -137,7 +140,8 @@ void Bus::subscribe_serialized(
     throw BusError("no bytes of " + std::string(topic.type) + " to be had");
   }
   const bool stream = topic.pattern == topics::Pattern::kStream1khz ||
-                      topic.pattern == topics::Pattern::kStreamSlow;
+                      topic.pattern == topics::Pattern::kStreamSlow ||
+                      topic.pattern == topics::Pattern::kExchange;
   impl_->open_reader(options_, topic, impl_->carrier(options_, real->support),
                      std::string(stream ? "record_stream" : topics::profile_of(topic.pattern)),
                      std::make_shared<SerializedSample>(),
@@ -195,6 +199,19 @@ std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.dupl
 bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
 bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
 std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
+void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
+  const std::lock_guard lock(impl_->clock_mutex);
+  impl_->clock_offsets_ns[service] = offset_ns;
+  const auto own = impl_->clock_offsets_ns.find(options_.service);
+  const std::int64_t own_ns = own == impl_->clock_offsets_ns.end() ? 0 : own->second;
+  for (const auto& endpoint : impl_->endpoints) {
+    const auto& writers = endpoint->topic().writers;
+    if (endpoint->writes() || writers.size() != 1) continue;
+    const auto writer = impl_->clock_offsets_ns.find(std::string(writers.front()));
+    if (writer != impl_->clock_offsets_ns.end()) endpoint->set_clock_ahead(writer->second - own_ns);
+  }
+}
+
 void Bus::supervise(bool on) noexcept { impl_->supervising.store(on, std::memory_order_relaxed); }
 
 std::vector<EndpointReport> Bus::report() const {

@@ -180,6 +180,10 @@ class Bus {
   /// Names of services whose status writer was alive once and is not now.
   [[nodiscard]] std::vector<std::string> lost_peers() const;
 
+  /// By how much a service's monotonic clock is ahead of the experiment's; latencies of what it
+  /// writes are told with it taken off.  Any thread.
+  void set_clock_offset(const std::string& service, std::int64_t offset_ns);
+
   /// Counts of misses start and stop here: outside a running session an absent sample is no fault.
   void supervise(bool on) noexcept;
   [[nodiscard]] std::vector<EndpointReport> report() const;

@@ -37,6 +37,8 @@ class Endpoint {
   [[nodiscard]] virtual bool enable() = 0;
   /// Deletes a reader, once its running callback has returned; nothing for a writer.
   virtual void close_reader(eprosima::fastdds::dds::Subscriber& /*owner*/) {}
+  /// By how much the writer's monotonic clock is ahead of this process's [ns].
+  virtual void set_clock_ahead(std::int64_t /*ahead_ns*/) noexcept {}
   virtual EndpointReport report() = 0;
   /// Services matched now.
   [[nodiscard]] std::set<std::string> matched_services() const;
@@ -105,6 +107,9 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   void close_reader(eprosima::fastdds::dds::Subscriber& owner) override;
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return false; }
+  void set_clock_ahead(std::int64_t ahead_ns) noexcept override {
+    clock_ahead_ns_.store(ahead_ns, std::memory_order_relaxed);
+  }
 
   eprosima::fastdds::dds::DataReader* reader = nullptr;  // set once, before enable()
 
@@ -130,6 +135,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   std::atomic<std::uint64_t> deadline_misses_{0};
   std::atomic<std::int64_t> last_arrival_ns_{0};
   std::atomic<int> alive_writers_{0};
+  std::atomic<std::int64_t> clock_ahead_ns_{0};
   // Receiving thread only; snapshots leave through the triple buffer.
   signal::CycleMonitor monitor_;
   LatestValue<EndpointReport> snapshot_;

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "idl/clockPubSubTypes.h"
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/modelPubSubTypes.h"
 #include "idl/recordingPubSubTypes.h"
@@ -51,6 +52,9 @@ STILLHAND_MESSAGE(FeedthroughModel)
 STILLHAND_MESSAGE(AugmentedModel)
 STILLHAND_MESSAGE(Event)
 STILLHAND_MESSAGE(ServiceStatus)
+STILLHAND_MESSAGE(ClockQuestion)
+STILLHAND_MESSAGE(ClockAnswer)
+STILLHAND_MESSAGE(ClockOffset)
 STILLHAND_MESSAGE(RecorderCommand)
 STILLHAND_MESSAGE(RecorderStatus)
 STILLHAND_MESSAGE(ReplayCommand)
@@ -65,7 +69,8 @@ const TypeTag* find_type(std::string_view type_name) {
       &type_tag<Sensed>(),          &type_tag<MotorCommand>(),     &type_tag<TrackingSample>(),
       &type_tag<OperatorForce>(),   &type_tag<Pointer>(),          &type_tag<TrialControl>(),
       &type_tag<TrialAssignment>(), &type_tag<FeedthroughModel>(), &type_tag<AugmentedModel>(),
-      &type_tag<Event>(),           &type_tag<ServiceStatus>(),    &type_tag<RecorderCommand>(),
+      &type_tag<Event>(),           &type_tag<ServiceStatus>(),    &type_tag<ClockQuestion>(),
+      &type_tag<ClockAnswer>(),     &type_tag<ClockOffset>(),      &type_tag<RecorderCommand>(),
       &type_tag<RecorderStatus>(),  &type_tag<ReplayCommand>(),    &type_tag<ReplayStatus>()};
   for (const TypeTag* tag : tags) {
     if (tag->support.get_type_name() == type_name) return tag;

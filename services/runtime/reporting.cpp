@@ -109,7 +109,7 @@ void Reporter::publish_status() {
   constexpr std::size_t kRoom = 199;  // string<200> in idl/session.idl
   status.missing(missing.substr(0, kRoom));
   for (const EndpointReport& report : bus_.report()) {
-    if (status.topics().size() < 16) status.topics().push_back(to_idl(report));
+    if (status.topics().size() < 24) status.topics().push_back(to_idl(report));
   }
   complete_(status);
   statuses_.write(status);

@@ -6,10 +6,11 @@
 #include <iostream>
 
 #include "contract/config_error.hpp"
+#include "runtime/clock_answer.hpp"
 #include "runtime/real_time.hpp"
 #include "runtime/reporting.hpp"
-
 #include "runtime/security.hpp"
+
 namespace stillhand::runtime {
 namespace {
 
@@ -31,13 +32,13 @@ stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
   return stillhand_msgs::EVENT_NOTE;
 }
 
-Trial from_idl(const stillhand_msgs::TrialControl& message) {
 void warn_of_expiry(const ServiceOptions& options) {
   if (options.security.empty()) return;
   const std::string warning = expiry_warning({options.security, options.service});
   if (!warning.empty()) std::cerr << "stillhand-" << options.service << ": " << warning << '\n';
 }
 
+Trial from_idl(const stillhand_msgs::TrialControl& message) {
   Trial trial;
   trial.number = message.trial();
   trial.phase = message.phase() == stillhand_msgs::PHASE_PEGGED     ? TrialPhase::kPegged
@@ -73,8 +74,8 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   bus_options.profiles = options_.profiles;
   bus_options.serialized = options_.serialized;
   bus_options.answers_replay = options_.answers_replay;
-  bus_options.on_incident = [this](const BusIncident& incident) {
   bus_options.security = options_.security;
+  bus_options.on_incident = [this](const BusIncident& incident) {
     Note note{event_kind(incident.kind),
               incident.topic,
               tick_.load(std::memory_order_relaxed),
@@ -88,7 +89,8 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   };
   bus_ = std::make_unique<Bus>(std::move(bus_options));
   reporting_ = std::make_unique<Reporting>(*this, *bus_);
-  if (options_.service == "experiment") return;  // it writes the topic
+  if (options_.service == "experiment") return;  // it writes the topics
+  answer_clock_questions(*bus_);
   bus_->subscribe<stillhand_msgs::TrialControl>(
       topics::kTrialControl, [this](const stillhand_msgs::TrialControl& message, const Arrival&) {
         bus_->supervise(message.session() == stillhand_msgs::SESSION_RUNNING);
@@ -152,10 +154,10 @@ int run_service(const std::string& name, int argc, char** argv,
   cli.add_option("--config", options.config, "folder with the settings of each service")
       ->required();
   cli.add_option("--out", options.out, "folder or file this process may write");
-  cli.add_flag("--real-time", options.real_time, "ask for SCHED_FIFO");
-  cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
   cli.add_option("--security", options.security,
                  "folder of certificates (deploy/security/make.sh); none: no security");
+  cli.add_flag("--real-time", options.real_time, "ask for SCHED_FIFO");
+  cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
   if (more_options) more_options(cli, options);
   try {
     cli.parse(argc, argv);
@@ -167,9 +169,9 @@ int run_service(const std::string& name, int argc, char** argv,
     Stop stop;
     if (options.real_time) options.real_time = become_real_time();
     Service service(options, stop);
+    warn_of_expiry(options);
     body(service);
     return 0;
-    warn_of_expiry(options);
   } catch (const ConfigError& error) {
     std::cerr << "stillhand-" << name << ": " << error.what() << '\n';
     return 2;

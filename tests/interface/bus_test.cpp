@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "contract/config_error.hpp"
+#include "idl/clock.h"
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "idl/session.h"
@@ -63,6 +64,9 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
   expect_delivery<AugmentedModel>(topics::kAugmentedModel);
   expect_delivery<Event>(topics::kEvent);
   expect_delivery<ServiceStatus>(topics::kServiceStatus);
+  expect_delivery<ClockQuestion>(topics::kClockQuestion);
+  expect_delivery<ClockAnswer>(topics::kClockAnswer);
+  expect_delivery<ClockOffset>(topics::kClockOffset);
 }
 
 TEST(BusTest, ALateJoinerGetsTheLatchedState) {

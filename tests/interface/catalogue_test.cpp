@@ -96,7 +96,7 @@ TEST(CatalogueTest, EveryTypeIsDefinedInTheIdlThatTravelsWithRecordings) {
     const std::string name(topic->type.substr(topic->type.rfind(':') + 1));
     const std::string wanted = "struct " + name + " {";
     int found = 0;
-    for (const auto text : {kControlLoopIdl, kSessionIdl, kModelIdl, kRecordingIdl}) {
+    for (const auto text : {kControlLoopIdl, kSessionIdl, kModelIdl, kClockIdl, kRecordingIdl}) {
       if (text.find(wanted) != std::string_view::npos) ++found;
     }
     EXPECT_EQ(found, 1) << topic->type;
@@ -104,7 +104,7 @@ TEST(CatalogueTest, EveryTypeIsDefinedInTheIdlThatTravelsWithRecordings) {
 }
 
 TEST(CatalogueTest, EveryFieldOfEveryStructHasItsUnitInAComment) {
-  for (const auto text : {kControlLoopIdl, kSessionIdl, kModelIdl, kRecordingIdl}) {
+  for (const auto text : {kControlLoopIdl, kSessionIdl, kModelIdl, kClockIdl, kRecordingIdl}) {
     std::istringstream lines{std::string(text)};
     bool in_struct = false;
     for (std::string line; std::getline(lines, line);) {
