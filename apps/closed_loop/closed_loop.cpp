@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contract/config_error.hpp"
 #include "contract/expects.hpp"
 
 namespace stillhand::closed_loop {
@@ -24,16 +25,16 @@ class Loop {
   void paper_trials();
   /// False: nothing more to do.
   bool round();
-  void try_model(Round& round, const AugmentedModel& model);
+  void try_model(Round& round, std::string why_not);
   [[nodiscard]] const TrialRun& newest_cancelled() const;
   [[nodiscard]] bool anything_new() const;
-  [[nodiscard]] double best_error_mm() const { return result_.plus().metrics.rms_error_mm; }
 
   Session& session_;
   const LoopOptions& options_;
   LoopResult result_;
   experiment::PlannedTrial cancelled_{};
   std::int64_t last_number_ = 0;
+  double best_error_mm_ = 0.0;  ///< C's, then that of the C+ that was kept last
 };
 
 void Loop::paper_trials() {
@@ -46,34 +47,50 @@ void Loop::paper_trials() {
       result_.control_model = cancellation::augmented(result_.paper_model.control);
     }
     last_number_ = planned.trial.number;
-    if (planned.cancellation) cancelled_ = planned;
+    if (planned.cancellation) {
+      cancelled_ = planned;
+      best_error_mm_ = result_.trials.back().metrics.rms_error_mm;
+    }
   }
 }
 
 // The same trial again: same motion, same target, another model.
-void Loop::try_model(Round& round, const AugmentedModel& model) {
-  AugmentedModel followed = model;
-  followed.adapts = options_.hand;
-  if (const std::string refused = session_.use(followed); !refused.empty()) {
-    round.outcome = "the canceller refused the model: " + refused + "; the last good one stays";
-    return;
+void Loop::try_model(Round& round, std::string why_not) {
+  const auto followed = [&](AugmentedModel model) {
+    model.adapts = options_.hand;
+    return model;
+  };
+  AugmentedModel model = followed(round.verdict.control.model);
+  if (why_not.empty()) {
+    const std::string refused = session_.use(model);
+    round.augmented = refused.empty();
+    if (!refused.empty()) why_not = "the canceller refused the model (" + refused + ")";
+  }
+  // What can't be carried or explained isn't put into a motor: gain and phase are followed, no
+  // more.
+  if (!round.augmented) {
+    model = followed(cancellation::augmented(result_.paper_model.control));
+    if (const std::string refused = session_.use(model); !refused.empty()) {
+      throw ConfigError("the paper's model", refused, "one that the canceller takes");
+    }
+    round.outcome = why_not + ": the paper's model stays, gain and phase are followed; ";
   }
   cancelled_.trial.number = ++last_number_;
   step("trial C+");
   round.trial = session_.run(cancelled_, "C+");
-  round.kept = round.trial->metrics.rms_error_mm < best_error_mm();
+  round.kept = round.trial.metrics.rms_error_mm < best_error_mm_;
   if (round.kept) {
-    result_.control_model = followed;
-    round.outcome = "the hand is stiller: kept";
+    best_error_mm_ = round.trial.metrics.rms_error_mm;
+    result_.control_model = model;
+    round.outcome += "the hand is stiller: kept";
   } else {
     session_.use(result_.control_model);
-    round.outcome = "the hand isn't stiller: the last good model stays";
+    round.outcome += "the hand isn't stiller: the last good model stays";
   }
 }
 
 const TrialRun& Loop::newest_cancelled() const {
-  const bool again = !result_.rounds.empty() && result_.rounds.back().trial;
-  return again ? *result_.rounds.back().trial : result_.trial("C");
+  return result_.rounds.empty() ? result_.trial("C") : result_.rounds.back().trial;
 }
 
 // I and B stay as they are: what C+ can tell anew is how late its motor and load cell are.
@@ -98,18 +115,17 @@ bool Loop::round() {
                           &newest_cancelled().measured};
   Round round;
   options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
-  // What can't be explained isn't put into a motor: gain and phase are followed, no more.
   std::string why_not = round.verdict.not_carried;
   if (why_not.empty() && round.verdict.findings.empty() &&
       round.verdict.body.verdict() == "unexplained residual") {
     why_not = "something is missing that no kind explains";
   }
-  try_model(round, why_not.empty() ? round.verdict.control.model
-                                   : cancellation::augmented(result_.paper_model.control));
-  if (!why_not.empty()) round.outcome = why_not + ": the paper's model stays; " + round.outcome;
+  try_model(round, why_not);
   const bool kept = round.kept;
   result_.rounds.push_back(std::move(round));
-  if (kept) result_.final_round = result_.rounds.size() - 1;
+  const auto error = [&](std::size_t n) { return result_.rounds[n].trial.metrics.rms_error_mm; };
+  const std::size_t newest = result_.rounds.size() - 1;
+  if (error(newest) < error(result_.final_round)) result_.final_round = newest;
   return kept;
 }
 
@@ -126,13 +142,6 @@ const TrialRun& LoopResult::trial(const std::string& label) const {
   const auto found = std::ranges::find(trials, label, &TrialRun::label);
   STILLHAND_EXPECTS(found != trials.end());
   return *found;
-}
-
-const TrialRun& LoopResult::plus() const {
-  for (std::size_t i = rounds.size(); i-- > 0;) {
-    if (rounds[i].kept) return *rounds[i].trial;
-  }
-  return trial("C");
 }
 
 LoopResult close_loop(Session& session, const LoopOptions& options) {

@@ -27,21 +27,22 @@ struct LoopOptions {
 /// One way through diagnosis, augmentation and C+.
 struct Round {
   Verdict verdict;
-  std::optional<TrialRun> trial;  ///< C+; empty: the model was refused
-  bool kept = false;              ///< C+ beat the best before it
-  std::string outcome;            ///< one sentence
+  TrialRun trial;          ///< C+
+  bool augmented = false;  ///< it ran with the verdict's model; else the paper's, followed
+  bool kept = false;       ///< C+ beat the best before it
+  std::string outcome;     ///< one sentence
 };
 
 struct LoopResult {
   identification::FeedthroughModel paper_model;
   std::vector<TrialRun> trials;                ///< I, then A, B, C in the order in which they ran
   std::vector<Round> rounds;                   ///< at least one
-  std::size_t final_round = 0;                 ///< whose C+ counts: the best one's
+  std::size_t final_round = 0;                 ///< whose C+ counts: the best that ran
   cancellation::AugmentedModel control_model;  ///< that the best trial ran with
 
   [[nodiscard]] const TrialRun& trial(const std::string& label) const;
-  /// C+ of the final round; C where no C+ was better.
-  [[nodiscard]] const TrialRun& plus() const;
+  /// C+ of the final round, whether or not it was better than C.
+  [[nodiscard]] const TrialRun& plus() const { return rounds[final_round].trial; }
   [[nodiscard]] const Verdict& verdict() const { return rounds[final_round].verdict; }
 };
 

@@ -9,6 +9,7 @@
 #include "cancellation/model_file.hpp"
 #include "closed_loop/live_session.hpp"
 #include "closed_loop/output.hpp"
+#include "contract/config_error.hpp"
 #include "diagnose/on_all_cores.hpp"
 #include "diagnosis/model_file.hpp"
 #include "experiment/lab.hpp"
@@ -60,6 +61,11 @@ void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFold
 
 void run_in_process(const Words& words) {
   runtime::Stop stop;
+  // A recording is not for us to take away, and isn't this run's.
+  if (std::filesystem::exists(words.lab.out / "session.mcap")) {
+    throw ConfigError("--out", words.lab.out.string() + ", which holds a session's recording",
+                      "a folder of its own");
+  }
   report::StagedFolder folder(words.lab.out);
   report::require_gnuplot();
   LoopRecord record = new_record(words);
@@ -154,11 +160,13 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   verb->add_option("--identify-seconds", lab.protocol.identify_s,
                    "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
-  verb->add_flag("--live", words->live,
-                 "over DDS, with every process, in real time; the recording is kept");
+  CLI::Option* live = verb->add_flag(
+      "--live", words->live, "over DDS, with every process, in real time; the recording is kept");
   verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
+      ->needs(live)
       ->capture_default_str();
   verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
+      ->needs(live)
       ->capture_default_str();
   verb->callback([words, &status] {
     words->live ? run_live(*words) : run_in_process(*words);

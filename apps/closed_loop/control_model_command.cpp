@@ -81,9 +81,7 @@ void add_control_model_command(CLI::App& cli, int& status) {
   verb->add_option("--save", words->save, "file of the control model")
       ->required()
       ->check(report::check_name);
-  verb->add_option("--rig", words->rig, "number of the rig that it is for")
-      ->check(CLI::Range(1, 99))
-      ->capture_default_str();
+  verb->add_option("--rig", words->rig, "number of the rig that it is for")->capture_default_str();
   verb->add_option("--lead-ms", words->lead_ms,
                    "how late the motor is [ms]: the prediction comes sooner by as much")
       ->check(CLI::Range(0.0, 100.0))

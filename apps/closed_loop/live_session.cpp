@@ -109,9 +109,7 @@ void judge_cancellation(const std::filesystem::path& recording,
     run.counterforce_delay_s = trial->counterforce_delay_s.value_or(0.0);
   };
   for (TrialRun& run : result.trials) add(run);
-  for (Round& round : result.rounds) {
-    if (round.trial) add(*round.trial);
-  }
+  for (Round& round : result.rounds) add(round.trial);
 }
 
 }  // namespace stillhand::closed_loop

@@ -78,21 +78,20 @@ ordered_json latency_json(const std::optional<Latency>& latency) {
 ordered_json round_json(const Round& round) {
   ordered_json treatments = ordered_json::array();
   for (const Treatment& each : round.verdict.control.treatments) {
-    treatments.push_back({{"kind", each.kind}, {"cancelled", each.cancelled}, {"how", each.how}});
+    treatments.push_back({{"kind", each.kind},
+                          {"cancelled", each.cancelled && round.augmented},
+                          {"how", round.augmented ? each.how : round.outcome}});
   }
   ordered_json json{{"findings", findings_json(round.verdict)},
                     {"treatments", treatments},
                     {"conversion_error", round.verdict.control.conversion_error},
                     {"latency", latency_json(round.verdict.latency)},
+                    {"augmented", round.augmented},
                     {"kept", round.kept},
                     {"outcome", round.outcome},
-                    {"rms_error_mm", nullptr},
+                    {"rms_error_mm", number(round.trial.metrics.rms_error_mm)},
                     {"weights", nullptr}};
-  if (round.trial) {
-    json["rms_error_mm"] = number(round.trial->metrics.rms_error_mm);
-    const auto& weights = round.trial->weights;
-    if (!weights.empty()) json["weights"] = weights.back();
-  }
+  if (!round.trial.weights.empty()) json["weights"] = round.trial.weights.back();
   return json;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "closed_loop/output.hpp"
+#include "diagnose/wording.hpp"
 #include "diagnosis/core/evaluation.hpp"
 #include "diagnosis/core/working_set.hpp"
 #include "experiment/paper_table.hpp"
@@ -27,11 +28,10 @@ struct Shown {
 };
 
 std::vector<Shown> shown(const LoopResult& result) {
-  std::vector<Shown> list{{&result.trial("A"), Colour::kConditionA},
-                          {&result.trial("B"), Colour::kConditionB},
-                          {&result.trial("C"), Colour::kConditionC}};
-  if (result.plus().label == "C+") list.push_back({&result.plus(), Colour::kConditionCPlus});
-  return list;
+  return {{&result.trial("A"), Colour::kConditionA},
+          {&result.trial("B"), Colour::kConditionB},
+          {&result.trial("C"), Colour::kConditionC},
+          {&result.plus(), Colour::kConditionCPlus}};
 }
 
 // Bars of one metric, a condition each.
@@ -241,21 +241,24 @@ report::Table prediction_table(const Verdict& verdict) {
   };
   row("linear, of a_y", verdict.body.baseline_error, "");
   for (const diagnosis::FoundEffect& effect : verdict.body.effects) {
-    row("+ " + effect.effect.kind, effect.after, effect.evidence);
+    row("+ " + effect.effect.kind, effect.after, diagnose::shown_sentence(effect.evidence, "N"));
   }
   table.rows.push_back({"noise floor", number(verdict.body.noise_floor.rmse, 4), "", ""});
   return table;
 }
 
-report::Table treatment_table(const Verdict& verdict) {
+report::Table treatment_table(const Round& round) {
+  const Verdict& verdict = round.verdict;
   report::Table table;
   table.caption = "What the canceller makes of it";
   table.header = {"effect", "cancelled", "how"};
   table.align = {report::Align::kLeft, report::Align::kLeft, report::Align::kLeft};
   for (const Treatment& each : verdict.control.treatments) {
     table.rows.push_back(
-        {each.kind, each.cancelled ? Cell("yes", Emphasis::kGood) : Cell("no", Emphasis::kFaint),
-         each.how});
+        {each.kind,
+         each.cancelled && round.augmented ? Cell("yes", Emphasis::kGood)
+                                           : Cell("no", Emphasis::kFaint),
+         round.augmented ? each.how : "C+ ran without it: the model was not taken"});
   }
   return table;
 }
@@ -301,7 +304,8 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
   if (!findings.empty()) page.list(findings);
   page.table(prediction_table(verdict));
   page.figure(drawings.at(1));
-  if (!verdict.control.treatments.empty()) page.table(treatment_table(verdict));
+  if (!verdict.control.treatments.empty())
+    page.table(treatment_table(result.rounds[result.final_round]));
   if (verdict.latency) {
     page.paragraph("Delay from the motor's command to the force: " +
                    number(1e3 * verdict.latency->motor_s, 1) + " ms, of the load cell " +
@@ -316,13 +320,11 @@ report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawi
                   report::Align::kRight, report::Align::kLeft};
   for (std::size_t i = 0; i < result.rounds.size(); ++i) {
     const Round& each = result.rounds[i];
-    std::vector<Cell> row{std::to_string(i + 1), "–", "–", "–", each.outcome};
-    if (each.trial) {
-      row[1] = number(each.trial->metrics.rms_error_mm, 1);
-      if (const auto& weights = each.trial->weights; !weights.empty()) {
-        row[2] = number(weights.back()[0], 2);
-        row[3] = number(weights.back()[1], 2);
-      }
+    std::vector<Cell> row{std::to_string(i + 1), number(each.trial.metrics.rms_error_mm, 1), "–",
+                          "–", each.outcome};
+    if (const auto& weights = each.trial.weights; !weights.empty()) {
+      row[2] = number(weights.back()[0], 2);
+      row[3] = number(weights.back()[1], 2);
     }
     rounds.rows.push_back(row);
   }

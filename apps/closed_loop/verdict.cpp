@@ -7,6 +7,7 @@
 
 #include "contract/config_error.hpp"
 #include "contract/tick.hpp"
+#include "diagnose/wording.hpp"
 #include "diagnosis/core/working_set.hpp"
 #include "measurement/grid.hpp"
 
@@ -90,7 +91,8 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
   out.body = diagnosis::diagnose(measurement, own);
   for (const diagnosis::FoundEffect& effect : out.body.effects) {
     out.findings.push_back({effect.effect.kind, effect.channel, "body", explained(effect),
-                            effect.before.rmse, effect.after.rmse, effect.evidence});
+                            effect.before.rmse, effect.after.rmse,
+                            diagnose::shown_sentence(effect.evidence, "N")});
   }
   const diagnosis::Signals signals(diagnosis::working_set(measurement, own.inputs), own.inputs,
                                    own.output);
@@ -107,7 +109,8 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
     // Whatever shape a late cell gives the stick's equation has been told already.
     if (cell_late || explained(effect) < kWorthDrive_n) continue;
     out.findings.push_back({effect.effect.kind, effect.channel, "drive", explained(effect),
-                            effect.before.rmse, effect.after.rmse, effect.evidence});
+                            effect.before.rmse, effect.after.rmse,
+                            diagnose::shown_sentence(effect.evidence, "N")});
     if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);
   }
   std::ranges::stable_sort(out.findings, std::ranges::greater{}, &Finding::explained_n);

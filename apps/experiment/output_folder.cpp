@@ -15,10 +15,25 @@
 namespace stillhand::experiment {
 namespace {
 
-// Everything that a session writes, logs aside.
-constexpr const char* kResults[]{
-    "session.mcap", "summary.json",           "model.json",
-    "screen.avi",   "undeclared_effect.json", "undeclared_effect.sha256"};
+// Everything that a session writes, logs aside, and what the closed loop adds: a report of another
+// session beside a new recording would be believed.
+constexpr const char* kResults[]{"session.mcap",
+                                 "summary.json",
+                                 "model.json",
+                                 "screen.avi",
+                                 "undeclared_effect.json",
+                                 "undeclared_effect.sha256",
+                                 "control_model.json",
+                                 "verdict.json",
+                                 "report.html",
+                                 "tracking.svg",
+                                 "tracking.png",
+                                 "force.svg",
+                                 "force.png",
+                                 "adaptation.svg",
+                                 "adaptation.png",
+                                 "motion.svg",
+                                 "motion.png"};
 
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;

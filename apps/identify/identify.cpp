@@ -140,11 +140,14 @@ void fit(const identification::Record& recorded, const identification::Record& f
     out.model.control = steps.control.model;
     out.model.conversion_error = steps.control.max_error;
     out.model.refined = steps.refined_used;
-    out.why_refined = steps.refined_used && config.refine ? "as asked for" : steps.paper_unusable;
+    out.why_refined = steps.refined_used && config.refine  ? "as asked for"
+                      : steps.paper_unusable == "unstable" ? "the paper's fit is unstable"
+                                                           : steps.paper_unusable;
   } catch (const ConfigError& error) {
     out.unusable = error.what();
     out.model.refined = config.refine || !paper.stable;
-    if (out.model.refined) out.why_refined = config.refine ? "as asked for" : "unstable";
+    if (out.model.refined)
+      out.why_refined = config.refine ? "as asked for" : "the paper's fit is unstable";
   }
   if (out.model.refined) {
     const auto refined = identification::refine_output_error(fitted, paper.model);
@@ -189,6 +192,7 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   identification::Record recorded = record_of(measurement, input, output, used);
   check_moves(input, recorded.acceleration_m_s2, measurement.source);
   check_moves(output, recorded.force_n, measurement.source);
+  const bool same = recorded.force_n == recorded.acceleration_m_s2;
   IdentifyResult out;
   out.source = measurement.source;
   out.input = input.name;
@@ -205,6 +209,11 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   divide(recorded.acceleration_m_s2, scale);
   identification::Record fitted = identification::preprocessed(recorded);
   check_excitation(fitted, options, measurement.source);
+  if (same) {
+    throw ConfigError(measurement.source,
+                      "'" + output.name + "' with the values of '" + input.name + "'",
+                      "a measured answer to the input");
+  }
   fit(recorded, fitted, options.config, out);
   divide(out.model.fit.numerator, scale);
   divide(out.model.control.numerator, scale);

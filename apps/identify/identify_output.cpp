@@ -138,7 +138,9 @@ std::string result_table(const IdentifyResult& result) {
         result.model.fit.rate_hz);
   print(text, "model              order %zu, %s\n", result.model.fit.order(),
         result.model.refined ? "refined on its free-run error" : "the paper's least squares");
-  if (result.model.refined) text += "                   (" + result.why_refined + ")\n";
+  if (result.model.refined) {
+    text += "                   (" + result.why_refined + ")\n";
+  }
   print_coefficients(text, result);
   print_quality(text, result);
   return text;

@@ -102,7 +102,7 @@ void StagedFolder::publish(const std::vector<std::string>& own) {
   for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
     const fs::path target = out_ / file.path().filename();
     if (fs::is_directory(target)) {
-      throw std::runtime_error(target.string() + ": a folder stands where a file is to be");
+      throw ConfigError(option_, target.string() + ", a folder", "no folder where a file is to be");
     }
   }
   for (const std::string& name : own) {

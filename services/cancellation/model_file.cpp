@@ -31,6 +31,9 @@ Json json_of(const ValueMap& map) {
 ValueMap map_of(const Entry& entry) {
   if (entry.is_null()) return {};
   entry.allow_only({"low", "high", "values"});
+  if (entry.at("high").number() <= entry.at("low").number()) {
+    entry.at("high").refuse("a number above low");
+  }
   return {entry.at("low").number(), entry.at("high").number(),
           entry.at("values").numbers(2, ValueTable::kMostValues)};
 }
@@ -137,6 +140,7 @@ AugmentedModel parse_control_model(std::string_view json, const std::string& ori
   model.output = map_of(top.at("output"));
   for (const Entry& path : top.at("paths").entries(0, kMostParts)) {
     path.allow_only({"channel", "lag_s", "map", "gain"});
+    if (path.at("lag_s").number() < 0.0) path.at("lag_s").refuse("0 or more");
     model.paths.push_back({channel_of(path.at("channel")), path.at("lag_s").number(),
                            map_of(path.at("map")), path.at("gain").number()});
   }
@@ -147,6 +151,7 @@ AugmentedModel parse_control_model(std::string_view json, const std::string& ori
       to.channel = channel_of(channel);
     }
     to.frequency = wave.at("frequency").number();
+    if (to.frequency < 0.0) wave.at("frequency").refuse("0 or more");
     to.sine_n = wave.at("sine_n").number();
     to.cosine_n = wave.at("cosine_n").number();
   }

@@ -13,7 +13,7 @@ namespace stillhand::cancellation {
 inline constexpr int kModelFormatVersion = 1;
 
 /// JSON text of a model at the control rate, README "Model file".  Numbers keep every bit.
-/// @param rig  number of the rig whose hand it was identified on, 1 to 99
+/// @param rig  number of the rig whose hand it was identified on
 std::string control_model_json(const AugmentedModel& model, std::uint32_t rig);
 
 /// Reads it back.  The text has no say in limits: what a model may ask for is for require_sound(),

@@ -72,12 +72,13 @@ Status FileSink::flush() {
 }
 
 FileSource::FileSource(const std::string& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    // A pipe without a writer would be waited for, with every signal blocked.
+    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   if (descriptor_ < 0) throw ConfigError(path, reason(errno), "a file that can be read");
   struct stat facts {};
   if (::fstat(descriptor_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
     ::close(descriptor_);
-    throw ConfigError(path, "no regular file", "a recording");
+    throw ConfigError(path, "no regular file", "a file");
   }
   size_ = static_cast<std::uint64_t>(facts.st_size);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "contract/config_error.hpp"
 
@@ -77,11 +78,25 @@ void JsonEntry::refuse(const std::string& want) const {
 
 JsonEntry::Json parsed_json(std::string_view json, const std::string& origin,
                             const std::string& want) {
+  using Json = JsonEntry::Json;
+  std::vector<std::set<std::string>> open;  // keys of each object that is being read
+  const auto look = [&](int /*depth*/, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) open.emplace_back();
+    if (event == Json::parse_event_t::object_end) open.pop_back();
+    if (event == Json::parse_event_t::key &&
+        !open.back().insert(parsed.get<std::string>()).second) {
+      throw ConfigError(origin, "the entry \"" + parsed.get<std::string>() + "\" twice", "it once");
+    }
+    return true;
+  };
   try {
-    return JsonEntry::Json::parse(json);
-  } catch (const JsonEntry::Json::exception& error) {
-    // The library's text names line and column, or the number that does not fit a double.
-    throw ConfigError(origin, error.what(), want);
+    return Json::parse(json, look);
+  } catch (const Json::exception& error) {
+    // The library's text names line and column, or the number that does not fit a double; its own
+    // name stands before, in brackets.
+    const std::string text = error.what();
+    const std::size_t bracket = text.find("] ");
+    throw ConfigError(origin, bracket == std::string::npos ? text : text.substr(bracket + 2), want);
   }
 }
 

@@ -124,6 +124,12 @@ class CloseTheLoopTest(unittest.TestCase):
             self.assertIn(str(file), ran.stderr)
             self.assertIn(word, ran.stderr)
             self.assertFalse(lab.exists())
+        pipe = self.out.parent / "pipe"
+        os.mkfifo(pipe)  # nobody writes it: waiting for that would be for ever
+        for verb in (["lab", "--out", lab, "--headless", "--model"], ["diagnose"], ["info"], ["identify"]):
+            ran = subprocess.run([STILLHAND, *verb, pipe], capture_output=True, text=True, timeout=20)
+            self.assertEqual(ran.returncode, 2, verb)
+            self.assertIn("no regular file", ran.stderr)
 
     def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
         summary = self.summary()
@@ -136,11 +142,17 @@ class CloseTheLoopTest(unittest.TestCase):
     def test_wrong_words_are_refused_before_anything_runs(self):
         taken = self.out.parent / "file"
         taken.write_text("mine\n")
+        recorded = self.out.parent / "recorded"
+        recorded.mkdir()
+        (recorded / "session.mcap").write_text("mine\n")
         for arguments, word in (([*SHORT, "--out", taken], "--out"),
                                 (["--trial-seconds", "1", "--out", self.out], "trial"),
                                 (["--identify-seconds", "nan", "--out", self.out], "identif"),
                                 (["--seed", "-4", "--out", self.out], "--seed"),
                                 (["--undeclared-effect", "x", "--out", self.out], "--undeclared-effect"),
+                                ([*SHORT, "--domain", 5, "--out", self.out], "--live"),
+                                ([*SHORT, "--rig", 5, "--out", self.out], "--live"),
+                                ([*SHORT, "--out", recorded], "recording"),
                                 ([*SHORT], "--out")):
             ran = close_the_loop(*arguments)
             self.assertEqual(ran.returncode, 2, arguments)
@@ -148,6 +160,7 @@ class CloseTheLoopTest(unittest.TestCase):
             self.assertIn(word, ran.stderr)
             self.assertFalse(self.out.exists())
         self.assertEqual(taken.read_text(), "mine\n")
+        self.assertEqual([file.name for file in recorded.iterdir()], ["session.mcap"])
 
     def test_ctrl_c_leaves_nothing(self):
         process = subprocess.Popen([STILLHAND, "close-the-loop", *SHORT, "--out", str(self.out)],

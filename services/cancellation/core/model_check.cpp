@@ -167,31 +167,43 @@ double gain_bound(Channel channel, const ModelBounds& bounds) {
   return bounds.max_gain_n_s2_m * (channel == Channel::kRoll ? kGravity_m_s2 : 1.0);
 }
 
-// True for a NaN, too.
-bool too_strong(const DirectPath& path, const ModelBounds& bounds) {
-  if (of_stick(path.channel)) return !(greatest(path) <= bounds.max_path_force_n);
-  const double slope = std::abs(path.gain) * slopes_of(path.map).steepest();
-  return !(slope <= gain_bound(path.channel, bounds));
+// What a path may ask for at most, in the terms of gain_bound().
+double gain_of(const DirectPath& path) {
+  if (of_stick(path.channel)) return greatest(path) / full_scale(path.channel);
+  return std::abs(path.gain) * slopes_of(path.map).steepest();
 }
 
+// Paths of one channel add up, and so do waves: what each may not ask for, all together may not.
 Refusal check_strength(const AugmentedModel& model, const std::vector<std::complex<double>>& poles,
                        const ModelBounds& bounds) {
   const double behind = slopes_of(model.output).steepest();
+  std::array<double, kChannels> gains{};
   for (const InputPath& input : model.inputs) {
-    const double gain =
+    gains[static_cast<std::size_t>(input.channel)] +=
         peak_gain(path_model(model, input), poles) * slopes_of(input.map).steepest() * behind;
-    // Also refuses a NaN gain.
-    if (!(gain <= gain_bound(input.channel, bounds))) {
-      return input.channel == Channel::kAccelY ? Refusal::kGain : Refusal::kPath;
-    }
   }
   for (const DirectPath& path : model.paths) {
-    if (too_strong(path, bounds)) return Refusal::kPath;
+    gains[static_cast<std::size_t>(path.channel)] += gain_of(path);
   }
-  for (const Wave& wave : model.waves) {
-    if (!(std::hypot(wave.sine_n, wave.cosine_n) <= bounds.max_path_force_n)) return Refusal::kPath;
+  // Written so that a NaN is refused, too.
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const auto channel = static_cast<Channel>(i);
+    if (gains[i] <= gain_bound(channel, bounds)) continue;
+    return channel == Channel::kAccelY ? Refusal::kGain : Refusal::kPath;
   }
-  return Refusal::kNone;
+  double waves_n = 0.0;
+  for (const Wave& wave : model.waves) waves_n += std::hypot(wave.sine_n, wave.cosine_n);
+  return waves_n <= bounds.max_path_force_n ? Refusal::kNone : Refusal::kPath;
+}
+
+// What the model asks for while nothing moves, once it has settled; waves are bounded elsewhere.
+bool rests(const AugmentedModel& model, std::int64_t settle) {
+  AugmentedModel still = model;
+  still.waves.clear();
+  ModelFilter filter(still, settle);
+  ModelFilter::Force force{};
+  for (Tick tick = 0; tick < 2 * settle + 10; ++tick) force = filter.step(ChannelSample{}, tick);
+  return std::abs(force.feedthrough_n) + std::abs(force.beside_n) <= kMaxRest_n;
 }
 
 // 1 + sum (d_i - slope * path_i) q^-i.
@@ -275,6 +287,7 @@ ModelCheck checked(const AugmentedModel& model, const ModelBounds& bounds) {
   if (const Refusal why = check_loop(model, settle, bounds); why != Refusal::kNone) {
     return refused(why);
   }
+  if (!rests(model, settle)) return refused(Refusal::kRest);
   if (model.adapts && !is_hand(*model.adapts)) return refused(Refusal::kCompliance);
   return {Refusal::kNone, settle};
 }
@@ -286,7 +299,8 @@ std::string_view describe(Refusal refusal) noexcept {
     case Refusal::kNone:
       return "model taken";
     case Refusal::kMalformed:
-      return "model is empty, its sizes differ, or its denominator doesn't start with 1";
+      return "model is empty, its sizes differ, its denominator doesn't start with 1, or a lag, a "
+             "frequency or a table's ends are out of order";
     case Refusal::kNotFinite:
       return "a coefficient is not a finite number";
     case Refusal::kWrongRate:
@@ -305,6 +319,8 @@ std::string_view describe(Refusal refusal) noexcept {
       return "a further channel, a path beside the body or a wave is stronger than its bound";
     case Refusal::kLoop:
       return "the spring inside the body isn't stable at all its slopes, or doesn't die away";
+    case Refusal::kRest:
+      return "model asks for a force while nothing moves";
     case Refusal::kCompliance:
       return "mass, damping, stiffness or lever of the hand are out of range";
   }

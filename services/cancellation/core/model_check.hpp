@@ -25,6 +25,7 @@ enum class Refusal : std::uint8_t {
   kTooMany,     ///< more inputs, paths, waves or table values than ModelFilter has room for
   kPath,        ///< a further channel, a path beside the body or a wave above its bound
   kLoop,        ///< the spring inside the body: unstable at one of its slopes, or in a trial run
+  kRest,        ///< a force above kMaxRest_n while nothing moves
   kCompliance,  ///< the hand that the adaptation counts on is none
 };
 /// One line for a person.
@@ -34,10 +35,13 @@ std::string_view describe(Refusal refusal) noexcept;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.
 inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
+/// [N] Feedthrough is what motion does: a model that pushes without any is none.
+inline constexpr double kMaxRest_n = 1.0;
+
 /// What a model may ask for at most; from the process's own settings.
 struct ModelBounds {
   double max_gain_n_s2_m;   ///< |H| from an acceleration; from roll as much for each g it tips over
-  double max_path_force_n;  ///< from theta and omega at their full scale, and of a wave
+  double max_path_force_n;  ///< from theta, from omega at its full scale, and of all waves
 };
 
 struct ModelCheck {

@@ -110,6 +110,45 @@ TEST(ModelFilterTest, PathsAndWavesActBesideTheBody) {
 
 Refusal refusal_of(const AugmentedModel& model) { return check_model(model, kBounds).refusal; }
 
+TEST(ModelCheckTest, APushWithoutMotionIsRefusedWhereverItComesFrom) {
+  const ValueMap push{-20.0, 20.0, {5.0, 5.0}};
+  AugmentedModel behind = oscillator();
+  behind.output = push;
+  EXPECT_EQ(refusal_of(behind), Refusal::kRest);
+  AugmentedModel before = oscillator();
+  before.inputs[0].map = push;
+  before.inputs[0].numerator = {1.0, -1.98, 0.982};  // 10 N at rest
+  EXPECT_EQ(refusal_of(before), Refusal::kRest);
+  AugmentedModel beside = oscillator();
+  beside.paths = {{Channel::kAccelX, 0.05, push, 1.0}};
+  EXPECT_EQ(refusal_of(beside), Refusal::kRest);
+  beside.paths[0].gain = 0.1;
+  EXPECT_EQ(refusal_of(beside), Refusal::kNone);
+}
+
+TEST(ModelCheckTest, WhatOnePathMayNotAskForSeveralMayNotEither) {
+  AugmentedModel model = oscillator();
+  model.paths = {{Channel::kAccelX, 0.0, {}, 35.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.paths.push_back(model.paths[0]);
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model.paths[1].channel = Channel::kAccelZ;
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.paths.clear();
+  model.inputs.push_back(model.inputs[0]);
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  const double gain = std::abs(signal::response_at(path_model(model, model.inputs[0]), 0.0));
+  for (InputPath& input : model.inputs) {
+    for (double& c : input.numerator) c *= 0.6 * kBounds.max_gain_n_s2_m / gain;
+  }
+  EXPECT_EQ(refusal_of(model), Refusal::kGain);
+  model = oscillator();
+  model.waves = {{std::nullopt, 9.0, 6.0, 0.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.waves.push_back({Channel::kTheta, 9.0, 6.0, 0.0});
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+}
+
 TEST(AugmentedModelTest, WhatIsTooStrongIsRefused) {
   EXPECT_EQ(refusal_of(oscillator()), Refusal::kNone);
   AugmentedModel model = oscillator();

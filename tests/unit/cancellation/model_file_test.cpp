@@ -85,6 +85,13 @@ TEST(ControlModelFileTest, AnotherRigANewerVersionAndAForgedLimitAreRefusedByNam
 TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
   EXPECT_THAT(refusal("{"), HasSubstr("line 1"));
   EXPECT_THAT(refusal("[]"), HasSubstr("m.json"));
+  std::string twice = control_model_json(full_model(), 1);
+  twice.insert(twice.find("\"rig\""), "\"rig\": 2, ");
+  EXPECT_THAT(refusal(twice), AllOf(HasSubstr("rig"), HasSubstr("twice")));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["paths"][0]["lag_s"] = -0.1; })),
+              HasSubstr("m.json.paths[0].lag_s"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["output"]["low"] = 3.0; })),
+              HasSubstr("m.json.output.high"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["format"] = "stillhand model"; })),
               HasSubstr("m.json.format"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["inputs"][0]["channel"] = "a_q"; })),

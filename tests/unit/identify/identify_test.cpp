@@ -143,6 +143,11 @@ TEST(IdentifyTest, AnOutputThatIsTheInputIsRefused) {
   EXPECT_THAT(error_of(pegged_body(), options), HasSubstr("--output: got 'a_y', the input"));
 }
 
+TEST(IdentifyTest, AnOutputWithTheInputsValuesIsRefused) {
+  const auto noise = support::band_noise(30'000, 1000.0, 0.7, 4.0, 1.0, 4);
+  EXPECT_THAT(error_of(measured(1000.0, noise, noise)), HasSubstr("'f' with the values of 'a_y'"));
+}
+
 TEST(IdentifyTest, ASlowRecordingIsRefused) {
   const auto noise = support::white_noise(3000, 1.0, 4);
   EXPECT_THAT(error_of(measured(60.0, noise, noise)),
