@@ -14,6 +14,7 @@
 
 #include "cancellation/model_file.hpp"
 #include "contract/config_error.hpp"
+#include "experiment/clocks.hpp"
 #include "experiment/conductor.hpp"
 #include "experiment/output_folder.hpp"
 #include "experiment/processes.hpp"
@@ -149,6 +150,7 @@ class Session final : public LiveTrials {
       : options_(options),
         asked_(asked),
         outcomes_(outcomes),
+        clocks_(service),
         conductor_(
             service, [&processes] { return processes.reap(); },
             [this](const std::string& what, double done) { progress_.show(what, done); }) {}
@@ -156,6 +158,7 @@ class Session final : public LiveTrials {
   void run(const Script& script) {
     conductor_.await_everybody(options_.match_s);
     if (conductor_.interrupted()) return;
+    clocks_.start();
     conductor_.begin_session();
     script(*this);
     progress_.finish();
@@ -196,6 +199,7 @@ class Session final : public LiveTrials {
   std::vector<TrialOutcome>& outcomes_;
   identification::FeedthroughModel model_;
   ProgressLine progress_;
+  Clocks clocks_;
   Conductor conductor_;
 };
 
