@@ -191,6 +191,15 @@ Finding check_governor(const std::vector<std::string>& governors) {
                "sudo apt install linux-cpupower; sudo cpupower frequency-set -g performance");
 }
 
+Finding check_keys(const std::vector<std::string>& refused,
+                   const std::vector<std::string>& expiring) {
+  const std::string mend =
+      "deploy/security/make.sh makes a new folder, which goes to every host of the lab";
+  if (!refused.empty()) return wrong("keys", fmt::format("{}", fmt::join(refused, "; ")), mend);
+  if (!expiring.empty()) return wrong("keys", fmt::format("{}", fmt::join(expiring, "; ")), mend);
+  return good("keys", "good for every service of this host, for 30 days at least");
+}
+
 Finding tell_reachability(const Inventory& inventory, const Host& host) {
   std::vector<std::string> others;
   for (const Host& each : inventory.hosts) {

@@ -65,6 +65,11 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
 /// @param governors  text of each /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor
 Finding check_governor(const std::vector<std::string>& governors);
 
+/// @param refused   what runtime::check_identity() said of each service's keys that it refuses
+/// @param expiring  runtime::expiry_warning() of the others
+Finding check_keys(const std::vector<std::string>& refused,
+                   const std::vector<std::string>& expiring);
+
 /// A ping needs rights, and a closed port tells nothing: only what to type.
 Finding tell_reachability(const Inventory& inventory, const Host& host);
 

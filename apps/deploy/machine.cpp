@@ -13,8 +13,12 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 
+#include "contract/config_error.hpp"
 #include "deploy/ports.hpp"
+#include "idl/topics.hpp"
+#include "runtime/security.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -105,22 +109,44 @@ std::vector<std::string> own_addresses() {
   return addresses;
 }
 
+Finding check_keys_of(const Inventory& inventory, const Host& host) {
+  std::set<std::string> names;
+  for (const Placement& placement : host.services) names.insert(placement.service);
+  if (names.empty()) names.emplace(topics::kTap);
+  std::vector<std::string> refused;
+  std::vector<std::string> expiring;
+  for (const std::string& name : names) {
+    const auto identity = runtime::Identity::of(inventory.security, name);
+    try {
+      runtime::check_identity(identity, inventory.domain);
+      const std::string warning = runtime::expiry_warning(identity);
+      if (!warning.empty()) expiring.push_back(warning);
+    } catch (const ConfigError& error) {
+      refused.emplace_back(error.what());
+    }
+  }
+  return check_keys(refused, expiring);
+}
+
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
                                    const Buffers& buffers) {
   const DomainPorts ports(inventory.domain);
   const std::uint32_t last = ports.last(participants_sought(inventory));
   const Rights granted = rights();
   const fs::path net = "/proc/sys/net";
-  return {check_address(host, own_addresses()),
-          check_clock(clock_state()),
-          check_real_time(granted),
-          check_memory_lock(granted),
-          check_buffers(text_of(net / "core/rmem_max"), text_of(net / "core/wmem_max"), buffers),
-          check_ports(taken_ports_with_owners(ports.first, last)),
-          check_ephemeral_ports(text_of(net / "ipv4/ip_local_port_range"),
-                                text_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
-          check_governor(governors()),
-          tell_reachability(inventory, host)};
+  std::vector<Finding> findings{
+      check_address(host, own_addresses()),
+      check_clock(clock_state()),
+      check_real_time(granted),
+      check_memory_lock(granted),
+      check_buffers(text_of(net / "core/rmem_max"), text_of(net / "core/wmem_max"), buffers),
+      check_ports(taken_ports_with_owners(ports.first, last)),
+      check_ephemeral_ports(text_of(net / "ipv4/ip_local_port_range"),
+                            text_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
+      check_governor(governors()),
+      tell_reachability(inventory, host)};
+  if (!inventory.security.empty()) findings.push_back(check_keys_of(inventory, host));
+  return findings;
 }
 
 }  // namespace stillhand::deploy

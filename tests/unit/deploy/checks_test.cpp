@@ -4,7 +4,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include "deploy/machine.hpp"
+#include "deploy/ports.hpp"
+#include "support/own_domain.hpp"
 #include "unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
@@ -111,11 +117,56 @@ TEST(CheckTest, EveryProcessorMustKeepItsSpeed) {
   EXPECT_THAT(check_governor({}), not_checked());
 }
 
+TEST(CheckTest, KeysMustBeGoodAndStayGood) {
+  EXPECT_THAT(check_keys({}, {}), good());
+  EXPECT_THAT(check_keys({"rig/certificate.pem: got one that expired"}, {"sensing: soon"}),
+              wrong("one that expired", "make.sh"));
+  EXPECT_THAT(check_keys({}, {"rig/certificate.pem expires on"}), wrong("expires on", "make.sh"));
+}
+
+TEST(CheckTest, KeysThatAreNotThereAreNamedForEachServiceOfTheHost) {
+  const SampleFolder folder;
+  Inventory inventory = sample_inventory(two_rigs());
+  inventory.security = folder.path();
+  EXPECT_THAT(check_keys_of(inventory, inventory.hosts[0]),
+              wrong(folder.path().string(), "make.sh"));
+  EXPECT_THAT(check_keys_of(inventory, *inventory.find_host("watcher")),
+              wrong(folder.path().string(), "make.sh"));
+}
+
 TEST(CheckTest, ThatTheOthersAnswerIsNotPretended) {
   const Inventory inventory = sample_inventory(two_rigs());
   const Finding sut = tell_reachability(inventory, inventory.hosts[0]);
   EXPECT_THAT(sut, not_checked());
   EXPECT_EQ(sut.mend, "ping -c 1 10.0.0.2; ping -c 1 10.0.0.3");
+}
+
+Finding found(const std::vector<Finding>& all, const std::string& check) {
+  for (const Finding& each : all) {
+    if (each.check == check) return each;
+  }
+  ADD_FAILURE() << "no check " << check;
+  return {};
+}
+
+// The real machine: this test holds a port of a domain that nobody else has.
+TEST(CheckTest, ThisMachineIsRead) {
+  const Inventory inventory = sample_inventory(
+      "lab: bench\ndomain: " + std::to_string(support::own_domain()) +
+      "\nhosts: [{name: pc, address: 127.0.0.1, services: [" + kAllServices + "]}]");
+  const auto before = check_machine(inventory, inventory.hosts[0], {1, 1});
+  EXPECT_THAT(found(before, "address"), good());
+  EXPECT_THAT(found(before, "buffers"), good());
+  EXPECT_THAT(found(before, "ports"), good());
+  const int holder = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(DomainPorts(inventory.domain).first));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(bind(holder, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  const auto after = check_machine(inventory, inventory.hosts[0], {1, 1});
+  close(holder);
+  EXPECT_THAT(found(after, "ports"), wrong("(unit_deploy_che", "another domain"));
 }
 
 }  // namespace
