@@ -9,6 +9,8 @@
 #include <set>
 #include <sstream>
 
+#include "deploy/host_files.hpp"
+
 namespace stillhand::deploy {
 namespace {
 
@@ -80,7 +82,7 @@ Finding check_clock(const std::optional<ClockState>& clock) {
 }
 
 Finding check_real_time(const Rights& rights) {
-  constexpr std::uint64_t kWanted = 40;  // as runtime::become_real_time() asks for
+  constexpr std::uint64_t kWanted = kRealTimePriority;
   if (rights.all || rights.real_time_priority >= kWanted) {
     return good("real-time", "SCHED_FIFO is granted");
   }
@@ -194,7 +196,7 @@ Finding check_governor(const std::vector<std::string>& governors) {
 Finding check_keys(const std::vector<std::string>& refused,
                    const std::vector<std::string>& expiring) {
   const std::string mend =
-      "deploy/security/make.sh makes a new folder, which goes to every host of the lab";
+      "copy the new folder of deploy/security/make.sh to every host of the lab";
   if (!refused.empty()) return wrong("keys", fmt::format("{}", fmt::join(refused, "; ")), mend);
   if (!expiring.empty()) return wrong("keys", fmt::format("{}", fmt::join(expiring, "; ")), mend);
   return good("keys", "good for every service of this host, for 30 days at least");

@@ -38,6 +38,11 @@ const std::vector<Entry>& items_of(const Entry& entry, const std::string& path,
   return entry.children;
 }
 
+void allow_only(SectionReader& reader, std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys) reader.find(key);
+  reader.refuse_unknown();
+}
+
 const Entry& required(SectionReader& reader, const Entry& section, const std::string& path,
                       std::string_view key, const std::string& want) {
   if (const Entry* entry = reader.find(key)) return *entry;

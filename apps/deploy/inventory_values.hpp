@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ namespace stillhand::deploy {
                                 const settings::Entry& first, const std::string& want);
 
 std::string item_path(const std::string& list, std::size_t index);
+
+/// Refuses every other key, before one that is missing: it may be that one, misspelt.
+void allow_only(settings::SectionReader& reader, std::initializer_list<std::string_view> keys);
 
 /// The entry of that key.  @param section  what `reader` reads
 const settings::Entry& required(settings::SectionReader& reader, const settings::Entry& section,

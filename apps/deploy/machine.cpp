@@ -113,7 +113,7 @@ Finding check_keys_of(const Inventory& inventory, const Host& host) {
   std::set<std::string> names;
   for (const Placement& placement : host.services) names.insert(placement.service);
   if (names.empty()) names.emplace(topics::kTap);
-  std::vector<std::string> refused;
+  std::set<std::string> refused;  // of a domain that no key is for each says the same
   std::vector<std::string> expiring;
   for (const std::string& name : names) {
     const auto identity = runtime::Identity::of(inventory.security, name);
@@ -122,10 +122,10 @@ Finding check_keys_of(const Inventory& inventory, const Host& host) {
       const std::string warning = runtime::expiry_warning(identity);
       if (!warning.empty()) expiring.push_back(warning);
     } catch (const ConfigError& error) {
-      refused.emplace_back(error.what());
+      refused.emplace(error.what());
     }
   }
-  return check_keys(refused, expiring);
+  return check_keys({refused.begin(), refused.end()}, expiring);
 }
 
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,

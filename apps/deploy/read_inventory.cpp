@@ -36,6 +36,7 @@ class Reader {
 
   Inventory read() {
     SectionReader reader(top_, "inventory");
+    allow_only(reader, {"lab", "domain", "discovery", "security", "rigs", "hosts"});
     inventory_.lab = name_in(required(reader, top_, "inventory", "lab", "lab: a name for the lab"),
                              "inventory.lab");
     std::int64_t domain = 0;
@@ -49,7 +50,6 @@ class Reader {
       inventory_.rigs.push_back({"1", 1});
     }
     const Entry& hosts = required(reader, top_, "inventory", "hosts", "hosts: a list of machines");
-    reader.refuse_unknown();
     read_hosts(hosts);
     refuse_absent_services(hosts);
     return std::move(inventory_);
@@ -94,12 +94,12 @@ class Reader {
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string path = item_path("rigs", i);
       SectionReader reader(items[i], path);
+      allow_only(reader, {"name", "number"});
       const Entry& name = required(reader, items[i], path, "name", "name: what people call it");
       const Entry& number =
           required(reader, items[i], path, "number", "number: its key on the bus");
       std::int64_t value = 0;
       reader("number", value, Range{1, std::numeric_limits<std::uint32_t>::max()}, "key");
-      reader.refuse_unknown();
       inventory_.rigs.push_back({name_in(name, path + ".name"), static_cast<std::uint32_t>(value)});
       for (std::size_t k = 0; k < i; ++k) {
         if (inventory_.rigs[k].name == inventory_.rigs[i].name) {
@@ -123,6 +123,7 @@ class Reader {
 
   void read_host(const Entry& item, const std::string& path) {
     SectionReader reader(item, path);
+    allow_only(reader, {"name", "address", "start", "prefix", "services"});
     Host host;
     const Entry& name = required(reader, item, path, "name", "name: what people call the machine");
     const Entry& address = required(reader, item, path, "address", "address: its IPv4 address");
@@ -142,7 +143,6 @@ class Reader {
     read_start(reader, item, path, host);
     read_prefix(reader, path, host);
     const Entry* services = reader.find("services");
-    reader.refuse_unknown();
     // A host without any only watches: its tools find the others, and they it.
     if (services != nullptr) read_services(*services, path + ".services", host);
     inventory_.hosts.push_back(std::move(host));
@@ -217,9 +217,9 @@ class Reader {
       return {service_in(item, path), inventory_.rigs.front().number};
     }
     SectionReader reader(item, path);
+    allow_only(reader, {"service", "rig"});
     const Entry& service = required(reader, item, path, "service", form);
     const Entry& rig = required(reader, item, path, "rig", form);
-    reader.refuse_unknown();
     return {service_in(service, path + ".service"), rig_in(rig, path + ".rig")};
   }
 

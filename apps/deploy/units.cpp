@@ -8,8 +8,6 @@
 namespace stillhand::deploy {
 namespace {
 
-constexpr int kPriority = 40;  // as runtime::become_real_time() asks for (unit.deploy.units)
-
 // Fast DDS lists the interfaces by netlink; without homes a program in one could not start.
 std::string hardening(const Host& host, bool shows_a_screen) {
   const bool at_home =
@@ -92,7 +90,7 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
   text += fmt::format(
       "CPUSchedulingPolicy=fifo\nCPUSchedulingPriority={0}\nLimitRTPRIO={0}\n"
       "LimitMEMLOCK=infinity\n",
-      kPriority);
+      kRealTimePriority);
   text += hardening(host, screen) + "\n[Install]\nWantedBy=stillhand.target\n";
   return {fmt::format("stillhand-{}@{}.service", placement.service, rig), std::move(text)};
 }

@@ -125,6 +125,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"domain\" perhaps"},
         Refusal{"UnknownKeyOfAHost", "prefix", "prefx", ":10:5: hosts[1].prefx", "unknown key",
                 "\"prefix\" perhaps"},
+        Refusal{"MisspeltKeyThatIsWanted", "hosts:", "host:", ":3:1: inventory.host", "unknown key",
+                "\"hosts\" perhaps"},
         Refusal{"UnknownDiscovery", "domain: 12", "discovery: broadcast",
                 ":2:12: inventory.discovery", "broadcast", "peers, server or multicast"},
         Refusal{"SecurityThatIsNotThere", "domain: 12", "security: keys",
