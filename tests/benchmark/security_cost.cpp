@@ -3,12 +3,13 @@
 // build/tests/security_cost [ROUNDS]
 // Each round, 5 unless told otherwise: 4000 samples at 1 kHz from sensing's bus to another process
 // and back as motor commands, then the start of a whole session's nine processes at once; without
-// security, as configured, and with everything encrypted.  Medians over the rounds; ratios are of
-// one round.
+// security, as configured, and with everything encrypted.  Every process asks for SCHED_FIFO, as a
+// lab's do.  Medians over the rounds; ratios are of one round.
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <string>
 #include <thread>
@@ -157,6 +158,7 @@ RoundTrip round_trip(const fs::path& self, const fs::path& security, const fs::p
   return {at(0.5), at(0.99)};
 }
 
+/// [s] infinite when not all had matched within 20 s.
 double matching_s(const fs::path& self, const fs::path& security, const fs::path& scratch) {
   const std::string domain = std::to_string(support::own_domain());
   const std::int64_t began_ns = runtime::monotonic_ns();
@@ -169,8 +171,8 @@ double matching_s(const fs::path& self, const fs::path& security, const fs::path
   std::int64_t last_ns = 0;
   for (const auto& each : members) {
     if (!support::eventually([&] { return each->output().ends_with('\n'); },
-                             std::chrono::seconds(60))) {
-      throw std::runtime_error("a session did not match within 60 s");
+                             std::chrono::seconds(20))) {
+      return std::numeric_limits<double>::infinity();
     }
     last_ns = std::max<std::int64_t>(last_ns, std::stoll(each->output()));
   }
@@ -188,13 +190,15 @@ int measure(const fs::path& self, int rounds) {
       "governance.p7s -signer authority.pem -inkey authority_key.pem");
   const std::vector<std::pair<const char*, fs::path>> kinds{
       {"without", ""}, {"as configured", folders.lab()}, {"all encrypted", all_encrypted}};
+  const fs::path scratch = all_encrypted.parent_path() / "output";
+  fs::create_directory(scratch);
   std::map<std::string, std::vector<double>> figures;
   for (int round = 0; round < rounds; ++round) {
     RoundTrip plain;
     double plain_s = 0.0;
     for (const auto& [name, folder] : kinds) {
-      const RoundTrip trip = round_trip(self, folder, all_encrypted);
-      const double matched_s = matching_s(self, folder, all_encrypted);
+      const RoundTrip trip = round_trip(self, folder, scratch);
+      const double matched_s = matching_s(self, folder, scratch);
       if (folder.empty()) {
         plain = trip;
         plain_s = matched_s;
@@ -225,6 +229,7 @@ int measure(const fs::path& self, int rounds) {
 int main(int argc, char** argv) {
   const std::vector<std::string> given(argv + 1, argv + argc);
   try {
+    if (!runtime::become_real_time()) std::cerr << "security_cost: without SCHED_FIFO\n";
     if (given.size() == 3 && given[0] == "--echo") return echo(given[1], given[2]);
     if (given.size() == 4 && given[0] == "--member") return member(given[1], given[2], given[3]);
     return measure(fs::canonical("/proc/self/exe"), given.empty() ? 5 : std::stoi(given[0]));
