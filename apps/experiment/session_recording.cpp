@@ -5,6 +5,7 @@
 
 #include "contract/config_error.hpp"
 #include "idl/cdr.hpp"
+#include "idl/clock.h"
 #include "idl/topics.hpp"
 #include "recording/core/mcap_reader.hpp"
 #include "recording/file_io.hpp"
@@ -21,6 +22,15 @@ Store into(std::vector<Message>& list) {
     if (!from_cdr(bytes, message)) return false;
     list.push_back(std::move(message));
     return true;
+  };
+}
+
+// Counted, and looked whether it is of its type; nothing reads it.
+template <typename Message>
+Store counted() {
+  return [](std::span<const std::byte> bytes) {
+    Message message;
+    return from_cdr(bytes, message);
   };
 }
 
@@ -57,7 +67,9 @@ SessionRecording read_session(const std::string& path) {
       {topics::kAugmentedModel.name, into(session.augmented_models)},
       {topics::kEvent.name, into(session.events)},
       {topics::kServiceStatus.name, into(session.statuses)},
-      {topics::kClockOffset.name, into(session.clock_offsets)}};
+      {topics::kClockQuestion.name, counted<stillhand_msgs::ClockQuestion>()},
+      {topics::kClockAnswer.name, counted<stillhand_msgs::ClockAnswer>()},
+      {topics::kClockOffset.name, counted<stillhand_msgs::ClockOffset>()}};
   const recording::Status status =
       reader.for_each_message({}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);

@@ -164,7 +164,7 @@ class StudyTest(unittest.TestCase):
         out = self.folder / "study"
         (out / "metrics.csv").mkdir(parents=True)
         run = study(*SHORT, "--out", str(out))
-        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertEqual(run.returncode, 2, run.stderr)
         self.assertIn("metrics.csv", run.stderr)
         self.assertEqual([path.name for path in out.iterdir()], ["metrics.csv"])
 
