@@ -120,7 +120,6 @@ std::vector<Launch> launches(const LabOptions& options, const std::string& seale
       launch.arguments.insert(launch.arguments.end(), words);
     };
     if (options.real_time) add({"--real-time"});
-    if (!options.security.empty()) add({"--security", options.security.string()});
     if (service == "recorder") {
       add({"--out", (options.out / "session.mcap").string()});
       const std::vector<std::string> words = recording::keep_words(options.keep);
@@ -307,7 +306,6 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
     service_options.seed = options.protocol.seed;
     service_options.profiles = options.profiles;
     service_options.config = options.config;
-    service_options.security = options.security;
     // Its life sign holds the interlock closed like everybody's.
     service_options.real_time = options.real_time && runtime::become_real_time();
     runtime::Service service(service_options, stop);

@@ -33,7 +33,6 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
-  std::filesystem::path security;       ///< folder of deploy/security/make.sh; empty: none
   std::filesystem::path model;          ///< control model for C; empty: the session's own
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched

@@ -87,9 +87,6 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_option("--profiles", options->profiles, "QoS profiles")->capture_default_str();
   lab->add_option("--config", options->config, "folder with the settings of each service")
       ->capture_default_str();
-  lab->add_option("--security", options->security,
-                  "folder that deploy/security/make.sh made: who isn't of this lab is neither "
-                  "heard nor hears");
   recording::add_keep_options(*lab, options->keep);
   lab->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
   lab->callback([options, words, &status] {
