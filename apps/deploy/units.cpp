@@ -10,8 +10,9 @@ namespace {
 
 // Fast DDS lists the interfaces by netlink; without homes a program in one could not start.
 std::string hardening(const Host& host, bool shows_a_screen) {
-  const bool at_home =
-      host.prefix.string().starts_with("/home/") || host.prefix.string().starts_with("/root/");
+  const std::filesystem::path inside = host.prefix.relative_path();
+  const std::string top = inside.empty() ? "" : inside.begin()->string();
+  const bool at_home = top == "home" || top == "root";
   return fmt::format(R"(NoNewPrivileges=yes
 CapabilityBoundingSet=
 ProtectSystem=strict
