@@ -391,6 +391,7 @@ std::string Conductor::use(const cancellation::AugmentedModel& model) {
     seen_.events.clear();
   }
   auto message = cancellation::to_idl(model, cancellation::kFirstAugmentedModel + models_++);
+  message.from_tick(newest_tick() + kModelNotice_ticks);
   augmented_model_.write(message);
   std::string refused;
   const bool answered = wait_for(kLimit_s, [&](Seen& seen) {

@@ -18,11 +18,13 @@ Shell::Shell(runtime::Service& service)
                                                  });
   bus.subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
-        if (message.usable()) on_model(augmented(from_idl(message)), message.model());
+        if (!message.usable()) return;
+        on_model(augmented(from_idl(message)), message.model(), message.from_tick());
       });
   bus.subscribe<stillhand_msgs::AugmentedModel>(
-      topics::kAugmentedModel,
-      [this](const auto& message, const auto&) { on_model(from_idl(message), message.model()); });
+      topics::kAugmentedModel, [this](const auto& message, const auto&) {
+        on_model(from_idl(message), message.model(), message.from_tick());
+      });
   // The canceller watches everybody's life sign through this topic; its content is not used.
   bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
                                                [](const auto&, const auto&) {});
@@ -33,17 +35,17 @@ Shell::Shell(runtime::Service& service)
 void Shell::note_when_armed() {
   if (!assignment_ || assignment_->trial() != service_.trial().number) return;
   // A trial that is to be cancelled and is not would pass for one that was.
-  if (assignment_->cancellation() && !core_.has_model()) {
+  if (assignment_->cancellation() && !core_.has_model() && !ready_) {
     service_.note_event(stillhand_msgs::EVENT_NOTE, why_no_model_);
     return;
   }
   service_.note_armed(service_.trial().number);
 }
 
-void Shell::on_model(const AugmentedModel& model, std::int32_t number) {
-  const Refusal refusal = core_.load_model(model);
+void Shell::on_model(const AugmentedModel& model, std::int32_t number, Tick from_tick) {
+  const Refusal refusal = core_.make_ready(model);
   if (refusal == Refusal::kNone) {
-    model_ = number;
+    ready_ = ReadyModel{number, from_tick};
     service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");
     note_when_armed();
   } else {
@@ -53,7 +55,16 @@ void Shell::on_model(const AugmentedModel& model, std::int32_t number) {
   }
 }
 
+// At a tick that was told beforehand, so that a replay takes it at the same one.
+void Shell::take_model_when_due(Tick tick) {
+  if (!ready_ || tick < ready_->from_tick) return;
+  core_.take_ready_model();
+  model_ = ready_->number;
+  ready_.reset();
+}
+
 void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
+  take_model_when_due(sensed.tick());
   const Trial& trial = service_.trial();
   const bool permitted = interlock_.step(trial, sensed.tick(), service_.bus().peers_alive());
   if (interlock_.latched(trial) != told_latch_) {

@@ -20,14 +20,22 @@ class Shell {
 
  private:
   void on_sensed(const stillhand_msgs::Sensed& sensed);
-  void on_model(const AugmentedModel& model, std::int32_t number);
+  /// @param number     of the model
+  /// @param from_tick  first tick that it is used at
+  void on_model(const AugmentedModel& model, std::int32_t number, Tick from_tick);
+  void take_model_when_due(Tick tick);
   void note_when_armed();
 
   runtime::Service& service_;
   Canceller core_;
   runtime::Interlock interlock_;
   bool told_latch_ = false;
-  std::int32_t model_ = -1;
+  struct ReadyModel {
+    std::int32_t number;
+    Tick from_tick;
+  };
+  std::optional<ReadyModel> ready_;
+  std::int32_t model_ = -1;                         ///< in use
   const char* why_no_model_ = "no model has come";  ///< a literal
   std::optional<stillhand_msgs::TrialAssignment> assignment_;
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;

@@ -20,4 +20,8 @@ constexpr Tick ticks_in(double duration_s) noexcept {
   return static_cast<Tick>(duration_s * kControlRateHz + (duration_s < 0.0 ? -0.5 : 0.5));
 }
 
+/// From a model's publication to the first tick that it may be used at [ticks]: long enough that
+/// whoever uses it takes it at that very tick, so that a replay answers as the session did.
+inline constexpr Tick kModelNotice_ticks = 250;
+
 }  // namespace stillhand

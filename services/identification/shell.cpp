@@ -59,6 +59,7 @@ Shell::Shell(runtime::Service& service)
 
 void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   service_.note_tick(sensed.tick());
+  newest_tick_.store(sensed.tick(), std::memory_order_relaxed);
   if (!pegged_.take(sensed.tick(), sensed.accel_y_m_s2(), sensed.force_n())) return;
   {
     const std::lock_guard lock(mutex_);
@@ -83,6 +84,7 @@ void Shell::fit_jobs(const std::stop_token& stop) {
       job_.reset();
     }
     auto message = fit(job);
+    message.from_tick(newest_tick_.load(std::memory_order_relaxed) + kModelNotice_ticks);
     model_.write(message);
   }
 }

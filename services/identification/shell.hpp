@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -52,6 +53,7 @@ class Shell {
   Config config_;
   PeggedRecord pegged_;
   std::int32_t models_ = 0;
+  std::atomic<Tick> newest_tick_{0};
   runtime::Publisher<stillhand_msgs::FeedthroughModel> model_;
   std::mutex mutex_;
   std::condition_variable_any wake_;

@@ -75,7 +75,10 @@ Replay replay_identification(const SessionRecording& session, const SessionSetti
         const msgs::Sensed& sample = sensed.at(tick);
         pegged.take(tick, sample.accel_y_m_s2(), sample.force_n());
       }
-      compare(fitted(pegged, config, model.model()), model, trial.start_tick, result);
+      auto answer = fitted(pegged, config, model.model());
+      // When the fit was done is the machine's doing, as the stamp is.
+      answer.from_tick(model.from_tick());
+      compare(answer, model, trial.start_tick, result);
     }
   } catch (const NotRecorded& reason) {
     result.ended = reason.what();

@@ -44,6 +44,11 @@ bool has_gap(const Bytes& bytes) {
   return from_cdr(bytes, command) && (command.flags() & kInputGap) != 0;
 }
 
+std::int32_t model_of(const Bytes& bytes) {
+  stillhand_msgs::MotorCommand command;
+  return from_cdr(bytes, command) ? command.model() : -1;
+}
+
 double force_of(const Bytes& bytes) {
   stillhand_msgs::MotorCommand command;
   return from_cdr(bytes, command) ? command.force_n() : 0.0;
@@ -64,7 +69,9 @@ int main(int argc, char** argv) {
     long missing = 0;
     double greatest_force_n = 0;
     Tick first_difference = -1;
-    Tick first_gap = -1;  // of either: behind it the two saw different inputs
+    // Of either: behind these the two saw different inputs.
+    Tick first_gap = -1;
+    Tick first_other_model = -1;
     for (auto& [tick, bytes] : live) {
       const auto other = replayed.find(tick);
       if (other == replayed.end()) {
@@ -72,6 +79,9 @@ int main(int argc, char** argv) {
         continue;
       }
       if (first_gap < 0 && (has_gap(bytes) || has_gap(other->second))) first_gap = tick;
+      if (first_other_model < 0 && model_of(bytes) != model_of(other->second)) {
+        first_other_model = tick;
+      }
       greatest_force_n = std::max(greatest_force_n, std::abs(force_of(bytes)));
       clear_stamp(bytes);
       clear_stamp(other->second);
@@ -87,6 +97,7 @@ int main(int argc, char** argv) {
                                 {"different", different},
                                 {"first_difference_tick", first_difference},
                                 {"first_gap_tick", first_gap},
+                                {"first_other_model_tick", first_other_model},
                                 {"greatest_force_n", greatest_force_n}}
               << '\n';
     return 0;

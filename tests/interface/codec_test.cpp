@@ -322,6 +322,7 @@ TEST(IdentificationCodecTest, EveryFieldOfAModelIsSet) {
             (Fields{{"rig", "0"},
                     {"stamp_ns", "0"},
                     {"model", "11"},
+                    {"from_tick", "0"},
                     {"trial", "12"},
                     {"fit_rate_hz", "50"},
                     {"fit_numerator", "[0.5, 1.5]"},

@@ -16,21 +16,32 @@ const Config& checked(const Config& config) {
 
 Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {}
 
-Refusal Canceller::load_model(const AugmentedModel& model) noexcept {
+Refusal Canceller::make_ready(const AugmentedModel& model) noexcept {
   const ModelCheck check = check_model(model, bounds(config_));
   if (check.refusal != Refusal::kNone) return check.refusal;
-  const Law law{ModelFilter(model, check.settle_ticks),
-                model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()};
+  ready_ = {ModelFilter(model, check.settle_ticks),
+            model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()};
+  return Refusal::kNone;
+}
+
+void Canceller::take_ready_model() noexcept {
+  if (!ready_.filter.loaded()) return;
   const bool fading = incoming_.filter.loaded() && settle_left_ == 0;
   if (fading) {
     // Replacing a filter that already drives would be a step in the force.
-    pending_ = law;
+    pending_ = ready_;
   } else {
-    incoming_ = law;
-    settle_left_ = law.filter.settle_ticks();
+    incoming_ = ready_;
+    settle_left_ = incoming_.filter.settle_ticks();
     fade_done_ = 0;
   }
-  return Refusal::kNone;
+  ready_ = Law();
+}
+
+Refusal Canceller::load_model(const AugmentedModel& model) noexcept {
+  const Refusal refusal = make_ready(model);
+  if (refusal == Refusal::kNone) take_ready_model();
+  return refusal;
 }
 
 void Canceller::restart() noexcept {

@@ -68,19 +68,24 @@ inline ModelBounds bounds(const Config& config) noexcept {
 /// unsound sample holds the last acceleration (Eq. CC-2); a run longer than max_hold_ticks starts
 /// the filter anew.  After an interruption the force fades in again; a new model settles beside the
 /// old one and is faded over (Eq. CC-3).
-/// One thread: load_model() is called between two steps.  step() neither allocates nor throws; its
+/// One thread: models come between two steps.  step() neither allocates nor throws; its
 /// cost is bounded by max_hold_ticks + 2 filter steps.
 class Canceller {
  public:
   /// @throws stillhand::ConfigError when a setting is outside its range.
   explicit Canceller(const Config& config);
 
-  /// Checks a model and, if sound, takes it at the next step.  Never throws; a refused model leaves
-  /// the one in use as it is.  Takes tens of microseconds (gain scan), milliseconds with a spring
-  /// inside the body (trial run): keep it out of a deadline.
+  /// Checks a model and, if sound, keeps it ready for take_ready_model(); of several the newest.
+  /// Never throws; a refused model leaves the one ready and the one in use as they are.  Takes tens
+  /// of microseconds (gain scan), milliseconds with a spring inside the body (trial run): keep it
+  /// out of a deadline.
+  Refusal make_ready(const AugmentedModel& model) noexcept;
+  /// The model that is ready is used from the next step on; nothing if none is.
+  void take_ready_model() noexcept;
+  /// Both at once.
   Refusal load_model(const AugmentedModel& model) noexcept;
 
-  /// True once a model was taken, even while it still settles.
+  /// True once a model was taken, even while it still settles; not yet when one is only ready.
   [[nodiscard]] bool has_model() const noexcept {
     return active_.filter.loaded() || incoming_.filter.loaded();
   }
@@ -118,6 +123,7 @@ class Canceller {
 
   Config config_;
   signal::ForceEnvelope envelope_;
+  Law ready_;
   Law active_;
   Law incoming_;  ///< settles, then is faded in
   Law pending_;   ///< came while another was fading in

@@ -153,6 +153,27 @@ TEST(CancellerTest, SwappingModelsIsBumpless) {
   EXPECT_LE(largest, 8.0 / 250.0 + 1e-12);
 }
 
+TEST(CancellerTest, AReadyModelWaitsUntilItIsTaken) {
+  Canceller ready{Config{}};
+  Canceller loaded{Config{}};
+  const auto same = [&](Tick tick) {
+    const auto a = ready.step(sample(tick, 2.0));
+    const auto b = loaded.step(sample(tick, 2.0));
+    return a.force_n == b.force_n && a.predicted_force_n == b.predicted_force_n &&
+           a.flags == b.flags;
+  };
+  ASSERT_EQ(ready.make_ready(augmented(body())), Refusal::kNone);
+  EXPECT_EQ(ready.make_ready(augmented({})), Refusal::kMalformed);  // the sound one stays ready
+  EXPECT_FALSE(ready.has_model());
+  for (Tick tick = 0; tick < 100; ++tick) ASSERT_TRUE(same(tick)) << tick;  // both without a model
+  ready.take_ready_model();
+  ASSERT_EQ(loaded.load_model(augmented(body())), Refusal::kNone);
+  EXPECT_TRUE(ready.has_model());
+  for (Tick tick = 100; tick < 3000; ++tick) ASSERT_TRUE(same(tick)) << tick;
+  ready.take_ready_model();  // none: nothing happens
+  for (Tick tick = 3000; tick < 3100; ++tick) ASSERT_TRUE(same(tick)) << tick;
+}
+
 TEST(CancellerTest, FirstModelFadesInFromZero) {
   // Body at a steady 2 m/s^2: 6.4 N after settling (under 2 s), over 250 ticks, each of prediction
   // and engagement adding its slope; the filter's own transient is still to come while it settles.
