@@ -127,6 +127,7 @@ class Reader {
     Host host;
     const Entry& name = required(reader, item, path, "name", "name: what people call the machine");
     const Entry& address = required(reader, item, path, "address", "address: its IPv4 address");
+    host.place = item.place;
     host.name = name_in(name, path + ".name");
     host.address = address_in(address, path + ".address");
     for (const SeenHost& seen : seen_) {

@@ -16,6 +16,7 @@
 #include "contract/config_error.hpp"
 #include "experiment/clocks.hpp"
 #include "experiment/conductor.hpp"
+#include "experiment/hosts.hpp"
 #include "experiment/output_folder.hpp"
 #include "experiment/processes.hpp"
 #include "experiment/progress.hpp"
@@ -96,32 +97,34 @@ void add_motion(std::vector<std::string>& arguments, const LabOptions& options) 
 }
 
 /// @param sealed  what the rig reads of its undeclared effect; empty: it has none
-std::vector<Launch> launches(const LabOptions& options, const std::string& sealed) {
+std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
+                             const std::string& sealed) {
   std::vector<Launch> list;
   // The recorder first: it is there when the others begin.
   for (const std::string_view service : {"recorder", "rig", "sensing", "motion", "cancellation",
                                          "display", "human_operator", "identification"}) {
+    const Place place = hosts.of(service);
     Launch launch;
     launch.name = service;
     launch.executable = options.programs / ("stillhand-" + launch.name);
     launch.log = options.out / "logs" / (launch.name + ".log");
     launch.arguments = {"--domain",
-                        std::to_string(options.domain),
+                        std::to_string(hosts.domain()),
                         "--rig",
                         std::to_string(options.rig),
                         "--seed",
                         std::to_string(options.protocol.seed),
                         "--profiles",
-                        options.profiles.string(),
+                        place.profiles.string(),
                         "--config",
-                        options.config.string(),
+                        place.config.string(),
                         "--end-with-parent"};
     const auto add = [&](std::initializer_list<std::string> words) {
       launch.arguments.insert(launch.arguments.end(), words);
     };
     if (options.real_time) add({"--real-time"});
     if (service == "recorder") {
-      add({"--out", (options.out / "session.mcap").string()});
+      add({"--out", (place.out / "session.mcap").string()});
       const std::vector<std::string> words = recording::keep_words(options.keep);
       launch.arguments.insert(launch.arguments.end(), words.begin(), words.end());
     }
@@ -132,12 +135,12 @@ std::vector<Launch> launches(const LabOptions& options, const std::string& seale
     if (service == "motion") add_motion(launch.arguments, options);
     if (service == "display" && options.headless) add({"--headless"});
     if (service == "display" && options.video) {
-      add({"--video", (options.out / "screen.avi").string()});
+      add({"--video", (place.out / "screen.avi").string()});
     }
     if (options.who == Operator::kMouse && (service == "display" || service == "human_operator")) {
       add({"--pointer"});
     }
-    list.push_back(std::move(launch));
+    list.push_back(hosts.placed(launch));
   }
   return list;
 }
@@ -290,28 +293,31 @@ cancellation::AugmentedModel control_model(const std::filesystem::path& file, st
 
 LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Script& script) {
   const AskedMotions asked = check(options);
-  const DomainLock lock(options.domain, options.rig);
-  check_port(options.domain);
+  Hosts hosts(options);
+  const DomainLock lock(hosts.domain(), options.rig);
+  check_port(hosts.domain());
   LiveSession live;
   live.folder = std::make_shared<OutputFolder>(
-      options.out, std::vector<std::filesystem::path>{options.ride, options.model});
+      options.out,
+      std::vector<std::filesystem::path>{options.ride, options.model, options.inventory});
   if (options.undeclared_effect != 0) {
     live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
   }
   try {
+    hosts.open();
     runtime::ServiceOptions service_options;
     service_options.service = "experiment";
-    service_options.domain = options.domain;
+    service_options.domain = hosts.domain();
     service_options.rig = options.rig;
     service_options.seed = options.protocol.seed;
-    service_options.profiles = options.profiles;
+    service_options.profiles = hosts.of("experiment").profiles;
     service_options.config = options.config;
     // Its life sign holds the interlock closed like everybody's.
     service_options.real_time = options.real_time && runtime::become_real_time();
     runtime::Service service(service_options, stop);
     Processes processes;
     Session session(options, asked, service, processes, live.outcomes);
-    for (const Launch& launch : launches(options, live.sealed)) processes.start(launch);
+    for (const Launch& launch : launches(options, hosts, live.sealed)) processes.start(launch);
     service.run([&] {
       session.run(script);
       session.end();
@@ -319,9 +325,16 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
       processes.end_all("recorder", kEndPatience_s);
     });
   } catch (...) {
-    if (live.outcomes.empty()) live.folder->discard();
+    if (live.outcomes.empty()) {
+      hosts.clear();  // first: what they say goes into the folder
+      live.folder->discard();
+    } else {
+      hosts.bring_back();
+    }
     throw;
   }
+  if (!live.outcomes.empty()) hosts.bring_back();
+  hosts.clear();
   if (live.outcomes.empty() && live.interrupted) live.folder->discard();
   return live;
 }

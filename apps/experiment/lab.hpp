@@ -33,6 +33,7 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
+  std::filesystem::path inventory;      ///< the lab's machines; empty: this one
   std::filesystem::path model;          ///< control model for C; empty: the session's own
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
@@ -83,7 +84,7 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
 void open_undeclared_effect(const LabOptions& options, const std::string& sealed,
                             const std::string& verdict);
 
-/// Runs a whole session on this machine: starts every process, identifies, runs the trials over
+/// Runs a whole session from this machine: starts every process, identifies, runs the trials over
 /// DDS, records, computes the results from the recording, stops every process.
 /// @return exit status: 0 when every trial was completed, 1 otherwise.
 /// @throws ConfigError for what the user can mend before the run.

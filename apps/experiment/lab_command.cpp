@@ -40,8 +40,8 @@ void add_lab_command(CLI::App& cli, int& status) {
 
   CLI::App* lab = cli.add_subcommand(
       "lab",
-      "A whole session on this machine: every process over DDS, identification with the stick "
-      "pegged,\n"
+      "A whole session, on this machine or on those of an inventory: every process over DDS,\n"
+      "identification with the stick pegged,\n"
       "then one tracking trial a condition in blinded, shuffled order, recorded and evaluated.\n"
       "Example: stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out "
       "run1");
@@ -79,7 +79,12 @@ void add_lab_command(CLI::App& cli, int& status) {
                   "seed of an effect that only the rig knows of, sealed until the results are "
                   "written; 0: none")
       ->check(check_seed);
-  lab->add_option("--domain", options->domain, "DDS domain, 0 to 232")->capture_default_str();
+  CLI::Option* domain = lab->add_option("--domain", options->domain, "DDS domain, 0 to 232");
+  domain->capture_default_str();
+  lab->add_option("--inventory", options->inventory,
+                  "the lab's machines and which service runs where, as for `stillhand deploy`; it "
+                  "names the domain")
+      ->excludes(domain);
   lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
   lab->add_option("--match-seconds", options->match_s,
                   "patience until every endpoint has matched [s]")

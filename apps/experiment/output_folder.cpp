@@ -41,6 +41,13 @@ std::vector<std::filesystem::path> session_files(const std::filesystem::path& fo
   for (const std::string_view service : topics::kServices) {
     files.push_back(folder / "logs" / (std::string(service) + ".log"));
   }
+  // Of a session over several machines: the profiles here, and what each host said.
+  files.push_back(folder / "logs" / "profiles.xml");
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "logs", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("host_") && name.ends_with(".log")) files.push_back(entry.path());
+  }
   return files;
 }
 

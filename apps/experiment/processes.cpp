@@ -8,11 +8,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <climits>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "contract/config_error.hpp"
 #include "runtime/clock.hpp"
@@ -36,12 +36,15 @@ std::string last_line(const std::filesystem::path& log) {
 
 class SpawnSettings {
  public:
-  SpawnSettings(const std::filesystem::path& log, int standard_input) {
+  SpawnSettings(const Launch& launch, int standard_input) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_adddup2(&actions_, standard_input, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log.c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    add_file(STDERR_FILENO, launch.log);
+    if (launch.output.empty()) {
+      posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
+    } else {
+      add_file(STDOUT_FILENO, launch.output);
+    }
     posix_spawnattr_init(&attributes_);
     // The lab blocks the signals it waits for; its children start with none blocked.
     sigset_t none;
@@ -57,6 +60,11 @@ class SpawnSettings {
   SpawnSettings(const SpawnSettings&) = delete;
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 
+  void add_file(int descriptor, const std::filesystem::path& file) {
+    posix_spawn_file_actions_addopen(&actions_, descriptor, file.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  }
+
   posix_spawn_file_actions_t actions_;
   posix_spawnattr_t attributes_;
 };
@@ -71,23 +79,32 @@ class TextToRead {
       throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
     }
     end_ = ends[0];
-    // A few words always fit: a pipe takes PIPE_BUF bytes, 512 at least, without a reader.
+    // All of it has to fit, as nobody reads yet.
     const auto size = static_cast<ssize_t>(text.size());
-    const bool written = size <= PIPE_BUF && write(ends[1], text.data(), text.size()) == size;
-    close(ends[1]);
+    if (fcntl(ends[1], F_GETPIPE_SZ) < size) fcntl(ends[1], F_SETPIPE_SZ, static_cast<int>(size));
+    const bool written =
+        size <= fcntl(ends[1], F_GETPIPE_SZ) && write(ends[1], text.data(), text.size()) == size;
+    far_end_ = ends[1];
     if (!written) {
       close(end_);
+      close(far_end_);
       throw std::runtime_error("cannot write to a pipe");
     }
   }
-  ~TextToRead() { close(end_); }
+  ~TextToRead() {
+    close(end_);
+    if (far_end_ >= 0) close(far_end_);
+  }
   TextToRead(const TextToRead&) = delete;
   TextToRead& operator=(const TextToRead&) = delete;
 
   [[nodiscard]] int end() const { return end_; }
+  /// The end that we hold: what reads the text sees no end of it before that is closed.
+  [[nodiscard]] int take_far_end() { return std::exchange(far_end_, -1); }
 
  private:
   int end_;
+  int far_end_;
 };
 
 }  // namespace
@@ -100,13 +117,14 @@ std::string describe(const Ended& ended) {
 
 Processes::~Processes() {
   for (const Child& child : children_) {
+    if (child.input >= 0) close(child.input);
     kill(child.pid, SIGKILL);
     waitpid(child.pid, nullptr, 0);
   }
 }
 
 void Processes::start(const Launch& launch) {
-  if (access(launch.executable.c_str(), X_OK) != 0) {
+  if (launch.executable.has_parent_path() && access(launch.executable.c_str(), X_OK) != 0) {
     throw ConfigError("executable of " + launch.name, "no program " + launch.executable.string(),
                       "a complete build: every stillhand-* beside stillhand");
   }
@@ -116,20 +134,22 @@ void Processes::start(const Launch& launch) {
   argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const TextToRead input(launch.standard_input);
-  const SpawnSettings settings(launch.log, input.end());
+  TextToRead input(launch.standard_input);
+  const SpawnSettings settings(launch, input.end());
   pid_t pid = 0;
-  const int error = posix_spawn(&pid, launch.executable.c_str(), &settings.actions_,
-                                &settings.attributes_, argv.data(), environ);
+  const int error = posix_spawnp(&pid, launch.executable.c_str(), &settings.actions_,
+                                 &settings.attributes_, argv.data(), environ);
   if (error != 0) {
     throw std::system_error(error, std::generic_category(), "cannot start " + launch.name);
   }
-  children_.push_back({launch, pid});
+  children_.push_back({launch, pid, launch.ends_with_input ? input.take_far_end() : -1});
   children_.back().launch.standard_input.clear();
 }
 
 Ended Processes::ended(const Child& child, int wait_status) const {
-  Ended ended{child.launch.name, child.pid, "", -1, last_line(child.launch.log)};
+  const std::string& host = child.launch.host;
+  Ended ended{child.launch.name + (host.empty() ? "" : " on " + host), child.pid, "", -1,
+              last_line(child.launch.log)};
   if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
     ended.how = "signal " + std::to_string(signal) + " (" + sigdescr_np(signal) + ")";
@@ -145,6 +165,7 @@ std::optional<Ended> Processes::reap() {
     int status = 0;
     if (waitpid(child->pid, &status, WNOHANG) == child->pid) {
       const Ended result = ended(*child, status);
+      if (child->input >= 0) close(child->input);
       children_.erase(child);
       return result;
     }
@@ -152,12 +173,21 @@ std::optional<Ended> Processes::reap() {
   return std::nullopt;
 }
 
+// A signal to whatever reaches a process on another host ends the way to it, not the process.
+void Processes::ask_to_end(Child& child) {
+  if (child.input >= 0) {
+    close(std::exchange(child.input, -1));
+  } else {
+    kill(child.pid, SIGTERM);
+  }
+}
+
 void Processes::signal_and_wait(const std::vector<std::string>& names, double patience_s) {
   const auto named = [&](const Child& child) {
     return std::find(names.begin(), names.end(), child.launch.name) != names.end();
   };
-  for (const Child& child : children_) {
-    if (named(child)) kill(child.pid, SIGTERM);
+  for (Child& child : children_) {
+    if (named(child)) ask_to_end(child);
   }
   const std::int64_t limit_ns =
       runtime::monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);

@@ -12,16 +12,19 @@ namespace stillhand::experiment {
 
 /// One process to start.
 struct Launch {
-  std::string name;  ///< service
-  std::filesystem::path executable;
+  std::string name;                    ///< service
+  std::filesystem::path executable;    ///< without a folder: looked for in PATH
   std::vector<std::string> arguments;  ///< without the program's name
   std::filesystem::path log;           ///< standard output and error go here
-  std::string standard_input;          ///< what it reads there, a few words at most; then it ends
+  std::filesystem::path output;        ///< standard output alone; empty: to the log too
+  std::string standard_input;          ///< what it reads there; then it ends
+  std::string host;                    ///< where it runs; empty: this machine
+  bool ends_with_input = false;        ///< it stays open, and its end asks the process to end
 };
 
 /// How a process ended.
 struct Ended {
-  std::string name;
+  std::string name;  ///< "rig", "rig on desk"
   pid_t pid;
   std::string how;   ///< "exit status 2", "signal 9 (Killed)"
   int exit_status;   ///< -1 after a signal
@@ -54,7 +57,9 @@ class Processes {
   struct Child {
     Launch launch;
     pid_t pid;
+    int input;  ///< our end of its standard input; -1: closed
   };
+  static void ask_to_end(Child& child);
   void signal_and_wait(const std::vector<std::string>& names, double patience_s);
   Ended ended(const Child& child, int wait_status) const;
 

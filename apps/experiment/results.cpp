@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/clock_line.hpp"
 #include "experiment/in_process.hpp"
 #include "identification/codec.hpp"
 #include "signal/reference.hpp"
@@ -44,17 +45,22 @@ double rms(const std::vector<double>& values) {
 
 std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& session,
                                                       const Trial& trial) {
+  const ClockLine commanding(session.clock_offsets, "cancellation");
+  const ClockLine acquiring(session.clock_offsets, "rig");
   std::vector<double> late_us;
   for (const stillhand_msgs::MotorCommand& command : session.motor_commands) {
     if (!trial.measures(command.tick()) || command.acquired_ns() == 0) continue;
-    late_us.push_back(1e-3 * static_cast<double>(command.stamp_ns() - command.acquired_ns()));
+    late_us.push_back(1e-3 *
+                      static_cast<double>(commanding.on_experiments_clock(command.stamp_ns()) -
+                                          acquiring.on_experiments_clock(command.acquired_ns())));
   }
   if (late_us.empty()) return std::nullopt;
   std::ranges::sort(late_us);
   const auto quantile = [&](double share) {
     return late_us[static_cast<std::size_t>(share * static_cast<double>(late_us.size() - 1))];
   };
-  return TrialResult::Latency{quantile(0.5), quantile(0.99), late_us.back()};
+  return TrialResult::Latency{quantile(0.5), quantile(0.99), late_us.back(),
+                              1e-3 * (commanding.uncertainty_ns() + acquiring.uncertainty_ns())};
 }
 
 void judge_cancellation(const SessionRecording& session, const PlannedTrial& planned,
@@ -122,6 +128,9 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
   SessionResult result;
   result.lost_ticks = session.lost_ticks;
   result.damage = session.damage;
+  for (const auto& offset : session.clock_offsets) {
+    result.clocks[offset.service().c_str()] = offset;
+  }
   if (!session.models.empty()) result.model = session.models.back();
   for (const TrialOutcome& outcome : outcomes) {
     const PlannedTrial& planned = outcome.planned;

@@ -25,11 +25,13 @@ struct TrialResult {
   std::optional<double> cancelled_share;
   /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
   std::optional<double> counterforce_delay_s;
-  /// From a sample's acquisition to the command that answers it, by their stamps; the same.
+  /// From a sample's acquisition to the command that answers it, by their stamps; the same.  Stamps
+  /// of other hosts are taken over to the experiment's clock.
   struct Latency {
     double p50_us = 0.0;
     double p99_us = 0.0;
     double max_us = 0.0;
+    double uncertainty_us = 0.0;  ///< of the clocks beside each other; 0: it is one clock
   };
   std::optional<Latency> sensor_to_command;
 };
@@ -49,6 +51,7 @@ struct SessionResult {
   std::optional<RateConversionCost> conversion;
   std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic
   std::vector<std::string> damage;
+  std::map<std::string, stillhand_msgs::ClockOffset> clocks;  ///< by process, the last that came
 };
 
 /// Computes the completed trials' results from a recording.

@@ -5,7 +5,6 @@
 
 #include "contract/config_error.hpp"
 #include "idl/cdr.hpp"
-#include "idl/clock.h"
 #include "idl/topics.hpp"
 #include "recording/core/mcap_reader.hpp"
 #include "recording/file_io.hpp"
@@ -69,7 +68,7 @@ SessionRecording read_session(const std::string& path) {
       {topics::kServiceStatus.name, into(session.statuses)},
       {topics::kClockQuestion.name, counted<stillhand_msgs::ClockQuestion>()},
       {topics::kClockAnswer.name, counted<stillhand_msgs::ClockAnswer>()},
-      {topics::kClockOffset.name, counted<stillhand_msgs::ClockOffset>()}};
+      {topics::kClockOffset.name, into(session.clock_offsets)}};
   const recording::Status status =
       reader.for_each_message({}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);

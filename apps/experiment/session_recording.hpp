@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/clock.h"
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "idl/session.h"
@@ -29,6 +30,7 @@ struct SessionRecording {
   std::vector<stillhand_msgs::AugmentedModel> augmented_models;
   std::vector<stillhand_msgs::Event> events;
   std::vector<stillhand_msgs::ServiceStatus> statuses;
+  std::vector<stillhand_msgs::ClockOffset> clock_offsets;
 
   std::map<std::string, std::int64_t> messages;    ///< by topic
   std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic: gaps in its tick numbers

@@ -46,10 +46,26 @@ ordered_json condition_json(const TrialResult& trial) {
     condition["counterforce_delay_ms"] = number(1e3 * *trial.counterforce_delay_s);
   }
   if (const auto& latency = trial.sensor_to_command) {
-    condition["sensor_to_command_us"] = {
-        {"p50", latency->p50_us}, {"p99", latency->p99_us}, {"max", latency->max_us}};
+    condition["sensor_to_command_us"] = {{"p50", latency->p50_us},
+                                         {"p99", latency->p99_us},
+                                         {"max", latency->max_us},
+                                         {"uncertainty", latency->uncertainty_us}};
   }
   return condition;
+}
+
+ordered_json clocks_json(const SessionResult& result) {
+  ordered_json clocks = ordered_json::object();
+  for (const auto& [service, offset] : result.clocks) {
+    clocks[service] = {{"same_clock", offset.same_clock()},
+                       {"offset_s", 1e-9 * static_cast<double>(offset.offset_ns())},
+                       {"uncertainty_us", 1e-3 * offset.uncertainty_ns()},
+                       {"drift_ppm", number(offset.drift_ppm())},
+                       {"drift_sigma_ppm", number(offset.drift_sigma_ppm())},
+                       {"round_trip_us", 1e-3 * static_cast<double>(offset.round_trip_ns())},
+                       {"steps", offset.steps()}};
+  }
+  return clocks;
 }
 
 ordered_json restoration_json(const SessionResult& result) {
@@ -152,6 +168,7 @@ ordered_json summary_json(const LabOptions& options, const std::vector<TrialOutc
     summary["trials"].push_back(trial_json(outcome, options.protocol));
   }
   summary["lost_ticks"] = result.lost_ticks;
+  summary["clocks"] = clocks_json(result);
   summary["recording_damage"] = result.damage;
   summary["interrupted"] = interrupted;
   summary["seed"] = options.protocol.seed;

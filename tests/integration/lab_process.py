@@ -78,13 +78,15 @@ class LabProcess:
     """One `stillhand lab`, ended with everything it started by close()."""
 
     def __init__(self, out, *arguments, domain=None, program=None, headless=True, environment=None,
-                 before_start=None):
+                 before_start=None, start=(), inventory=None):
+        """start: words before the lab's own; inventory: of the lab's machines, on the domain given."""
         self.out = pathlib.Path(out)  # "": none given
         self.domain = next_domain() if domain is None else domain
         self._shared_memory_before = shared_memory()
         self._output = tempfile.TemporaryFile("w+")
         self._errors = tempfile.TemporaryFile("w+")
-        words = [str(program or STILLHAND), "lab", "--domain", str(self.domain)]
+        words = [*start, str(program or STILLHAND), "lab"]
+        words += ["--inventory", str(inventory)] if inventory else ["--domain", str(self.domain)]
         words += ["--headless"] if headless else []
         words += ["--out", str(out)] if out else []
         # A session of its own: interrupt() reaches the process group, as a terminal's Ctrl-C does.

@@ -88,10 +88,8 @@ ClockComparison::Line ClockComparison::fitted() const noexcept {
   for (std::size_t i = 0; i < count_; ++i) values[i] = samples_[i].round_trip_s;
   const double typical_s = median(values, count_);
   Line line;
-  line.round_trip_s = std::numeric_limits<double>::infinity();
   std::array<Sample, kWindow> quick{};
   for (std::size_t i = 0; i < count_; ++i) {
-    line.round_trip_s = std::min(line.round_trip_s, samples_[i].round_trip_s);
     if (samples_[i].round_trip_s <= typical_s) quick[line.used++] = samples_[i];
   }
   for (std::size_t i = 0; i < line.used; ++i) {
@@ -113,6 +111,13 @@ ClockComparison::Line ClockComparison::fitted() const noexcept {
     values[i] = quick[i].offset_s - line.drift * (quick[i].at_s - line.at_s);
   }
   line.offset_s = median(values, line.used);
+  const Sample& quickest = *std::ranges::min_element(
+      quick.begin(), quick.begin() + static_cast<std::ptrdiff_t>(line.used), {},
+      &Sample::round_trip_s);
+  line.round_trip_s = quickest.round_trip_s;
+  line.quickest_at_s = quickest.at_s;
+  line.beside_s =
+      std::abs(quickest.offset_s - line.offset_s - line.drift * (quickest.at_s - line.at_s));
   double square_s2 = 0.0;
   for (std::size_t i = 0; i < line.used; ++i) {
     const double along_s = quick[i].at_s - line.at_s;
@@ -128,13 +133,14 @@ ClockComparison::Line ClockComparison::fitted() const noexcept {
 std::optional<ClockOffset> ClockComparison::offset(std::int64_t now_ns) const noexcept {
   if (count_ < kLeast) return std::nullopt;
   const Line line = fitted();
-  const double ahead_s = seconds(now_ns - origin_ns_) - line.at_s;
+  const double now_s = seconds(now_ns - origin_ns_);
+  const double ahead_s = now_s - line.at_s;
   ClockOffset out;
   out.offset_ns = origin_offset_ns_ + nanoseconds(line.offset_s + line.drift * ahead_s);
   // Eq. CK-4.
-  double width_s = 0.5 * line.round_trip_s + line.spread_s;
-  if (std::isfinite(line.drift_sigma)) width_s += 2.0 * line.drift_sigma * std::abs(ahead_s);
-  out.uncertainty_ns = 1e9 * width_s;
+  const double drift = std::isfinite(line.drift_sigma) ? 3.0 * line.drift_sigma : kPlainDrift;
+  out.uncertainty_ns = 1e9 * (0.5 * line.round_trip_s + line.beside_s +
+                              drift * std::abs(now_s - line.quickest_at_s));
   out.drift_ppm = 1e6 * line.drift;
   out.drift_sigma_ppm = 1e6 * line.drift_sigma;
   out.round_trip_ns = nanoseconds(line.round_trip_s);

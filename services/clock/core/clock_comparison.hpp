@@ -55,10 +55,12 @@ class ClockComparison {
   struct Line {
     double at_s = 0.0;
     double offset_s = 0.0;
-    double drift = 0.0;        ///< [s/s]
-    double drift_sigma = 0.0;  ///< [s/s]
-    double spread_s = 0.0;     ///< scaled median absolute deviation
-    double round_trip_s = 0.0;
+    double drift = 0.0;          ///< [s/s]
+    double drift_sigma = 0.0;    ///< [s/s]
+    double spread_s = 0.0;       ///< scaled median absolute deviation
+    double round_trip_s = 0.0;   ///< of the quickest exchange
+    double quickest_at_s = 0.0;  ///< when that was
+    double beside_s = 0.0;       ///< how far the line passes by its offset
     std::size_t used = 0;
   };
 

@@ -78,6 +78,28 @@ TEST(ClockComparisonTest, TheOffsetLiesWithinItsUncertaintyThoughOneExchangeInFi
   EXPECT_EQ(within, kRuns);
 }
 
+// A busy machine: most exchanges wait, on either way.
+TEST(ClockComparisonTest, TheUncertaintyHoldsThoughNineOfTenMessagesAreHeldUp) {
+  int looked = 0;
+  int outside = 0;
+  for (int i = 0; i < 200; ++i) {
+    ClockComparison sut;
+    Network network;
+    network.held_up = 0.9;
+    network.draw = signal::Gaussian(static_cast<std::uint64_t>(i) + 1, 2);
+    for (int n = 8; n < 100; n += 4) {
+      run(sut, network, n == 8 ? 8 : 4);
+      const auto offset = sut.offset(network.now_ns);
+      if (offset->steps > 0) break;  // it may look as if the clock had jumped: then all is new
+      ++looked;
+      outside += std::abs(error_ns(sut, network)) <= offset->uncertainty_ns ? 0 : 1;
+    }
+  }
+  EXPECT_GT(looked, 1000);
+  // The drift's share of the width is three sigma, no bound.
+  EXPECT_LE(outside, looked / 500) << looked;
+}
+
 TEST(ClockComparisonTest, AWayThatIsAlwaysLongerThanTheWayBackStaysWithinTheUncertainty) {
   ClockComparison sut;
   Network network;

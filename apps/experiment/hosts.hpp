@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "deploy/inventory.hpp"
+#include "experiment/processes.hpp"
+#include "experiment/remote.hpp"
+
+namespace stillhand::experiment {
+
+struct LabOptions;
+
+/// Where a service finds its files, and leaves what it writes.
+struct Place {
+  std::filesystem::path profiles;
+  std::filesystem::path config;
+  std::filesystem::path out;
+};
+
+/// The machines of a session: this one alone, or those of an inventory.  One thread.
+class Hosts {
+ public:
+  /// Reads the inventory, if one is given.
+  /// @throws ConfigError what is wrong with it, or with the options beside it
+  explicit Hosts(const LabOptions& options);
+  ~Hosts() { clear(); }
+  Hosts(const Hosts&) = delete;
+  Hosts& operator=(const Hosts&) = delete;
+
+  /// DDS domain of the session.
+  [[nodiscard]] std::uint32_t domain() const noexcept { return domain_; }
+  /// Makes a folder on every other host, and gives it profiles and settings.
+  /// @throws ConfigError when a host cannot be reached
+  void open();
+  [[nodiscard]] Place of(std::string_view service) const;
+  /// The process as it is started from here, on the host of its service.
+  [[nodiscard]] Launch placed(const Launch& local) const;
+  /// Brings what services wrote elsewhere into the folder of the session, and clears the hosts.
+  /// What stays behind is told on standard error.
+  void bring_back() noexcept;
+  /// Clears the hosts of what was not brought back.
+  void clear() noexcept;
+
+ private:
+  [[nodiscard]] const deploy::Host* host_of(std::string_view service) const;
+  [[nodiscard]] RemoteHost* remote_of(std::string_view service) const;
+  void check(const LabOptions& options) const;
+
+  std::optional<deploy::Inventory> inventory_;
+  std::uint32_t domain_;
+  std::uint32_t rig_;
+  Place local_;
+  bool video_;
+  std::map<const deploy::Host*, std::unique_ptr<RemoteHost>> remotes_;
+};
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiment/remote.hpp"
+
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "contract/config_error.hpp"
+#include "runtime/clock.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr std::int64_t kPatience_ns = 30 * runtime::kNsPerSecond;  // with a host that is silent
+constexpr std::int64_t kPoll_ns = 5'000'000;
+constexpr std::string_view kFolder = "/tmp/stillhand-";
+
+std::uintmax_t size_of(const std::filesystem::path& file) {
+  std::error_code none;
+  const std::uintmax_t size = std::filesystem::file_size(file, none);
+  return none ? 0 : size;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+// The words that reach the host's shell, which reads its script from standard input.
+std::vector<std::string> to_shell(const deploy::Host& host) {
+  std::vector<std::string> words(host.start.begin() + 1, host.start.end());
+  words.insert(words.end(), {"bash", "-s"});
+  return words;
+}
+
+// The first end mark that no line of the text is.
+std::string end_mark(const std::string& text) {
+  std::string mark = "END";
+  while (("\n" + text + "\n").find("\n" + mark + "\n") != std::string::npos) mark += "_";
+  return mark;
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) {
+    if (c == '\'') {
+      out += "'\\''";
+    } else {
+      out += c;
+    }
+  }
+  return out + "'";
+}
+
+RemoteHost::RemoteHost(const deploy::Host& host, std::filesystem::path log)
+    : host_(host), log_(std::move(log)) {}
+
+void RemoteHost::run(const std::string& script, const std::filesystem::path& output) {
+  Launch errand;
+  errand.name = "the shell";
+  errand.host = host_.name;
+  errand.executable = host_.start.front();
+  errand.arguments = to_shell(host_);
+  errand.log = log_;
+  errand.output = output;
+  errand.standard_input = script;
+  Processes processes;
+  processes.start(errand);
+  std::int64_t limit_ns = runtime::monotonic_ns() + kPatience_ns;
+  std::uintmax_t printed = 0;
+  std::optional<Ended> ended;
+  while (!(ended = processes.reap())) {
+    if (const std::uintmax_t now = size_of(output); now > printed) {
+      printed = now;
+      limit_ns = runtime::monotonic_ns() + kPatience_ns;
+    }
+    if (runtime::monotonic_ns() > limit_ns) {
+      throw std::runtime_error("host " + host_.name + " did not answer within 30 s");
+    }
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kPoll_ns);
+  }
+  if (ended->exit_status != 0) throw std::runtime_error(describe(*ended));
+}
+
+void RemoteHost::open() {
+  std::string made;
+  try {
+    run("mktemp -d " + std::string(kFolder) + "XXXXXXXX\n");
+    made = text_of(log_);
+    while (!made.empty() && made.back() == '\n') made.pop_back();
+    if (!made.starts_with(kFolder)) throw std::runtime_error("it answered \"" + made + "\"");
+  } catch (const std::exception& error) {
+    std::string words;
+    for (const std::string& word : host_.start) words += word + " ";
+    throw ConfigError(host_.place + ": host " + host_.name, error.what(),
+                      "a host that answers to: " + words + "bash -s");
+  }
+  folder_ = made;
+}
+
+void RemoteHost::close() {
+  if (folder_.empty()) return;
+  run("rm -r " + shell_word(folder_) + "\n");
+  folder_.clear();
+}
+
+void RemoteHost::put(const std::map<std::string, std::string>& files) {
+  std::string script = "set -e\numask 077\ncd " + shell_word(folder_) + "\n";
+  for (const auto& [name, text] : files) {
+    const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+    if (!folder.empty()) script += "mkdir -p " + shell_word(folder.string()) + "\n";
+    const std::string end = end_mark(text);
+    script += "cat > " + shell_word(name) + " <<'" + end + "'\n" + text + "\n" + end + "\n";
+  }
+  run(script);
+}
+
+void RemoteHost::fetch(const std::string& name, const std::filesystem::path& to) {
+  // Under its name only once it is whole.
+  const std::filesystem::path part = to.string() + ".part";
+  try {
+    run("cat " + shell_word(folder_ + "/" + name) + "\n", part);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    throw;
+  }
+  std::filesystem::rename(part, to);
+}
+
+Launch RemoteHost::on_it(const Launch& local) const {
+  Launch launch = local;
+  std::string command = shell_word((host_.prefix / "bin" / local.executable.filename()).string());
+  for (const std::string& word : local.arguments) command += ' ' + shell_word(word);
+  launch.host = host_.name;
+  launch.executable = host_.start.front();
+  launch.arguments = to_shell(host_);
+  // The process's own standard input is empty; the shell's end is the lab's, and the process's.
+  launch.standard_input =
+      command +
+      " < /dev/null &\n"
+      "child=$!\n"
+      "{ cat > /dev/null; kill $child; sleep 10; kill -9 $child; } <&0 > /dev/null 2>&1 &\n"
+      "wait $child; status=$?\n"
+      "kill $! 2> /dev/null\n"
+      "exit $status\n";
+  launch.ends_with_input = true;
+  return launch;
+}
+
+}  // namespace stillhand::experiment

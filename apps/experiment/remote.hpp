@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "deploy/inventory.hpp"
+#include "experiment/processes.hpp"
+
+namespace stillhand::experiment {
+
+/// Another machine of the lab, reached by the words that its inventory gives (`ssh rig-pc`): a
+/// shell there reads what to do from its standard input, so that nothing has to be quoted twice and
+/// nothing but bash has to be there.
+class RemoteHost {
+ public:
+  /// @param host  one with start words; outlives this
+  /// @param log   what it says when something goes wrong there
+  RemoteHost(const deploy::Host& host, std::filesystem::path log);
+
+  /// Makes a folder there, for as long as the session lasts.
+  /// @throws ConfigError when the host cannot be reached
+  void open();
+  /// Takes the folder away again.  @throws std::runtime_error
+  void close();
+  [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
+  [[nodiscard]] const deploy::Host& host() const noexcept { return host_; }
+
+  /// Writes text files into its folder.  @param files  path below the folder, text
+  void put(const std::map<std::string, std::string>& files);
+  /// Copies a file of its folder to a new one here.  @throws std::runtime_error
+  void fetch(const std::string& name, const std::filesystem::path& to);
+
+  /// The same process there.  It ends when its standard input does: when the lab closes it, dies,
+  /// or can no longer be reached.
+  [[nodiscard]] Launch on_it(const Launch& local) const;
+
+ private:
+  /// Runs a script there, and gives it as long as it goes on printing.
+  /// @param output  file for what it prints; empty: the log
+  void run(const std::string& script, const std::filesystem::path& output = {});
+
+  const deploy::Host& host_;
+  std::filesystem::path log_;
+  std::string folder_;
+};
+
+/// A word as a POSIX shell reads it back.
+std::string shell_word(const std::string& word);
+
+}  // namespace stillhand::experiment

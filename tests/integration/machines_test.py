@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand lab --inventory` over three machines with nothing in common but a network (network.py).
+
+The same session on one machine gives the same results; a cable pulled for two seconds and a machine that loses its power
+take the motor's force away, are told by name, and leave a recording.
+"""
+import os
+import sys
+import time
+
+import lab_process
+import network
+from lab_process import CTEST_SKIPPED, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
+
+SESSION_LIMIT_S = 150
+FORCE_LIMIT_TICKS = 50
+END_LIMIT_S = 90.0  # a host that is gone is waited for, once for each errand
+
+
+class MachinesTest(LabTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.network = network.Network(os.getpid())
+        cls.addClassCleanup(cls.network.close)
+
+    def across(self, *arguments, **keywords):
+        domain = next_domain()
+        return self.lab(*arguments, domain=domain, start=self.network[network.HERE].words(),
+                        inventory=self.network.inventory(domain), **keywords)
+
+    def test_a_session_over_three_machines_gives_what_one_machine_gives(self):
+        words = ["--conditions", "C", "--identify-seconds", 20, "--trial-seconds", 20, "--seed", 2]
+        across = self.across("--video", *words)
+        self.assertEqual(across.end_status(SESSION_LIMIT_S), 0, across.errors())
+        one = self.lab(*words, out=self.folder / "one")
+        self.assertEqual(one.end_status(SESSION_LIMIT_S), 0, one.errors())
+        results = [lab.summary()["conditions"]["C"] for lab in (across, one)]
+        errors_mm = [result["rms_error_mm"]["mean"] for result in results]
+        shares = [result["cancelled_share"] for result in results]
+        print(f"RMS error {errors_mm[0]:.3f} and {errors_mm[1]:.3f} mm, cancelled {shares[0]:.4f} and {shares[1]:.4f}; "
+              f"ticks lost {across.summary()['lost_ticks']} and {one.summary()['lost_ticks']}", flush=True)
+        # The simulated subject hears of a tick a little later or earlier, as from session to session on one machine.
+        self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.05 * errors_mm[1])
+        self.assertAlmostEqual(shares[0], shares[1], delta=0.02)
+        self.assert_clocks_are_known(across.summary()["clocks"])
+        self.assertGreater((across.out / "screen.avi").stat().st_size, 100_000)
+        for machine in self.network.machines.values():
+            if machine.name != network.HERE:
+                self.assertEqual(machine.run("ls", "/tmp"), "", f"left on {machine.name}")
+
+    def assert_clocks_are_known(self, clocks):
+        for name, services in network.SERVICES.items():
+            machine = self.network[name]
+            for service in services:
+                if service == "experiment":
+                    continue
+                found = clocks[service]
+                self.assertEqual(found["same_clock"], name == network.HERE, service)
+                away_us = 1e6 * (found["offset_s"] - machine.clock_ahead_s)
+                self.assertLessEqual(abs(away_us), found["uncertainty_us"], service)
+                self.assertLess(found["uncertainty_us"], 5000.0, service)
+
+    def force_after(self, lab, cut_tick):
+        """Ticks from the interlock's opening to no force, in what was recorded behind a tick; the largest force."""
+        rig = lab.recording(10**6)["rig"]
+        behind = [i for i, tick in enumerate(rig["tick"]) if tick >= cut_tick]
+        opened = next((i for i in behind if not rig["motor_permitted"][i]), None)
+        self.assertIsNotNone(opened, "the interlock stayed closed")
+        zero = next((i for i in behind if i >= opened and rig["motor_force_n"][i] == 0.0), None)
+        self.assertIsNotNone(zero, "the recording ends before the force is zero")
+        self.assertEqual([force for force in rig["motor_force_n"][zero:] if force != 0.0], [])
+        return rig["tick"][zero] - rig["tick"][opened], max(abs(f) for f in rig["motor_force_n"])
+
+    def test_a_cable_pulled_for_two_seconds_takes_the_force_away(self):
+        lab = self.across(*quick_session(self.folder / "config"))
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        cut_tick = lab.recording(1)["rig"]["tick"][-1]
+        screen = self.network["screen-pc"]
+        screen.unplug()
+        self.addCleanup(screen.plug_back)
+        time.sleep(2.0)
+        screen.plug_back()
+        self.assertEqual(lab.end_status(END_LIMIT_S), 1)
+        self.assertIn("a process is missing", str(lab.summary()["trials"][-1]) + str(lab.errors()))
+        ticks, greatest_n = self.force_after(lab, cut_tick)
+        print(f"force zero {ticks} ticks after the interlock opened; {lab.errors()}", flush=True)
+        self.assertGreater(greatest_n, 1.0)
+        self.assertLessEqual(ticks, FORCE_LIMIT_TICKS)
+        self.assertEqual(lab.recording(1)["damage"], [])
+
+    def test_a_machine_without_power_ends_the_session_and_leaves_a_recording(self):
+        lab = self.across(*quick_session(self.folder / "config"))
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        cut_tick = lab.recording(1)["rig"]["tick"][-1]
+        screen = self.network["screen-pc"]
+        screen.switch_off()
+        self.addCleanup(screen.switch_on)
+        self.assertEqual(lab.end_status(END_LIMIT_S), 1)
+        told = " ".join(lab.errors())
+        print(told, flush=True)
+        self.assertIn("on screen-pc", told)
+        self.force_after(lab, cut_tick)
+        self.assertEqual(lab.recording(1)["damage"], [])
+        self.assertEqual(self.network["rig-pc"].run("ls", "/tmp"), "")
+
+    def test_a_host_that_cannot_be_reached_is_named_and_nothing_starts(self):
+        inventory = self.network.inventory(next_domain())
+        text = inventory.read_text()
+        wrong = self.folder / "wrong.yaml"
+        words = self.network["screen-pc"].words()
+        wrong.write_text(text.replace(", ".join(words), ", ".join(["nsenter", "--target=4194305", *words[2:]])))
+        self.assertNotEqual(wrong.read_text(), text)
+        lab = self.lab("--conditions", "C", start=self.network[network.HERE].words(), inventory=wrong)
+        self.assertEqual(lab.end_status(END_LIMIT_S), 2)
+        line = 1 + text[:text.index("- name: screen-pc")].count("\n")
+        self.assertEqual(len(lab.errors()), 1, lab.errors())
+        self.assertIn(f"wrong.yaml:{line}:", lab.errors()[0])
+        self.assertIn("screen-pc", lab.errors()[0])
+        self.assertFalse(lab.out.exists())
+        self.assertEqual(self.network["rig-pc"].run("ls", "/tmp"), "")
+
+
+if __name__ == "__main__":
+    if reason := network.why_not():
+        print("skipped:", reason)
+        sys.exit(CTEST_SKIPPED)
+    lab_process.main()

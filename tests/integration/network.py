@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A lab of several machines on this one: network namespaces joined by a bridge.
+
+Each machine has an address, a loopback and a /dev/shm of its own; all but the desk, where the test itself runs
+`stillhand lab`, have processes, a /tmp and a monotonic clock of their own too. Nothing of the network of this machine is
+touched. Needs root and namespaces: why_not() says what is missing.
+"""
+import contextlib
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+from lab_process import BUILD
+
+TOOLS = ("ip", "tc", "unshare", "nsenter", "iptables", "mount")
+# Services of the lab under test; the loop of sensor, canceller and motor stays on one machine, as the docs ask for.
+SERVICES = {
+    "rig-pc": ["rig", "sensing", "motion", "cancellation"],
+    "screen-pc": ["display", "human_operator"],
+    "desk": ["identification", "recorder", "experiment"],
+}
+HERE = "desk"
+CLOCKS_APART_S = 1000
+# Where the build shows on machines with a /tmp of their own.
+BUILD_THERE = "/mnt/stillhand"
+
+
+def run(*words):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, words))}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def why_not():
+    """Why there can be no such lab here, or nothing."""
+    missing = [tool for tool in TOOLS if shutil.which(tool) is None]
+    if missing:
+        return "no " + ", ".join(missing)
+    probe = subprocess.run(["unshare", "--net", "--mount", "--ipc", "--pid", "--fork", "--mount-proc", "--time",
+                            "--monotonic", "1", "ip", "link", "add", "name", "probe0", "type", "veth", "peer", "name", "probe1"],
+                           capture_output=True, text=True, check=False)
+    return "no namespaces: " + probe.stderr.strip() if probe.returncode != 0 else ""
+
+
+class Machine:
+    def __init__(self, network, name, number):
+        self.network = network
+        self.name = name
+        self.address = f"10.213.7.{number + 1}"
+        self.namespace = f"{network.name}-{number}"
+        self.port = f"p{number}"  # the switch's end of its cable
+        self.clock_ahead_s = 0 if name == HERE else CLOCKS_APART_S * (number + 1)
+        self._init = None
+        self._pid = None
+
+    def plug_in(self):
+        switch = self.network.switch
+        run("ip", "netns", "add", self.namespace)
+        run("ip", "-n", switch, "link", "add", self.port, "type", "veth", "peer", "name", "eth0", "netns",
+            self.namespace)
+        run("ip", "-n", switch, "link", "set", self.port, "master", "lan", "up")
+        run("ip", "-n", self.namespace, "address", "add", self.address + "/24", "dev", "eth0")
+        run("ip", "-n", self.namespace, "link", "set", "eth0", "up")
+        run("ip", "-n", self.namespace, "link", "set", "lo", "up")
+
+    def switch_on(self):
+        """Starts its first process: with it the machine has processes and memory of its own."""
+        script = "mount -t tmpfs tmpfs /dev/shm; "
+        isolation = ["unshare", "--mount", "--ipc", "--fork", "--kill-child"]
+        if self.name != HERE:
+            isolation += ["--pid", "--mount-proc", "--time", "--monotonic", str(self.clock_ahead_s)]
+            script += (f"mount -t tmpfs tmpfs /mnt; mkdir {BUILD_THERE}; mount --bind '{BUILD}' {BUILD_THERE}; "
+                       "mount -t tmpfs tmpfs /tmp; ")
+        self._init = subprocess.Popen(["ip", "netns", "exec", self.namespace, *isolation, "sh", "-c",
+                                       "set -e; " + script + "echo on; exec sleep infinity"],
+                                      stdout=subprocess.PIPE, text=True)
+        if self._init.stdout.readline() != "on\n":
+            raise RuntimeError(f"{self.name} did not start")
+        self._pid = self._child_of(self._init.pid)
+
+    @staticmethod
+    def _child_of(pid):
+        children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        return int(children[0])
+
+    def words(self):
+        """Words before a command that is to run there."""
+        words = ["nsenter", f"--target={self._pid}", "--net", "--mount", "--ipc"]
+        if self.name != HERE:
+            words += ["--pid", "--time"]
+        return words
+
+    def run(self, *words, text=None):
+        """Runs a command there; returns what it prints."""
+        done = subprocess.run([*self.words(), *(str(word) for word in words)], input=text, capture_output=True,
+                              text=True, check=False)
+        if done.returncode != 0:
+            raise RuntimeError(f"{self.name}: {' '.join(map(str, words))}: {done.stderr.strip()}")
+        return done.stdout
+
+    def clock_ns(self):
+        """Its monotonic clock now."""
+        return time.monotonic_ns() + self.clock_ahead_s * 1_000_000_000
+
+    def switch_off(self):
+        """As by its power switch: every process there is gone at once."""
+        if self._init is not None:
+            self._init.kill()  # --kill-child: the first process goes with it, and with that all of its namespace
+            self._init.wait()
+            self._init.stdout.close()
+            self._init = None
+
+    def unplug(self):
+        run("ip", "-n", self.network.switch, "link", "set", self.port, "down")
+
+    def plug_back(self):
+        run("ip", "-n", self.network.switch, "link", "set", self.port, "up")
+
+    @contextlib.contextmanager
+    def losing(self, share):
+        """Loses this share of the packets that reach it or leave it."""
+        rule = ["-m", "statistic", "--mode", "random", "--probability", str(share), "-j", "DROP"]
+        # What stays on the machine goes through the loopback.
+        self.run("iptables", "-A", "INPUT", "-i", "eth0", *rule)
+        self.run("iptables", "-A", "OUTPUT", "-o", "eth0", *rule)
+        try:
+            yield
+        finally:
+            self.run("iptables", "-F")
+
+    @contextlib.contextmanager
+    def limited_to(self, bits_per_s):
+        """Gives its cable this rate in both directions."""
+        ends = (self.namespace, "eth0"), (self.network.switch, self.port)
+        for namespace, device in ends:
+            run("tc", "-n", namespace, "qdisc", "add", "dev", device, "root", "tbf", "rate", f"{bits_per_s:.0f}bit",
+                "burst", "32kbit", "latency", "50ms")
+        try:
+            yield
+        finally:
+            for namespace, device in ends:
+                run("tc", "-n", namespace, "qdisc", "del", "dev", device, "root")
+
+
+class Network:
+    """The lab; close() leaves nothing of it."""
+
+    def __init__(self, identity):
+        """identity: a number that no other lab on this machine has."""
+        self.name = f"shn-{identity}"
+        self.switch = f"{self.name}-s"
+        self.machines = {name: Machine(self, name, number) for number, name in enumerate(SERVICES)}
+        self._folder = tempfile.TemporaryDirectory(prefix="stillhand-")
+        try:
+            self._build()
+        except Exception:
+            self.close()
+            raise
+
+    def _build(self):
+        run("ip", "netns", "add", self.switch)
+        run("ip", "-n", self.switch, "link", "add", "lan", "type", "bridge", "forward_delay", "0", "mcast_snooping", "0")
+        run("ip", "-n", self.switch, "link", "set", "lan", "up")
+        for machine in self.machines.values():
+            machine.plug_in()
+            machine.switch_on()
+
+    def __getitem__(self, name):
+        return self.machines[name]
+
+    def inventory(self, domain, discovery="peers"):
+        """File with the lab as `stillhand lab --inventory` reads it."""
+        lines = ["lab: test", f"domain: {domain}", f"discovery: {discovery}", "hosts:"]
+        for name, services in SERVICES.items():
+            machine = self.machines[name]
+            lines += [f"  - name: {name}", f"    address: {machine.address}", f"    services: [{', '.join(services)}]"]
+            if name == HERE:
+                lines += [f"    prefix: {BUILD}"]
+            else:
+                lines += [f"    prefix: {BUILD_THERE}", f"    start: [{', '.join(machine.words())}]"]
+        file = pathlib.Path(self._folder.name) / "lab.yaml"
+        file.write_text("\n".join(lines) + "\n")
+        return file
+
+    def close(self):
+        for machine in self.machines.values():
+            machine.switch_off()
+        for namespace in [machine.namespace for machine in self.machines.values()] + [self.switch]:
+            subprocess.run(["ip", "netns", "delete", namespace], capture_output=True, check=False)
+        self._folder.cleanup()
