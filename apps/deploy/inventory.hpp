@@ -36,7 +36,7 @@ struct Host {
   std::vector<std::string> start;  ///< words before a command that is to run there; empty: here
   std::filesystem::path prefix;    ///< absolute; where stillhand is installed there
   std::vector<Placement> services;
-  std::string place;  ///< "file:line:column" of it
+  std::string place = {};  ///< "file:line:column" of it
 };
 
 /// A lab of one or several machines, as its inventory file says (README, "The inventory").

@@ -66,11 +66,10 @@ void Clocks::take(const stillhand_msgs::ClockAnswer& answer, const runtime::Arri
   }
   other.system_ahead_ns = system_ahead_ns;
   other.answered = true;
-  if (other.comparison.take(
+  if (const auto step_ns = other.comparison.take(
           {answer.asked_ns(), answer.received_ns(), answer.stamp_ns(), arrival.received_ns})) {
-    const auto offset = other.comparison.offset(arrival.received_ns);
     tell(stillhand_msgs::EVENT_CLOCK_STEPPED, who, "its monotonic clock jumped by %+.1f ms",
-         offset ? 1e-6 * static_cast<double>(offset->last_step_ns) : 0.0);
+         1e-6 * static_cast<double>(*step_ns));
   }
 }
 

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <string>
+#include <tuple>
 
 #include "runtime/real_time.hpp"
 
@@ -66,19 +69,22 @@ void Reporter::publish_events() {
     Note note;
     int count;
   };
+  // Kind, topic, peer, text.
+  using Key = std::tuple<stillhand_msgs::EventKind, const topics::Topic*, std::string, std::string>;
   std::map<Key, Merged> merged;
   Note note{};
   while (queue_.pop(note)) {
-    const auto [place, first] = merged.try_emplace({note.kind, note.topic}, Merged{note, 0});
+    const auto [place, first] =
+        merged.try_emplace(Key{note.kind, note.topic, note.peer, note.text}, Merged{note, 0});
     ++place->second.count;
     place->second.note.by_us = std::max(place->second.note.by_us, note.by_us);
   }
   for (const auto& [key, entry] : merged) {
     stillhand_msgs::Event event;
-    event.kind(key.first);
+    event.kind(entry.note.kind);
     event.tick(entry.note.tick);
     event.source(bus_.options().service);
-    event.topic(key.second == nullptr ? std::string() : std::string(key.second->name));
+    event.topic(entry.note.topic == nullptr ? std::string() : std::string(entry.note.topic->name));
     event.peer(std::string(entry.note.peer));
     event.by_us(entry.note.by_us);
     std::string text = entry.note.text;

@@ -6,11 +6,9 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "idl/session.h"
 #include "runtime/bus.hpp"
@@ -27,8 +25,8 @@ struct Note {
   char text[128];
 };
 
-/// Publishes this process's status ten times a second and its events as they come; events of one
-/// kind and topic within a tenth of a second become one, with their number and the worst figure.
+/// Publishes this process's status ten times a second and its events as they come; events that say
+/// the same within a tenth of a second become one, with their number and the worst figure.
 class Reporter {
  public:
   /// Endpoints are made here, so before Bus::start().
@@ -44,7 +42,6 @@ class Reporter {
   void tell(const Note& note) noexcept;
 
  private:
-  using Key = std::pair<stillhand_msgs::EventKind, const topics::Topic*>;
   void work(const std::stop_token& stop);
   void publish_events();
   void publish_status();

@@ -70,6 +70,17 @@ json notes_of(const stillhand::experiment::SessionRecording& session) {
   return notes;
 }
 
+json clock_events_of(const stillhand::experiment::SessionRecording& session) {
+  json events = json::array();
+  for (const auto& event : session.events) {
+    if (event.kind() == stillhand_msgs::EVENT_CLOCK_STEPPED ||
+        event.kind() == stillhand_msgs::EVENT_CLOCK_DRIFTS) {
+      events.push_back(event.text().c_str());
+    }
+  }
+  return events;
+}
+
 json rig_of(const stillhand::experiment::SessionRecording& session, std::size_t last_ticks) {
   json rig{{"tick", json::array()},
            {"stamp_ns", json::array()},
@@ -105,6 +116,7 @@ int main(int argc, char** argv) {
                {"trials", trials_of(session)},
                {"rig", rig_of(session, last_ticks)},
                {"notes", notes_of(session)},
+               {"clock_events", clock_events_of(session)},
                {"newest_motor_command_ns", session.motor_commands.empty()
                                                ? std::int64_t{-1}
                                                : session.motor_commands.back().stamp_ns()}};

@@ -23,10 +23,10 @@ class MachinesTest(LabTestCase):
         cls.network = network.Network(os.getpid())
         cls.addClassCleanup(cls.network.close)
 
-    def across(self, *arguments, **keywords):
+    def across(self, *arguments, before=None):
         domain = next_domain()
         return self.lab(*arguments, domain=domain, start=self.network[network.HERE].words(),
-                        inventory=self.network.inventory(domain), **keywords)
+                        inventory=self.network.inventory(domain, before))
 
     def test_a_session_over_three_machines_gives_what_one_machine_gives(self):
         words = ["--conditions", "C", "--identify-seconds", 20, "--trial-seconds", 20, "--seed", 2]
@@ -59,6 +59,28 @@ class MachinesTest(LabTestCase):
                 away_us = 1e6 * (found["offset_s"] - machine.clock_ahead_s)
                 self.assertLessEqual(abs(away_us), found["uncertainty_us"], service)
                 self.assertLess(found["uncertainty_us"], 5000.0, service)
+
+    def test_a_clock_that_drifts_and_then_jumps_is_told_and_known(self):
+        drift_ppm, step_ms, until_step_s = 50.0, 20.0, 35.0
+        screen = self.network["screen-pc"]
+        step_at_ns = screen.clock_ns() + int(1e9 * until_step_s)
+        skewed = ["env", f"LD_PRELOAD={network.BUILD_THERE}/tests/libskewed_clock.so", f"SKEW_PPM={drift_ppm}",
+                  f"SKEW_STEP_MS={step_ms}", f"SKEW_STEP_AT_NS={step_at_ns}"]
+        lab = self.across("--conditions", "A", "--identify-seconds", 5, "--trial-seconds", 30, "--seed", 2,
+                          before={"screen-pc": skewed})
+        self.assertEqual(lab.end_status(SESSION_LIMIT_S), 0, lab.errors())
+        told = lab.recording(1)["clock_events"]
+        clocks = lab.summary()["clocks"]
+        for service in network.SERVICES["screen-pc"]:
+            of_it = [text for text in told if text.startswith(f"{service}: ")]
+            print(of_it, clocks[service], flush=True)
+            self.assertTrue(any("drifts" in text for text in of_it), told)
+            jumps_ms = [float(text.split("jumped by ")[1].split()[0]) for text in of_it if "monotonic" in text]
+            self.assertEqual(len(jumps_ms), 1, of_it)
+            self.assertAlmostEqual(jumps_ms[0], step_ms, delta=5.0)
+            self.assertEqual(clocks[service]["steps"], 1)
+        for service in network.SERVICES["rig-pc"]:
+            self.assertEqual([text for text in told if text.startswith(f"{service}: ")], [])
 
     def force_after(self, lab, cut_tick):
         """Ticks from the interlock's opening to no force, in what was recorded behind a tick; the largest force."""

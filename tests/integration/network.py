@@ -171,16 +171,20 @@ class Network:
     def __getitem__(self, name):
         return self.machines[name]
 
-    def inventory(self, domain, discovery="peers"):
-        """File with the lab as `stillhand lab --inventory` reads it."""
-        lines = ["lab: test", f"domain: {domain}", f"discovery: {discovery}", "hosts:"]
+    def inventory(self, domain, before=None):
+        """File with the lab as `stillhand lab --inventory` reads it.
+
+        before: {machine: further words before a command there}.
+        """
+        lines = ["lab: test", f"domain: {domain}", "discovery: peers", "hosts:"]
         for name, services in SERVICES.items():
             machine = self.machines[name]
             lines += [f"  - name: {name}", f"    address: {machine.address}", f"    services: [{', '.join(services)}]"]
             if name == HERE:
                 lines += [f"    prefix: {BUILD}"]
             else:
-                lines += [f"    prefix: {BUILD_THERE}", f"    start: [{', '.join(machine.words())}]"]
+                start = machine.words() + (before or {}).get(name, [])
+                lines += [f"    prefix: {BUILD_THERE}", f"    start: [{', '.join(start)}]"]
         file = pathlib.Path(self._folder.name) / "lab.yaml"
         file.write_text("\n".join(lines) + "\n")
         return file

@@ -33,11 +33,12 @@ bool ClockOffset::drifts() const noexcept {
   return std::abs(drift_ppm) - 3.0 * drift_sigma_ppm > 1e6 * kPlainDrift;
 }
 
-bool ClockComparison::take(const Exchange& exchange) noexcept {
+std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noexcept {
   const std::int64_t there_ns = exchange.answered_ns - exchange.received_ns;
   const std::int64_t here_ns = exchange.back_ns - exchange.asked_ns;
   const double round_trip_s = seconds(here_ns - there_ns);
-  if (here_ns < 0 || there_ns < 0 || round_trip_s < 0.0 || round_trip_s > kLongest_s) return false;
+  if (here_ns < 0 || there_ns < 0 || round_trip_s < 0.0 || round_trip_s > kLongest_s)
+    return std::nullopt;
   // Eq. CK-1; differences first: the clocks themselves may be days apart.
   const std::int64_t offset_ns =
       exchange.received_ns - exchange.asked_ns - (here_ns - there_ns) / 2;
@@ -48,7 +49,7 @@ bool ClockComparison::take(const Exchange& exchange) noexcept {
   }
   const Sample sample{seconds(exchange.back_ns - origin_ns_),
                       seconds(offset_ns - origin_offset_ns_), round_trip_s};
-  if (count_ > 0 && sample.at_s <= samples_[count_ - 1].at_s) return false;
+  if (count_ > 0 && sample.at_s <= samples_[count_ - 1].at_s) return std::nullopt;
 
   double beside_s = 0.0;
   if (count_ >= kLeast) {
@@ -67,13 +68,12 @@ bool ClockComparison::take(const Exchange& exchange) noexcept {
   }
   if (count_ == kWindow) forget_but(kWindow - 1);
   samples_[count_++] = sample;
-  if (away_ < kStepSamples) return false;
+  if (away_ < kStepSamples) return std::nullopt;
   // Eq. CK-5: the clock has jumped.  What it said before tells nothing of what it says now.
   ++steps_;
-  last_step_ns_ = nanoseconds(beside_s);
   forget_but(kStepSamples);
   away_ = 0;
-  return true;
+  return nanoseconds(beside_s);
 }
 
 void ClockComparison::forget_but(std::size_t newest) noexcept {
@@ -145,7 +145,6 @@ std::optional<ClockOffset> ClockComparison::offset(std::int64_t now_ns) const no
   out.drift_sigma_ppm = 1e6 * line.drift_sigma;
   out.round_trip_ns = nanoseconds(line.round_trip_s);
   out.steps = steps_;
-  out.last_step_ns = last_step_ns_;
   return out;
 }
 

@@ -24,7 +24,6 @@ struct ClockOffset {
   double drift_sigma_ppm = 0.0;    ///< [1e-6] of it; infinite while the window is short
   std::int64_t round_trip_ns = 0;  ///< shortest in the window
   std::int64_t steps = 0;          ///< times the other clock jumped since the start
-  std::int64_t last_step_ns = 0;   ///< by how much, the last time
 
   /// A clock whose drift is more than what a disciplined one may have, and more than chance.
   [[nodiscard]] bool drifts() const noexcept;
@@ -39,8 +38,8 @@ class ClockComparison {
 
   /// Takes an exchange; later ones have a later t4.  What isn't one (t4 before t1, t3 before t2, a
   /// round trip above a second) is passed over.
-  /// @return true when it showed that the other clock has jumped
-  bool take(const Exchange& exchange) noexcept;
+  /// @return by how much the other clock has jumped [ns], when this exchange shows it
+  std::optional<std::int64_t> take(const Exchange& exchange) noexcept;
 
   /// @param now_ns  own clock
   /// @return nothing before eight exchanges
@@ -74,7 +73,6 @@ class ClockComparison {
   std::size_t away_ = 0;  ///< newest samples in a row beside the line, to one side
   bool away_above_ = false;
   std::int64_t steps_ = 0;
-  std::int64_t last_step_ns_ = 0;
 };
 
 }  // namespace stillhand::clock
