@@ -14,7 +14,7 @@
 #include "deploy/generate.hpp"
 #include "deploy/machine.hpp"
 #include "report/result_files.hpp"
-#include "runtime/profiles_path.hpp"
+#include "runtime/shipped.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -108,7 +108,7 @@ int run_check(const Words& words) {
 
 void add_deploy_command(CLI::App& cli, int& status) {
   auto words = std::make_shared<Words>();
-  words->profiles = runtime::find_profiles(STILLHAND_SOURCE);
+  words->profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "deploy",
       "A lab of several machines from one inventory (deploy/inventory.example.yaml).\n"

@@ -10,6 +10,7 @@
 #include "deploy/inventory.hpp"
 #include "deploy/inventory_values.hpp"
 #include "idl/topics.hpp"
+#include "runtime/shipped.hpp"
 #include "settings/nearest.hpp"
 #include "settings/section.hpp"
 
@@ -178,7 +179,7 @@ class Reader {
   static void read_prefix(SectionReader& reader, const std::string& path, Host& host) {
     const Entry* prefix = reader.find("prefix");
     if (prefix == nullptr) {
-      host.prefix = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+      host.prefix = runtime::prefix();
       return;
     }
     // It stands in systemd's command lines, where blanks, quotes, % and $ have a meaning.

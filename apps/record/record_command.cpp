@@ -10,8 +10,8 @@
 #include "recording/keep_options.hpp"
 #include "recording/within.hpp"
 #include "runtime/clock.hpp"
-#include "runtime/profiles_path.hpp"
 #include "runtime/real_time.hpp"
+#include "runtime/shipped.hpp"
 
 namespace stillhand::record {
 namespace {
@@ -57,7 +57,7 @@ int run(Words words) {
 void add_record_command(CLI::App& cli, int& status) {
   auto words = std::make_shared<Words>();
   RecordOptions& options = words->options;
-  options.profiles = runtime::find_profiles(STILLHAND_SOURCE);
+  options.profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "record",
       "Records a running bus into an MCAP file, from outside: no session waits for it or ends "

@@ -9,8 +9,8 @@
 #include "recording/within.hpp"
 #include "replayer/replay.hpp"
 #include "runtime/clock.hpp"
-#include "runtime/profiles_path.hpp"
 #include "runtime/real_time.hpp"
+#include "runtime/shipped.hpp"
 
 namespace stillhand::replayer {
 namespace {
@@ -58,7 +58,7 @@ int run(Words words) {
 void add_replay_command(CLI::App& cli, int& status) {
   auto words = std::make_shared<Words>();
   ReplayOptions& options = words->options;
-  options.profiles = runtime::find_profiles(STILLHAND_SOURCE);
+  options.profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "replay",
       "Plays a recording onto the bus, byte for byte, with the QoS it was recorded with. What it\n"

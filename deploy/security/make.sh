@@ -32,10 +32,14 @@ done
 parent=$(dirname "$dir")
 [ -w "$parent" ] || fail "$parent: got no folder that can be written to, want one for $(basename "$dir")"
 command -v openssl >/dev/null || fail "openssl is not installed (deploy/setup.sh)"
-source=$(cd "$(dirname "$0")/../.." && pwd)
-permissions=${STILLHAND_BUILD:-$source/build}/bin/stillhand-permissions
-[ -x "$permissions" ] || permissions=$(command -v stillhand-permissions) ||
-  fail "no stillhand-permissions in ${STILLHAND_BUILD:-$source/build}/bin (deploy/build.sh makes it)"
+# In the build tree, or in bin beside share/stillhand/deploy/security.
+shipped=$(cd "$(dirname "$0")/../.." && pwd)
+for prefix in "${STILLHAND_BUILD:-$shipped/build}" "$shipped/../.."; do
+  permissions=$prefix/bin/stillhand-permissions
+  [ ! -x "$permissions" ] || break
+done
+[ -x "$permissions" ] ||
+  fail "no stillhand-permissions in ${STILLHAND_BUILD:-$shipped/build}/bin (deploy/build.sh makes it)"
 
 umask 077
 made=$(mktemp -d "$parent/.stillhand-security.XXXXXX")

@@ -138,9 +138,14 @@ void write(const std::string& file, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  constexpr const char* kArguments = "FOLDER LAB NOT_BEFORE NOT_AFTER DOMAIN_FROM DOMAIN_TO\n";
+  if (argc == 2 && argv[1] == std::string_view("--help")) {
+    std::cout << "A lab's DDS Security documents, unsigned: deploy/security/make.sh signs them.\n"
+              << "Usage: stillhand-permissions " << kArguments;
+    return 0;
+  }
   if (argc != 7) {
-    std::cerr << "stillhand-permissions: got " << argc - 1
-              << " arguments, want FOLDER LAB NOT_BEFORE NOT_AFTER DOMAIN_FROM DOMAIN_TO\n";
+    std::cerr << "stillhand-permissions: got " << argc - 1 << " arguments, want " << kArguments;
     return 2;
   }
   try {

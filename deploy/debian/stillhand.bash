@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# Completes verbs, options and the choices of an option, as `stillhand ... --help` tells them; file names elsewhere.
+_stillhand() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
+  local next help words choices=
+  local -a path=()
+  for next in "${COMP_WORDS[@]:1:COMP_CWORD-1}" ""; do
+    help=$("${COMP_WORDS[0]}" "${path[@]}" --help 2>/dev/null) || return
+    words=$(sed -n '/^Subcommands:/,$ s/^  \([a-z-]\{1,\}\) .*/\1/p' <<<"$help")
+    [[ -n $next && " ${words//$'\n'/ } " == *" $next "* ]] || break
+    path+=("$next")
+  done
+  [[ $before == --* ]] && choices=$(sed -n "s/^  $before [A-Z]*:{\([^}]*\)}.*/\1/p" <<<"$help")
+  if [[ -n $choices ]]; then
+    words=${choices//,/ }
+  elif [[ $word == -* ]]; then
+    words=$(sed -n 's/^  \(-[a-zA-Z],\)\{0,1\}\(--[a-z0-9-]\{1,\}\).*/\2/p' <<<"$help")
+  fi
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
+}
+complete -o default -F _stillhand stillhand
