@@ -35,18 +35,18 @@ int run(int argc, char** argv) {
   // A script's defaults come first, a user's words after them.
   cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int status = 0;
-  stillhand::experiment::add_lab_command(cli, status);
-  stillhand::study::add_study_command(cli, status);
-  stillhand::identify::add_identify_command(cli, status);
-  stillhand::diagnose::add_diagnose_command(cli, status);
-  stillhand::closed_loop::add_closed_loop_command(cli, status);
-  stillhand::closed_loop::add_control_model_command(cli, status);
-  stillhand::predict::add_predict_command(cli, status);
-  stillhand::recorder::add_file_commands(cli, status);
-  stillhand::record::add_record_command(cli, status);
-  stillhand::replayer::add_replay_command(cli, status);
-  stillhand::deploy::add_deploy_command(cli, status);
   try {
+    stillhand::experiment::add_lab_command(cli, status);
+    stillhand::study::add_study_command(cli, status);
+    stillhand::identify::add_identify_command(cli, status);
+    stillhand::diagnose::add_diagnose_command(cli, status);
+    stillhand::closed_loop::add_closed_loop_command(cli, status);
+    stillhand::closed_loop::add_control_model_command(cli, status);
+    stillhand::predict::add_predict_command(cli, status);
+    stillhand::recorder::add_file_commands(cli, status);
+    stillhand::record::add_record_command(cli, status);
+    stillhand::replayer::add_replay_command(cli, status);
+    stillhand::deploy::add_deploy_command(cli, status);
     cli.parse(argc, argv);
     return told(status);
   } catch (const CLI::ParseError& error) {
