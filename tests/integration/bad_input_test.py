@@ -228,6 +228,7 @@ class BadInputTest(LabTestCase):
     def test_missing_program_is_named(self):
         programs = self.folder / "bin"
         programs.mkdir()
+        (self.folder / "share").symlink_to(STILLHAND.parents[1] / "share")
         shutil.copy(STILLHAND, programs)
         for service in lab_process.SERVICES:
             if service != "display":
