@@ -29,5 +29,6 @@ page() {  # page PROGRAM [VERB...]
   done
 }
 
+umask 022
 mkdir -p "$out"
 for program in "$@"; do page "$program"; done

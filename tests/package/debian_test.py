@@ -81,7 +81,7 @@ class Packages:
         self._folder = tempfile.TemporaryDirectory(prefix="stillhand-packages-")
         made = pathlib.Path(self._folder.name)
         subprocess.run(["cpack", "-G", "DEB", "--config", str(BUILD / "CPackConfig.cmake"), "-B", str(made)], check=True,
-                       stdout=subprocess.DEVNULL)
+                       stdout=subprocess.DEVNULL, umask=0o077)  # whatever the builder's
         shutil.rmtree(made / "_CPack_Packages")
         self.folder = made
         self.programs, = made.glob("stillhand_*.deb")
