@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "contract/config_error.hpp"
+#include "deploy/machine.hpp"
 #include "deploy/profiles.hpp"
 #include "experiment/lab.hpp"
 #include "idl/topics.hpp"
@@ -35,6 +36,12 @@ void Hosts::check(const LabOptions& options) const {
     throw ConfigError(here->place + ": host " + here->name,
                       "experiment on a host that is reached from elsewhere",
                       "experiment on the host without \"start\", where `stillhand lab` runs");
+  }
+  const auto own = deploy::own_addresses();
+  if (std::ranges::find(own, here->address) == own.end()) {
+    throw ConfigError(here->place + ": host " + here->name,
+                      here->address + ", which is on no interface of this machine",
+                      "the address of the machine where `stillhand lab` runs");
   }
   const auto want_here = [&](std::string_view service, const std::string& option,
                              const std::string& why) {

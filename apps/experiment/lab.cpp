@@ -27,6 +27,7 @@
 #include "rig/sealed_file.hpp"
 #include "runtime/clock.hpp"
 #include "runtime/real_time.hpp"
+#include "runtime/shipped.hpp"
 #include "settings/load.hpp"
 
 namespace stillhand::experiment {
@@ -269,16 +270,9 @@ void open_undeclared_effect(const LabOptions& options, const std::string& sealed
 }
 
 void set_places(LabOptions& options) {
-  options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  options.profiles = "qos/profiles.xml";
-  options.config = "deploy/config";
-  for (const std::filesystem::path& root : {options.programs.parent_path() / "share" / "stillhand",
-                                            std::filesystem::path(STILLHAND_SOURCE)}) {
-    if (!std::filesystem::exists(root / "qos" / "profiles.xml")) continue;
-    options.profiles = root / "qos" / "profiles.xml";
-    options.config = root / "deploy" / "config";
-    return;
-  }
+  options.programs = runtime::prefix() / "bin";
+  options.profiles = runtime::shipped("qos/profiles.xml");
+  options.config = runtime::shipped("deploy/config");
 }
 
 cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,

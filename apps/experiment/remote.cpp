@@ -140,14 +140,14 @@ Launch RemoteHost::on_it(const Launch& local) const {
   launch.executable = host_.start.front();
   launch.arguments = to_shell(host_);
   // The process's own standard input is empty; the shell's end is the lab's, and the process's.
-  launch.standard_input =
-      command +
-      " < /dev/null &\n"
-      "child=$!\n"
-      "{ cat > /dev/null; kill $child; sleep 10; kill -9 $child; } <&0 > /dev/null 2>&1 &\n"
-      "wait $child; status=$?\n"
-      "kill $! 2> /dev/null\n"
-      "exit $status\n";
+  // In braces, so that the shell has read all of it before anything else reads on.
+  launch.standard_input = "{\n" + command +
+                          " < /dev/null &\n"
+                          "child=$!\n"
+                          "{ cat; kill $child; sleep 10; kill -9 $child; } <&0 > /dev/null 2>&1 &\n"
+                          "wait $child; status=$?\n"
+                          "kill $! 2> /dev/null\n"
+                          "exit $status\n}\n";
   launch.ends_with_input = true;
   return launch;
 }

@@ -5,7 +5,7 @@ Usage, as root: STILLHAND_BUILD=build python3 tests/benchmark/network_faults.py 
 
 Each row is a session of its own over network namespaces (tests/integration/network.py): a pegged trial of 5 s, then 15 s of
 condition C, 3 s into which the fault begins. What the motor does is recorded on the rig's own machine by a second
-recorder, which no fault of the network reaches; what the screen says is read from its video.
+recorder, which no fault of the network reaches; what the screen says is read from its video (Debian's python3-pil).
 """
 import argparse
 import contextlib
@@ -128,11 +128,11 @@ def screen_says(avi):
     return lost / FRAMES_PER_S
 
 
-def force_words(rig, cut_ns):
-    """What the motor did from the fault on: (text for the table)."""
+def force_words(rig, cut_ns, end_tick):
+    """What the motor did from the fault to the trial's end."""
     if rig is None or not rig["tick"]:
         return "no power, no force"
-    behind = [i for i, stamp in enumerate(rig["stamp_ns"]) if stamp >= cut_ns]
+    behind = [i for i, stamp in enumerate(rig["stamp_ns"]) if stamp >= cut_ns and rig["tick"][i] < end_tick]
     opened = next((i for i in behind if not rig["motor_permitted"][i]), None)
     greatest = max((abs(rig["motor_force_n"][i]) for i in behind), default=0.0)
     if opened is None:
@@ -179,7 +179,9 @@ def row(lab_network, name, machine, fault, folder):
         rig = witness.rig(folder / "witness.mcap")
         link_lost_s = screen_says(folder / "run" / "screen.avi")
         screen = "no picture left" if link_lost_s is None else f"LINK LOST for {link_lost_s:.1f} s"
-        return f"| {name} | {force_words(rig, cut_ns)} | {screen} | {recorded_words(lab)} | {ended_words(lab, status)} |"
+        trial = lab.recording(1)["trials"][-1]
+        force = force_words(rig, cut_ns, trial["start_tick"] + trial["duration_ticks"])
+        return f"| {name} | {force} | {screen} | {recorded_words(lab)} | {ended_words(lab, status)} |"
     finally:
         lab.close()
         witness.process.kill()
