@@ -77,9 +77,9 @@ void set_transport(const Parts& parts, const Inventory& inventory, const Host& h
   XMLElement* list = parts.transport->FirstChildElement("interfaceWhiteList");
   if (list == nullptr) list = parts.transport->InsertNewChildElement("interfaceWhiteList");
   list->DeleteChildren();
+  // One address: each has a socket to send by and a thread to receive, so with 127.0.0.1 besides
+  // all that stays on the host is sent twice, and callbacks of one bus run at the same time.
   list->InsertNewChildElement("address")->SetText(host.address.c_str());
-  // In the lists of all hosts or of none; here it keeps what stays on the host off its network.
-  if (host.address != "127.0.0.1") list->InsertNewChildElement("address")->SetText("127.0.0.1");
 }
 
 // With a unicast locator of their own, even an empty one (the standard port), participants open no
