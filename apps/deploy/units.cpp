@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// systemd units.  No watchdog: the processes don't notify systemd; what is late or gone the lab's
-// own supervision tells (ARCHITECTURE.md, "Safety chain").
+// systemd units.  The watchdog is fed with each life sign (services/runtime/reporting), ten times a
+// second: a process that hangs is started again, long after the interlock has opened.
 #include <fmt/format.h>
 
 #include "deploy/host_files.hpp"
@@ -88,6 +88,7 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
   if (recorder) text += "StateDirectory=stillhand/" + inventory.lab + "\n";
   const std::string command = command_of(inventory, host, placement);
   text += "ExecStart=" + (recorder ? recorder_command(inventory, command) : command) + "\n";
+  text += "NotifyAccess=main\nWatchdogSec=2\n";
   text += fmt::format(
       "CPUSchedulingPolicy=fifo\nCPUSchedulingPriority={0}\nLimitRTPRIO={0}\n"
       "LimitMEMLOCK=infinity\n",

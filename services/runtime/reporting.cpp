@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/reporting.hpp"
 
+#include <systemd/sd-daemon.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -58,6 +59,8 @@ void Reporter::work(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     publish_events();
     publish_status();
+    // systemd's watchdog, where the process is a unit's: it bites when this life sign ends.
+    sd_notify(0, "WATCHDOG=1");
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, stop, kStatusPeriod, [] { return false; });
   }

@@ -172,7 +172,8 @@ TEST(UnitsTest, AProcessThatDiesComesBackButOneThatRefusesItsSettingsDoesNot) {
   auto sut = unit_named(example(), "rig-pc", "stillhand-rig@1.service");
   EXPECT_EQ(sut["Restart"], "on-failure");
   EXPECT_EQ(sut["RestartPreventExitStatus"], "2");
-  EXPECT_FALSE(sut.contains("WatchdogSec"));  // no process notifies systemd
+  EXPECT_EQ(sut["WatchdogSec"], "2");
+  EXPECT_EQ(sut["NotifyAccess"], "main");
 }
 
 TEST(UnitsTest, TheTargetWantsEveryUnitOfTheHost) {
