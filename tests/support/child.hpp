@@ -46,10 +46,14 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
+  /// SIGTERM, without waiting: many end sooner when all were asked first.
+  void ask_to_end() const {
+    if (pid_ > 0) kill(pid_, SIGTERM);
+  }
   /// SIGTERM, then its end.  @returns its exit status, or -1
   int finish() {
     if (pid_ <= 0) return status_;
-    kill(pid_, SIGTERM);
+    ask_to_end();
     int status = 0;
     waitpid(pid_, &status, 0);
     pid_ = 0;
