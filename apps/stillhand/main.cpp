@@ -6,6 +6,7 @@
 #include "closed_loop/closed_loop_command.hpp"
 #include "closed_loop/control_model_command.hpp"
 #include "contract/config_error.hpp"
+#include "dashboard/dashboard_command.hpp"
 #include "deploy/deploy_command.hpp"
 #include "diagnose/diagnose_command.hpp"
 #include "experiment/conductor.hpp"
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
     stillhand::recorder::add_file_commands(cli, status);
     stillhand::record::add_record_command(cli, status);
     stillhand::replayer::add_replay_command(cli, status);
+    stillhand::dashboard::add_dashboard_command(cli, status);
     stillhand::deploy::add_deploy_command(cli, status);
     cli.parse(argc, argv);
     return told(status);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cancellation/core/canceller.hpp"
+#include "dashboard/core/config.hpp"
 #include "display/core/tracking_display.hpp"
 #include "human_operator/shell.hpp"
 #include "identification/core/identifier.hpp"
@@ -88,6 +89,7 @@ TEST(DeployedSettingsTest, EveryFileShowsEveryKeyWithItsDefault) {
   expect_in_step<display::TrackingDisplay::Config>("config/display.yaml");
   expect_in_step<human_operator::SubjectConfig>("config/human_operator.yaml");
   expect_in_step<identification::Config>("config/identification.yaml");
+  expect_in_step<dashboard::Config>("config/dashboard.yaml");
   expect_in_step<study::Population>("experiments/population.yaml");
 }
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "dashboard/http_server.hpp"
+#include "dashboard/live_bus.hpp"
+#include "runtime/stop.hpp"
+
+namespace stillhand::dashboard {
+
+struct DashboardOptions {
+  HttpServer::Options server;
+  LiveOptions bus;
+  std::filesystem::path config;  ///< folder of the settings
+  std::filesystem::path pages;   ///< folder of the page's files
+  std::string token_file;        ///< empty: none
+  std::string recording;         ///< empty: the bus
+  std::uint32_t rig = 1;
+  bool blinded = true;
+  bool real_time = true;  ///< ask for it, for the threads that receive
+};
+
+/// Serves the page until a signal comes.  @returns 0
+/// @throws ConfigError, runtime::BusError
+int run_dashboard(const DashboardOptions& options, runtime::Stop& stop);
+
+}  // namespace stillhand::dashboard

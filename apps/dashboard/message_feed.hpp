@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "contract/trial.hpp"
+#include "dashboard/core/bus_health.hpp"
+#include "dashboard/core/traces.hpp"
+#include "idl/clock.h"
+#include "idl/session.h"
+#include "idl/topics.hpp"
+
+namespace stillhand::dashboard {
+
+/// A writer, as the bus or a recording names it.
+struct Source {
+  std::string topic, type;
+  std::string participant;  ///< "stillhand/<rig>/<service>" for a process of a session
+  bool replayed = false;
+};
+
+/// One message, however it came.
+struct Message {
+  std::uint32_t source;              ///< its writer, as add() numbered it
+  std::uint32_t sequence;            ///< low 32 bits of DDS's
+  std::int64_t source_ns;            ///< [ns] system clock of its writer
+  std::int64_t arrived_ns;           ///< [ns] system clock of the listener
+  std::span<const std::byte> bytes;  ///< CDR with encapsulation header
+};
+
+struct FeedOptions {
+  Config config;
+  std::uint32_t rig = 1;
+  bool blinded = true;                ///< what tells a trial's condition is passed over
+  std::string listener = "recorder";  ///< process on whose host the arrivals were stamped
+};
+
+/// What a process says of itself, newest.
+struct ServiceView {
+  std::optional<stillhand_msgs::ServiceStatus> status;
+  std::uint64_t deadline_misses = 0, cycle_misses = 0, lost_ticks = 0;  ///< of all it reads
+};
+
+/// A process's own word, when it came.
+struct HeardEvent {
+  std::int64_t at_ns;
+  stillhand_msgs::Event event;
+};
+
+/// The one way from messages to the dashboard's numbers: a live bus and a recording both go through
+/// it, so that they cannot count differently.  One thread; no clock: time comes with messages and
+/// step().
+class MessageFeed {
+ public:
+  /// @throws ConfigError as BusHealth does
+  explicit MessageFeed(FeedOptions options);
+
+  /// Topics that it understands and may know.
+  [[nodiscard]] bool wants(const std::string& topic) const;
+  /// A writer.  @returns its number: 0, 1, 2 ...
+  std::uint32_t add(const Source& source);
+  void take(const Message& message);
+  /// Ten times a second.
+  void step(std::int64_t now_ns);
+  void acknowledge() noexcept { health_.acknowledge(); }
+
+  [[nodiscard]] const BusHealth& health() const noexcept { return health_; }
+  [[nodiscard]] const FeedOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const std::optional<stillhand_msgs::TrialControl>& control() const noexcept {
+    return control_;
+  }
+  /// Empty while blinded.
+  [[nodiscard]] const std::string& condition() const noexcept { return condition_; }
+  [[nodiscard]] const std::array<ServiceView, topics::kServices.size()>& services() const noexcept {
+    return services_;
+  }
+  [[nodiscard]] const std::map<std::string, stillhand_msgs::ClockOffset>& clocks() const noexcept {
+    return clocks_;
+  }
+  /// Newest first.
+  [[nodiscard]] const std::deque<HeardEvent>& events() const noexcept { return events_; }
+  [[nodiscard]] const Traces& traces() const noexcept { return traces_; }
+  [[nodiscard]] bool replayed() const noexcept { return replayed_; }
+  [[nodiscard]] Tick newest_tick() const noexcept { return newest_tick_; }
+  /// Messages that are none of their type.
+  [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
+
+ private:
+  struct Known {
+    std::size_t topic;  // place in the list, or kNone
+    const topics::Topic* row;
+    std::string service;  // of this rig, or empty
+  };
+
+  template <typename Decoded, typename Use>
+  void decode(const Message& message, Use use);
+  void look_into(const Known& known, const Message& message);
+  void take_stream(const Known& known, const Message& message);
+  void take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns);
+  void take_status(const stillhand_msgs::ServiceStatus& status, std::int64_t at_ns);
+  [[nodiscard]] bool motor_hidden() const noexcept;
+  [[nodiscard]] std::int64_t system_ahead_ns(const std::string& service) const;
+  [[nodiscard]] std::int64_t ahead_of_rig_ns(const std::string& service) const;
+
+  FeedOptions options_;
+  BusHealth health_;
+  std::vector<Known> sources_;
+  std::optional<stillhand_msgs::TrialControl> control_;
+  std::string condition_;
+  std::array<ServiceView, topics::kServices.size()> services_;
+  std::map<std::string, stillhand_msgs::ClockOffset> clocks_;
+  std::deque<HeardEvent> events_;
+  Traces traces_;
+  std::optional<std::uint32_t> rig_writer_;
+  bool replayed_ = false;
+  Tick newest_tick_ = -1;
+  std::uint64_t malformed_ = 0;
+};
+
+}  // namespace stillhand::dashboard

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "dashboard/access.hpp"
+#include "dashboard/pages.hpp"
+
+namespace stillhand::dashboard {
+
+/// What of a request decides about its answer; empty where it has none.
+struct Question {
+  std::string_view method, target, host, origin, authorization, cookie;
+};
+
+struct Answer {
+  unsigned status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::string body;
+  std::string location, cookie;  ///< headers, where not empty
+  bool streams = false;          ///< no body: server-sent events from now on
+};
+
+/// What the server can be asked for.
+struct Served {
+  std::function<std::string()> snapshot;  ///< whole, as JSON
+  std::function<void()> acknowledge;
+};
+
+/// The answer to any request, however odd; without a socket.
+Answer answer(const Question& question, const Pages& pages, const Access& access,
+              const Served& served);
+
+}  // namespace stillhand::dashboard

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "contract/tick.hpp"
+#include "dashboard/message_feed.hpp"
+
+namespace stillhand::dashboard {
+
+/// What the page shows beside the feed's own.
+struct Surroundings {
+  std::string mode;  ///< "live" or "recording"
+  std::string file;  ///< of a recording
+  std::uint32_t domain = 0;
+  double motor_limit_n = 0.0;  ///< [N] narrower of the canceller's and the drive's
+  std::uint64_t dropped = 0;   ///< messages that came while the queue was full
+  std::vector<std::string> trouble;
+  double cpu_share = 0.0;   ///< [-] of one core, by this process
+  std::size_t clients = 0;  ///< that listen
+};
+
+/// Everything the page shows at one instant, README "Snapshot".
+/// @param after  traces behind this tick, -1: all that are kept
+std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, std::int64_t now_ns,
+                          Tick after);
+
+}  // namespace stillhand::dashboard

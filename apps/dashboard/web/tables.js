@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is read from near by.
+import { clock, short, what, write } from "/status.js";
+
+function create(name, text, className) {
+  const node = document.createElement(name);
+  if (text !== undefined) node.textContent = text;
+  if (className) node.className = className;
+  return node;
+}
+
+function us(value) {
+  if (value >= 100000) return `${(value / 1000).toFixed(0)}k`;
+  return value >= 100 || value === 0 ? value.toFixed(0) : value.toFixed(value < 10 ? 1 : 0);
+}
+
+function spread(times) {
+  if (times.count === 0) return "–";
+  return `${us(times.p50_us)} / ${us(times.p99_us)} / ${us(times.p999_us)} / ${us(times.max_us)}`;
+}
+
+function late(lateness) {
+  return lateness.count === 0 ? "0" : `${lateness.count}, ${us(lateness.worst_us)} µs`;
+}
+
+// Rows that stay: only cells whose text differs are written.
+class Table {
+  constructor(id, heads) {
+    const table = document.getElementById(id);
+    const row = create("tr");
+    for (const head of heads) {
+      const cell = create("th", head.text ?? head, head.left ? "l" : "");
+      cell.scope = "col";
+      if (head.title) cell.title = head.title;
+      row.append(cell);
+    }
+    const part = create("thead");
+    part.append(row);
+    this.body = create("tbody");
+    table.append(part, this.body);
+    this.rows = new Map();
+  }
+
+  show(name, cells) {
+    if (!this.rows.has(name)) {
+      const row = create("tr");
+      const head = create("th", name);
+      head.scope = "row";
+      row.append(head, ...cells.map(() => create("td")));
+      this.rows.set(name, row);
+      this.body.append(row);
+    }
+    const row = this.rows.get(name);
+    cells.forEach((cell, i) => {
+      const node = row.children[i + 1];
+      if (cell instanceof Node) {
+        node.replaceChildren(cell);
+      } else {
+        const { text, look = "" } = typeof cell === "object" ? cell : { text: cell };
+        write(node, String(text));
+        if (node.className !== look) node.className = look;
+      }
+    });
+  }
+}
+
+// Jitters since the start, one bar a decade's third; the height is logarithmic.
+function bars(topic, edges) {
+  const upTo = topic.jitter_counts;
+  const counts = upTo.map((count, i) => count - (i === 0 ? 0 : upTo[i - 1]));
+  counts.push(topic.jitter.count - (upTo.at(-1) ?? 0));
+  const most = Math.log10(1 + Math.max(...counts, 1));
+  const node = create("span", undefined, "bars");
+  node.setAttribute("role", "img");
+  node.setAttribute("aria-label", counts.map((count, i) =>
+    `${i < edges.length ? `up to ${edges[i]}` : `above ${edges.at(-1)}`} µs: ${count}`).join(", "));
+  counts.forEach((count, i) => {
+    const bar = create("i", undefined, i < edges.length && edges[i] <= 1000 ? "" : "late");
+    bar.style.height = `${(100 * Math.log10(1 + count)) / most}%`;
+    node.append(bar);
+  });
+  return node;
+}
+
+export class Tables {
+  constructor() {
+    this.topics = new Table("topics", ["topic", { text: "rate [Hz]" }, "jitter", { text: "histogram", title: "of the jitter since the start, 10 µs to above 10 ms; heights are logarithmic" },
+      "latency", "samples", { text: "lost", title: "by sequence number and tick" },
+      { text: "sent late", title: "intervals of the writer's stamps beyond the deadline: how many, and by how much at worst" },
+      { text: "came late", title: "the same of the arrivals here" }, "since"]);
+    this.chain = new Table("chain", ["up to", "p50", "p99", "p99.9", "max", "samples"]);
+    this.services = new Table("services", ["process", { text: "state", left: true }, "last seen",
+      { text: "real time", title: "runs with a real-time scheduling policy" }, "pid",
+      { text: "DDS misses", title: "deadlines missed as its own readers count them, whole milliseconds" },
+      { text: "cycle misses", title: "as its own supervision counts them, microseconds" }, "lost ticks", { text: "waits for", left: true }]);
+    this.clocks = new Table("clocks", ["process", "offset [µs]", "± [µs]", "drift [ppm]", "steps"]);
+  }
+
+  show(snapshot) {
+    this.showSession(snapshot);
+    this.showAlarms(snapshot.alarms);
+    for (const topic of snapshot.topics) this.showTopic(topic, snapshot);
+    const { sensed, command, motor } = snapshot.chain;
+    for (const [name, times] of [["sensed", sensed], ["motor command", command], ["first use by the rig", motor]]) {
+      this.chain.show(name, times.count === 0 ? ["–", "–", "–", "–", 0]
+        : [us(times.p50_us), us(times.p99_us), us(times.p999_us), us(times.max_us), times.count]);
+    }
+    for (const service of snapshot.services) this.showService(service);
+    for (const clockOf of snapshot.clocks) {
+      this.clocks.show(clockOf.service, clockOf.same_clock ? [{ text: "same clock", look: "faint" }, "0", "0", clockOf.steps]
+        : [clockOf.offset_us.toFixed(1), clockOf.uncertainty_us?.toFixed(1) ?? "–", clockOf.drift_ppm?.toFixed(2) ?? "–", clockOf.steps]);
+    }
+    this.showEvents(snapshot.events);
+    const own = snapshot.dashboard;
+    const trouble = own.trouble.length > 0 ? ` · ${own.trouble.join("; ")}` : "";
+    write(document.getElementById("own"), `This dashboard: ${(100 * own.cpu_share).toFixed(1)} % of one core, ${own.clients} client${own.clients === 1 ? "" : "s"}, ` +
+      `${own.dropped} messages dropped, ${own.malformed} malformed${trouble}`);
+  }
+
+  showSession({ session, mode, domain, rig, file, now_ms: now }) {
+    const parts = [["state", session.state], [mode === "live" ? "domain" : "recording", mode === "live" ? domain : file], ["rig", rig]];
+    if (session.trial !== undefined && session.trial >= 0) {
+      const at = (session.tick - session.start_tick) / 1000;
+      parts.push(["trial", session.trial], ["phase", session.phase],
+        ["measured", `${Math.min(Math.max(at, 0), session.duration_ticks / 1000).toFixed(0)} of ${(session.duration_ticks / 1000).toFixed(0)} s`]);
+    }
+    parts.push(["condition", session.condition ?? (session.blinded ? "hidden (blinded)" : "–")]);
+    if (session.replayed) parts.push(["replay", "a recording is being played on this domain"]);
+    parts.push([mode === "live" ? "now" : "ends", clock(now)]);
+    const list = document.getElementById("session");
+    while (list.children.length > parts.length) list.lastChild.remove();
+    parts.forEach(([name, value], i) => {
+      if (!list.children[i]) {
+        const part = create("div");
+        part.append(create("dt"), create("dd"));
+        list.append(part);
+      }
+      write(list.children[i].children[0], name);
+      write(list.children[i].children[1], String(value));
+    });
+  }
+
+  showAlarms(alarms) {
+    const items = alarms.map((alarm) => {
+      const item = create("li");
+      item.dataset.level = alarm.level;
+      item.append(create("b", alarm.level), create("span", what(alarm)));
+      if (alarm.count > 1) item.append(create("span", `${alarm.count} times`, "faint"));
+      if (alarm.acknowledged) item.append(create("span", "acknowledged", "faint"));
+      item.append(create("time", `since ${clock(alarm.since_ms)}`));
+      return item;
+    });
+    if (items.length === 0) items.push(create("li", "none"));
+    document.getElementById("alarms").replaceChildren(...items);
+  }
+
+  showTopic(topic, snapshot) {
+    const firsts = [topic.lost_since_ms, topic.sent_late.first_ms, topic.arrived_late.first_ms].filter((ms) => ms !== null);
+    const slow = snapshot.session.state === "running" && topic.expected_hz >= 1000 && topic.rate_hz < 0.99 * topic.expected_hz;
+    const periodic = topic.expected_hz > 0;
+    this.topics.show(short(topic.topic), [
+      { text: periodic ? topic.rate_hz.toFixed(0) : "–", look: slow ? "bad" : "" },
+      periodic ? spread(topic.recent_jitter) : "–",
+      periodic && topic.jitter.count > 0 ? bars(topic, snapshot.jitter_edges_us) : "–",
+      spread(topic.recent_latency), topic.samples,
+      { text: topic.lost, look: topic.lost > 0 ? "bad" : "" },
+      topic.deadline_us === 0 ? "–" : { text: late(topic.sent_late), look: topic.sent_late.count > 0 ? "bad" : "" },
+      topic.deadline_us === 0 ? "–" : late(topic.arrived_late),
+      firsts.length === 0 ? "–" : clock(Math.min(...firsts))]);
+  }
+
+  showService(service) {
+    if (service.state === undefined) {
+      this.services.show(service.service, [{ text: "missing", look: "l faint" }, "–", "–", "–", "–", "–", "–", { text: "", look: "l" }]);
+      return;
+    }
+    const gone = service.silent_ms > 300;
+    this.services.show(service.service, [
+      { text: gone ? "gone" : service.state, look: gone || service.state === "fault" ? "l bad" : "l" }, clock(service.last_ms),
+      service.real_time ? "yes" : "no", service.pid, service.deadline_misses, service.cycle_misses, service.lost_ticks,
+      { text: service.waits_for, look: "l" }]);
+  }
+
+  showEvents(events) {
+    const items = events.slice(0, 12).map((event) => {
+      const item = create("li");
+      const by = event.by_us > 0 ? `, ${us(event.by_us)} µs` : "";
+      item.append(create("time", clock(event.at_ms)), create("span", event.kind),
+        create("span", [event.source, short(event.topic), event.peer, event.text].filter((part) => part !== "").join(" · ") + by));
+      return item;
+    });
+    if (items.length === 0) items.push(create("li", "none"));
+    document.getElementById("events").replaceChildren(...items);
+  }
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dashboard/access.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::dashboard {
+namespace {
+
+const std::string kToken = "0123456789abcdef-ABC_x.y";
+
+TEST(AccessTest, LoopbackIsForWhoNamesItSo) {
+  const Access sut("");
+  for (const char* host : {"127.0.0.1", "127.0.0.1:8340", "localhost:8340", "[::1]:8340"}) {
+    EXPECT_TRUE(sut.allows({host, "", "", "", ""})) << host;
+  }
+  // A name of the world that was pointed at 127.0.0.1.
+  for (const char* host :
+       {"", "evil.example:8340", "127.0.0.1.evil.example", "localhost.evil", "["}) {
+    EXPECT_FALSE(sut.allows({host, "", "", "", ""})) << host;
+  }
+}
+
+TEST(AccessTest, APageOfAnotherSiteChangesNothing) {
+  const Access sut("");
+  EXPECT_TRUE(sut.allows_change({"127.0.0.1:8340", "", "", "", ""}));
+  EXPECT_TRUE(sut.allows_change({"127.0.0.1:8340", "http://127.0.0.1:8340", "", "", ""}));
+  EXPECT_FALSE(sut.allows_change({"127.0.0.1:8340", "http://evil.example", "", "", ""}));
+  EXPECT_FALSE(sut.allows_change({"127.0.0.1:8340", "http://127.0.0.1:8341", "", "", ""}));
+}
+
+TEST(AccessTest, WithATokenItIsTheTokenThatCounts) {
+  const Access sut(kToken);
+  const std::string cookie = "a=b; stillhand_token=" + kToken;
+  EXPECT_TRUE(sut.allows({"lab.example", "", "Bearer " + kToken, "", ""}));
+  EXPECT_TRUE(sut.allows({"lab.example", "", "", cookie, ""}));
+  EXPECT_FALSE(sut.allows({"127.0.0.1", "", "", "", ""}));
+  for (const std::string& wrong :
+       {std::string(), kToken + "x", kToken.substr(1), kToken.substr(0, 5),
+        std::string(kToken.size(), 'a'), " " + kToken}) {
+    EXPECT_FALSE(sut.allows({"", "", "Bearer " + wrong, "", ""})) << wrong;
+    EXPECT_FALSE(sut.allows({"", "", "", "stillhand_token=" + wrong, ""})) << wrong;
+    EXPECT_FALSE(sut.signs_in({"", "", "", "", "token=" + wrong})) << wrong;
+  }
+  EXPECT_FALSE(sut.allows({"", "", "Bearer wrong", cookie, ""}));  // what it shows first counts
+  EXPECT_TRUE(sut.signs_in({"", "", "", "", "x=1&token=" + kToken}));
+}
+
+TEST(AccessTest, WithoutATokenNoneIsRight) {
+  const Access sut("");
+  EXPECT_FALSE(sut.signs_in({"", "", "", "", "token="}));
+  EXPECT_FALSE(sut.signs_in({"", "", "", "", ""}));
+}
+
+class TokenFileTest : public ::testing::Test {
+ protected:
+  void write(const std::string& text, mode_t mode = 0600) {
+    std::filesystem::remove(file_);
+    std::ofstream(file_) << text;
+    chmod(file_.c_str(), mode);
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+
+  std::string file_ = testing::TempDir() + "stillhand_token_" + std::to_string(getpid());
+};
+
+TEST_F(TokenFileTest, ATokenIsOneLine) {
+  write(kToken + "\n");
+  EXPECT_EQ(read_token(file_), kToken);
+}
+
+TEST_F(TokenFileTest, WhatIsNoSecretIsRefused) {
+  for (const std::string& text : {std::string(), std::string("short"), kToken + "\n" + kToken,
+                                  kToken + " ", kToken + ";", std::string(257, 'a')}) {
+    write(text);
+    EXPECT_THROW(read_token(file_), ConfigError) << text;
+  }
+  write(kToken, 0644);
+  EXPECT_THROW(read_token(file_), ConfigError);
+  std::filesystem::remove(file_);
+  EXPECT_THROW(read_token(file_), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::dashboard

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dashboard/message_feed.hpp"
+
+#include <fastcdr/Cdr.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "dashboard/snapshot_json.hpp"
+#include "idl/control_loop.h"
+
+namespace stillhand::dashboard {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kBegin = 1000 * 1000 * kMs;
+
+template <typename Message_>
+std::vector<std::byte> to_cdr(const Message_& message) {
+  eprosima::fastcdr::FastBuffer buffer;
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                             eprosima::fastcdr::Cdr::DDS_CDR);
+  cdr.serialize_encapsulation();
+  message.serialize(cdr);
+  const auto* begin = reinterpret_cast<const std::byte*>(buffer.getBuffer());
+  return {begin, begin + cdr.getSerializedDataLength()};
+}
+
+class MessageFeedTest : public ::testing::Test {
+ protected:
+  std::uint32_t add(const topics::Topic& topic, MessageFeed& feed) {
+    return feed.add({std::string(topic.name), std::string(topic.type),
+                     "stillhand/1/" + std::string(topic.writers.front()), false});
+  }
+  std::uint32_t add(const topics::Topic& topic) { return add(topic, sut_); }
+  template <typename Message_>
+  void take(MessageFeed& feed, std::uint32_t source, const Message_& message, std::int64_t at_ms) {
+    const auto bytes = to_cdr(message);
+    feed.take({source, ++sequence_, kBegin + at_ms * kMs, kBegin + at_ms * kMs, bytes});
+  }
+  void control(MessageFeed& feed, stillhand_msgs::Phase phase, Tick start_tick) {
+    stillhand_msgs::TrialControl control;
+    control.rig(1);
+    control.session(stillhand_msgs::SESSION_RUNNING);
+    control.trial(0);
+    control.phase(phase);
+    control.start_tick(start_tick);
+    control.duration_ticks(10'000);
+    take(feed, add(topics::kTrialControl, feed), control, 0);
+  }
+  // A second of the rig with a force of the motor.
+  void push(MessageFeed& feed) {
+    const std::uint32_t source = add(topics::kRigTruth, feed);
+    for (Tick tick = 0; tick < 1000; ++tick) {
+      stillhand_msgs::RigTruth truth;
+      truth.rig(1);
+      truth.tick(tick);
+      truth.stamp_ns(tick * kMs);
+      truth.motor_tick(-1);
+      truth.motor_force_n(7.0);
+      take(feed, source, truth, tick);
+    }
+  }
+  static bool shows_force(const MessageFeed& feed) {
+    for (const auto& row : feed.traces().rows()) {
+      if (row.values[static_cast<std::size_t>(Signal::kMotorForce)] == 7.0) return true;
+    }
+    return false;
+  }
+  static FeedOptions unblinded() {
+    FeedOptions options;
+    options.blinded = false;
+    return options;
+  }
+
+  std::uint32_t sequence_ = 0;
+  MessageFeed sut_{FeedOptions{}};
+};
+
+TEST_F(MessageFeedTest, AnotherRigsMessagesAreNotCounted) {
+  const std::uint32_t source = add(topics::kSensed);
+  stillhand_msgs::Sensed sensed;
+  for (const std::uint32_t rig : {1u, 2u, 1u}) {
+    sensed.rig(rig);
+    take(sut_, source, sensed, 0);
+  }
+  EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).samples, 2u);
+}
+
+TEST_F(MessageFeedTest, WhileAPersonTracksTheMotorsForceStaysHidden) {
+  control(sut_, stillhand_msgs::PHASE_TRACKING, 100);
+  push(sut_);
+  EXPECT_FALSE(shows_force(sut_));
+  EXPECT_FALSE(sut_.wants(std::string(topics::kTrialAssignment.name)));
+}
+
+TEST_F(MessageFeedTest, OutsideOfATrialOfAPersonAndUnblindedItIsShown) {
+  MessageFeed pegged{FeedOptions{}}, open{unblinded()};
+  control(pegged, stillhand_msgs::PHASE_PEGGED, 100);
+  push(pegged);
+  EXPECT_TRUE(shows_force(pegged));
+  control(open, stillhand_msgs::PHASE_TRACKING, 100);
+  push(open);
+  EXPECT_TRUE(shows_force(open));
+}
+
+TEST_F(MessageFeedTest, TheConditionIsToldToTheUnblindedAlone) {
+  MessageFeed open{unblinded()};
+  for (MessageFeed* feed : {&sut_, &open}) {
+    stillhand_msgs::TrialAssignment assignment;
+    assignment.rig(1);
+    assignment.motion(stillhand_msgs::MOTION_BAND_NOISE);
+    assignment.cancellation(true);
+    take(*feed, add(topics::kTrialAssignment, *feed), assignment, 0);
+  }
+  EXPECT_EQ(open.condition(), "motion, cancellation");
+  EXPECT_EQ(sut_.condition(), "");
+  EXPECT_EQ(snapshot_json(sut_, {}, kBegin, -1).find("trial_assignment"), std::string::npos);
+}
+
+TEST_F(MessageFeedTest, AnotherHostsClockIsTakenOffItsLatencies) {
+  stillhand_msgs::ClockOffset offset;
+  offset.rig(1);
+  offset.service("sensing");
+  offset.system_offset_ns(5 * kMs);
+  take(sut_, add(topics::kClockOffset), offset, 0);
+  stillhand_msgs::Sensed sensed;
+  sensed.rig(1);
+  const auto bytes = to_cdr(sensed);
+  sut_.take({add(topics::kSensed), 1, kBegin + 5 * kMs, kBegin + kMs, bytes});
+  EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).latency.max_ns, kMs);
+}
+
+TEST_F(MessageFeedTest, BytesThatAreNoMessageAreCountedAndHarmNothing) {
+  std::mt19937 random(7);
+  std::vector<std::uint32_t> sources;
+  for (const topics::Topic* topic : topics::kCatalogue) sources.push_back(add(*topic));
+  sources.push_back(sut_.add({"stranger/topic", "stranger::Type", "", false}));
+  for (std::uint32_t i = 0; i < 50'000; ++i) {
+    std::vector<std::byte> bytes(random() % 200);
+    for (std::byte& byte : bytes) byte = static_cast<std::byte>(random() % 256);
+    // Right up to the rig's number, so that it is looked into.
+    if (bytes.size() > 8) {
+      for (std::size_t at = 0; at < 8; ++at) bytes[at] = std::byte{0};
+      bytes[1] = bytes[4] = std::byte{1};
+    }
+    sut_.take({sources[random() % sources.size()], i, kBegin, kBegin + i * kMs, bytes});
+  }
+  EXPECT_GT(sut_.malformed(), 0u);
+  EXPECT_LE(sut_.events().size(), 50u);
+  // Whatever texts came: it is JSON.
+  EXPECT_TRUE(nlohmann::json::accept(snapshot_json(sut_, {}, kBegin, -1)));
+}
+
+}  // namespace
+}  // namespace stillhand::dashboard

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dashboard/routes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "contract/config_error.hpp"
+
+namespace stillhand::dashboard {
+namespace {
+
+const std::string kToken = "0123456789abcdef";
+
+class RoutesTest : public ::testing::Test {
+ protected:
+  RoutesTest() {
+    for (const char* file : {"index.html", "style.css", "main.js", "status.js", "tables.js",
+                             "charts.js", "uPlot.esm.js", "uPlot.min.css"}) {
+      std::ofstream(folder_ / file) << file;
+    }
+    std::ofstream(folder_ / "secret") << "secret";
+    pages_.emplace(folder_);
+  }
+  ~RoutesTest() override { std::filesystem::remove_all(folder_); }
+
+  static std::filesystem::path made(std::string path) {
+    path += std::to_string(getpid());
+    std::filesystem::create_directories(path);
+    return path;
+  }
+  Answer ask(std::string_view method, std::string_view target, std::string_view origin = "") {
+    return answer({method, target, "127.0.0.1", origin, "", ""}, *pages_, loopback_, served_);
+  }
+
+  std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_pages_");
+  std::optional<Pages> pages_;
+  int acknowledged_ = 0;
+  Served served_{[] { return std::string("{}"); }, [this] { ++acknowledged_; }};
+  Access loopback_{""}, token_{kToken};
+};
+
+TEST_F(RoutesTest, ThePageAndItsPartsAreThere) {
+  EXPECT_EQ(ask("GET", "/").body, "index.html");
+  EXPECT_EQ(ask("GET", "/?x=1").body, "index.html");
+  EXPECT_EQ(ask("GET", "/main.js").type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(ask("GET", "/snapshot").body, "{}");
+  EXPECT_EQ(ask("GET", "/snapshot").type, "application/json");
+  EXPECT_TRUE(ask("GET", "/events").streams);
+}
+
+TEST_F(RoutesTest, NoPathLeadsAnywhereElse) {
+  for (const char* target :
+       {"/secret", "/../secret", "/..%2fsecret", "//etc/passwd", "/./main.js", "/main.js/",
+        "main.js", "", "*", "http://127.0.0.1/", "/%00", "/\\..\\secret"}) {
+    EXPECT_EQ(ask("GET", target).status, 404u) << target;
+  }
+}
+
+TEST_F(RoutesTest, OnlyAPostOfOnesOwnAcknowledges) {
+  EXPECT_EQ(ask("GET", "/acknowledge").status, 404u);
+  EXPECT_EQ(ask("POST", "/acknowledge", "http://evil.example").status, 403u);
+  EXPECT_EQ(ask("POST", "/").status, 404u);
+  EXPECT_EQ(ask("DELETE", "/").status, 405u);
+  EXPECT_EQ(acknowledged_, 0);
+  EXPECT_EQ(ask("POST", "/acknowledge", "http://127.0.0.1").status, 204u);
+  EXPECT_EQ(acknowledged_, 1);
+}
+
+TEST_F(RoutesTest, TheTokenGoesFromTheAddressIntoACookie) {
+  const auto of = [&](std::string_view target, std::string_view cookie) {
+    return answer({"GET", target, "lab", "", "", cookie}, *pages_, token_, served_);
+  };
+  EXPECT_EQ(of("/", "").status, 403u);
+  EXPECT_EQ(of("/?token=wrong", "").status, 403u);
+  EXPECT_EQ(of("/snapshot?token=" + kToken, "").status, 403u);  // there it would stay in logs
+  const Answer signed_in = of("/?token=" + kToken, "");
+  EXPECT_EQ(signed_in.status, 303u);
+  EXPECT_EQ(signed_in.location, "/");
+  EXPECT_EQ(of("/events", signed_in.cookie).status, 200u);
+}
+
+TEST_F(RoutesTest, EveryRequestOfRandomBytesHasAnAnswerAndDoesNothing) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 20'000; ++i) {
+    const auto text = [&] {
+      std::string any(random() % 40, '\0');
+      for (char& c : any) c = static_cast<char>(random() % 256);
+      if (random() % 4 == 0) any.insert(0, "/?token=");
+      if (random() % 4 == 0) any.insert(0, "stillhand_token=;");
+      return any;
+    };
+    const std::string target = text(), host = text(), cookie = text(), authorization = text();
+    const Answer got =
+        answer({random() % 2 == 0 ? "GET" : "POST", target, host, text(), authorization, cookie},
+               *pages_, random() % 2 == 0 ? loopback_ : token_, served_);
+    EXPECT_TRUE(got.status == 403 || got.status == 404) << got.status;
+  }
+  EXPECT_EQ(acknowledged_, 0);
+}
+
+TEST_F(RoutesTest, AFolderWithoutAFileOfThePageIsRefused) {
+  std::filesystem::remove(folder_ / "uPlot.esm.js");
+  EXPECT_THROW(Pages{folder_}, ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::dashboard

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dashboard/core/traces.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stillhand::dashboard {
+namespace {
+
+TEST(TracesTest, EveryTwentiethTickOfTheNewestTenSecondsIsKept) {
+  Traces sut;
+  for (Tick tick = 0; tick < 25'000; ++tick) {
+    sut.put(tick, Signal::kForce, static_cast<double>(tick));
+  }
+  const auto rows = sut.rows();
+  ASSERT_GT(rows.size(), 490u);
+  EXPECT_LE(rows.size(), Traces::kRows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].tick, rows.front().tick + static_cast<Tick>(i) * Traces::kEvery);
+    EXPECT_EQ(rows[i].values[static_cast<std::size_t>(Signal::kForce)],
+              static_cast<double>(rows[i].tick));
+    EXPECT_TRUE(std::isnan(rows[i].values[static_cast<std::size_t>(Signal::kTarget)]));
+  }
+}
+
+TEST(TracesTest, ARowIsToldOnceEveryTopicHadTheTimeToFillIt) {
+  Traces sut;
+  for (Tick tick = 0; tick <= 200; tick += Traces::kEvery) {
+    sut.put(tick, Signal::kForce, 1.0);
+    if (tick >= 40) sut.put(tick - 40, Signal::kMotorForce, 2.0);
+  }
+  const auto rows = sut.rows(60);
+  ASSERT_EQ(rows.size(), 4u);  // 80 to 140
+  for (const auto& row : rows) {
+    EXPECT_EQ(row.values[static_cast<std::size_t>(Signal::kMotorForce)], 2.0);
+  }
+  EXPECT_TRUE(sut.rows(140).empty());
+}
+
+TEST(TracesTest, TicksThatGoBackAreAnotherSession) {
+  Traces sut;
+  for (Tick tick = 0; tick < 60'000; ++tick) sut.put(tick, Signal::kForce, 1.0);
+  for (Tick tick = 0; tick < 1000; ++tick) sut.put(tick, Signal::kForce, 2.0);
+  for (const auto& row : sut.rows()) {
+    EXPECT_LT(row.tick, 1000);
+    EXPECT_EQ(row.values[static_cast<std::size_t>(Signal::kForce)], 2.0);
+  }
+  EXPECT_FALSE(sut.rows().empty());
+}
+
+}  // namespace
+}  // namespace stillhand::dashboard
