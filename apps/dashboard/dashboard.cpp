@@ -111,8 +111,9 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
   while (!stop.requested()) {
     server.run_for(kDrain);
     if (bus) {
-      bus->drain();
+      // Before what it is compared with: held up in between, this process would call others silent.
       now_ns = runtime::system_ns();
+      bus->drain();
     }
     const std::int64_t monotonic_ns = runtime::monotonic_ns();
     if (monotonic_ns - framed_ns < kFrame_ns) continue;

@@ -33,7 +33,10 @@ std::vector<TopicPlan> plans(const Config& config) {
   std::vector<TopicPlan> all;
   for (const topics::Topic* row : kTopics) {
     TopicPlan plan{std::string(row->name), 0, 0};
-    if (row->rate_hz > 0.0) plan.period_ns = static_cast<std::int64_t>(kNsPerS / row->rate_hz);
+    // The clocks' topics come in bursts, one message for each process.
+    if (row->rate_hz > 0.0 && row->pattern != topics::Pattern::kExchange) {
+      plan.period_ns = static_cast<std::int64_t>(kNsPerS / row->rate_hz);
+    }
     if (row->pattern == topics::Pattern::kStream1khz) {
       plan.deadline_ns = static_cast<std::int64_t>(config.deadline_ms * kNsPerMs);
     }

@@ -3,7 +3,8 @@
 import uPlot from "/uPlot.esm.js";
 
 const KEPT_S = 10;
-const HEIGHT = 150;
+const HEIGHT = 122;
+const STEP_TICKS = 20; // between two rows of the dashboard
 const FIGURES = [
   { title: "Acceleration [m/s²]", series: [{ name: "accel_y_m_s2", key: "platform, right" }], least: 1 },
   { title: "Force of the hand [N]", series: [{ name: "force_n", key: "measured" }, { name: "predicted_force_n", key: "predicted by the model" }], least: 1 },
@@ -73,10 +74,23 @@ class Chart {
     }, data, this.place);
   }
 
-  show(traces, hidden) {
-    const columns = this.figure.series.map(({ name }) => traces[name]);
-    if (this.figure.limits) columns.push(traces.tick.map(() => this.limit), traces.tick.map(() => -this.limit));
-    const data = [traces.tick.map((tick) => tick / 1000), ...columns];
+  show(rows, hidden) {
+    const data = [[], ...this.figure.series.map(() => []), ...(this.figure.limits ? [[], []] : [])];
+    const add = (tick, values) => {
+      data[0].push(tick / 1000);
+      values.forEach((value, i) => data[i + 1].push(value));
+      if (this.figure.limits) {
+        data.at(-2).push(this.limit);
+        data.at(-1).push(-this.limit);
+      }
+    };
+    let last = null;
+    for (const row of rows) {
+      // Nothing is drawn where nothing was heard.
+      if (last !== null && row.tick - last > 2 * STEP_TICKS) add(last + STEP_TICKS, this.figure.series.map(() => null));
+      add(row.tick, this.figure.series.map(({ name }) => row[name]));
+      last = row.tick;
+    }
     const note = hidden && this.figure.limits ? "hidden while a person tracks (blinded)" : "";
     if (this.note.textContent !== note) this.note.textContent = note;
     if (this.plot) this.plot.setData(data); else this.draw(data);
@@ -87,7 +101,7 @@ export class Charts {
   constructor(parent) {
     this.parent = parent;
     this.charts = [];
-    this.traces = null;
+    this.rows = [];
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       for (const chart of this.charts) { chart.plot?.destroy(); chart.plot = null; }
     });
@@ -95,19 +109,20 @@ export class Charts {
 
   add({ traces, limits, session }) {
     if (this.charts.length === 0) this.charts = FIGURES.map((figure) => new Chart(this.parent, figure, limits.motor_force_n));
-    const newest = this.traces?.tick.at(-1) ?? -1;
-    // Ticks that go back are another session.
-    if (!this.traces || (traces.tick.length > 0 && traces.tick.at(-1) < newest)) {
-      this.traces = traces;
+    if (traces.tick.length === 0) return;
+    const arrived = traces.tick.map((_, i) => Object.fromEntries(Object.keys(traces).map((name) => [name, traces[name][i]])));
+    const newest = arrived.at(-1).tick;
+    // Ticks that go far back are another session.
+    if (newest < (this.rows.at(-1)?.tick ?? -1) - 1000 * KEPT_S) this.rows = [];
+    if (arrived[0].tick > (this.rows.at(-1)?.tick ?? -1)) {
+      this.rows.push(...arrived);
     } else {
-      const first = traces.tick.findIndex((tick) => tick > newest);
-      if (first < 0) return;
-      for (const name of Object.keys(this.traces)) this.traces[name].push(...traces[name].slice(first));
+      const byTick = new Map([...this.rows, ...arrived].map((row) => [row.tick, row]));
+      this.rows = [...byTick.values()].sort((one, other) => one.tick - other.tick);
     }
-    const oldest = (this.traces.tick.at(-1) ?? 0) - 1000 * KEPT_S;
-    const gone = this.traces.tick.findIndex((tick) => tick >= oldest);
-    if (gone > 0) for (const name of Object.keys(this.traces)) this.traces[name].splice(0, gone);
+    const oldest = this.rows.at(-1).tick - 1000 * KEPT_S;
+    this.rows = this.rows.filter((row) => row.tick >= oldest);
     const hidden = session.blinded && session.phase === "tracking";
-    for (const chart of this.charts) chart.show(this.traces, hidden);
+    for (const chart of this.charts) chart.show(this.rows, hidden);
   }
 }

@@ -11,10 +11,8 @@ const charts = new Charts(document.getElementById("charts"));
 const tables = new Tables();
 let heardAt = performance.now();
 let tablesAt = -Infinity;
-let newest = null;
 
 function show(snapshot) {
-  newest = snapshot;
   heardAt = performance.now();
   showStatus(snapshot);
   charts.add(snapshot);
@@ -36,18 +34,23 @@ document.addEventListener("keydown", (event) => {
   if (plain && event.key.toLowerCase() === "a" && !button.disabled) acknowledge();
 });
 
-// The stream begins with what is new; the ten seconds before it come at once.
-async function begin() {
+// The stream brings what is new. The ten seconds before it are fetched once it runs, so that nothing falls between the
+// two; also when the browser has connected again.
+async function fetchWhole() {
   try {
     show(await (await fetch("/snapshot")).json());
   } catch {
     showLost("the dashboard does not answer");
   }
+}
+
+function begin() {
   const stream = new EventSource("/events");
+  stream.onopen = fetchWhole;
   stream.onmessage = (event) => show(JSON.parse(event.data));
 }
 
 setInterval(() => {
-  if (performance.now() - heardAt > SILENCE_MS) showLost("no word from the dashboard", newest);
+  if (performance.now() - heardAt > SILENCE_MS) showLost("no word from the dashboard");
 }, 500);
 begin();

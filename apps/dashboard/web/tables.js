@@ -20,7 +20,7 @@ function spread(times) {
 }
 
 function late(lateness) {
-  return lateness.count === 0 ? "0" : `${lateness.count}, ${us(lateness.worst_us)} µs`;
+  return lateness.count === 0 ? "0" : `${lateness.count} · ${(lateness.worst_us / 1000).toFixed(3)}`;
 }
 
 // Rows that stay: only cells whose text differs are written.
@@ -86,8 +86,8 @@ export class Tables {
   constructor() {
     this.topics = new Table("topics", ["topic", { text: "rate [Hz]" }, "jitter", { text: "histogram", title: "of the jitter since the start, 10 µs to above 10 ms; heights are logarithmic" },
       "latency", "samples", { text: "lost", title: "by sequence number and tick" },
-      { text: "sent late", title: "intervals of the writer's stamps beyond the deadline: how many, and by how much at worst" },
-      { text: "came late", title: "the same of the arrivals here" }, "since"]);
+      { text: "sent late [ms]", title: "intervals of the writer's stamps beyond the deadline: how many, and by how much at worst" },
+      { text: "came late [ms]", title: "the same of the arrivals here" }, "since"]);
     this.chain = new Table("chain", ["up to", "p50", "p99", "p99.9", "max", "samples"]);
     this.services = new Table("services", ["process", { text: "state", left: true }, "last seen",
       { text: "real time", title: "runs with a real-time scheduling policy" }, "pid",
@@ -147,7 +147,7 @@ export class Tables {
       item.append(create("b", alarm.level), create("span", what(alarm)));
       if (alarm.count > 1) item.append(create("span", `${alarm.count} times`, "faint"));
       if (alarm.acknowledged) item.append(create("span", "acknowledged", "faint"));
-      item.append(create("time", `since ${clock(alarm.since_ms)}`));
+      item.append(create("time", clock(alarm.since_ms)));
       return item;
     });
     if (items.length === 0) items.push(create("li", "none"));
@@ -159,7 +159,7 @@ export class Tables {
     const slow = snapshot.session.state === "running" && topic.expected_hz >= 1000 && topic.rate_hz < 0.99 * topic.expected_hz;
     const periodic = topic.expected_hz > 0;
     this.topics.show(short(topic.topic), [
-      { text: periodic ? topic.rate_hz.toFixed(0) : "–", look: slow ? "bad" : "" },
+      { text: periodic || topic.rate_hz > 0 ? topic.rate_hz.toFixed(0) : "–", look: slow ? "bad" : "" },
       periodic ? spread(topic.recent_jitter) : "–",
       periodic && topic.jitter.count > 0 ? bars(topic, snapshot.jitter_edges_us) : "–",
       spread(topic.recent_latency), topic.samples,
