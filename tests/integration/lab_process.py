@@ -4,6 +4,7 @@
 Every lab gets a DDS domain of its own. Nothing here waits for a time to pass: wait_for() polls a condition and fails
 when its limit is over.
 """
+import fcntl
 import json
 import os
 import pathlib
@@ -29,17 +30,35 @@ MATCH_LIMIT_S = 30.0  # the lab itself gives up after 20 s
 TRIAL_LIMIT_S = 60.0  # of a quick session, until its first tracking trial: 12 s on two cores
 END_LIMIT_S = 20.0    # the lab gives its processes 5 s, and the recorder another 5 s
 POLL_S = 0.05
+DOMAINS = 16
+MOST_OWN_DOMAINS = 6
 _domains_used = 0
+_own_domains = {}  # {domain: its lock}, the oldest first
 
 
 def next_domain():
-    """A DDS domain from 215 to 230, another one at each call.
+    """A DDS domain from 215 to 230 that no other test on this machine has, another one at each call.
 
-    From 215 on the UDP ports (7400 + 250 a domain) lie above Linux's ephemeral range, which ends at 60999.
+    From 215 on the UDP ports (7400 + 250 a domain) lie above Linux's ephemeral range, which ends at 60999. A lock on a
+    file of that number keeps others away; of those that a test program took, its last few are still its own.
     """
     global _domains_used
-    _domains_used += 1
-    return 215 + (os.getpid() + _domains_used) % 16
+    for _ in range(DOMAINS):
+        _domains_used += 1
+        domain = 215 + (os.getpid() + _domains_used) % DOMAINS
+        if domain in _own_domains:
+            continue
+        lock = open(pathlib.Path(tempfile.gettempdir()) / f"stillhand-test-domain-{domain}", "w", encoding="utf-8")
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.close()
+            continue
+        _own_domains[domain] = lock
+        if len(_own_domains) > MOST_OWN_DOMAINS:
+            _own_domains.pop(next(iter(_own_domains))).close()
+        return domain
+    raise RuntimeError("other tests have every DDS domain from 215 to 230")
 
 
 def running(domain):
