@@ -35,8 +35,10 @@ Shell::Shell(runtime::Service& service)
 void Shell::note_when_armed() {
   if (!assignment_ || assignment_->trial() != service_.trial().number) return;
   // A trial that is to be cancelled and is not would pass for one that was.
-  if (assignment_->cancellation() && !core_.has_model() && !ready_) {
-    service_.note_event(stillhand_msgs::EVENT_NOTE, why_no_model_);
+  const bool in_time = ready_ && ready_->from_tick <= service_.trial().start_tick;
+  if (assignment_->cancellation() && !core_.has_model() && !in_time) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE,
+                        ready_ ? "the model is for later than the trial" : why_no_model_);
     return;
   }
   service_.note_armed(service_.trial().number);

@@ -199,7 +199,6 @@ std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.dupl
 bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
 bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
 std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
-
 void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
   const std::lock_guard lock(impl_->clock_mutex);
   impl_->clock_offsets_ns[service] = offset_ns;
