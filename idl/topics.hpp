@@ -14,6 +14,7 @@ enum class Pattern {
   kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last one
   kEvent,         ///< "event": reliable, every one counts
   kExchange,      ///< "exchange": best effort, what comes late is worth nothing
+  kCommand,       ///< "command": reliable, and nothing that was asked before one was there
 };
 
 constexpr std::string_view profile_of(Pattern pattern) {
@@ -28,6 +29,8 @@ constexpr std::string_view profile_of(Pattern pattern) {
       return "event";
     case Pattern::kExchange:
       return "exchange";
+    case Pattern::kCommand:
+      return "command";
   }
   return "";
 }
@@ -40,6 +43,12 @@ inline constexpr std::array<std::string_view, 9> kServices{
 
 /// Identity of what listens to a secured bus from outside of a session (deploy/security).
 inline constexpr std::string_view kTap = "tap";
+
+/// Who may ask something of a session from outside; no process of one waits for it.
+inline constexpr std::string_view kDashboard = "dashboard";
+
+/// Text of the rig's event that an emergency stop opened the interlock.
+inline constexpr std::string_view kEmergencyStop = "emergency stop";
 
 /// One row of the catalogue.
 struct Topic {
@@ -75,6 +84,8 @@ inline constexpr std::string_view kAugmentedModelReaders[]{"cancellation", "reco
 inline constexpr std::string_view kAllButExperiment[]{"motion",         "rig",     "sensing",
                                                       "cancellation",   "display", "human_operator",
                                                       "identification", "recorder"};
+inline constexpr std::string_view kDashboards[]{kDashboard};
+inline constexpr std::string_view kCommandReaders[]{"rig", "experiment", "recorder"};
 inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
 inline constexpr std::string_view kStatusReaders[]{"rig", "cancellation", "display", "recorder",
                                                    "experiment"};
@@ -151,13 +162,23 @@ inline constexpr Topic kClockOffset{"stillhand/clock_offset", "stillhand_msgs::C
                                     Pattern::kExchange,       1.0,
                                     who::kExperiment,         who::kAllButExperiment};
 
+inline constexpr Topic kHostStatus{
+    "stillhand/host_status", "stillhand_msgs::HostStatus", Pattern::kExchange, 1.0, kServices,
+    who::kRecorder};
+inline constexpr Topic kSessionCommand{"stillhand/session_command",
+                                       "stillhand_msgs::SessionCommand",
+                                       Pattern::kCommand,
+                                       0.0,
+                                       who::kDashboards,
+                                       who::kCommandReaders};
+
 /// The whole catalogue; idl/README.md holds the same rows for people (tests/interface compares
 /// them).
-inline constexpr std::array<const Topic*, 17> kCatalogue{
-    &kPlatformCommand,  &kRawSample,      &kRigTruth, &kSensed,        &kMotorCommand,
-    &kTrackingSample,   &kOperatorForce,  &kPointer,  &kTrialControl,  &kTrialAssignment,
-    &kFeedthroughModel, &kAugmentedModel, &kEvent,    &kServiceStatus, &kClockQuestion,
-    &kClockAnswer,      &kClockOffset};
+inline constexpr std::array<const Topic*, 19> kCatalogue{
+    &kPlatformCommand,  &kRawSample,      &kRigTruth,   &kSensed,        &kMotorCommand,
+    &kTrackingSample,   &kOperatorForce,  &kPointer,    &kTrialControl,  &kTrialAssignment,
+    &kFeedthroughModel, &kAugmentedModel, &kEvent,      &kServiceStatus, &kClockQuestion,
+    &kClockAnswer,      &kClockOffset,    &kHostStatus, &kSessionCommand};
 
 /// Remote control of `stillhand record` and `stillhand replay`: outside of every session, so that
 /// no process waits for them.

@@ -71,12 +71,12 @@ measurement::SessionRows recorded(const std::filesystem::path& file, const Trial
 TrialRun LiveTrialSession::run(const experiment::PlannedTrial& planned, const std::string& label) {
   const experiment::TrialOutcome& outcome = trials_.run(planned);
   if (!outcome.completed) {
-    throw std::runtime_error("trial " + std::to_string(planned.trial.number) + " (" + label +
-                             ") is marked: " + outcome.aborted);
+    throw std::runtime_error("trial " + std::to_string(outcome.planned.trial.number) + " (" +
+                             label + ") is marked: " + outcome.aborted);
   }
   TrialRun out;
   out.label = label;
-  out.number = planned.trial.number;
+  out.number = outcome.planned.trial.number;
   const bool tracking = planned.trial.phase == TrialPhase::kTracking;
   const Trial& trial = outcome.planned.trial;
   const measurement::SessionRows session = recorded(recording_, trial, tracking);

@@ -71,11 +71,16 @@ std::string Access::cookie() const {
 }
 
 std::string read_token(const std::string& file) {
-  std::string token = recording::read_file(file);
   struct stat about {};
-  if (stat(file.c_str(), &about) == 0 && (about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-    throw ConfigError("--token-file " + file, "a file that others may read", "mode 600");
+  if (stat(file.c_str(), &about) == 0) {
+    if (!S_ISREG(about.st_mode)) {
+      throw ConfigError("--token-file " + file, "no file", "a file with a token");
+    }
+    if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+      throw ConfigError("--token-file " + file, "a file that others may read", "mode 600");
+    }
   }
+  std::string token = recording::read_file(file);
   while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
   const bool plain = std::ranges::all_of(token, [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';

@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cstdio>
-#include <ctime>
 #include <optional>
 
 #include "cancellation/core/canceller.hpp"
 #include "contract/config_error.hpp"
 #include "dashboard/recorded_run.hpp"
+#include "dashboard/remote.hpp"
 #include "dashboard/snapshot_json.hpp"
+#include "dashboard/view_json.hpp"
 #include "rig/core/rig.hpp"
 #include "runtime/clock.hpp"
+#include "runtime/cpu_share.hpp"
 #include "runtime/real_time.hpp"
 #include "settings/load.hpp"
 
@@ -22,6 +24,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kDrain{20};
 constexpr std::int64_t kFrame_ns = runtime::kNsPerSecond / 10;
+constexpr std::uint64_t kGraphEvery = 5, kSpectrumEvery = 10;  // frames
 
 bool is_loopback(const std::string& address) {
   boost::system::error_code error;
@@ -47,25 +50,17 @@ double motor_limit_n(const std::filesystem::path& config) {
   return std::min(canceller.limits.max_force_n, rig.motor.limits.max_force_n);
 }
 
-/// Share of one core that this process used since the last call.
-class CpuShare {
- public:
-  double step(std::int64_t now_ns) {
-    timespec used{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-    const std::int64_t used_ns = used.tv_sec * runtime::kNsPerSecond + used.tv_nsec;
-    if (now_ns - since_ns_ >= runtime::kNsPerSecond) {
-      share_ = static_cast<double>(used_ns - used_ns_) / static_cast<double>(now_ns - since_ns_);
-      since_ns_ = now_ns;
-      used_ns_ = used_ns;
-    }
-    return share_;
+// What a request of the page comes to.  @return as Served::act
+std::optional<std::string> act(std::string_view path, MessageFeed& feed,
+                               std::optional<Remote>& remote) {
+  if (path == "/acknowledge") {
+    feed.acknowledge();
+    if (remote) remote->note("alarms acknowledged");
+    return "";
   }
-
- private:
-  std::int64_t since_ns_ = runtime::monotonic_ns(), used_ns_ = 0;
-  double share_ = 0.0;
-};
+  if (!remote) return "this dashboard only looks: a recording, or --read-only";
+  return remote->ask(path);
+}
 
 }  // namespace
 
@@ -84,10 +79,20 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
   feed_options.listener = live ? "experiment" : "recorder";
   MessageFeed feed(feed_options);
   around.motor_limit_n = motor_limit_n(options.config);
+  around.screen = settings::load<display::TrackingDisplay::Config>(options.config / "display.yaml",
+                                                                   "display");
 
   std::int64_t now_ns = runtime::system_ns();
-  const Served served{[&] { return snapshot_json(feed, around, now_ns, -1); },
-                      [&] { feed.acknowledge(); }};
+  std::optional<Remote> remote;
+  std::optional<RecordedRun> run;
+  const auto snapshot = [&](std::optional<double> at_s) {
+    if (!run || !at_s) return snapshot_json(feed, around, now_ns, -1);
+    const std::int64_t at_ns = run->instant_ns(*at_s);
+    return snapshot_json(run->as_of(at_ns), around, at_ns, -1);
+  };
+  const auto timeline = [&] { return timeline_json(run->timeline()).dump(); };
+  const Served served{snapshot, live ? std::function<std::string()>() : timeline,
+                      [&](std::string_view path) { return act(path, feed, remote); }};
   HttpServer server(options.server, pages, access, served);
   std::optional<LiveBus> bus;
   if (live) {
@@ -96,8 +101,12 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
     if (options.real_time && runtime::become_real_time()) runtime::become_background();
     bus.emplace(options.bus, feed);
     bus->start();
+    if (!options.read_only) remote.emplace(options.bus, options.rig);
+    around.actions = remote.has_value();
   } else {
-    now_ns = feed_recording(options.recording, feed, [&stop] { return stop.requested(); });
+    run.emplace(options.recording, feed_options, [&stop] { return stop.requested(); });
+    now_ns = run->timeline().end_ns();
+    feed = run->as_of(now_ns);
   }
   const runtime::OrdinaryWhile ordinary;
   const bool six = options.server.address.find(':') != std::string::npos;
@@ -105,9 +114,10 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
               server.port());
   std::fflush(stdout);
 
-  CpuShare cpu;
+  runtime::ProcessCpu cpu;
   Tick told_tick = -1;
   std::int64_t framed_ns = 0;
+  std::uint64_t frame = 0;
   while (!stop.requested()) {
     server.run_for(kDrain);
     if (bus) {
@@ -118,14 +128,21 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
     const std::int64_t monotonic_ns = runtime::monotonic_ns();
     if (monotonic_ns - framed_ns < kFrame_ns) continue;
     framed_ns = monotonic_ns;
-    around.cpu_share = cpu.step(monotonic_ns);
+    around.cpu_share = cpu.step();
     around.clients = server.listeners();
     if (bus) {
       around.dropped = bus->dropped();
       around.trouble = bus->trouble();
       feed.step(now_ns);
+      if (remote) remote->step(now_ns);
     }
-    if (around.clients > 0) server.broadcast(snapshot_json(feed, around, now_ns, told_tick));
+    const Parts parts{frame % kGraphEvery == 0, frame % kSpectrumEvery == 0};
+    ++frame;
+    if (around.clients > 0) {
+      // A recording is asked for instant by instant; the page only hears that somebody is there.
+      server.broadcast(bus ? snapshot_json(feed, around, now_ns, told_tick, parts)
+                           : R"({"mode":"recording"})");
+    }
     const auto rows = feed.traces().rows(told_tick);
     if (!rows.empty()) told_tick = rows.back().tick;
   }

@@ -20,7 +20,8 @@ struct DashboardOptions {
   std::string recording;         ///< empty: the bus
   std::uint32_t rig = 1;
   bool blinded = true;
-  bool real_time = true;  ///< ask for it, for the threads that receive
+  bool read_only = false;  ///< asks nothing of the session
+  bool real_time = true;   ///< ask for it, for the threads that receive
 };
 
 /// Serves the page until a signal comes.  @returns 0

@@ -33,6 +33,8 @@ void add_dashboard_command(CLI::App& cli, int& status) {
                    "instead of the bus: what this MCAP file of a session holds");
   verb->add_flag("!--unblinded", options->blinded,
                  "show a trial's condition, and the motor's force while a person tracks");
+  verb->add_flag("--read-only", options->read_only,
+                 "no buttons: asks nothing of a session or a recorder");
   verb->add_flag("!--no-real-time", options->real_time,
                  "do not ask for SCHED_FIFO for the threads that receive");
   verb->add_option("--rig", options->rig, "number of the rig")->capture_default_str();

@@ -8,6 +8,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <deque>
+#include <list>
 #include <optional>
 #include <set>
 #include <utility>
@@ -26,8 +27,11 @@ namespace {
 
 constexpr std::size_t kMostHeader = 8192;
 constexpr std::size_t kMostBody = 4096;
+constexpr std::size_t kMostDiscarded = 64 * 1024;
 constexpr int kSendBuffer = 64 * 1024;
+constexpr int kBacklog = 1024;  // a flood fills it; who knocks behind waits a second in the kernel
 constexpr std::chrono::seconds kRequestTime{10};
+constexpr std::chrono::seconds kLeaveTime{2};
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
 // The page runs its own files and nothing else; it is in nobody's frame.
@@ -53,14 +57,16 @@ struct HttpServer::Impl {
 
   void open(const Options& options);
   void accept();
+  [[nodiscard]] bool make_room();
 
   const Pages& pages;
   const Access& access;
   Served served;
-  asio::io_context io{1};
+  std::size_t connections = 0;
+  std::list<Connection*> asking;  // no whole request yet; who has been longest at it comes first
+  asio::io_context io{1};         // its end is that of every Connection in it
   tcp::acceptor acceptor{io};
   asio::steady_timer pause{io};
-  std::size_t connections = 0;
   std::set<std::shared_ptr<Connection>> listeners;
 };
 
@@ -70,11 +76,15 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
   Connection(tcp::socket socket, Impl& server) : stream_(std::move(socket)), server_(server) {
     ++server_.connections;
   }
-  ~Connection() { --server_.connections; }
+  ~Connection() {
+    asked();
+    --server_.connections;
+  }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
   void read() {
+    asking_ = server_.asking.insert(server_.asking.end(), this);
     parser_.emplace();
     parser_->header_limit(kMostHeader);
     parser_->body_limit(kMostBody);
@@ -91,6 +101,12 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
     if (queue_.size() == 1) write_frame();
   }
 
+  /// It waits for no request any longer.
+  void asked() {
+    if (asking_) server_.asking.erase(*asking_);
+    asking_.reset();
+  }
+
   void close() {
     error_code ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
@@ -99,6 +115,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
 
  private:
   void answer_read(error_code error) {
+    asked();
     if (error == http::error::header_limit) return refuse(431, "a header of at most 8 KiB");
     if (error == http::error::body_limit) return refuse(413, "a body of at most 4 KiB");
     if (error && error.category() == http::make_error_code(http::error::bad_method).category() &&
@@ -114,8 +131,12 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
                             view(request[http::field::authorization]),
                             view(request[http::field::cookie])};
     const Answer found = answer(question, server_.pages, server_.access, server_.served);
-    if (found.streams) return listen();
-    respond(found, request.keep_alive());
+    if (!found.streams) return respond(found, request.keep_alive());
+    if (server_.listeners.size() < kMostListeners) return listen();
+    Answer full;
+    full.status = 503;
+    full.body = "want fewer pages at once: " + std::to_string(kMostListeners) + " listen\n";
+    respond(full, false);
   }
 
   void refuse(unsigned status, const char* want) {
@@ -141,9 +162,23 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
     stream_.expires_after(kRequestTime);
     http::async_write(stream_, response_,
                       [self = shared_from_this(), keep_alive](error_code error, std::size_t) {
-                        if (error || !keep_alive) return self->close();
-                        self->read();
+                        if (error) return self->close();
+                        if (keep_alive) return self->read();
+                        error_code ignored;
+                        self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                        self->stream_.expires_after(kLeaveTime);
+                        self->discard(kMostDiscarded);
                       });
+  }
+
+  // Closed with something unread, TCP would take back the answer that says why.
+  void discard(std::size_t most) {
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(kMostBody),
+                            [self = shared_from_this(), most](error_code error, std::size_t bytes) {
+                              if (error || bytes >= most) return self->close();
+                              self->discard(most - bytes);
+                            });
   }
 
   void listen() {
@@ -180,6 +215,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
 
   beast::tcp_stream stream_;
   Impl& server_;
+  std::optional<std::list<Connection*>::iterator> asking_;
   beast::flat_buffer buffer_{kMostHeader + kMostBody};
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
@@ -196,7 +232,7 @@ void HttpServer::Impl::open(const Options& options) {
   acceptor.open(endpoint.protocol(), error);
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(static_cast<int>(kMostConnections), error);
+  if (!error) acceptor.listen(kBacklog, error);
   if (error) {
     throw ConfigError("--port", options.address + ":" + std::to_string(options.port),
                       "one that can be listened on (" + error.message() + ")");
@@ -212,11 +248,19 @@ void HttpServer::Impl::accept() {
       pause.async_wait([this](error_code) { accept(); });
       return;
     }
-    if (connections < kMostConnections) {
-      std::make_shared<Connection>(std::move(socket), *this)->read();
-    }
+    if (make_room()) std::make_shared<Connection>(std::move(socket), *this)->read();
     accept();
   });
+}
+
+// Who connects and asks nothing is the first to go: a flood of such displaces itself, and who asks
+// at once is answered before it is his turn.
+bool HttpServer::Impl::make_room() {
+  if (connections < kMostConnections) return true;
+  if (asking.empty()) return false;
+  asking.front()->close();
+  asking.front()->asked();
+  return true;
 }
 
 HttpServer::HttpServer(const Options& options, const Pages& pages, const Access& access,

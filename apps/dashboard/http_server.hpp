@@ -13,7 +13,8 @@ namespace stillhand::dashboard {
 
 /// HTTP/1.1 in the thread that calls run_for(), and in no other.  Everything a client can make it
 /// hold has a bound: connections, header, body, time for a request, frames that wait for a client;
-/// who exceeds one is answered or dropped, never waited for.
+/// who exceeds one is answered or dropped, never waited for.  Where connections run out, those that
+/// asked nothing yet make room, the oldest first.
 class HttpServer {
  public:
   struct Options {
@@ -21,7 +22,8 @@ class HttpServer {
     std::uint16_t port = 0;  ///< 0: any that is free
   };
   static constexpr std::size_t kMostConnections = 64;
-  static constexpr std::size_t kMostQueued = 20;  ///< frames: 2 s
+  static constexpr std::size_t kMostListeners = 48;  ///< the others are for requests
+  static constexpr std::size_t kMostQueued = 20;     ///< frames: 2 s
 
   /// @param pages,access  outlive it  @throws ConfigError when the address cannot be listened on
   HttpServer(const Options& options, const Pages& pages, const Access& access, Served served);

@@ -10,7 +10,7 @@ namespace stillhand::dashboard {
 LiveBus::LiveBus(const LiveOptions& options, MessageFeed& feed)
     : feed_(feed),
       tap_({"stillhand-dashboard/" + std::to_string(getpid()), options.domain, options.profiles,
-            options.security, [&feed](const std::string& topic) { return feed.wants(topic); },
+            options.security, true, [&feed](const std::string& topic) { return feed.wants(topic); },
             [this](const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
               take(writer, sample);
             }}) {}

@@ -26,7 +26,8 @@ constexpr std::array kTopics{
     &topics::kOperatorForce,  &topics::kPointer,         &topics::kServiceStatus,
     &topics::kTrialControl,   &topics::kTrialAssignment, &topics::kFeedthroughModel,
     &topics::kAugmentedModel, &topics::kEvent,           &topics::kClockQuestion,
-    &topics::kClockAnswer,    &topics::kClockOffset};
+    &topics::kClockAnswer,    &topics::kClockOffset,     &topics::kHostStatus,
+    &topics::kSessionCommand};
 static_assert(kTopics.size() == topics::kCatalogue.size());
 
 std::vector<TopicPlan> plans(const Config& config) {
@@ -78,6 +79,9 @@ std::uint32_t MessageFeed::add(const Source& source) {
     if (kTopics[topic]->name != source.topic || kTopics[topic]->type != source.type) continue;
     if (wants(source.topic)) known = {topic, kTopics[topic], ""};
   }
+  if (source.topic == topics::kRecorderStatus.name && source.type == topics::kRecorderStatus.type) {
+    known.row = &topics::kRecorderStatus;
+  }
   const std::string prefix = "stillhand/" + std::to_string(options_.rig) + "/";
   if (source.participant.starts_with(prefix))
     known.service = source.participant.substr(prefix.size());
@@ -86,27 +90,29 @@ std::uint32_t MessageFeed::add(const Source& source) {
   return static_cast<std::uint32_t>(sources_.size() - 1);
 }
 
-void MessageFeed::take(const Message& message) {
+Heard MessageFeed::take(const Message& message) {
   const Known& known = sources_.at(message.source);
-  if (known.topic == kNone) return;
+  if (known.row == &topics::kRecorderStatus) take_recorder(message);
+  if (known.topic == kNone) return {};
   const recording::SampleHead head = recording::sample_head(message.bytes);
-  if (head.rig != options_.rig) return;  // also what is no message
+  if (head.rig != options_.rig) return {};  // also what is no message
   Sample sample{message.source, message.sequence, -1, 0, message.source_ns, message.arrived_ns};
   if (known.row->pattern == topics::Pattern::kStream1khz) {
     if (head.tick < 0 || head.tick > kLastTick) {
       ++malformed_;
-      return;
+      return {};
     }
     sample.tick = head.tick;
     sample.stamp_ns = head.stamp_ns;
     newest_tick_ = head.tick;
   }
-  health_.take(known.topic, sample, system_ahead_ns(known.service));
+  const Verdict verdict = health_.take(known.topic, sample, system_ahead_ns(known.service));
   if (known.row->pattern == topics::Pattern::kStream1khz) {
     take_stream(known, message);
   } else {
     look_into(known, message);
   }
+  return {known.row, verdict};
 }
 
 template <typename Decoded, typename Use>
@@ -126,15 +132,21 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
                              difference_ns(sensed.stamp_ns(), ahead_of_rig_ns("sensing")));
       traces_.put(sensed.tick(), Signal::kAcceleration, sensed.accel_y_m_s2());
       traces_.put(sensed.tick(), Signal::kForce, sensed.force_n());
+      forces_.measured(sensed.tick(), sensed.force_n());
     });
   } else if (known.row == &topics::kMotorCommand) {
     decode<stillhand_msgs::MotorCommand>(message, [this](const auto& command) {
       health_.chain().command(command.tick(), command.acquired_ns(),
                               difference_ns(command.stamp_ns(), ahead_of_rig_ns("cancellation")));
       traces_.put(command.tick(), Signal::kPredictedForce, command.predicted_force_n());
+      forces_.predicted(command.tick(), command.predicted_force_n());
     });
   } else if (known.row == &topics::kRigTruth) {
-    if (rig_writer_ && *rig_writer_ != message.source) health_.chain().clear();
+    if (rig_writer_ && *rig_writer_ != message.source) {
+      health_.chain().clear();
+      forces_ = {};
+      emergency_ns_ = 0;  // another rig process, which nobody has stopped
+    }
     rig_writer_ = message.source;
     decode<stillhand_msgs::RigTruth>(message, [this](const auto& truth) {
       health_.chain().used(truth.motor_tick(), truth.stamp_ns());
@@ -166,25 +178,68 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
       if (service_number(service) != kNone) clocks_[service] = offset;
     });
   } else if (known.row == &topics::kEvent) {
-    decode<stillhand_msgs::Event>(message, [&](const auto& event) {
-      events_.push_front({at_ns, event});
-      if (events_.size() > kMostEvents) events_.pop_back();
-    });
+    decode<stillhand_msgs::Event>(message,
+                                  [&](const auto& event) { take_event(event, at_ns); });
+  } else if (known.row == &topics::kHostStatus) {
+    decode<stillhand_msgs::HostStatus>(message, [this](const auto& host) { take_host(host); });
   }
+}
+
+void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at_ns) {
+  events_.push_front({at_ns, event});
+  if (events_.size() > kMostEvents) events_.pop_back();
+  if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED &&
+      event.text() == topics::kEmergencyStop.data()) {
+    emergency_ns_ = at_ns;
+  }
+  if (event.kind() == stillhand_msgs::EVENT_INCOMPATIBLE_QOS) {
+    qos_mismatches_.note(event.source().to_string(), event.topic().to_string(),
+                         event.text().to_string(), at_ns);
+  }
+}
+
+void MessageFeed::take_host(const stillhand_msgs::HostStatus& host) {
+  const std::size_t number = service_number(host.service().to_string());
+  if (number != kNone) services_[number].host = host;
+}
+
+// A recorder stands outside of every session and rig.
+void MessageFeed::take_recorder(const Message& message) {
+  constexpr std::size_t kMostRecorders = 16;
+  decode<stillhand_msgs::RecorderStatus>(message, [&](const auto& status) {
+    const std::string name = status.recorder().to_string();
+    if (recorders_.size() >= kMostRecorders && !recorders_.contains(name)) return;
+    recorders_.insert_or_assign(name, RecorderView{message.arrived_ns, status});
+  });
 }
 
 void MessageFeed::take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns) {
   control_ = control;
-  health_.set_running(control.session() == stillhand_msgs::SESSION_RUNNING, at_ns);
+  health_.set_running(control.session() == stillhand_msgs::SESSION_RUNNING ||
+                          control.session() == stillhand_msgs::SESSION_PAUSED,
+                      at_ns);
 }
 
 void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::int64_t at_ns) {
   const std::size_t number = service_number(status.service().to_string());
   if (number == kNone) return;
   health_.alive(number, at_ns);
+  const ServiceView& before = services_[number];
   ServiceView view;
+  view.host = before.host;
+  if (before.status && before.status->pid() == status.pid()) {
+    view.reads = before.reads;
+  } else {
+    qos_mismatches_.begun(status.service().to_string(), at_ns);
+  }
   for (const auto& topic : status.topics()) {
     if (topic.written()) continue;
+    const topics::Topic* row = topics::find(topic.topic().to_string());
+    if (row == nullptr) continue;
+    view.reads[std::string(row->name)].step(
+        {topic.matched(), topic.samples(), topic.lost_ticks(), topic.cycle_misses(),
+         topic.deadline_misses(), topic.worst_interval_us(), topic.latency_p99_us()},
+        at_ns);
     view.deadline_misses += topic.deadline_misses();
     view.cycle_misses += topic.cycle_misses();
     view.lost_ticks += topic.lost_ticks();
@@ -217,6 +272,11 @@ std::int64_t MessageFeed::ahead_of_rig_ns(const std::string& service) const {
   return clocks_.empty() ? 0 : difference_ns(ahead(service), ahead("rig"));
 }
 
-void MessageFeed::step(std::int64_t now_ns) { health_.step(now_ns); }
+void MessageFeed::step(std::int64_t now_ns) {
+  constexpr std::int64_t kForgotten_ns = 60'000'000'000;
+  std::erase_if(recorders_,
+                [&](const auto& entry) { return now_ns - entry.second.at_ns > kForgotten_ns; });
+  health_.step(now_ns);
+}
 
 }  // namespace stillhand::dashboard

@@ -12,8 +12,12 @@
 
 #include "contract/trial.hpp"
 #include "dashboard/core/bus_health.hpp"
+#include "dashboard/core/edge_health.hpp"
+#include "dashboard/core/force_record.hpp"
+#include "dashboard/core/qos_mismatches.hpp"
 #include "dashboard/core/traces.hpp"
 #include "idl/clock.h"
+#include "idl/recording.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
 
@@ -45,7 +49,15 @@ struct FeedOptions {
 /// What a process says of itself, newest.
 struct ServiceView {
   std::optional<stillhand_msgs::ServiceStatus> status;
+  std::optional<stillhand_msgs::HostStatus> host;
   std::uint64_t deadline_misses = 0, cycle_misses = 0, lost_ticks = 0;  ///< of all it reads
+  std::map<std::string, EdgeHealth> reads;                              ///< by topic
+};
+
+/// A `stillhand record`, by its own word.
+struct RecorderView {
+  std::int64_t at_ns;
+  stillhand_msgs::RecorderStatus status;
 };
 
 /// A process's own word, when it came.
@@ -54,9 +66,15 @@ struct HeardEvent {
   stillhand_msgs::Event event;
 };
 
+/// What a message was.
+struct Heard {
+  const topics::Topic* topic = nullptr;  ///< nullptr: of no topic or rig that is shown
+  Verdict verdict;
+};
+
 /// The one way from messages to the dashboard's numbers: a live bus and a recording both go through
 /// it, so that they cannot count differently.  One thread; no clock: time comes with messages and
-/// step().
+/// step().  A copy goes on by itself.
 class MessageFeed {
  public:
   /// @throws ConfigError as BusHealth does
@@ -66,7 +84,7 @@ class MessageFeed {
   [[nodiscard]] bool wants(const std::string& topic) const;
   /// A writer.  @returns its number: 0, 1, 2 ...
   std::uint32_t add(const Source& source);
-  void take(const Message& message);
+  Heard take(const Message& message);
   /// Ten times a second.
   void step(std::int64_t now_ns);
   void acknowledge() noexcept { health_.acknowledge(); }
@@ -84,9 +102,17 @@ class MessageFeed {
   [[nodiscard]] const std::map<std::string, stillhand_msgs::ClockOffset>& clocks() const noexcept {
     return clocks_;
   }
+  /// By name.
+  [[nodiscard]] const std::map<std::string, RecorderView>& recorders() const noexcept {
+    return recorders_;
+  }
+  /// [ns] when the rig told of an emergency stop; 0: it did not.
+  [[nodiscard]] std::int64_t emergency_ns() const noexcept { return emergency_ns_; }
   /// Newest first.
   [[nodiscard]] const std::deque<HeardEvent>& events() const noexcept { return events_; }
   [[nodiscard]] const Traces& traces() const noexcept { return traces_; }
+  [[nodiscard]] const ForceRecord& forces() const noexcept { return forces_; }
+  [[nodiscard]] const QosMismatches& qos_mismatches() const noexcept { return qos_mismatches_; }
   [[nodiscard]] bool replayed() const noexcept { return replayed_; }
   [[nodiscard]] Tick newest_tick() const noexcept { return newest_tick_; }
   /// Messages that are none of their type.
@@ -105,6 +131,9 @@ class MessageFeed {
   void take_stream(const Known& known, const Message& message);
   void take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns);
   void take_status(const stillhand_msgs::ServiceStatus& status, std::int64_t at_ns);
+  void take_host(const stillhand_msgs::HostStatus& host);
+  void take_recorder(const Message& message);
+  void take_event(const stillhand_msgs::Event& event, std::int64_t at_ns);
   [[nodiscard]] bool motor_hidden() const noexcept;
   [[nodiscard]] std::int64_t system_ahead_ns(const std::string& service) const;
   [[nodiscard]] std::int64_t ahead_of_rig_ns(const std::string& service) const;
@@ -116,8 +145,12 @@ class MessageFeed {
   std::string condition_;
   std::array<ServiceView, topics::kServices.size()> services_;
   std::map<std::string, stillhand_msgs::ClockOffset> clocks_;
+  std::map<std::string, RecorderView> recorders_;
   std::deque<HeardEvent> events_;
+  std::int64_t emergency_ns_ = 0;
   Traces traces_;
+  ForceRecord forces_;
+  QosMismatches qos_mismatches_;
   std::optional<std::uint32_t> rig_writer_;
   bool replayed_ = false;
   Tick newest_tick_ = -1;

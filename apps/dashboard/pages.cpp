@@ -10,32 +10,31 @@ namespace stillhand::dashboard {
 
 namespace {
 
-struct Named {
-  const char* file;
+struct Kind {
+  const char* suffix;
   const char* type;
 };
 
-constexpr const char* kScript = "text/javascript; charset=utf-8";
-constexpr const char* kStyle = "text/css; charset=utf-8";
-constexpr std::array<Named, 8> kFiles{{{"index.html", "text/html; charset=utf-8"},
-                                       {"style.css", kStyle},
-                                       {"main.js", kScript},
-                                       {"status.js", kScript},
-                                       {"tables.js", kScript},
-                                       {"charts.js", kScript},
-                                       {"uPlot.esm.js", kScript},
-                                       {"uPlot.min.css", kStyle}}};
+constexpr std::array<Kind, 3> kKinds{{{".html", "text/html; charset=utf-8"},
+                                      {".css", "text/css; charset=utf-8"},
+                                      {".js", "text/javascript; charset=utf-8"}}};
 
 }  // namespace
 
 Pages::Pages(const std::filesystem::path& folder) {
-  for (const auto& [file, type] : kFiles) {
-    const std::filesystem::path path = folder / file;
+  for (const char* needed : {"index.html", "main.js", "uPlot.esm.js"}) {
+    const std::filesystem::path path = folder / needed;
     if (!std::filesystem::is_regular_file(path)) {
       throw ConfigError(path.string(), "no such file",
                         "the page's files, which a build with npm puts there");
     }
-    pages_[std::string("/") + file] = {type, recording::read_file(path.string())};
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& [suffix, type] : kKinds) {
+      if (entry.path().extension() != suffix || !entry.is_regular_file()) continue;
+      pages_["/" + entry.path().filename().string()] = {
+          type, recording::read_file(entry.path().string())};
+    }
   }
   pages_["/"] = pages_["/index.html"];
 }

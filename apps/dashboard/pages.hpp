@@ -13,11 +13,11 @@ struct Page {
   std::string content;
 };
 
-/// The page's own files, read once at the start: a request names one of these or nothing, so that
-/// no path of a request ever reaches the file system.
+/// The page's own files, HTML, styles and scripts of one folder, read once at the start: a request
+/// names one of these or nothing, so that no path of a request ever reaches the file system.
 class Pages {
  public:
-  /// @throws ConfigError when the folder lacks one
+  /// @throws ConfigError when the folder is not the page's
   explicit Pages(const std::filesystem::path& folder);
 
   /// @param path  of the target, "/" for the page itself  @returns nullptr for any other

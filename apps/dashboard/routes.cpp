@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dashboard/routes.hpp"
 
+#include <charconv>
+#include <cmath>
+
 namespace stillhand::dashboard {
 
 namespace {
@@ -10,6 +13,13 @@ Answer refusal(unsigned status, std::string why) {
   answer.status = status;
   answer.body = std::move(why) + "\n";
   return answer;
+}
+
+std::optional<double> finite(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -30,9 +40,10 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
   }
   if (!access.allows(request)) return refusal(403, "not without the token, or by another name");
   if (question.method == "POST") {
-    if (path != "/acknowledge") return refusal(404, "no such action");
     if (!access.allows_change(request)) return refusal(403, "not for a page of another site");
-    served.acknowledge();
+    const std::optional<std::string> why_not = served.act(path);
+    if (!why_not) return refusal(404, "no such action");
+    if (!why_not->empty()) return refusal(409, *why_not);
     Answer done;
     done.status = 204;
     return done;
@@ -41,7 +52,19 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
   Answer found;
   if (path == "/snapshot") {
     found.type = "application/json";
-    found.body = served.snapshot();
+    if (!query.starts_with("at=")) {
+      found.body = served.snapshot({});
+      return found;
+    }
+    if (!served.timeline) return refusal(404, "at=: a bus has no past");
+    const std::optional<double> at_s = finite(query.substr(3));
+    if (!at_s) return refusal(400, "at=: want seconds since the beginning, as 12.5");
+    found.body = served.snapshot(at_s);
+    return found;
+  }
+  if (path == "/timeline" && served.timeline) {
+    found.type = "application/json";
+    found.body = served.timeline();
     return found;
   }
   if (path == "/events") {

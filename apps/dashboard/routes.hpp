@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,8 +26,12 @@ struct Answer {
 
 /// What the server can be asked for.
 struct Served {
-  std::function<std::string()> snapshot;  ///< whole, as JSON
-  std::function<void()> acknowledge;
+  /// Whole, as JSON.  @param at_s  [s] since the beginning of a recording; none: the newest
+  std::function<std::string(std::optional<double> at_s)> snapshot;
+  std::function<std::string()> timeline;  ///< of a recording, as JSON; empty on a bus
+  /// Does what a path asks for, "/session/pause" and the like.
+  /// @return why not, "" when it was done or asked; nothing when there is no such action
+  std::function<std::optional<std::string>(std::string_view path)> act;
 };
 
 /// The answer to any request, however odd; without a socket.

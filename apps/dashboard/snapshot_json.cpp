@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+
+#include "dashboard/view_json.hpp"
+#include "dashboard/words.hpp"
 
 namespace stillhand::dashboard {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Edges of the jitter's bars; everything above the last is a bar of its own.
 const std::vector<std::int64_t> kJitterEdges_ns{
@@ -19,30 +21,6 @@ constexpr std::size_t kShownEvents = 20;
 
 double us(std::int64_t ns) { return static_cast<double>(ns) / 1e3; }
 
-/// [ms] since 1970, as a browser counts; null for never.
-Json instant(std::int64_t ns) { return ns == 0 ? Json() : Json(static_cast<double>(ns) / 1e6); }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-const char* word(Level level) {
-  constexpr std::array kWords{"healthy", "warning", "critical"};
-  return kWords[static_cast<std::size_t>(level)];
-}
-
-struct WatchText {
-  const char* name;
-  const char* unit;
-};
-
-WatchText text_of(Watch watch) {
-  constexpr std::array<WatchText, kWatches> kTexts{{{"late", "ms"},
-                                                    {"lost", "ticks"},
-                                                    {"silent", "ms"},
-                                                    {"latency", "ms"},
-                                                    {"chain", "ms"},
-                                                    {"missing", "ms"}}};
-  return kTexts[static_cast<std::size_t>(watch)];
-}
 
 Json spread_json(const Spread& spread) {
   return {{"count", spread.count},
@@ -57,12 +35,6 @@ Json lateness_json(const Lateness& lateness) {
           {"worst_us", us(lateness.worst_ns)},
           {"first_ms", instant(lateness.first_at_ns)},
           {"last_ms", instant(lateness.last_at_ns)}};
-}
-
-/// The one process that writes a topic, or "".
-std::string_view writer_of(const std::string& name) {
-  const topics::Topic* row = topics::find(name);
-  return row != nullptr && row->writers.size() == 1 ? row->writers.front() : "";
 }
 
 Json topic_json(const TopicHealth& topic, std::int64_t now_ns) {
@@ -92,12 +64,11 @@ Json topic_json(const TopicHealth& topic, std::int64_t now_ns) {
 }
 
 Json alarm_json(const NamedAlarm& named) {
-  const WatchText text = text_of(named.watch);
   const Alarm& alarm = named.alarm;
-  return {{"watch", text.name},
+  return {{"watch", word(named.watch)},
           {"subject", named.subject},
           {"writer", writer_of(named.subject)},
-          {"unit", text.unit},
+          {"unit", unit(named.watch)},
           {"level", word(alarm.level())},
           {"active", alarm.active()},
           {"acknowledged", alarm.acknowledged()},
@@ -121,17 +92,21 @@ Json alarms_json(const BusHealth& health) {
 }
 
 Json session_json(const MessageFeed& feed) {
-  constexpr std::array kStates{"waiting", "running", "ending"};
+  constexpr std::array kStates{"waiting", "running", "ending", "paused"};
   constexpr std::array kPhases{"idle", "pegged", "tracking"};
   Json session{{"state", "none"},
                {"tick", feed.newest_tick()},
                {"blinded", feed.options().blinded},
-               {"replayed", feed.replayed()}};
+               {"replayed", feed.replayed()},
+               {"paused", false},
+               {"emergency", feed.emergency_ns() != 0},
+               {"emergency_ms", instant(feed.emergency_ns())}};
   const auto& control = feed.control();
   if (!control) return session;
   const auto state = static_cast<std::size_t>(control->session());
   const auto phase = static_cast<std::size_t>(control->phase());
   session["state"] = state < kStates.size() ? kStates[state] : "unknown";
+  session["paused"] = control->session() == stillhand_msgs::SESSION_PAUSED;
   session["phase"] = phase < kPhases.size() ? kPhases[phase] : "unknown";
   session["trial"] = control->trial();
   session["start_tick"] = control->start_tick();
@@ -158,7 +133,56 @@ Json services_json(const MessageFeed& feed, std::int64_t now_ns) {
       service["cycle_misses"] = view.cycle_misses;
       service["lost_ticks"] = view.lost_ticks;
     }
+    if (view.host) {
+      service["host"] = view.host->host().to_string();
+      service["cpu_share"] = number(view.host->process_cpu_share());
+      service["priority"] = view.host->priority();
+      service["memory_locked"] = view.host->memory_locked();
+      service["resident_mb"] = static_cast<double>(view.host->resident_bytes()) / 1e6;
+    }
     all.push_back(std::move(service));
+  }
+  return all;
+}
+
+// Each process tells of its host; the newest word counts.
+Json hosts_json(const MessageFeed& feed) {
+  std::map<std::string, Json> by_name;
+  for (const ServiceView& view : feed.services()) {
+    if (!view.host) continue;
+    const std::string name = view.host->host().to_string();
+    const std::string service = view.host->service().to_string();
+    Json& host = by_name[name];
+    if (host.is_null()) host = {{"host", name}, {"services", Json::array()}};
+    host["services"].push_back(service);
+    host["cores"] = view.host->cores();
+    host["cpu_share"] = number(view.host->host_cpu_share());
+    if (const auto clock = feed.clocks().find(service); clock != feed.clocks().end()) {
+      host["clock_offset_us"] = us(clock->second.offset_ns());
+      host["clock_uncertainty_us"] = number(clock->second.uncertainty_ns() / 1e3);
+    }
+  }
+  Json all = Json::array();
+  for (auto& [name, host] : by_name) all.push_back(std::move(host));
+  return all;
+}
+
+Json recorders_json(const MessageFeed& feed, std::int64_t now_ns) {
+  Json all = Json::array();
+  for (const auto& [name, view] : feed.recorders()) {
+    const auto& status = view.status;
+    all.push_back({{"name", name},
+                   {"file", status.file().to_string()},
+                   {"paused", status.paused()},
+                   {"received", status.received()},
+                   {"lost", status.lost()},
+                   {"written", status.written()},
+                   {"dropped", status.dropped()},
+                   {"file_bytes", status.file_bytes()},
+                   {"free_bytes", status.free_bytes()},
+                   {"trouble", status.trouble().to_string()},
+                   {"answer", status.answer().to_string()},
+                   {"silent_ms", us(now_ns - view.at_ns) / 1e3}});
   }
   return all;
 }
@@ -178,17 +202,11 @@ Json clocks_json(const MessageFeed& feed) {
 }
 
 Json events_json(const MessageFeed& feed) {
-  constexpr std::array kKinds{
-      "deadline missed",      "cycle missed",     "ticks lost", "liveliness lost",
-      "liveliness recovered", "interlock opened", "force zero", "model refused",
-      "model loaded",         "incompatible QoS", "note",       "clock stepped",
-      "clock drifts"};
   Json all = Json::array();
   for (const HeardEvent& heard : feed.events()) {
     if (all.size() == kShownEvents) break;
-    const auto kind = static_cast<std::size_t>(heard.event.kind());
     all.push_back({{"at_ms", instant(heard.at_ns)},
-                   {"kind", kind < kKinds.size() ? kKinds[kind] : "unknown"},
+                   {"kind", word(heard.event.kind())},
                    {"source", heard.event.source().to_string()},
                    {"topic", heard.event.topic().to_string()},
                    {"peer", heard.event.peer().to_string()},
@@ -196,6 +214,16 @@ Json events_json(const MessageFeed& feed) {
                    {"text", heard.event.text().to_string()}});
   }
   return all;
+}
+
+Json screen_json(const Surroundings& around) {
+  const display::ScreenConfig& screen = around.screen.screen;
+  return {{"width_m", screen.width_m},
+          {"height_m", screen.height_m},
+          {"line_width_m", screen.line_width_m},
+          {"cross_width_m", screen.cross_width_m},
+          {"track_above_bottom_m", screen.track_above_bottom_m},
+          {"box_width_m", around.screen.box_width_m}};
 }
 
 Json traces_json(const MessageFeed& feed, Tick after) {
@@ -220,7 +248,7 @@ Json traces_json(const MessageFeed& feed, Tick after) {
 }  // namespace
 
 std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, std::int64_t now_ns,
-                          Tick after) {
+                          Tick after, Parts parts) {
   const BusHealth& health = feed.health();
   Json topics = Json::array();
   for (const TopicHealth& topic : health.topics()) {
@@ -228,7 +256,7 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
   }
   std::vector<double> edges_us;
   for (const std::int64_t edge_ns : kJitterEdges_ns) edges_us.push_back(us(edge_ns));
-  const Json snapshot{{"mode", around.mode},
+  Json snapshot{{"mode", around.mode},
                       {"file", around.file},
                       {"domain", around.domain},
                       {"rig", feed.options().rig},
@@ -244,16 +272,22 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
                         {"command", spread_json(health.chain().to_command())},
                         {"motor", spread_json(health.chain().to_motor())}}},
                       {"services", services_json(feed, now_ns)},
+                      {"hosts", hosts_json(feed)},
+                      {"recorders", recorders_json(feed, now_ns)},
+                      {"actions", {{"enabled", around.actions}}},
                       {"clocks", clocks_json(feed)},
                       {"events", events_json(feed)},
                       {"traces", traces_json(feed, after)},
                       {"limits", {{"motor_force_n", around.motor_limit_n}}},
+                      {"screen", screen_json(around)},
                       {"dashboard",
-                       {{"cpu_share", around.cpu_share},
+                       {{"cpu_share", number(around.cpu_share)},
                         {"clients", around.clients},
                         {"dropped", around.dropped},
                         {"malformed", feed.malformed()},
                         {"trouble", around.trouble}}}};
+  if (parts.graph) snapshot["graph"] = graph_json(feed);
+  if (parts.spectrum) snapshot["spectrum"] = spectrum_json(feed.forces());
   // Texts come from the bus: what is no UTF-8 is shown as such and breaks nothing.
   return snapshot.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

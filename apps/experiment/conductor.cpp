@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "cancellation/codec.hpp"
 #include "runtime/clock.hpp"
@@ -50,6 +51,8 @@ const char* name_of(stillhand_msgs::EventKind kind) {
       return "clock stepped";
     case stillhand_msgs::EVENT_CLOCK_DRIFTS:
       return "clock drifts";
+    case stillhand_msgs::EVENT_COMMAND:
+      return "asked from outside";
     case stillhand_msgs::EVENT_NOTE:
       return "note";
   }
@@ -126,6 +129,21 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Progress progress)
   service.bus().subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel,
       [this, stored](const auto& model, const auto&) { stored([&] { seen_.model = model; }); });
+  take_requests();
+}
+
+// Every one leaves an event, obeyed or not.
+void Conductor::take_requests() {
+  service_.bus().subscribe<stillhand_msgs::SessionCommand>(
+      topics::kSessionCommand, [this](const auto& command, const auto&) {
+        std::string told;
+        {
+          const std::lock_guard lock(mutex_);
+          told = seen_.requests.take(command, seen_.trial_runs);
+        }
+        news_.notify_all();
+        if (!told.empty()) service_.note_event(stillhand_msgs::EVENT_COMMAND, told.c_str());
+      });
 }
 
 bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done) {
@@ -136,6 +154,7 @@ bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done)
       if (done(seen_)) return true;
       news_.wait_for(lock, kPollPeriod);
       if (done(seen_)) return true;
+      if (trouble_.empty()) trouble_ = seen_.requests.emergency();
     }
     if (const auto ended = watch_()) {
       mendable_ = ended->exit_status == 2 && !ended->said.empty();
@@ -205,7 +224,8 @@ void Conductor::announce(const PlannedTrial* planned, stillhand_msgs::SessionSta
     message.ramp_ticks(planned->trial.ramp_ticks);
     message.reference_seed(planned->reference_seed);
   }
-  service_.bus().supervise(session == stillhand_msgs::SESSION_RUNNING);
+  service_.bus().supervise(session == stillhand_msgs::SESSION_RUNNING ||
+                           session == stillhand_msgs::SESSION_PAUSED);
   control_.write(message);
 }
 
@@ -273,40 +293,74 @@ bool Conductor::await_armed(const PlannedTrial& planned, TrialOutcome& outcome) 
   return false;
 }
 
+void Conductor::pause() {
+  const std::lock_guard lock(mutex_);
+  seen_.requests.pause();
+}
+
+bool Conductor::await_start(const PlannedTrial& planned) {
+  constexpr double kForEver_s = 1e9;
+  bool waited = false;
+  return wait_for(kForEver_s, [&](Seen& seen) {
+    if (!seen.requests.paused() && seen.requests.emergency().empty()) return true;
+    if (!std::exchange(waited, true)) announce(nullptr, stillhand_msgs::SESSION_PAUSED);
+    progress_("paused before trial " + std::to_string(planned.trial.number) +
+                  ", for a start from the dashboard",
+              0.0);
+    return false;
+  });
+}
+
 TrialOutcome Conductor::run(PlannedTrial planned) {
   TrialOutcome outcome;
+  outcome.planned = planned;
+  if (!await_start(planned)) {
+    outcome.aborted = why_stopped("");
+    return outcome;
+  }
   MissCounts before;
   {
     const std::lock_guard lock(mutex_);
     seen_.events.clear();
+    seen_.requests.begin_trial();
+    seen_.trial_runs = true;
     before = count(seen_);
   }
   planned.trial.start_tick = newest_tick() + ticks_in(kLead_s) + planned.trial.ramp_ticks;
   assign(planned);
   announce(&planned, stillhand_msgs::SESSION_RUNNING);
   outcome.planned = planned;
-  const Trial& trial = planned.trial;
-  if (await_armed(planned, outcome)) {
-    const Tick end = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
-    const double limit_s = 2.0 * static_cast<double>(end - newest_tick()) * kControlPeriod_s + 10.0;
-    outcome.completed = wait_for(limit_s, [&](Seen& seen) {
-      const Tick now = seen.statuses["rig"].tick();
-      progress_(trial.phase == TrialPhase::kPegged
-                    ? "identification, stick pegged"
-                    : "trial " + std::to_string(trial.number) + ", tracking",
-                std::clamp(static_cast<double>(now - trial.start_tick) /
-                               static_cast<double>(trial.duration_ticks),
-                           0.0, 1.0));
-      return now >= end || saw(seen.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
-    });
-    if (!outcome.completed) {
-      outcome.aborted = why_stopped("the trial did not end in time");
-    }
-    see_force_out(outcome.completed);
-    look_for_death(outcome);
+  if (await_armed(planned, outcome)) follow(planned, outcome);
+  {
+    const std::lock_guard lock(mutex_);
+    seen_.trial_runs = false;
+    outcome.stopped = !outcome.completed && !seen_.requests.trial_stopped().empty();
+    if (outcome.stopped) outcome.aborted = seen_.requests.trial_stopped();
   }
   collect(outcome, before);
   return outcome;
+}
+
+void Conductor::follow(const PlannedTrial& planned, TrialOutcome& outcome) {
+  const Trial& trial = planned.trial;
+  const Tick end = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
+  const double limit_s = 2.0 * static_cast<double>(end - newest_tick()) * kControlPeriod_s + 10.0;
+  bool stopped = false;
+  const bool came = wait_for(limit_s, [&](Seen& seen) {
+    const Tick now = seen.statuses["rig"].tick();
+    progress_(trial.phase == TrialPhase::kPegged
+                  ? "identification, stick pegged"
+                  : "trial " + std::to_string(trial.number) + ", tracking",
+              std::clamp(static_cast<double>(now - trial.start_tick) /
+                             static_cast<double>(trial.duration_ticks),
+                         0.0, 1.0));
+    stopped = !seen.requests.trial_stopped().empty() && now < end;
+    return stopped || now >= end || saw(seen.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
+  });
+  outcome.completed = came && !stopped;
+  if (!came) outcome.aborted = why_stopped("the trial did not end in time");
+  see_force_out(outcome.completed);
+  look_for_death(outcome);
 }
 
 // After something broke, the rig gets the time to bring the force to zero and the recorder to see
@@ -314,9 +368,13 @@ TrialOutcome Conductor::run(PlannedTrial planned) {
 void Conductor::see_force_out(bool completed) {
   constexpr std::chrono::milliseconds kLimit{1500};
   constexpr std::chrono::milliseconds kAfterwards{300};
-  const bool stopped = trouble_.empty() && interrupted();
-  if (stopped) announce(nullptr, stillhand_msgs::SESSION_RUNNING);  // no trial: no force
   std::unique_lock lock(mutex_);
+  // Asked for: no trial, no force, and no event that it opened.
+  const bool stopped = !completed && (!seen_.requests.trial_stopped().empty() ||
+                                      (trouble_.empty() && interrupted()));
+  if (stopped || !seen_.requests.emergency().empty()) {
+    announce(nullptr, stillhand_msgs::SESSION_RUNNING);
+  }
   if (completed && !saw(seen_.events, stillhand_msgs::EVENT_INTERLOCK_OPENED)) return;
   news_.wait_for(lock, kLimit,
                  [&] { return stopped || saw(seen_.events, stillhand_msgs::EVENT_FORCE_ZERO); });

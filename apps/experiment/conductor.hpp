@@ -13,6 +13,7 @@
 #include "cancellation/core/augmented_model.hpp"
 #include "experiment/processes.hpp"
 #include "experiment/protocol.hpp"
+#include "experiment/requests.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
 #include "motion/core/motion_trajectory.hpp"
@@ -43,7 +44,8 @@ struct MissCounts {
 struct TrialOutcome {
   PlannedTrial planned;
   bool completed = false;
-  std::string aborted;                        ///< why not, or empty
+  bool stopped = false;                       ///< somebody asked for its end: it is run again
+  std::string aborted;                        ///< why it was not completed, or empty
   std::vector<Mark> marks;                    ///< events during the trial, in order of their first
   MissCounts misses;                          ///< during the trial, all readers together
   std::optional<motion::MotionReport> asked;  ///< of the platform, when it moves
@@ -71,13 +73,15 @@ class Conductor {
   void await_everybody(double limit_s);
   /// The sample clock starts.
   void begin_session();
-  /// Runs one trial to its end, or until something breaks it.
+  /// No trial begins before somebody asks for a start.
+  void pause();
+  /// Waits for the end of a pause, then runs one trial to its end, or until something breaks it.
   TrialOutcome run(PlannedTrial planned);
   /// The model identified from a trial, or nothing when none comes within `limit_s` [s].
   std::optional<stillhand_msgs::FeedthroughModel> await_model(std::int64_t trial, double limit_s);
   /// Gives the canceller a model and waits for its answer.  @return why it wasn't taken, or empty
   std::string use(const cancellation::AugmentedModel& model);
-  /// A process that ended, "interrupted", or else `otherwise`.
+  /// A process that ended, an emergency stop, "interrupted", or else `otherwise`.
   [[nodiscard]] std::string why_stopped(const std::string& otherwise) const;
   /// Misses no longer count; processes may leave.
   void end_session();
@@ -89,10 +93,14 @@ class Conductor {
     std::map<std::string, stillhand_msgs::ServiceStatus> statuses;
     std::vector<stillhand_msgs::Event> events;
     std::optional<stillhand_msgs::FeedthroughModel> model;
+    Requests requests;
+    bool trial_runs = false;
   };
 
   /// Waits until `done(seen)` holds.  @return false after `limit_s`, on trouble or on a stop.
   bool wait_for(double limit_s, const std::function<bool(Seen&)>& done);
+  void take_requests();
+  bool await_start(const PlannedTrial& planned);
   void announce(const PlannedTrial* planned, stillhand_msgs::SessionState session);
   void assign(const PlannedTrial& planned);
   [[nodiscard]] Tick newest_tick();
@@ -100,6 +108,7 @@ class Conductor {
   void throw_trouble() const;
   [[nodiscard]] std::vector<std::string> absent(const Seen& seen) const;
   bool await_armed(const PlannedTrial& planned, TrialOutcome& outcome);
+  void follow(const PlannedTrial& planned, TrialOutcome& outcome);
   [[nodiscard]] static std::string why_not_armed(const Seen& seen, std::string_view service);
   void see_force_out(bool completed);
   void look_for_death(TrialOutcome& outcome);
@@ -116,7 +125,7 @@ class Conductor {
   std::mutex mutex_;
   std::condition_variable news_;
   Seen seen_;
-  std::string trouble_;    ///< a process that ended, or empty
+  std::string trouble_;    ///< a process that ended, an emergency stop, or empty
   bool mendable_ = false;  ///< it said that the user can mend it
 };
 

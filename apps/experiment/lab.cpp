@@ -170,11 +170,19 @@ class Session final : public LiveTrials {
   void end() { conductor_.end_session(); }
 
   const TrialOutcome& run(const PlannedTrial& planned) override {
-    outcomes_.push_back(conductor_.run(planned));
-    TrialOutcome& outcome = outcomes_.back();
-    if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
-      outcome.asked = motion->second;
+    if (options_.wait_for_start) conductor_.pause();
+    PlannedTrial numbered = planned;
+    for (;;) {
+      // Nobody takes up a number again that was there: what ran under it is over.
+      numbered.trial.number = planned.trial.number + stopped_;
+      outcomes_.push_back(conductor_.run(numbered));
+      if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
+        outcomes_.back().asked = motion->second;
+      }
+      if (!outcomes_.back().stopped) break;
+      ++stopped_;
     }
+    TrialOutcome& outcome = outcomes_.back();
     if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) take_model(outcome);
     return outcome;
   }
@@ -202,6 +210,7 @@ class Session final : public LiveTrials {
   const AskedMotions& asked_;
   std::vector<TrialOutcome>& outcomes_;
   identification::FeedthroughModel model_;
+  std::int64_t stopped_ = 0;  ///< trials that somebody stopped so far
   ProgressLine progress_;
   Clocks clocks_;
   Conductor conductor_;

@@ -37,6 +37,7 @@ struct LabOptions {
   std::filesystem::path model;          ///< control model for C; empty: the session's own
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
+  bool wait_for_start = false;          ///< each trial waits for a start from the dashboard
   recording::KeepOptions keep;          ///< of the session's recording
 };
 
@@ -53,8 +54,9 @@ cancellation::AugmentedModel control_model(const std::filesystem::path& file, st
 class LiveTrials {
  public:
   virtual ~LiveTrials() = default;
-  /// Runs one trial; of a pegged one, to the model that it gives.  A trial that isn't completed
-  /// ends the session: run nothing behind it.
+  /// Runs one trial; of a pegged one, to the model that it gives.  One that somebody stops is run
+  /// again once a start is asked for, under a number of its own: the outcome's.  A trial that isn't
+  /// completed ends the session: run nothing behind it.
   virtual const TrialOutcome& run(const PlannedTrial& planned) = 0;
   /// The model identified last.
   [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;

@@ -92,6 +92,8 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_option("--profiles", options->profiles, "QoS profiles")->capture_default_str();
   lab->add_option("--config", options->config, "folder with the settings of each service")
       ->capture_default_str();
+  lab->add_flag("--wait-for-start", options->wait_for_start,
+                "each trial waits until somebody presses Start on the dashboard");
   recording::add_keep_options(*lab, options->keep);
   lab->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
   lab->callback([options, words, &status] {

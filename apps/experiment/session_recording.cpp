@@ -68,7 +68,9 @@ SessionRecording read_session(const std::string& path) {
       {topics::kServiceStatus.name, into(session.statuses)},
       {topics::kClockQuestion.name, counted<stillhand_msgs::ClockQuestion>()},
       {topics::kClockAnswer.name, counted<stillhand_msgs::ClockAnswer>()},
-      {topics::kClockOffset.name, into(session.clock_offsets)}};
+      {topics::kClockOffset.name, into(session.clock_offsets)},
+      {topics::kHostStatus.name, counted<stillhand_msgs::HostStatus>()},
+      {topics::kSessionCommand.name, counted<stillhand_msgs::SessionCommand>()}};
   const recording::Status status =
       reader.for_each_message({}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);

@@ -265,14 +265,16 @@ int report_session(const LabOptions& options, const std::vector<TrialOutcome>& o
   for (const auto& [topic, count] : result.lost_ticks) lost += count;
   std::printf("lost ticks on the 1 kHz topics: %lld\n", static_cast<long long>(lost));
   std::printf("results in %s\n", options.out.string().c_str());
-  bool good = !interrupted && outcomes.size() == options.protocol.conditions.size() + 1;
+  std::size_t completed = 0;
   for (const TrialOutcome& outcome : outcomes) {
-    if (outcome.completed) continue;
-    good = false;
+    if (outcome.completed) {
+      ++completed;
+      continue;
+    }
     std::cerr << "stillhand lab: trial " << outcome.planned.trial.number << " ("
               << outcome.planned.label << ") is marked: " << outcome.aborted << '\n';
   }
-  return good ? 0 : 1;
+  return !interrupted && completed == options.protocol.conditions.size() + 1 ? 0 : 1;
 }
 
 }  // namespace stillhand::experiment

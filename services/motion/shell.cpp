@@ -16,7 +16,11 @@ Shell::Shell(runtime::Service& service, RideAndRoad way)
       way_(std::move(way)),
       command_(service.bus().publisher<stillhand_msgs::PlatformCommand>(topics::kPlatformCommand)) {
   if (!way_.ride.empty()) ride_ = read_ride(way_.ride.string());
-  service.on_trial([this](const Trial&, const auto&) { prepare_when_complete(); });
+  service.on_trial([this](const Trial& trial, const auto&) {
+    // Another trial, or none: what the platform follows is over, ended or not.
+    if (armed_ != nullptr && armed_->trial.number != trial.number) core_.disarm();
+    prepare_when_complete();
+  });
   service.bus().subscribe<stillhand_msgs::TrialAssignment>(
       topics::kTrialAssignment, [this](const auto& message, const auto&) {
         assignment_ = message;
@@ -77,7 +81,8 @@ void Shell::tell_motion(const MotionProfile& profile, const MotionReport& report
 }
 
 void Shell::on_sensed(Tick tick) {
-  if (Prepared* newest = handover_.current(); newest != nullptr && newest != armed_) {
+  if (Prepared* newest = handover_.current();
+      newest != nullptr && newest != armed_ && newest->trial.number == service_.trial().number) {
     armed_ = newest;
     core_.arm(newest->trajectory, newest->trial);
     service_.note_armed(newest->trial.number);

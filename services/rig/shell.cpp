@@ -46,6 +46,13 @@ Shell::Shell(runtime::Service& service, SealedEffect effect)
   // The rig watches everybody's life sign through this topic; its content is not used.
   bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
                                                [](const auto&, const auto&) {});
+  // Straight to the rig: it works without the experiment.
+  bus.subscribe<stillhand_msgs::SessionCommand>(
+      topics::kSessionCommand, [this](const auto& message, const auto&) {
+        if (message.action() == stillhand_msgs::SESSION_EMERGENCY_STOP) {
+          emergency_stop_.store(true, std::memory_order_relaxed);
+        }
+      });
   service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
     announced_.store({trial, message.session()});
     service_.note_armed(trial.number);
@@ -79,8 +86,10 @@ void Shell::run() {
 
 void Shell::tick_once(Tick tick) {
   const Trial trial = announced_.load().trial;
+  if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
   const bool permitted = interlock_.step(trial, tick, service_.bus().peers_alive());
   const auto* command = command_for(tick);
+  if (interlock_.stopped()) command = nullptr;  // the platform brakes and holds
   const auto* motor = motor_now();
   const auto& newest_force = volition_.load();
   const auto* volition = newest_force.tick() >= 0 ? &newest_force : nullptr;
@@ -108,9 +117,10 @@ void Shell::tell_interlock(const Trial& trial, Tick tick, double motor_force_n) 
   }
   if (latched_tick_ < 0) {
     latched_tick_ = tick;
-    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().replay_present()
-                                                                    ? "a replay is on the bus"
-                                                                    : "a process is missing");
+    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
+                        interlock_.stopped()              ? topics::kEmergencyStop.data()
+                        : service_.bus().replay_present() ? "a replay is on the bus"
+                                                          : "a process is missing");
   }
   if (!told_zero_ && motor_force_n == 0.0) {
     told_zero_ = true;

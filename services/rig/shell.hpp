@@ -51,6 +51,7 @@ class Shell {
   runtime::LatestValue<stillhand_msgs::OperatorForce> volition_;
   runtime::LatestValue<Announced> announced_;
   std::atomic<bool> motor_deadline_missed_{false};
+  std::atomic<bool> emergency_stop_{false};  ///< asked for; never taken back
 
   // Of the loop.
   std::array<stillhand_msgs::PlatformCommand, kCommandsAhead> commands_;

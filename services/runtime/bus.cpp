@@ -188,7 +188,8 @@ std::vector<std::string> Bus::missing_peers() const {
     const topics::Topic& row = endpoint->topic();
     const std::set<std::string> matched = endpoint->matched_services();
     for (const std::string_view wanted : endpoint->writes() ? row.readers : row.writers) {
-      if (wanted == options_.service || matched.count(std::string(wanted)) != 0) continue;
+      if (wanted == options_.service || wanted == topics::kDashboard) continue;
+      if (matched.count(std::string(wanted)) != 0) continue;
       missing.push_back(std::string(wanted) + " (" + std::string(row.name) + ")");
     }
   }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/reporting.hpp"
 
+#include <sched.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <fstream>
 #include <map>
 #include <string>
 #include <tuple>
@@ -16,6 +19,7 @@ namespace stillhand::runtime {
 namespace {
 
 constexpr std::chrono::milliseconds kStatusPeriod{100};
+constexpr int kHostPeriod = 10;  // statuses
 
 stillhand_msgs::TopicStatus to_idl(const EndpointReport& report) {
   stillhand_msgs::TopicStatus status;
@@ -33,13 +37,45 @@ stillhand_msgs::TopicStatus to_idl(const EndpointReport& report) {
   return status;
 }
 
+struct Memory {
+  std::uint64_t resident_bytes = 0;
+  bool locked = false;
+};
+
+// proc(5): "VmLck:", "VmRSS:", in kB.
+Memory memory_of_process() {
+  constexpr std::uint64_t kBytes = 1024;
+  Memory memory;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::uint64_t kilobytes = 0;
+    if (word == "VmRSS:" && status >> kilobytes) memory.resident_bytes = kilobytes * kBytes;
+    if (word == "VmLck:" && status >> kilobytes) memory.locked = kilobytes > 0;
+  }
+  return memory;
+}
+
+std::string host_name() {
+  std::array<char, 65> name{};  // string<64> in idl/session.idl
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+// The main thread's, which the receiving threads inherited.
+int priority_of_process() {
+  sched_param parameter{};
+  if (sched_getscheduler(getpid()) != SCHED_FIFO) return 0;
+  return sched_getparam(getpid(), &parameter) == 0 ? parameter.sched_priority : 0;
+}
+
 }  // namespace
 
 Reporter::Reporter(Bus& bus, std::function<void(stillhand_msgs::ServiceStatus&)> complete)
     : bus_(bus),
       complete_(std::move(complete)),
       events_(bus.publisher<stillhand_msgs::Event>(topics::kEvent)),
-      statuses_(bus.publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus)) {}
+      statuses_(bus.publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus)),
+      host_statuses_(bus.publisher<stillhand_msgs::HostStatus>(topics::kHostStatus)) {}
 
 void Reporter::stop() {
   worker_.request_stop();
@@ -56,9 +92,10 @@ void Reporter::tell(const Note& note) noexcept {
 
 void Reporter::work(const std::stop_token& stop) {
   become_background();
-  while (!stop.stop_requested()) {
+  for (int turn = 0; !stop.stop_requested(); ++turn) {
     publish_events();
     publish_status();
+    if (turn % kHostPeriod == 0) publish_host_status();
     // systemd's watchdog, where the process is a unit's: it bites when this life sign ends.
     sd_notify(0, "WATCHDOG=1");
     std::unique_lock lock(mutex_);
@@ -117,11 +154,27 @@ void Reporter::publish_status() {
   status.state(missing.empty() ? stillhand_msgs::SERVICE_READY : stillhand_msgs::SERVICE_STARTING);
   constexpr std::size_t kRoom = 199;  // string<200> in idl/session.idl
   status.missing(missing.substr(0, kRoom));
+  constexpr std::size_t kMostTopics = 32;  // sequence<TopicStatus, 32> there
   for (const EndpointReport& report : bus_.report()) {
-    if (status.topics().size() < 24) status.topics().push_back(to_idl(report));
+    if (status.topics().size() < kMostTopics) status.topics().push_back(to_idl(report));
   }
   complete_(status);
   statuses_.write(status);
+}
+
+void Reporter::publish_host_status() {
+  static const std::string kHost = host_name();
+  const Memory memory = memory_of_process();
+  stillhand_msgs::HostStatus status;
+  status.service(bus_.options().service);
+  status.host(kHost);
+  status.cores(static_cast<std::uint32_t>(sysconf(_SC_NPROCESSORS_ONLN)));
+  status.host_cpu_share(host_cpu_.step());
+  status.process_cpu_share(process_cpu_.step());
+  status.priority(priority_of_process());
+  status.memory_locked(memory.locked);
+  status.resident_bytes(memory.resident_bytes);
+  host_statuses_.write(status);
 }
 
 }  // namespace stillhand::runtime

@@ -12,6 +12,7 @@
 
 #include "idl/session.h"
 #include "runtime/bus.hpp"
+#include "runtime/cpu_share.hpp"
 
 namespace stillhand::runtime {
 
@@ -25,8 +26,9 @@ struct Note {
   char text[128];
 };
 
-/// Publishes this process's status ten times a second and its events as they come; events that say
-/// the same within a tenth of a second become one, with their number and the worst figure.
+/// Publishes this process's status ten times a second, its host's once a second, and its events as
+/// they come; events that say the same within a tenth of a second become one, with their number and
+/// the worst figure.
 class Reporter {
  public:
   /// Endpoints are made here, so before Bus::start().
@@ -45,11 +47,15 @@ class Reporter {
   void work(const std::stop_token& stop);
   void publish_events();
   void publish_status();
+  void publish_host_status();
 
   Bus& bus_;
   std::function<void(stillhand_msgs::ServiceStatus&)> complete_;
   Publisher<stillhand_msgs::Event> events_;
   Publisher<stillhand_msgs::ServiceStatus> statuses_;
+  Publisher<stillhand_msgs::HostStatus> host_statuses_;
+  ProcessCpu process_cpu_;
+  HostCpu host_cpu_;
   boost::lockfree::queue<Note, boost::lockfree::capacity<256>> queue_;
   std::atomic<std::uint64_t> dropped_{0};
   std::mutex mutex_;

@@ -93,7 +93,8 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   answer_clock_questions(*bus_);
   bus_->subscribe<stillhand_msgs::TrialControl>(
       topics::kTrialControl, [this](const stillhand_msgs::TrialControl& message, const Arrival&) {
-        bus_->supervise(message.session() == stillhand_msgs::SESSION_RUNNING);
+        bus_->supervise(message.session() == stillhand_msgs::SESSION_RUNNING ||
+                        message.session() == stillhand_msgs::SESSION_PAUSED);
         trial_ = from_idl(message);
         if (on_trial_) on_trial_(trial_, message);
       });

@@ -282,8 +282,12 @@ class RequestsTest(DashboardCase):
                 self.assertIn(want, answer.stderr)
 
 
-if __name__ == "__main__":
+def main():
     if STILLHAND.is_file() and not PAGE.is_file():
         print("skipped: npm brought no page")
         raise SystemExit(lab_process.CTEST_SKIPPED)
     lab_process.main()
+
+
+if __name__ == "__main__":
+    main()

@@ -70,6 +70,18 @@ json notes_of(const stillhand::experiment::SessionRecording& session) {
   return notes;
 }
 
+// What was asked from outside, and that the interlock opened.
+json commands_of(const stillhand::experiment::SessionRecording& session) {
+  json commands = json::array();
+  for (const auto& event : session.events) {
+    if (event.kind() == stillhand_msgs::EVENT_COMMAND ||
+        event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
+      commands.push_back({event.source().c_str(), event.text().c_str()});
+    }
+  }
+  return commands;
+}
+
 json clock_events_of(const stillhand::experiment::SessionRecording& session) {
   json events = json::array();
   for (const auto& event : session.events) {
@@ -117,6 +129,7 @@ int main(int argc, char** argv) {
                {"rig", rig_of(session, last_ticks)},
                {"notes", notes_of(session)},
                {"clock_events", clock_events_of(session)},
+               {"commands", commands_of(session)},
                {"newest_motor_command_ns", session.motor_commands.empty()
                                                ? std::int64_t{-1}
                                                : session.motor_commands.back().stamp_ns()}};

@@ -67,14 +67,17 @@ bool BusHealth::armed(std::int64_t began_ns, std::int64_t now_ns) const noexcept
   return running_ && ms(now_ns - from_ns) >= config_.grace_s * 1e3;
 }
 
-void BusHealth::take(std::size_t topic, const Sample& sample, std::int64_t ahead_ns) {
+Verdict BusHealth::take(std::size_t topic, const Sample& sample, std::int64_t ahead_ns) {
   TopicHealth& health = topics_.at(topic);
   const Verdict verdict = health.step(sample, ahead_ns);
-  if (health.plan().deadline_ns == 0 || !armed(health.first_at_ns(), sample.arrived_ns)) return;
+  if (health.plan().deadline_ns == 0 || !armed(health.first_at_ns(), sample.arrived_ns)) {
+    return verdict;
+  }
   const TopicAlarms& mine = topic_alarms_[topic];
   alarms_[mine.late].alarm.step(verdict.sent_late_ns > 0 ? ms(verdict.sent_late_ns) : kInTime,
                                 sample.arrived_ns);
   alarms_[mine.lost].alarm.step(static_cast<double>(verdict.lost), sample.arrived_ns);
+  return verdict;
 }
 
 void BusHealth::set_running(bool running, std::int64_t now_ns) noexcept {

@@ -35,7 +35,7 @@ class BusHealth {
             const std::vector<std::string>& services);
 
   /// @param topic  its place in the list
-  void take(std::size_t topic, const Sample& sample, std::int64_t ahead_ns = 0);
+  Verdict take(std::size_t topic, const Sample& sample, std::int64_t ahead_ns = 0);
   /// While a session runs, silence and lateness are faults.
   void set_running(bool running, std::int64_t now_ns) noexcept;
   /// A life sign.  @param service  its place in the list

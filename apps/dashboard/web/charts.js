@@ -1,62 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 // The newest ten seconds of what moves.
 import uPlot from "/uPlot.esm.js";
+import { create, mark, write } from "/elements.js";
 
 const KEPT_S = 10;
-const HEIGHT = 122;
+const HEIGHT = 118;
 const STEP_TICKS = 20; // between two rows of the dashboard
+const SPOKEN_MS = 2000;
 const FIGURES = [
   { title: "Acceleration [m/s²]", series: [{ name: "accel_y_m_s2", key: "platform, right" }], least: 1 },
   { title: "Force of the hand [N]", series: [{ name: "force_n", key: "measured" }, { name: "predicted_force_n", key: "predicted by the model" }], least: 1 },
+  { title: "Residual [N]", series: [{ name: "residual_n", key: "measured − predicted" }], least: 1 },
   { title: "Motor force [N]", series: [{ name: "motor_force_n", key: "on the stick" }], limits: true, least: 1 },
-  { title: "Screen [m]", series: [{ name: "target_m", key: "target" }, { name: "cursor_m", key: "cursor" }], least: 0.05 },
+  { title: "Screen [mm]", series: [{ name: "target_mm", key: "target" }, { name: "cursor_mm", key: "cursor" }], least: 50 },
 ];
 
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-function caption(figure, limit) {
-  const node = document.createElement("figcaption");
-  const title = document.createElement("b");
-  title.textContent = figure.title;
-  node.append(title);
-  figure.series.forEach(({ key }, i) => {
-    const part = document.createElement("span");
-    part.className = i === 0 ? "key" : "key second";
-    part.textContent = key;
-    node.append(part);
-  });
-  if (figure.limits) {
-    const part = document.createElement("span");
-    part.className = "key limit";
-    part.textContent = `limits ±${limit} N`;
-    node.append(part);
-  }
-  const note = document.createElement("span");
-  note.className = "note";
-  node.append(note);
-  return { node, note };
+// Figure, caption with a key for each line, and a place for the plot that says what it shows.
+export function figureOf(parent, title, keys, about) {
+  const box = create("figure");
+  const caption = create("figcaption");
+  caption.append(create("b", title), ...keys.map(({ key, look }) => create("span", key, `key ${look}`)));
+  const note = create("span", "", "note");
+  caption.append(note);
+  const place = create("div");
+  place.setAttribute("role", "img");
+  place.setAttribute("aria-label", about);
+  box.append(caption, place);
+  parent.append(box);
+  return { place, note };
+}
+
+export function axisOf(more = {}) {
+  return { stroke: colour("--faint"), grid: { stroke: colour("--rule"), width: 1 }, ticks: { stroke: colour("--rule") }, font: "12px sans-serif", ...more };
 }
 
 class Chart {
   constructor(parent, figure, limit) {
     this.figure = figure;
     this.limit = limit;
-    this.box = document.createElement("figure");
     this.plot = null;
-    const { node, note } = caption(figure, limit);
-    this.note = note;
-    this.place = document.createElement("div");
-    this.place.setAttribute("role", "img");
-    this.place.setAttribute("aria-label", `${figure.title}, newest ${KEPT_S} seconds`);
-    this.box.append(node, this.place);
-    parent.append(this.box);
+    this.spokenAt = -Infinity;
+    const keys = figure.series.map(({ key }, i) => ({ key, look: i === 0 ? "" : "second" }));
+    if (figure.limits) keys.push({ key: `limits ±${limit} N`, look: "limit" });
+    Object.assign(this, figureOf(parent, figure.title, keys, `${figure.title}, newest ${KEPT_S} seconds`));
     new ResizeObserver(() => this.plot?.setSize({ width: this.place.clientWidth, height: HEIGHT })).observe(this.place);
   }
 
   // Anew whenever the colours change.
-  draw(data) {
+  draw(columns) {
     this.plot?.destroy();
-    const axis = { stroke: colour("--faint"), grid: { stroke: colour("--rule"), width: 1 }, ticks: { stroke: colour("--rule") }, font: "12px sans-serif" };
     const lines = this.figure.series.map((_, i) => ({ stroke: colour(`--line-${i + 1}`), width: 1.75, dash: i === 0 ? undefined : [6, 4], points: { show: false } }));
     if (this.figure.limits) {
       for (let i = 0; i < 2; ++i) lines.push({ stroke: colour("--limit"), width: 1.5, dash: [2, 4], points: { show: false } });
@@ -69,19 +63,19 @@ class Chart {
           const most = Math.max(least, Math.abs(min ?? 0), Math.abs(max ?? 0));
           return [-1.05 * most, 1.05 * most];
         } } },
-      axes: [{ ...axis, size: 28, values: (_, ticks) => ticks.map((s) => `${s}`) }, { ...axis, size: 46 }],
+      axes: [axisOf({ size: 28, values: (_, ticks) => ticks.map((s) => `${s}`) }), axisOf({ size: 46 })],
       series: [{}, ...lines],
-    }, data, this.place);
+    }, columns, this.place);
   }
 
   show(rows, hidden) {
-    const data = [[], ...this.figure.series.map(() => []), ...(this.figure.limits ? [[], []] : [])];
+    const columns = [[], ...this.figure.series.map(() => []), ...(this.figure.limits ? [[], []] : [])];
     const add = (tick, values) => {
-      data[0].push(tick / 1000);
-      values.forEach((value, i) => data[i + 1].push(value));
+      columns[0].push(tick / 1000);
+      values.forEach((value, i) => columns[i + 1].push(value));
       if (this.figure.limits) {
-        data.at(-2).push(this.limit);
-        data.at(-1).push(-this.limit);
+        columns.at(-2).push(this.limit);
+        columns.at(-1).push(-this.limit);
       }
     };
     let last = null;
@@ -91,10 +85,34 @@ class Chart {
       add(row.tick, this.figure.series.map(({ name }) => row[name]));
       last = row.tick;
     }
-    const note = hidden && this.figure.limits ? "hidden while a person tracks (blinded)" : "";
-    if (this.note.textContent !== note) this.note.textContent = note;
-    if (this.plot) this.plot.setData(data); else this.draw(data);
+    write(this.note, hidden && this.figure.limits ? "hidden while a person tracks (blinded)" : "");
+    this.speak(columns);
+    if (this.plot) this.plot.setData(columns); else this.draw(columns);
   }
+
+  speak(columns) {
+    if (performance.now() - this.spokenAt < SPOKEN_MS) return;
+    this.spokenAt = performance.now();
+    const parts = this.figure.series.map(({ key }, i) => {
+      const values = columns[i + 1].filter((value) => value !== null);
+      if (values.length === 0) return `${key}: nothing heard`;
+      return `${key}: now ${values.at(-1).toFixed(2)}, from ${Math.min(...values).toFixed(2)} to ${Math.max(...values).toFixed(2)}`;
+    });
+    mark(this.place, "aria-label", `${this.figure.title}, newest ${KEPT_S} seconds. ${parts.join("; ")}`);
+  }
+}
+
+const mm = (value) => (value === null ? null : 1000 * value);
+
+function rowsOf(traces) {
+  const names = Object.keys(traces);
+  return traces.tick.map((_, i) => {
+    const row = Object.fromEntries(names.map((name) => [name, traces[name][i]]));
+    row.residual_n = row.force_n === null || row.predicted_force_n === null ? null : row.force_n - row.predicted_force_n;
+    row.target_mm = mm(row.target_m);
+    row.cursor_mm = mm(row.cursor_m);
+    return row;
+  });
 }
 
 export class Charts {
@@ -104,16 +122,23 @@ export class Charts {
     this.rows = [];
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       for (const chart of this.charts) { chart.plot?.destroy(); chart.plot = null; }
+      this.drawn();
     });
   }
 
-  add({ traces, limits, session }) {
+  // What is new; `whole`: what was there before is of another instant.
+  add({ traces, limits, session }, whole) {
     if (this.charts.length === 0) this.charts = FIGURES.map((figure) => new Chart(this.parent, figure, limits.motor_force_n));
-    if (traces.tick.length === 0) return;
-    const arrived = traces.tick.map((_, i) => Object.fromEntries(Object.keys(traces).map((name) => [name, traces[name][i]])));
-    const newest = arrived.at(-1).tick;
+    this.hidden = session.blinded && session.phase === "tracking";
+    if (whole) this.rows = [];
+    const arrived = rowsOf(traces);
+    if (arrived.length > 0) this.join(arrived);
+    if (arrived.length > 0 || whole) this.drawn();
+  }
+
+  join(arrived) {
     // Ticks that go far back are another session.
-    if (newest < (this.rows.at(-1)?.tick ?? -1) - 1000 * KEPT_S) this.rows = [];
+    if (arrived.at(-1).tick < (this.rows.at(-1)?.tick ?? -1) - 1000 * KEPT_S) this.rows = [];
     if (arrived[0].tick > (this.rows.at(-1)?.tick ?? -1)) {
       this.rows.push(...arrived);
     } else {
@@ -122,7 +147,9 @@ export class Charts {
     }
     const oldest = this.rows.at(-1).tick - 1000 * KEPT_S;
     this.rows = this.rows.filter((row) => row.tick >= oldest);
-    const hidden = session.blinded && session.phase === "tracking";
-    for (const chart of this.charts) chart.show(this.rows, hidden);
+  }
+
+  drawn() {
+    for (const chart of this.charts) chart.show(this.rows, this.hidden);
   }
 }

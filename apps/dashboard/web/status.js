@@ -1,30 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The strip that is read from across the room.
+import { clock, element, short, span, write } from "/elements.js";
+
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
 const SESSIONS = { none: "No session", waiting: "Session waits", ending: "Session over", unknown: "Session unknown" };
-
-const element = (id) => document.getElementById(id);
-
-// A screen reader speaks what changes: nothing is written that is there already.
-export function write(node, text) {
-  if (node.textContent !== text) node.textContent = text;
-}
-
-export function clock(ms) {
-  return ms === null || ms === undefined ? "–" : new Date(ms).toLocaleTimeString("en-GB");
-}
-
-export function short(topic) {
-  return topic.replace(/^stillhand\//, "");
-}
-
-function span(ms) {
-  const s = Math.max(0, Math.round(ms / 1000));
-  if (s < 90) return `${s} s`;
-  if (s < 5400) return `${Math.round(s / 60)} min`;
-  return `${(s / 3600).toFixed(1)} h`;
-}
+const RECENT_MS = 1000;
 
 function amount(alarm) {
   if (alarm.unit === "ticks") return `${alarm.worst} tick${alarm.worst === 1 ? "" : "s"}`;
@@ -51,28 +32,40 @@ function strip(level, word, text, since) {
   write(element("word"), word);
   write(element("what"), text);
   write(element("since"), since);
+  document.title = `${word} – Stillhand`;
+}
+
+function stripOfAlarms(alarms, now) {
+  const first = alarms[0];
+  const others = alarms.length > 1 ? `; ${alarms.length - 1} more` : "";
+  const over = first.active ? "" : first.watch === "missing" || first.watch === "silent" ? "; back again" : "; not now";
+  strip(first.level, WORDS[first.level], what(first) + over + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
 export function showStatus(snapshot) {
-  const { alarms, session } = snapshot;
-  const button = element("acknowledge");
-  button.disabled = !alarms.some((alarm) => !alarm.acknowledged);
-  const title = snapshot.mode === "recording" ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
-  if (alarms.length > 0) {
-    const first = alarms[0];
-    const others = alarms.length > 1 ? `; ${alarms.length - 1} more` : "";
-    const over = first.active ? "" : first.watch === "missing" || first.watch === "silent" ? "; back again" : "; not now";
-    strip(snapshot.level, WORDS[snapshot.level], what(first) + over + others,
-      `since ${clock(first.since_ms)}\n${span(snapshot.now_ms - first.since_ms)} ago`);
-  } else if (session.state === "running") {
-    strip("healthy", WORDS.healthy, title, `since ${clock(snapshot.level_since_ms)}\n${span(snapshot.now_ms - snapshot.level_since_ms)}`);
+  const { alarms, session, now_ms: now } = snapshot;
+  const recording = snapshot.mode === "recording";
+  element("acknowledge").disabled = recording || !alarms.some((alarm) => !alarm.acknowledged);
+  element("acknowledge").hidden = recording;
+  const title = recording ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
+  // Nobody acknowledges in a recording: there the strip tells of the instant, and the list of everything before it.
+  const shown = recording ? alarms.filter((alarm) => alarm.active || now - alarm.last_ms < RECENT_MS) : alarms;
+  if (session.emergency) {
+    const when = session.emergency_ms ? `asked ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
+    strip("critical", "Emergency stop", "the motor's force goes to zero, the platform brakes, the session ends", when);
+  } else if (shown.length > 0) {
+    stripOfAlarms(shown, now);
+  } else if (session.state === "running" || session.state === "paused") {
+    const paused = session.state === "paused" || session.paused ? "no trial begins until Start; " : "";
+    const before = alarms.length > 0 ? `; ${alarms.length} alarm${alarms.length === 1 ? "" : "s"} before` : "";
+    strip("healthy", WORDS.healthy, paused + title + before, recording ? clock(now) : `since ${clock(snapshot.level_since_ms)}\n${span(now - snapshot.level_since_ms)}`);
   } else {
-    strip("none", SESSIONS[session.state] ?? session.state, title, "");
+    strip("none", SESSIONS[session.state] ?? session.state, title, recording ? clock(now) : "");
   }
-  document.title = `${element("word").textContent} – Stillhand`;
+  delete document.body.dataset.stale;
 }
 
-export function showLost(why) {
-  strip("none", "No connection", why, "");
-  document.title = "No connection – Stillhand";
+export function showLost(since) {
+  strip("none", "No connection", `no word from the dashboard's process since ${clock(since)}`, `${span(Date.now() - since)} ago`);
+  document.body.dataset.stale = "";
 }

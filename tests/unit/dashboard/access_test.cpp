@@ -82,6 +82,7 @@ TEST_F(TokenFileTest, WhatIsNoSecretIsRefused) {
   }
   write(kToken, 0644);
   EXPECT_THROW(read_token(file_), ConfigError);
+  EXPECT_THROW(read_token("/dev/zero"), ConfigError);
   std::filesystem::remove(file_);
   EXPECT_THROW(read_token(file_), ConfigError);
 }

@@ -37,8 +37,15 @@ class RoutesTest : public ::testing::Test {
 
   std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_pages_");
   std::optional<Pages> pages_;
+  std::optional<std::string> act(std::string_view path) {
+    if (path == "/session/stop") return "nobody listens";
+    if (path != "/acknowledge") return std::nullopt;
+    ++acknowledged_;
+    return "";
+  }
   int acknowledged_ = 0;
-  Served served_{[] { return std::string("{}"); }, [this] { ++acknowledged_; }};
+  Served served_{[] { return std::string("{}"); },
+                 [this](std::string_view path) { return act(path); }};
   Access loopback_{""}, token_{kToken};
 };
 
@@ -67,6 +74,12 @@ TEST_F(RoutesTest, OnlyAPostOfOnesOwnAcknowledges) {
   EXPECT_EQ(acknowledged_, 0);
   EXPECT_EQ(ask("POST", "/acknowledge", "http://127.0.0.1").status, 204u);
   EXPECT_EQ(acknowledged_, 1);
+}
+
+TEST_F(RoutesTest, AnActionThatCouldNotBeAskedSaysWhy) {
+  const Answer refused = ask("POST", "/session/stop");
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_EQ(refused.body, "nobody listens\n");
 }
 
 TEST_F(RoutesTest, TheTokenGoesFromTheAddressIntoACookie) {

@@ -42,5 +42,15 @@ TEST(InterlockTest, IgnoresAMissingPeerBetweenTrials) {
   EXPECT_TRUE(sut.step(trial, 500, true));
 }
 
+TEST(InterlockTest, NeverClosesAfterAStop) {
+  Interlock sut;
+  EXPECT_TRUE(sut.step(trial_number(3, 50), 50, true));
+  sut.stop();
+  EXPECT_FALSE(sut.step(trial_number(3, 50), 51, true));
+  EXPECT_FALSE(sut.step(trial_number(4, 500), 500, true));
+  EXPECT_TRUE(sut.latched(trial_number(4, 500)));
+  EXPECT_TRUE(sut.latched(Trial{}));
+}
+
 }  // namespace
 }  // namespace stillhand::runtime

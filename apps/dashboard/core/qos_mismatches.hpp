@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace stillhand::dashboard {
+
+/// An endpoint that some other one cannot match, as its own process told it.
+struct QosMismatch {
+  std::string service, topic, policy;
+  std::int64_t since_ns = 0, last_ns = 0;
+};
+
+/// Which endpoints cannot match, by which policy and since when.  DDS tells it once for each pair,
+/// and nobody tells its end: it holds until another process of that name begins.  Bounded, whoever
+/// comes and goes.  Pure; one thread.
+class QosMismatches {
+ public:
+  /// @param text  the policy, and behind a comma how often
+  void note(std::string service, std::string topic, const std::string& text, std::int64_t at_ns) {
+    std::string policy = text.substr(0, text.find(','));
+    const auto known = std::ranges::find_if(all_, [&](const QosMismatch& each) {
+      return each.service == service && each.topic == topic && each.policy == policy;
+    });
+    if (known != all_.end()) {
+      known->last_ns = std::max(known->last_ns, at_ns);
+      return;
+    }
+    if (all_.size() == kMost) all_.erase(all_.begin());
+    all_.push_back({std::move(service), std::move(topic), std::move(policy), at_ns, at_ns});
+  }
+  /// A process of that name began: what was told before it is over.
+  void begun(const std::string& service, std::int64_t at_ns) {
+    // Its first word of a mismatch may come a little before its first status.
+    std::erase_if(all_, [&](const QosMismatch& each) {
+      return each.service == service && each.last_ns < at_ns - kBefore_ns;
+    });
+  }
+
+  /// In the order in which they were first told.
+  [[nodiscard]] const std::vector<QosMismatch>& all() const noexcept { return all_; }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  static constexpr std::int64_t kBefore_ns = 1'000'000'000;
+
+  std::vector<QosMismatch> all_;
+};
+
+}  // namespace stillhand::dashboard

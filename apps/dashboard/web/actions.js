@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page can ask for. The emergency stop needs one key from anywhere and asks no question back.
+import { clock, element, write } from "/elements.js";
+
+const TRIES = 40; // of an emergency stop that gets no answer, four a second
+const plain = (event) => !event.ctrlKey && !event.metaKey && !event.altKey;
+
+function tell(text, bad = false) {
+  element("answer").classList.toggle("bad", bad);
+  write(element("answer"), text);
+}
+
+// true: it was asked for.
+async function ask(path, name) {
+  try {
+    const answer = await fetch(path, { method: "POST", signal: AbortSignal.timeout(2000) });
+    if (answer.ok) {
+      tell(`${name}: asked at ${clock(Date.now())}`);
+      return true;
+    }
+    tell(`${name}: refused: ${(await answer.text()).trim()}`, true);
+  } catch {
+    tell(`${name}: not delivered, the dashboard's process does not answer`, true);
+  }
+  return false;
+}
+
+async function emergencyStop(button) {
+  button.dataset.state = "asking";
+  for (let i = 0; i < TRIES; ++i) {
+    if (await ask("/emergency-stop", "Emergency stop")) {
+      button.dataset.state = "asked";
+      return;
+    }
+    button.dataset.state = "failed";
+    tell("EMERGENCY STOP NOT DELIVERED: use the rig's own. Trying again …", true);
+    await new Promise((then) => setTimeout(then, 250));
+  }
+  tell("EMERGENCY STOP NOT DELIVERED: use the rig's own.", true);
+}
+
+export class Actions {
+  constructor() {
+    this.acknowledge = element("acknowledge");
+    this.emergency = element("emergency");
+    this.acknowledge.addEventListener("click", () => ask("/acknowledge", "Acknowledge"));
+    this.emergency.addEventListener("click", () => emergencyStop(this.emergency));
+    for (const button of document.querySelectorAll("button[data-ask]")) {
+      button.addEventListener("click", () => ask(button.dataset.ask, button.dataset.name));
+    }
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && !event.repeat && !this.emergency.hidden) {
+        event.preventDefault();
+        emergencyStop(this.emergency);
+      } else if (plain(event) && event.key.toLowerCase() === "a" && !this.acknowledge.disabled) {
+        ask("/acknowledge", "Acknowledge");
+      }
+    }, { capture: true });
+  }
+
+  show({ actions, session, recorders = [] }) {
+    const enabled = actions?.enabled === true;
+    this.emergency.hidden = !enabled;
+    element("actions-part").hidden = !enabled;
+    if (!enabled) return;
+    if (session.emergency) this.emergency.dataset.state = "done";
+    else if (this.emergency.dataset.state === "done") delete this.emergency.dataset.state;
+    const going = session.state === "running" || session.state === "paused" || session.state === "waiting";
+    for (const button of document.querySelectorAll("button[data-ask^='/session/']")) button.disabled = !going || session.emergency === true;
+    for (const button of document.querySelectorAll("button[data-ask^='/recorder/']")) button.disabled = recorders.length === 0;
+  }
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong in the graph, by each process's own word. Pure.
+const RECENT_MS = 5000;
+const GONE_MS = 300; // the lease of a process's life sign
+const GOING = ["waiting", "running", "paused"];
+
+// "peer (topic), peer (topic)"; the last one may be cut off.
+function missing(text) {
+  return [...text.matchAll(/(\w+) \(([^),]+)\)/g)].map(([, peer, topic]) => ({ peer, topic }));
+}
+
+function unmatched({ services, graph }) {
+  const rows = new Map(graph.topics.map((row) => [row.topic, row]));
+  const found = new Map();
+  for (const { service, waits_for: text = "" } of services) {
+    for (const { peer, topic } of missing(text)) {
+      const row = rows.get(topic);
+      if (!row) continue;
+      // Both ends may say so: it is one edge.
+      const writes = row.writers.includes(service) && row.readers.some((reader) => reader.service === peer);
+      const [writer, reader] = writes ? [service, peer] : [peer, service];
+      found.set(`${writer}>${topic}>${reader}`, { kind: "unmatched", topic, writer, reader, level: "critical", active: true, text: "not matched" });
+    }
+  }
+  return [...found.values()];
+}
+
+const times = (count, what) => `${count} ${what}${count === 1 ? "" : what.endsWith("s") ? "es" : "s"}`;
+
+function trouble({ topic, writers }, reader, now) {
+  const found = [];
+  const { service, late, lost } = reader;
+  const writer = writers.length === 1 ? writers[0] : "";
+  const misses = reader.cycle_misses + reader.deadline_misses;
+  const add = (kind, growth, text) => {
+    const active = growth.last_ms !== null && now - growth.last_ms < RECENT_MS;
+    found.push({ kind, topic, writer, reader: service, level: "warning", active, text, since_ms: growth.first_ms, last_ms: growth.last_ms });
+  };
+  if (misses > 0) add("late", late, `late: ${times(reader.cycle_misses, "cycle miss")}, ${times(reader.deadline_misses, "DDS miss")}, longest interval ${(reader.worst_interval_us / 1000).toFixed(1)} ms`);
+  if (reader.lost_ticks > 0) add("lost", lost, `lost ${times(reader.lost_ticks, "tick")}`);
+  return found;
+}
+
+// true: no life sign
+export function gone(service) {
+  return service.state === undefined || service.silent_ms > GONE_MS;
+}
+
+// Faults of edges, the gravest first: { kind, topic, writer, reader, level, active, text, since_ms, last_ms }.
+export function faultsOf(snapshot) {
+  const { graph, session, services, now_ms: now } = snapshot;
+  const found = [];
+  for (const { service, topic, policy, since_ms } of graph.qos_mismatches) {
+    const row = graph.topics.find((each) => each.topic === topic);
+    const writes = row?.writers.includes(service) && !row.readers.some((reader) => reader.service === service);
+    found.push({ kind: "qos", topic, writer: writes ? service : "", reader: writes ? "" : service, level: "critical", active: true, text: `QoS mismatch: ${policy}`, since_ms });
+  }
+  if (GOING.includes(session.state)) found.push(...unmatched({ services, graph }));
+  for (const topic of graph.topics) {
+    for (const reader of topic.readers) {
+      if (reader.samples !== undefined) found.push(...trouble(topic, reader, now));
+    }
+  }
+  const rank = (fault) => (fault.level === "critical" ? 0 : fault.active ? 1 : 2);
+  return found.map((fault, i) => ({ fault, i })).sort((one, other) => rank(one.fault) - rank(other.fault) || one.i - other.i).map(({ fault }) => fault);
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tones for alarms that nobody has acknowledged yet. Off until somebody wants it; this browser remembers.
+import { element, write } from "/elements.js";
+
+const KEY = "stillhand.sound";
+const TONES = { warning: { hz: 620, beeps: 1, again_ms: 10000 }, critical: { hz: 880, beeps: 3, again_ms: 3000 } };
+
+export class Sound {
+  constructor() {
+    this.button = element("sound");
+    this.on = localStorage.getItem(KEY) === "on";
+    this.playedAt = -Infinity;
+    this.played = null;
+    this.button.addEventListener("click", () => {
+      this.on = !this.on;
+      localStorage.setItem(KEY, this.on ? "on" : "off");
+      if (this.on) this.beep(TONES.warning);
+      this.show();
+    });
+    // A browser lets a page sound once somebody has touched it.
+    for (const name of ["pointerdown", "keydown"]) document.addEventListener(name, () => this.on && this.ready());
+    this.show();
+  }
+
+  show() {
+    this.button.setAttribute("aria-pressed", this.on);
+    write(this.button, this.on ? "Sound on" : "Sound off");
+  }
+
+  ready() {
+    this.audio ??= new AudioContext();
+    if (this.audio.state === "suspended") this.audio.resume();
+    return this.audio;
+  }
+
+  beep({ hz, beeps }) {
+    const audio = this.ready();
+    for (let i = 0; i < beeps; ++i) {
+      const from = audio.currentTime + 0.25 * i;
+      const tone = new OscillatorNode(audio, { type: "triangle", frequency: hz });
+      const volume = new GainNode(audio, { gain: 0 });
+      volume.gain.setValueAtTime(0, from);
+      volume.gain.linearRampToValueAtTime(0.3, from + 0.01);
+      volume.gain.setValueAtTime(0.3, from + 0.15);
+      volume.gain.linearRampToValueAtTime(0, from + 0.18);
+      tone.connect(volume).connect(audio.destination);
+      tone.start(from);
+      tone.stop(from + 0.2);
+    }
+  }
+
+  hear({ mode, alarms }) {
+    if (!this.on || mode === "recording") return;
+    const open = alarms.filter((alarm) => !alarm.acknowledged);
+    const level = open.length === 0 ? null : open.some((alarm) => alarm.level === "critical") ? "critical" : "warning";
+    const now = performance.now();
+    const worse = level === "critical" && this.played !== "critical";
+    if (level !== null && (worse || now - this.playedAt > TONES[level].again_ms)) {
+      this.beep(TONES[level]);
+      this.playedAt = now;
+      this.played = level;
+    }
+    if (level === null) {
+      this.played = null;
+      this.playedAt = -Infinity;
+    }
+  }
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stream of snapshots. A process that is gone, stopped or started anew is noticed and found again without anybody's
+// doing.
+const SILENT_MS = 1000; // it speaks ten times a second
+const DEAF_MS = 4000; // a host that is gone closes nothing
+const AGAIN_MS = 500;
+
+export class Stream {
+  // opened(): it runs, anew; heard(snapshot); lost(since): no word since then, told again and again.
+  constructor({ opened, heard, lost }) {
+    this.calls = { opened, heard, lost };
+    this.heardAt = performance.now();
+    this.lastWord = new Date();
+    setInterval(() => this.watch(), 250);
+    this.open();
+  }
+
+  open() {
+    clearTimeout(this.again);
+    this.source?.close();
+    this.openedAt = performance.now();
+    this.source = new EventSource("/events");
+    this.source.onopen = () => this.calls.opened();
+    this.source.onmessage = (event) => {
+      this.heardAt = performance.now();
+      this.lastWord = new Date();
+      this.calls.heard(JSON.parse(event.data));
+    };
+    this.source.onerror = () => {
+      this.source.close();
+      this.calls.lost(this.lastWord);
+      this.again = setTimeout(() => this.open(), AGAIN_MS);
+    };
+  }
+
+  watch() {
+    const now = performance.now();
+    if (now - this.heardAt <= SILENT_MS) return;
+    this.calls.lost(this.lastWord);
+    if (now - this.heardAt > DEAF_MS && now - this.openedAt > DEAF_MS) this.open();
+  }
+}

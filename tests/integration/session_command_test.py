@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What somebody may ask of a running session from a dashboard: start, pause and stop of a trial, an emergency stop.
+
+The page's buttons are these requests (tests/integration/dashboard_browser_test.py); here is what comes of them.
+"""
+import subprocess
+
+import lab_process
+from dashboard_test import DashboardCase, main, wait_for
+from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, next_domain, quick_session
+
+FORCE_LIMIT_TICKS = 50  # the motor force ramps to zero within 50 ms
+
+
+class SessionCommandTest(DashboardCase):
+    def beside_a_lab(self, *words):
+        domain = next_domain()
+        dashboard = self.dashboard("--domain", domain)
+        return dashboard, self.lab(*quick_session(self.folder / "config"), *words, domain=domain)
+
+    def asked(self, dashboard, path):
+        status, answer, _ = dashboard.ask("POST", path)
+        self.assertEqual(status, 204, answer)
+
+    def test_each_trial_waits_for_a_start_and_one_that_is_stopped_runs_again(self):
+        dashboard, lab = self.beside_a_lab("--trial-seconds", 5, "--wait-for-start")
+
+        def paused():
+            return lab.wait_for("a pause", lambda: dashboard.snapshot()["session"]["paused"], TRIAL_LIMIT_S)
+
+        def trial(number):
+            def measured():
+                session = dashboard.snapshot()["session"]
+                return session.get("trial") == number and session["tick"] > session["start_tick"] + TICKS_PER_S
+            lab.wait_for(f"a second of trial {number}", measured, TRIAL_LIMIT_S)
+
+        paused()
+        self.asked(dashboard, "/session/start")
+        trial(0)
+        paused()
+        self.asked(dashboard, "/session/start")
+        trial(1)
+        self.asked(dashboard, "/session/stop")
+        paused()
+        stood = dashboard.snapshot()["session"]["tick"]
+        lab.wait_for("the platform's rest", lambda: lab.recording(1)["rig"]["tick"][-1] > stood + 2 * TICKS_PER_S,
+                     TRIAL_LIMIT_S)
+        self.asked(dashboard, "/session/start")
+        self.assertEqual(lab.end_status(), 0, lab.errors())
+        trials = lab.summary()["trials"]
+        self.assertEqual([(each["number"], each["condition"], each["completed"]) for each in trials],
+                         [(0, "I", True), (1, "C", False), (2, "C", True)])
+        self.assertRegex(trials[1]["aborted"], "^stopped, asked by dashboard on ")
+        recording = lab.recording(10**9, "signals")
+        told = [text for source, text in recording["commands"] if source == "experiment"]
+        self.assertEqual([text.split(",")[0] for text in told], ["start", "start", "stop", "start"])
+        # From the stop on no force, and the platform comes to rest in the middle.
+        rig = recording["rig"]
+        during = range(rig["tick"].index(stood), rig["tick"].index(stood + TICKS_PER_S))
+        self.assertGreater(max(abs(rig["motor_force_n"][i]) for i in range(during.start)), 1.0)
+        self.assertEqual({rig["motor_force_n"][i] for i in during}, {0.0})
+        commands = {tick: position_m for tick, position_m, *_ in recording["signals"]["command"]}
+        self.assertLess(abs(commands[stood + 2 * TICKS_PER_S]), 1e-6)
+
+    def test_an_emergency_stop_takes_the_force_and_ends_the_session(self):
+        dashboard, lab = self.beside_a_lab("--trial-seconds", 20)
+
+        def two_seconds_of_a_person():
+            session = dashboard.snapshot()["session"]
+            return (session.get("phase") == "tracking"
+                    and session["tick"] > session["start_tick"] + 2 * TICKS_PER_S and session["tick"])
+        tick = lab.wait_for("two seconds of a person", two_seconds_of_a_person, TRIAL_LIMIT_S)
+        self.asked(dashboard, "/emergency-stop")
+        self.assertEqual(lab.end_status(), 1, lab.errors())
+        self.assertTrue(dashboard.snapshot()["session"]["emergency"])
+        self.assertRegex(lab.errors()[-1], "trial 1 .*emergency stop, asked by dashboard on ")
+        recording = lab.recording(10**9, "signals")
+        rig = recording["rig"]
+        stopped = next(i for i, permitted in enumerate(rig["motor_permitted"])
+                       if rig["tick"][i] > tick and not permitted)
+        force = rig["motor_force_n"]
+        self.assertGreater(max(abs(each) for each in force[stopped - TICKS_PER_S:stopped]), 1.0)
+        self.assertEqual([each for each in force[stopped + FORCE_LIMIT_TICKS:] if each != 0.0], [])
+        self.assertGreater(len(force), stopped + FORCE_LIMIT_TICKS, "the recording ends before")
+        self.assertIn(["rig", "emergency stop"], recording["commands"])
+        self.assertTrue([text for source, text in recording["commands"]
+                         if source == "experiment" and text.startswith("emergency stop, asked by dashboard on ")])
+
+    def test_nobody_is_asked_for_what_nobody_does(self):
+        dashboard = self.dashboard("--domain", next_domain())
+        for path in ("/session/start", "/session/stop", "/emergency-stop", "/recorder/pause"):
+            status, answer, _ = dashboard.ask("POST", path)
+            self.assertEqual(status, 409, path)
+            self.assertIn(b"nobody listens", answer)
+        onlooker = self.dashboard("--domain", next_domain(), "--read-only")
+        self.assertFalse(onlooker.snapshot()["actions"]["enabled"])
+        self.assertEqual(onlooker.ask("POST", "/emergency-stop")[0], 409)
+
+    def test_a_recorder_obeys_and_the_page_tells(self):
+        domain = next_domain()
+        dashboard = self.dashboard("--domain", domain)
+        recorder = subprocess.Popen([str(lab_process.STILLHAND), "record", "--domain", str(domain), "--out",
+                                     str(self.folder / "any.mcap")], stderr=subprocess.DEVNULL)
+        self.addCleanup(recorder.kill)
+
+        def recorders():
+            return dashboard.snapshot()["recorders"]
+        self.assertFalse(wait_for("a recorder", recorders)[0]["paused"])
+        wait_for("a recorder that listens", lambda: dashboard.ask("POST", "/recorder/pause")[0] == 204)
+        wait_for("its pause", lambda: recorders()[0]["paused"])
+        self.asked(dashboard, "/recorder/resume")
+        wait_for("its end", lambda: not recorders()[0]["paused"])
+        self.asked(dashboard, "/recorder/stop")
+        self.assertEqual(recorder.wait(timeout=20), 0)
+
+
+if __name__ == "__main__":
+    main()
