@@ -18,6 +18,19 @@ namespace {
 constexpr std::uint32_t kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
 }
 
+namespace {
+
+void read_in_batches(edds::DomainParticipantQos& qos, const TakeDatagram& take) {
+  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+  for (auto& transport : qos.transport().user_transports) {
+    if (auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport)) {
+      transport = std::make_shared<BatchedUdpDescriptor>(std::move(udp), take);
+    }
+  }
+}
+
+}  // namespace
+
 // The factory keeps profiles for the whole process and refuses a file it has already read.
 void load_profiles(const std::filesystem::path& file) {
   static std::mutex mutex;
@@ -45,7 +58,8 @@ ConfigError missing_profile(const std::filesystem::path& profiles, const char* k
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
-                                            edds::DomainParticipantListener* listener) {
+                                            edds::DomainParticipantListener* listener,
+                                            const TakeDatagram& take) {
   if (domain > kMaxDomain) throw ConfigError("domain", std::to_string(domain), "0 to 232");
   if (!identity.none()) check_identity(identity, domain);
   edds::Log::SetVerbosity(edds::Log::Kind::Error);
@@ -58,7 +72,11 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   }
   qos.name(name);
   if (marked) qos.user_data().data_vec(replay_mark());
-  if (!identity.none()) secure(qos, identity);
+  if (!identity.none()) {
+    secure(qos, identity);
+  } else if (take) {
+    read_in_batches(qos, take);
+  }
   auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
   if (participant == nullptr) {
     throw BusError("Fast DDS opened no participant on domain " + std::to_string(domain) +

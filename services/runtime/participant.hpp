@@ -7,6 +7,7 @@
 #include <string>
 
 #include "contract/config_error.hpp"
+#include "runtime/batched_udp.hpp"
 #include "runtime/security.hpp"
 
 namespace stillhand::runtime {
@@ -17,10 +18,12 @@ void load_profiles(const std::filesystem::path& file);
 /// A participant of the profile "stillhand_participant".  @param marked  it carries the replay's
 /// mark  @throws ConfigError for a bad domain, missing profile or a fault of the identity, BusError
 /// when DDS refuses or runs without the security asked for.
+/// @param take  where given and without an identity: the profile's UDPv4 is read in batches, and
+/// this sees each datagram first
 eprosima::fastdds::dds::DomainParticipant* create_participant(
     const std::filesystem::path& profiles, std::uint32_t domain, const std::string& name,
     bool marked, const Identity& identity,
-    eprosima::fastdds::dds::DomainParticipantListener* listener);
+    eprosima::fastdds::dds::DomainParticipantListener* listener, const TakeDatagram& take = {});
 
 /// The error of a profile file that lacks one.
 ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,

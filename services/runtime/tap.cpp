@@ -2,8 +2,10 @@
 #include "runtime/tap.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
+#include <cstring>
 #include <deque>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -20,11 +22,14 @@
 #include "runtime/bus.hpp"
 #include "runtime/found_writers.hpp"
 #include "runtime/participant.hpp"
+#include "runtime/rtps_sample.hpp"
 #include "runtime/serialized_type.hpp"
 #include "runtime/type_tag.hpp"
 
 namespace stillhand::runtime {
 
+using eprosima::fastrtps::rtps::GuidPrefix_t;
+using eprosima::fastrtps::rtps::octet;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 using eprosima::fastrtps::types::ReturnCode_t;
@@ -65,6 +70,7 @@ struct Tap::Impl final : edds::DomainParticipantListener {
                                 ParticipantDiscoveryInfo&& info) override;
   void on_publisher_discovery(edds::DomainParticipant* participant,
                               WriterDiscoveryInfo&& info) override;
+  bool take_datagram(std::span<const std::byte> datagram, std::int64_t arrived_ns);
   void open_readers(const std::stop_token& stop);
   void open_reader(const ReaderKey& key, const std::string& type);
   void tell(std::string line);
@@ -84,6 +90,16 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   edds::DomainParticipant* participant = nullptr;
   edds::Subscriber* subscriber = nullptr;
   std::jthread opening;
+
+  // Of the batched transport's thread, and of stop().
+  struct Heard {
+    const SampleWriters::Entry* writer = nullptr;
+    std::int64_t newest = 0;  // sequence number
+  };
+  std::mutex taking;
+  bool listening = false;
+  SampleWriters writer_of{writers};
+  std::map<FoundWriters::Handle, Heard> heard;
 };
 
 struct Tap::Impl::Reader final : edds::DataReaderListener {
@@ -183,6 +199,42 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
   readers.push_back(std::move(reader));
 }
 
+// What DDS would do with a best-effort sample, without what it keeps for those who read later.
+bool Tap::Impl::take_datagram(std::span<const std::byte> datagram, std::int64_t arrived_ns) {
+  const auto sample = only_sample(datagram);
+  if (!sample) return false;
+  const std::lock_guard lock(taking);
+  if (!listening) return false;
+  const GuidPrefix_t& own = participant->guid().guidPrefix;
+  const auto* meant = reinterpret_cast<const octet*>(sample->destination.data());
+  if (std::memcmp(meant, own.value, GuidPrefix_t::size) != 0 &&
+      sample->destination != RtpsSample{}.destination) {
+    return false;
+  }
+  FoundWriters::Handle handle;
+  std::memcpy(static_cast<octet*>(handle.value), sample->writer.data(), sample->writer.size());
+  const auto known = heard.find(handle);
+  if (known == heard.end()) {
+    // Also the samples of discovery itself, which nobody ever announced.
+    const SampleWriters::Entry* writer = writer_of.of(handle);
+    if (writer == nullptr) return false;
+    const bool ours = writer->writer.wanted && writer->writer.type_known &&
+                      class_of(writer->writer.qos) == ReaderClass::kBestEffort;
+    if (!ours) return false;
+  }
+  Heard& mine = known == heard.end() ? heard[handle] : known->second;
+  if (mine.writer == nullptr) mine.writer = writer_of.of(handle);
+  // The same once more by another address, or overtaken.
+  if (sample->sequence <= mine.newest) return true;
+  mine.newest = sample->sequence;
+  eprosima::fastrtps::rtps::Time_t sent;
+  sent.seconds(sample->sent_s);
+  sent.fraction(sample->sent_fraction);
+  options.on_sample(mine.writer->writer, {mine.writer->number, sample->sequence, sent.to_ns(),
+                                          arrived_ns, sample->bytes});
+  return true;
+}
+
 void Tap::Impl::tell(std::string line) {
   const std::lock_guard lock(mutex);
   if (std::find(trouble.begin(), trouble.end(), line) == trouble.end()) {
@@ -192,9 +244,13 @@ void Tap::Impl::tell(std::string line) {
 
 Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
   // Checked before the run: the readers themselves come when their writers do.
-  impl_->participant =
-      create_participant(impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
-                         {impl_->options.security, std::string(topics::kTap)}, impl_.get());
+  impl_->participant = create_participant(
+      impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
+      {impl_->options.security, std::string(topics::kTap)}, impl_.get(),
+      impl_->options.batched ? TakeDatagram([impl = impl_.get()](auto datagram, auto arrived_ns) {
+        return impl->take_datagram(datagram, arrived_ns);
+      })
+                             : TakeDatagram());
   impl_->subscriber = impl_->participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
   edds::Publisher* profiles = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
   if (impl_->subscriber == nullptr || profiles == nullptr) {
@@ -212,6 +268,10 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
 }
 
 void Tap::start() {
+  {
+    const std::lock_guard lock(impl_->taking);
+    impl_->listening = true;
+  }
   impl_->opening =
       std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->open_readers(stop); });
 }
@@ -223,6 +283,10 @@ Tap::~Tap() {
 }
 
 void Tap::stop() {
+  {
+    const std::lock_guard lock(impl_->taking);
+    impl_->listening = false;
+  }
   if (impl_->opening.joinable()) {
     impl_->opening.request_stop();
     impl_->opening.join();

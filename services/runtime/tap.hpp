@@ -17,7 +17,7 @@ namespace stillhand::runtime {
 /// combination of reliability and durability, so that every writer matches and none is read twice.
 ///
 /// Made, it has looked at all that can be refused; it hears nothing before start().
-/// on_sample() runs in DDS's receiving thread, one call at a time for each reader; writers() is for
+/// on_sample() runs in a receiving thread, one call at a time for each reader; writers() is for
 /// any thread.  Endpoint errors after the start are in trouble().
 class Tap {
  public:
@@ -26,6 +26,9 @@ class Tap {
     std::uint32_t domain = 0;        ///< DDS domain, 0 to 232
     std::filesystem::path profiles;  ///< qos/profiles.xml
     std::filesystem::path security;  ///< see Bus::Options; it shows topics::kTap's certificate
+    /// For a listener to many topics: what comes is read in batches (batched_udp.hpp), which costs
+    /// it and the senders less.  Not with security, whose samples only DDS can read.
+    bool batched = false;
     std::function<bool(const std::string& topic)> wanted;
     std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
   };

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <vector>
+
+namespace stillhand::runtime {
+
+/// Sees every datagram before DDS does.  @param arrived_ns  [ns] system clock, the kernel's stamp
+/// @returns true when it took it: DDS then never sees it
+using TakeDatagram =
+    std::function<bool(std::span<const std::byte> datagram, std::int64_t arrived_ns)>;
+
+/// UDPv4 for a listener to much: what has come is read every 2 ms, many datagrams a call, in one
+/// thread.  Fast DDS's own transport sleeps in a call for each datagram, and every *sender* pays
+/// for waking it (README, "Batched UDP").  When a datagram came,
+/// the kernel tells, so the waiting shows in no latency.  Sends and joins groups as Fast DDS's.
+struct BatchedUdpDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
+  BatchedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_,
+                       TakeDatagram take_)
+      : ChainingTransportDescriptor(udp_), udp(std::move(udp_)), take(std::move(take_)) {}
+
+  [[nodiscard]] eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
+
+  std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp;
+  TakeDatagram take;
+};
+
+class BatchedUdp final : public eprosima::fastdds::rtps::ChainingTransport {
+ public:
+  using Locator = eprosima::fastrtps::rtps::Locator_t;
+  using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
+
+  explicit BatchedUdp(const BatchedUdpDescriptor& descriptor);
+  ~BatchedUdp() override;
+
+  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override;
+  bool IsInputChannelOpen(const Locator& locator) const override;
+  bool OpenInputChannel(const Locator& locator, Receiver* receiver, std::uint32_t most) override;
+  bool CloseInputChannel(const Locator& locator) override;
+  bool send(eprosima::fastrtps::rtps::SenderResource* sender,
+            const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
+            eprosima::fastrtps::rtps::LocatorsIterator* begin,
+            eprosima::fastrtps::rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override;
+  void receive(Receiver* next, const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
+               const Locator& local, const Locator& remote) override;
+
+ private:
+  struct Channel;
+  class Slots;
+
+  void run(const std::stop_token& stop);
+
+  BatchedUdpDescriptor descriptor_;
+  mutable std::mutex mutex_;
+  std::vector<std::shared_ptr<Channel>> channels_;
+  std::jthread reading_;
+};
+
+}  // namespace stillhand::runtime
