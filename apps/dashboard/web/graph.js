@@ -3,10 +3,11 @@
 import { clock, create, draw, element, mark, short, write } from "/elements.js";
 import { faultsOf, gone } from "/graph_faults.js";
 import { layOut } from "/graph_layout.js";
+import { alarmsOfNow } from "/status.js";
 
-const PITCH_X = 124;
+const PITCH_X = 132;
 const PITCH_Y = 66;
-const BOX = { service: { w: 110, h: 42 }, topic: { w: 88, h: 36 } };
+const BOX = { service: { w: 112, h: 42 }, topic: { w: 88, h: 36 } };
 const MARGIN = 14;
 const RAIL_H = 58;
 const SIGNS = { healthy: "", warning: "!", critical: "✕" };
@@ -55,8 +56,8 @@ class Edge {
     this.path = draw("path", { d: path, "marker-end": "url(#arrow)" });
     const middle = back ? { x: from.x - from.w / 4, y: (from.y + to.y) / 2 } : { x: (x1 + x2) / 2, y: (from.y + to.y) / 2 };
     this.label = draw("g", { class: "label", transform: `translate(${middle.x} ${middle.y})` });
-    this.text = draw("text", { y: 4 });
-    this.label.append(draw("rect", { x: -16, y: -9, width: 32, height: 18, rx: 3 }), this.text);
+    this.text = draw("text", { y: 3.5 });
+    this.label.append(draw("rect", { x: -14, y: -8, width: 28, height: 16, rx: 3 }), this.text);
     this.group.append(this.path, this.label);
   }
 
@@ -77,7 +78,7 @@ export class Graph {
   make(graph, services) {
     const layout = layOut(graph.topics, services.map(({ service }) => service));
     const width = (layout.columns - 1) * PITCH_X + BOX.service.w + 2 * MARGIN;
-    const chain = (layout.rows - 1) * PITCH_Y + BOX.service.h + 2 * MARGIN;
+    const chain = layout.lastRow * PITCH_Y + BOX.service.h + 2 * MARGIN;
     const x = (column) => MARGIN + BOX.service.w / 2 + column * PITCH_X;
     const y = (row) => MARGIN + BOX.service.h / 2 + row * PITCH_Y;
     const svg = draw("svg", { viewBox: `0 0 ${width} ${chain + RAIL_H}`, role: "img", "aria-label": "Graph" });
@@ -127,10 +128,11 @@ export class Graph {
     this.mark(snapshot);
   }
 
-  mark({ services, alarms, session }) {
+  mark(snapshot) {
+    const { services, session } = snapshot;
     const going = session.state !== "none" && session.state !== "ending";
     const levels = new Map();
-    for (const { subject, level, acknowledged } of alarms) {
+    for (const { subject, level, acknowledged } of alarmsOfNow(snapshot)) {
       if (!acknowledged) levels.set(subject, worse(level, levels.get(subject) ?? "healthy"));
     }
     const missing = [];
@@ -150,7 +152,7 @@ export class Graph {
       }
     }
     for (const edge of this.edges) {
-      edge.drawn.show(this.faults.filter((fault) => fault.topic === edge.topic && (edge.reader ? fault.reader === edge.reader : fault.reader === "" || (fault.kind === "unmatched" && fault.reader === "")) ));
+      edge.drawn.show(this.faults.filter((fault) => fault.topic === edge.topic && (edge.reader ? fault.reader === edge.reader : fault.reader === "")));
     }
     const active = this.faults.filter(({ active: now }) => now).length;
     const absent = missing.length > 0 ? `missing: ${missing.join(", ")}` : "every process that is awaited is there";

@@ -34,7 +34,7 @@ function inOrder(services, chain) {
   return order;
 }
 
-// Returns { columns, rows, nodes: [{ kind, name, column, row, again }], edges: [{ from, to, topic, writer, reader }],
+// Returns { columns, lastRow, nodes: [{ kind, name, column, row, again }], edges: [{ from, to, topic, writer, reader }],
 // aside: [topic] } with column and row as numbers, the first row 0.
 export function layOut(topics, services) {
   const chain = topics.filter(inChain);
@@ -64,5 +64,5 @@ export function layOut(topics, services) {
       }
     });
   }
-  return { columns, rows, nodes, edges, aside: topics.filter((topic) => !inChain(topic)).map(({ topic }) => topic) };
+  return { columns, lastRow: Math.max(...nodes.map(({ row }) => row)), nodes, edges, aside: topics.filter((topic) => !inChain(topic)).map(({ topic }) => topic) };
 }

@@ -1,56 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stream of snapshots, and who shows what of it.
+// What comes, and who shows what of it.
+import { Actions } from "/actions.js";
 import { Charts } from "/charts.js";
-import { showStatus, showLost } from "/status.js";
+import { element } from "/elements.js";
+import { Graph } from "/graph.js";
+import { TrackingScreen } from "/screen.js";
+import { Sound } from "/sound.js";
+import { Spectrum } from "/spectrum.js";
+import { showLost, showStatus } from "/status.js";
+import { Stream } from "/stream.js";
 import { Tables } from "/tables.js";
+import { Timeline } from "/timeline.js";
 
-const SILENCE_MS = 2000;
 const TABLES_EVERY_MS = 500; // what a person reads
 
-const charts = new Charts(document.getElementById("charts"));
+const actions = new Actions();
+const charts = new Charts(element("charts"));
+const graph = new Graph();
+const screen = new TrackingScreen();
+const sound = new Sound();
+const spectrum = new Spectrum(element("spectrum"));
 const tables = new Tables();
-let heardAt = performance.now();
 let tablesAt = -Infinity;
 
-function show(snapshot) {
-  heardAt = performance.now();
+function show(snapshot, whole) {
+  const past = snapshot.mode === "recording";
   showStatus(snapshot);
-  charts.add(snapshot);
-  if (heardAt - tablesAt >= TABLES_EVERY_MS) {
-    tablesAt = heardAt;
+  actions.show(snapshot);
+  sound.hear(snapshot);
+  charts.add(snapshot, past);
+  screen.show(snapshot, charts.rows, past);
+  spectrum.show(snapshot.spectrum);
+  graph.show(snapshot);
+  if (whole || performance.now() - tablesAt >= TABLES_EVERY_MS) {
+    tablesAt = performance.now();
     tables.show(snapshot);
   }
 }
 
-async function acknowledge() {
-  const answer = await fetch("/acknowledge", { method: "POST" });
-  if (!answer.ok) showLost(`not acknowledged: ${answer.status}`);
-}
-
-const button = document.getElementById("acknowledge");
-button.addEventListener("click", acknowledge);
-document.addEventListener("keydown", (event) => {
-  const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
-  if (plain && event.key.toLowerCase() === "a" && !button.disabled) acknowledge();
-});
-
-// The stream brings what is new. The ten seconds before it are fetched once it runs, so that nothing falls between the
-// two; also when the browser has connected again.
-async function fetchWhole() {
+// One question at a time, and of those that wait the newest.
+let asking = false;
+let wanted = null;
+async function fetchSnapshot(target) {
+  wanted = target;
+  if (asking) return;
+  asking = true;
   try {
-    show(await (await fetch("/snapshot")).json());
+    while (wanted !== null) {
+      const next = wanted;
+      wanted = null;
+      const snapshot = await (await fetch(next)).json();
+      // The first of a recording tells only that it is one: its time line then asks for an instant.
+      if (snapshot.mode === "recording" && next === "/snapshot") await timeline.begin();
+      else show(snapshot, true);
+    }
   } catch {
-    showLost("the dashboard does not answer");
+    // The stream says so.
+  } finally {
+    asking = false;
   }
 }
 
-function begin() {
-  const stream = new EventSource("/events");
-  stream.onopen = fetchWhole;
-  stream.onmessage = (event) => show(JSON.parse(event.data));
-}
+const timeline = new Timeline((seconds) => fetchSnapshot(`/snapshot?at=${seconds.toFixed(6)}`));
 
-setInterval(() => {
-  if (performance.now() - heardAt > SILENCE_MS) showLost("no word from the dashboard");
-}, 500);
-begin();
+// The stream brings what is new. The ten seconds before it are fetched once it runs, so that nothing falls between the
+// two; also when the browser has connected again.
+new Stream({
+  opened: () => fetchSnapshot("/snapshot"),
+  heard: (snapshot) => {
+    if (snapshot.mode === "live") show(snapshot, false);
+  },
+  lost: showLost,
+});

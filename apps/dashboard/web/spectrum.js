@@ -8,6 +8,13 @@ const HEIGHT = 210;
 const MARKED_HZ = [0.25, 0.5, 1, 2, 5, 10, 20, 50];
 const SEEN = 1e-6; // of the largest: six decades are enough
 
+function decades(min, max) {
+  const first = Math.ceil(Math.log10(min) - 1e-9);
+  const count = Math.max(0, Math.floor(Math.log10(max) + 1e-9) - first + 1);
+  const step = count > 7 ? 2 : 1;
+  return Array.from({ length: Math.ceil(count / step) }, (_, i) => 10 ** (first + step * i));
+}
+
 export class Spectrum {
   constructor(parent) {
     this.parent = parent;
@@ -55,7 +62,7 @@ export class Spectrum {
       width: Math.max(this.place.clientWidth, 100), height: HEIGHT, legend: { show: false }, cursor: { show: false },
       scales: { x: { time: false, distr: 3, range: () => [MARKED_HZ[0], MARKED_HZ.at(-1)] }, y: { distr: 3 } },
       axes: [axisOf({ size: 28, splits: () => MARKED_HZ, filter: (_, splits) => splits, values: (_, ticks) => ticks.map((hz) => `${hz}`) }),
-        axisOf({ size: 56, values: (_, ticks) => ticks.map((value) => (value === null ? "" : value >= 1000 || value < 0.01 ? value.toExponential(0) : `${value}`)) })],
+        axisOf({ size: 56, splits: (_, axis, min, max) => decades(min, max), filter: (_, splits) => splits, values: (_, ticks) => ticks.map((value) => (value === null ? "" : value >= 1000 || value < 0.01 ? `10^${Math.round(Math.log10(value))}`.replace(/\^(-?)(\d+)/, (__, minus, digits) => (minus ? "⁻" : "") + [...digits].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]).join("")) : `${value}`)) })],
       series: [{}, line(1), line(2, [6, 4])],
     }, columns, this.place);
   }

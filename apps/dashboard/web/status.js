@@ -14,14 +14,15 @@ function amount(alarm) {
 
 export function what(alarm) {
   const topic = short(alarm.subject);
-  const from = alarm.writer ? ` (${alarm.writer})` : "";
+  const at = alarm.host ? ` on ${alarm.host}` : "";
+  const from = alarm.writer ? ` (${alarm.writer}${at})` : "";
   switch (alarm.watch) {
     case "late": return `${topic}${from} sent late, by up to ${amount(alarm)}`;
     case "lost": return `${topic}${from} lost up to ${amount(alarm)} in a row`;
     case "silent": return `${topic}${from} silent for ${amount(alarm)}`;
     case "latency": return `${topic}${from} takes ${amount(alarm)} (p99)`;
     case "chain": return `sensor to motor takes ${amount(alarm)}`;
-    case "missing": return `${alarm.subject} shows no life sign, for ${amount(alarm)}`;
+    case "missing": return `${alarm.subject}${at} shows no life sign, for ${amount(alarm)}`;
     default: return `${alarm.watch} ${alarm.subject}`;
   }
 }
@@ -42,14 +43,18 @@ function stripOfAlarms(alarms, now) {
   strip(first.level, WORDS[first.level], what(first) + over + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
+// Nobody acknowledges in a recording: there what is over counts no more.
+export function alarmsOfNow({ mode, alarms, now_ms: now }) {
+  return mode === "recording" ? alarms.filter((alarm) => alarm.active || now - alarm.last_ms < RECENT_MS) : alarms;
+}
+
 export function showStatus(snapshot) {
   const { alarms, session, now_ms: now } = snapshot;
   const recording = snapshot.mode === "recording";
   element("acknowledge").disabled = recording || !alarms.some((alarm) => !alarm.acknowledged);
   element("acknowledge").hidden = recording;
   const title = recording ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
-  // Nobody acknowledges in a recording: there the strip tells of the instant, and the list of everything before it.
-  const shown = recording ? alarms.filter((alarm) => alarm.active || now - alarm.last_ms < RECENT_MS) : alarms;
+  const shown = alarmsOfNow(snapshot);
   if (session.emergency) {
     const when = session.emergency_ms ? `asked ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
     strip("critical", "Emergency stop", "the motor's force goes to zero, the platform brakes, the session ends", when);

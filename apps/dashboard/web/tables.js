@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is read from near by.
-import { clock, short, what, write } from "/status.js";
-
-function create(name, text, className) {
-  const node = document.createElement(name);
-  if (text !== undefined) node.textContent = text;
-  if (className) node.className = className;
-  return node;
-}
+import { clock, create, element, short, write } from "/elements.js";
+import { what } from "/status.js";
 
 function us(value) {
   if (value >= 100000) return `${(value / 1000).toFixed(0)}k`;
@@ -23,10 +17,14 @@ function late(lateness) {
   return lateness.count === 0 ? "0" : `${lateness.count} · ${(lateness.worst_us / 1000).toFixed(3)}`;
 }
 
+function share(part) {
+  return part === undefined || part === null ? "–" : `${(100 * part).toFixed(part < 0.1 ? 1 : 0)} %`;
+}
+
 // Rows that stay: only cells whose text differs are written.
 class Table {
   constructor(id, heads) {
-    const table = document.getElementById(id);
+    const table = element(id);
     const row = create("tr");
     for (const head of heads) {
       const cell = create("th", head.text ?? head, head.left ? "l" : "");
@@ -39,6 +37,15 @@ class Table {
     this.body = create("tbody");
     table.append(part, this.body);
     this.rows = new Map();
+  }
+
+  // Only these rows stay.
+  keep(names) {
+    for (const [name, row] of this.rows) {
+      if (names.includes(name)) continue;
+      row.remove();
+      this.rows.delete(name);
+    }
   }
 
   show(name, cells) {
@@ -90,9 +97,12 @@ export class Tables {
       { text: "came late [ms]", title: "the same of the arrivals here" }, "since"]);
     this.chain = new Table("chain", ["up to", "p50", "p99", "p99.9", "max", "samples"]);
     this.services = new Table("services", ["process", { text: "state", left: true }, "last seen",
-      { text: "real time", title: "runs with a real-time scheduling policy" }, "pid",
+      { text: "real time", title: "runs with a real-time scheduling policy, and its priority" },
+      { text: "CPU", title: "of one core, by this process, over the last second" }, "pid",
       { text: "DDS misses", title: "deadlines missed as its own readers count them, whole milliseconds" },
       { text: "cycle misses", title: "as its own supervision counts them, microseconds" }, "lost ticks", { text: "waits for", left: true }]);
+    this.hosts = new Table("hosts", [{ text: "host" }, { text: "processes", left: true }, { text: "CPU", title: "of all its cores" }, "cores", "clock [µs]", "± [µs]"]);
+    this.recorders = new Table("recorders", ["recorder", { text: "state", left: true }, { text: "file", left: true }, "received", "lost", "written", "dropped", "file [MB]", "free [GB]", { text: "its last answer", left: true }]);
     this.clocks = new Table("clocks", ["process", "offset [µs]", "± [µs]", "drift [ppm]", "steps"]);
   }
 
@@ -106,6 +116,8 @@ export class Tables {
         : [us(times.p50_us), us(times.p99_us), us(times.p999_us), us(times.max_us), times.count]);
     }
     for (const service of snapshot.services) this.showService(service);
+    this.showHosts(snapshot.hosts ?? []);
+    this.showRecorders(snapshot.recorders ?? []);
     for (const clockOf of snapshot.clocks) {
       this.clocks.show(clockOf.service, clockOf.same_clock ? [{ text: "same clock", look: "faint" }, "0", "0", clockOf.steps]
         : [clockOf.offset_us.toFixed(1), clockOf.uncertainty_us?.toFixed(1) ?? "–", clockOf.drift_ppm?.toFixed(2) ?? "–", clockOf.steps]);
@@ -113,7 +125,7 @@ export class Tables {
     this.showEvents(snapshot.events);
     const own = snapshot.dashboard;
     const trouble = own.trouble.length > 0 ? ` · ${own.trouble.join("; ")}` : "";
-    write(document.getElementById("own"), `This dashboard: ${(100 * own.cpu_share).toFixed(1)} % of one core, ${own.clients} client${own.clients === 1 ? "" : "s"}, ` +
+    write(element("own"), `This dashboard: ${(100 * own.cpu_share).toFixed(1)} % of one core, ${own.clients} client${own.clients === 1 ? "" : "s"}, ` +
       `${own.dropped} messages dropped, ${own.malformed} malformed${trouble}`);
   }
 
@@ -127,7 +139,7 @@ export class Tables {
     parts.push(["condition", session.condition ?? (session.blinded ? "hidden (blinded)" : "–")]);
     if (session.replayed) parts.push(["replay", "a recording is being played on this domain"]);
     parts.push([mode === "live" ? "now" : "ends", clock(now)]);
-    const list = document.getElementById("session");
+    const list = element("session");
     while (list.children.length > parts.length) list.lastChild.remove();
     parts.forEach(([name, value], i) => {
       if (!list.children[i]) {
@@ -151,7 +163,7 @@ export class Tables {
       return item;
     });
     if (items.length === 0) items.push(create("li", "none"));
-    document.getElementById("alarms").replaceChildren(...items);
+    element("alarms").replaceChildren(...items);
   }
 
   showTopic(topic, snapshot) {
@@ -171,14 +183,34 @@ export class Tables {
 
   showService(service) {
     if (service.state === undefined) {
-      this.services.show(service.service, [{ text: "missing", look: "l faint" }, "–", "–", "–", "–", "–", "–", { text: "", look: "l" }]);
+      this.services.show(service.service, [{ text: "missing", look: "l faint" }, "–", "–", "–", "–", "–", "–", "–", { text: "", look: "l" }]);
       return;
     }
     const gone = service.silent_ms > 300;
     this.services.show(service.service, [
       { text: gone ? "gone" : service.state, look: gone || service.state === "fault" ? "l bad" : "l" }, clock(service.last_ms),
-      service.real_time ? "yes" : "no", service.pid, service.deadline_misses, service.cycle_misses, service.lost_ticks,
+      service.real_time ? (service.priority > 0 ? `yes, ${service.priority}` : "yes") : "no", share(service.cpu_share), service.pid, service.deadline_misses, service.cycle_misses, service.lost_ticks,
       { text: service.waits_for, look: "l" }]);
+  }
+
+  showHosts(hosts) {
+    element("hosts-part").hidden = hosts.length === 0;
+    this.hosts.keep(hosts.map(({ host }) => host));
+    for (const host of hosts) {
+      this.hosts.show(host.host, [{ text: host.services.join(", "), look: "l wraps" }, { text: share(host.cpu_share), look: host.cpu_share > 0.9 ? "bad" : "" },
+        host.cores ?? "–", host.clock_offset_us?.toFixed(1) ?? "–", host.clock_uncertainty_us?.toFixed(1) ?? "–"]);
+    }
+  }
+
+  showRecorders(recorders) {
+    element("recorders-part").hidden = recorders.length === 0;
+    this.recorders.keep(recorders.map(({ name }) => name));
+    for (const each of recorders) {
+      const state = each.silent_ms > 2000 ? "silent" : each.trouble ? each.trouble : each.paused ? "paused" : "records";
+      this.recorders.show(each.name, [{ text: state, look: state === "records" || state === "paused" ? "l" : "l bad" }, { text: each.file, look: "l" },
+        each.received, { text: each.lost, look: each.lost > 0 ? "bad" : "" }, each.written, { text: each.dropped, look: each.dropped > 0 ? "bad" : "" },
+        (each.file_bytes / 1e6).toFixed(1), (each.free_bytes / 1e9).toFixed(1), { text: each.answer ?? "", look: "l" }]);
+    }
   }
 
   showEvents(events) {
@@ -190,6 +222,6 @@ export class Tables {
       return item;
     });
     if (items.length === 0) items.push(create("li", "none"));
-    document.getElementById("events").replaceChildren(...items);
+    element("events").replaceChildren(...items);
   }
 }
