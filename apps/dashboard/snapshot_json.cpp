@@ -21,7 +21,6 @@ constexpr std::size_t kShownEvents = 20;
 
 double us(std::int64_t ns) { return static_cast<double>(ns) / 1e3; }
 
-
 Json spread_json(const Spread& spread) {
   return {{"count", spread.count},
           {"p50_us", us(spread.p50_ns)},
@@ -63,11 +62,22 @@ Json topic_json(const TopicHealth& topic, std::int64_t now_ns) {
           {"last_ms", instant(report.last_at_ns)}};
 }
 
-Json alarm_json(const NamedAlarm& named) {
+/// Where a process runs, "" until it told.
+std::string host_of(const MessageFeed& feed, std::string_view service) {
+  for (const ServiceView& view : feed.services()) {
+    if (view.host && view.host->service().to_string() == service)
+      return view.host->host().to_string();
+  }
+  return "";
+}
+
+Json alarm_json(const MessageFeed& feed, const NamedAlarm& named) {
   const Alarm& alarm = named.alarm;
+  const std::string_view writer = writer_of(named.subject);
   return {{"watch", word(named.watch)},
           {"subject", named.subject},
-          {"writer", writer_of(named.subject)},
+          {"writer", writer},
+          {"host", host_of(feed, writer.empty() ? named.subject : writer)},
           {"unit", unit(named.watch)},
           {"level", word(alarm.level())},
           {"active", alarm.active()},
@@ -79,15 +89,15 @@ Json alarm_json(const NamedAlarm& named) {
 }
 
 // The worst first; of those, what is upstream comes first already.
-Json alarms_json(const BusHealth& health) {
+Json alarms_json(const MessageFeed& feed) {
   std::vector<const NamedAlarm*> raised;
-  for (const NamedAlarm& each : health.alarms()) {
+  for (const NamedAlarm& each : feed.health().alarms()) {
     if (each.alarm.level() != Level::kHealthy) raised.push_back(&each);
   }
   std::ranges::stable_sort(raised, std::greater{},
                            [](const NamedAlarm* each) { return each->alarm.level(); });
   Json all = Json::array();
-  for (const NamedAlarm* each : raised) all.push_back(alarm_json(*each));
+  for (const NamedAlarm* each : raised) all.push_back(alarm_json(feed, *each));
   return all;
 }
 
@@ -257,35 +267,35 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
   std::vector<double> edges_us;
   for (const std::int64_t edge_ns : kJitterEdges_ns) edges_us.push_back(us(edge_ns));
   Json snapshot{{"mode", around.mode},
-                      {"file", around.file},
-                      {"domain", around.domain},
-                      {"rig", feed.options().rig},
-                      {"now_ms", instant(now_ns)},
-                      {"level", word(health.level())},
-                      {"level_since_ms", instant(health.level_since_ns())},
-                      {"session", session_json(feed)},
-                      {"alarms", alarms_json(health)},
-                      {"topics", std::move(topics)},
-                      {"jitter_edges_us", edges_us},
-                      {"chain",
-                       {{"sensed", spread_json(health.chain().to_sensed())},
-                        {"command", spread_json(health.chain().to_command())},
-                        {"motor", spread_json(health.chain().to_motor())}}},
-                      {"services", services_json(feed, now_ns)},
-                      {"hosts", hosts_json(feed)},
-                      {"recorders", recorders_json(feed, now_ns)},
-                      {"actions", {{"enabled", around.actions}}},
-                      {"clocks", clocks_json(feed)},
-                      {"events", events_json(feed)},
-                      {"traces", traces_json(feed, after)},
-                      {"limits", {{"motor_force_n", around.motor_limit_n}}},
-                      {"screen", screen_json(around)},
-                      {"dashboard",
-                       {{"cpu_share", number(around.cpu_share)},
-                        {"clients", around.clients},
-                        {"dropped", around.dropped},
-                        {"malformed", feed.malformed()},
-                        {"trouble", around.trouble}}}};
+                {"file", around.file},
+                {"domain", around.domain},
+                {"rig", feed.options().rig},
+                {"now_ms", instant(now_ns)},
+                {"level", word(health.level())},
+                {"level_since_ms", instant(health.level_since_ns())},
+                {"session", session_json(feed)},
+                {"alarms", alarms_json(feed)},
+                {"topics", std::move(topics)},
+                {"jitter_edges_us", edges_us},
+                {"chain",
+                 {{"sensed", spread_json(health.chain().to_sensed())},
+                  {"command", spread_json(health.chain().to_command())},
+                  {"motor", spread_json(health.chain().to_motor())}}},
+                {"services", services_json(feed, now_ns)},
+                {"hosts", hosts_json(feed)},
+                {"recorders", recorders_json(feed, now_ns)},
+                {"actions", {{"enabled", around.actions}}},
+                {"clocks", clocks_json(feed)},
+                {"events", events_json(feed)},
+                {"traces", traces_json(feed, after)},
+                {"limits", {{"motor_force_n", around.motor_limit_n}}},
+                {"screen", screen_json(around)},
+                {"dashboard",
+                 {{"cpu_share", number(around.cpu_share)},
+                  {"clients", around.clients},
+                  {"dropped", around.dropped},
+                  {"malformed", feed.malformed()},
+                  {"trouble", around.trouble}}}};
   if (parts.graph) snapshot["graph"] = graph_json(feed);
   if (parts.spectrum) snapshot["spectrum"] = spectrum_json(feed.forces());
   // Texts come from the bus: what is no UTF-8 is shown as such and breaks nothing.
