@@ -8,9 +8,10 @@
 namespace stillhand::deploy {
 
 std::uint32_t participants_sought(const Inventory& inventory) {
-  constexpr std::size_t kTools = 7;
   std::size_t most = 16;
-  for (const Host& host : inventory.hosts) most = std::max(most, host.services.size() + kTools);
+  for (const Host& host : inventory.hosts) {
+    most = std::max(most, host.services.size() + kToolsOnAHost);
+  }
   return static_cast<std::uint32_t>(most);
 }
 

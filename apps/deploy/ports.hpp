@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace stillhand::deploy {
@@ -22,12 +23,18 @@ struct DomainPorts {
   [[nodiscard]] constexpr std::uint32_t last(std::uint32_t participants) const {
     return first + 11 + 2 * (participants - 1);
   }
+  /// Of one host, before their ports would be the next domain's.
+  static constexpr std::uint32_t kMostParticipants = (250 - 10) / 2;
 
   std::uint32_t first;
 };
 
-/// How many participants of one host are looked for: what the fullest runs, and half a dozen for
-/// tools (`stillhand record`) and for processes whose predecessor still holds its port; 16 at
+/// Places beside the services' for tools (`stillhand record` takes two) and for processes whose
+/// predecessor still holds its port.
+inline constexpr std::size_t kToolsOnAHost = 7;
+inline constexpr std::size_t kMostServicesOnAHost = DomainPorts::kMostParticipants - kToolsOnAHost;
+
+/// How many participants of one host are looked for: what the fullest runs and kToolsOnAHost; 16 at
 /// least.
 std::uint32_t participants_sought(const Inventory& inventory);
 

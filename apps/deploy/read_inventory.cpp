@@ -9,6 +9,7 @@
 #include "contract/config_error.hpp"
 #include "deploy/inventory.hpp"
 #include "deploy/inventory_values.hpp"
+#include "deploy/ports.hpp"
 #include "idl/topics.hpp"
 #include "runtime/shipped.hpp"
 #include "settings/nearest.hpp"
@@ -197,6 +198,11 @@ class Reader {
 
   void read_services(const Entry& list, const std::string& path, Host& host) {
     const auto& items = items_of(list, path, "a list of services, such as [rig, sensing]");
+    if (items.size() > kMostServicesOnAHost) {
+      throw ConfigError(list.place + ": " + path, std::to_string(items.size()) + " services",
+                        "at most " + std::to_string(kMostServicesOnAHost) +
+                            " on a host: further ones would take the next domain's ports");
+    }
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string at = item_path(path, i);
       Placement placement = read_placement(items[i], at);

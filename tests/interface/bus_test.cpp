@@ -67,6 +67,8 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
   expect_delivery<ClockQuestion>(topics::kClockQuestion);
   expect_delivery<ClockAnswer>(topics::kClockAnswer);
   expect_delivery<ClockOffset>(topics::kClockOffset);
+  expect_delivery<HostStatus>(topics::kHostStatus);
+  expect_delivery<SessionCommand>(topics::kSessionCommand);
 }
 
 TEST(BusTest, ALateJoinerGetsTheLatchedState) {

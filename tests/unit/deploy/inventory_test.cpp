@@ -201,6 +201,26 @@ TEST(InventoryTest, AServiceThatOneOfTwoRigsLacksIsNamedWithTheRig) {
   }
 }
 
+TEST(InventoryTest, MoreServicesThanADomainHasPortsForAreRefused) {
+  std::string rigs, services;
+  for (int rig = 1; rig <= 13; ++rig) {
+    const std::string number = std::to_string(rig);
+    rigs += (rig > 1 ? ", " : "") + ("{name: r" + number) + ", number: " + number + "}";
+    for (const std::string_view service : topics::kServices) {
+      services += (services.empty() ? "" : ", ") + ("{service: " + std::string(service)) +
+                  ", rig: r" + number + "}";
+    }
+  }
+  try {
+    sample_inventory("lab: many\ndomain: 3\nrigs: [" + rigs +
+                     "]\nhosts:\n  - name: one\n    address: 192.168.7.10\n    services: [" +
+                     services + "]\n");
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("hosts[0].services: got 117 services, want at most 113"));
+  }
+}
+
 TEST(InventoryTest, AFileThatIsNotThereIsNamed) {
   try {
     read_inventory("nowhere/inventory.yaml");
