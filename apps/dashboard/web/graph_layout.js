@@ -2,7 +2,7 @@
 // Where processes and topics stand: columns along the control chain, from the process that holds the sample clock round
 // to itself again. Pure.
 const FIRST = "rig";
-const ASIDE = ["experiment", "recorder"]; // they read or write nearly everything: not drawn edge by edge
+const ASIDE = ["experiment", "recorder", "dashboard"]; // they read or write nearly everything, or come and go
 
 const inChain = ({ writers }) => writers.length === 1 && !ASIDE.includes(writers[0]);
 
