@@ -44,7 +44,12 @@ class RoutesTest : public ::testing::Test {
     return "";
   }
   int acknowledged_ = 0;
-  Served served_{[] { return std::string("{}"); },
+  std::optional<double> at_s_;
+  Served served_{[this](std::optional<double> at_s) {
+                   at_s_ = at_s;
+                   return std::string("{}");
+                 },
+                 {},
                  [this](std::string_view path) { return act(path); }};
   Access loopback_{""}, token_{kToken};
 };
@@ -56,6 +61,21 @@ TEST_F(RoutesTest, ThePageAndItsPartsAreThere) {
   EXPECT_EQ(ask("GET", "/snapshot").body, "{}");
   EXPECT_EQ(ask("GET", "/snapshot").type, "application/json");
   EXPECT_TRUE(ask("GET", "/events").streams);
+}
+
+TEST_F(RoutesTest, ARecordingIsAskedForItsTimeLineAndForAnyInstant) {
+  EXPECT_EQ(ask("GET", "/timeline").status, 404u);
+  EXPECT_EQ(ask("GET", "/snapshot?at=1").status, 404u);  // a bus has no past
+  served_.timeline = [] { return std::string("[]"); };
+  EXPECT_EQ(ask("GET", "/timeline").body, "[]");
+  EXPECT_EQ(ask("GET", "/snapshot?at=12.25").status, 200u);
+  EXPECT_EQ(at_s_, 12.25);
+  EXPECT_EQ(ask("GET", "/snapshot").status, 200u);
+  EXPECT_EQ(at_s_, std::nullopt);
+  for (const char* at : {"", "x", "1x", "nan", "inf", "1e999", "1&at=2"}) {
+    EXPECT_EQ(ask("GET", std::string("/snapshot?at=") + at).status, 400u) << at;
+  }
+  EXPECT_EQ(at_s_, std::nullopt);
 }
 
 TEST_F(RoutesTest, NoPathLeadsAnywhereElse) {
