@@ -50,6 +50,7 @@ export class Sound {
   }
 
   hear({ mode, alarms }) {
+    this.button.hidden = mode === "recording";
     if (!this.on || mode === "recording") return;
     const open = alarms.filter((alarm) => !alarm.acknowledged);
     const level = open.length === 0 ? null : open.some((alarm) => alarm.level === "critical") ? "critical" : "warning";

@@ -138,7 +138,7 @@ export class Tables {
     }
     parts.push(["condition", session.condition ?? (session.blinded ? "hidden (blinded)" : "–")]);
     if (session.replayed) parts.push(["replay", "a recording is being played on this domain"]);
-    parts.push([mode === "live" ? "now" : "ends", clock(now)]);
+    parts.push([mode === "live" ? "now" : "instant", clock(now)]);
     const list = element("session");
     while (list.children.length > parts.length) list.lastChild.remove();
     parts.forEach(([name, value], i) => {
