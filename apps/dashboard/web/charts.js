@@ -63,7 +63,7 @@ class Chart {
           const most = Math.max(least, Math.abs(min ?? 0), Math.abs(max ?? 0));
           return [-1.05 * most, 1.05 * most];
         } } },
-      axes: [axisOf({ size: 28, values: (_, ticks) => ticks.map((s) => `${s}`) }), axisOf({ size: 46 })],
+      axes: [axisOf({ size: 28, values: (_, ticks) => ticks.map((s) => `${s}`) }), axisOf({ size: 46, space: 24 })],
       series: [{}, ...lines],
     }, columns, this.place);
   }

@@ -5,9 +5,9 @@ import { faultsOf, gone } from "/graph_faults.js";
 import { layOut } from "/graph_layout.js";
 import { alarmsOfNow } from "/status.js";
 
-const PITCH_X = 132;
+const PITCH_X = 134;
 const PITCH_Y = 66;
-const BOX = { service: { w: 112, h: 42 }, topic: { w: 88, h: 36 } };
+const BOX = { service: { w: 116, h: 42 }, topic: { w: 88, h: 36 } };
 const MARGIN = 14;
 const RAIL_H = 58;
 const SIGNS = { healthy: "", warning: "!", critical: "✕" };

@@ -25,6 +25,8 @@ let tablesAt = -Infinity;
 
 function show(snapshot, whole) {
   const past = snapshot.mode === "recording";
+  element("timeline-part").hidden = !past;
+  if (past) snapshot.recent = timeline.recent();
   showStatus(snapshot);
   actions.show(snapshot);
   sound.hear(snapshot);
@@ -69,6 +71,7 @@ new Stream({
   opened: () => fetchSnapshot("/snapshot"),
   heard: (snapshot) => {
     if (snapshot.mode === "live") show(snapshot, false);
+    else if ("stale" in document.body.dataset) timeline.begin();
   },
   lost: showLost,
 });

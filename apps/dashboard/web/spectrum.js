@@ -6,13 +6,20 @@ import { mark, write } from "/elements.js";
 
 const HEIGHT = 210;
 const MARKED_HZ = [0.25, 0.5, 1, 2, 5, 10, 20, 50];
-const SEEN = 1e-6; // of the largest: six decades are enough
+const DECADES = 6; // below the largest: more is of no interest
 
 function decades(min, max) {
   const first = Math.ceil(Math.log10(min) - 1e-9);
   const count = Math.max(0, Math.floor(Math.log10(max) + 1e-9) - first + 1);
   const step = count > 7 ? 2 : 1;
   return Array.from({ length: Math.ceil(count / step) }, (_, i) => 10 ** (first + step * i));
+}
+
+const positive = (values) => values.map((value) => Math.max(value, 1e-12));
+
+function rangeOf(min, max) {
+  const top = Math.ceil(Math.log10(max));
+  return [10 ** Math.max(Math.floor(Math.log10(min)), top - DECADES), 10 ** top];
 }
 
 export class Spectrum {
@@ -50,9 +57,7 @@ export class Spectrum {
     write(this.note, `${told} (newest ${spectrum.length_s.toFixed(1)} s, ${spectrum.segments} segments${bridged})`);
     const peak = spectrum.frequency_hz[spectrum.residual_n2_hz.indexOf(Math.max(...spectrum.residual_n2_hz))];
     mark(this.place, "aria-label", `Spectrum of force and residual up to 50 Hz. ${told}; the residual is largest at ${peak.toFixed(2)} Hz`);
-    const most = Math.max(...spectrum.force_n2_hz, ...spectrum.residual_n2_hz);
-    const seen = (values) => values.map((value) => Math.max(value, SEEN * most, 1e-12));
-    const columns = [spectrum.frequency_hz, seen(spectrum.force_n2_hz), seen(spectrum.residual_n2_hz)];
+    const columns = [spectrum.frequency_hz, positive(spectrum.force_n2_hz), positive(spectrum.residual_n2_hz)];
     if (this.plot) this.plot.setData(columns); else this.draw(columns);
   }
 
@@ -60,7 +65,7 @@ export class Spectrum {
     const line = (i, dash) => ({ stroke: colour(`--line-${i}`), width: 1.75, dash, points: { show: false } });
     this.plot = new uPlot({
       width: Math.max(this.place.clientWidth, 100), height: HEIGHT, legend: { show: false }, cursor: { show: false },
-      scales: { x: { time: false, distr: 3, range: () => [MARKED_HZ[0], MARKED_HZ.at(-1)] }, y: { distr: 3 } },
+      scales: { x: { time: false, distr: 3, range: () => [MARKED_HZ[0], MARKED_HZ.at(-1)] }, y: { distr: 3, range: (_, min, max) => rangeOf(min, max) } },
       axes: [axisOf({ size: 28, splits: () => MARKED_HZ, filter: (_, splits) => splits, values: (_, ticks) => ticks.map((hz) => `${hz}`) }),
         axisOf({ size: 56, splits: (_, axis, min, max) => decades(min, max), filter: (_, splits) => splits, values: (_, ticks) => ticks.map((value) => (value === null ? "" : value >= 1000 || value < 0.01 ? `10^${Math.round(Math.log10(value))}`.replace(/\^(-?)(\d+)/, (__, minus, digits) => (minus ? "⁻" : "") + [...digits].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]).join("")) : `${value}`)) })],
       series: [{}, line(1), line(2, [6, 4])],

@@ -5,7 +5,7 @@ import { clock, element, short, span, write } from "/elements.js";
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
 const SESSIONS = { none: "No session", waiting: "Session waits", ending: "Session over", unknown: "Session unknown" };
-const RECENT_MS = 1000;
+const LEVELS = ["healthy", "warning", "critical"];
 
 function amount(alarm) {
   if (alarm.unit === "ticks") return `${alarm.worst} tick${alarm.worst === 1 ? "" : "s"}`;
@@ -43,9 +43,12 @@ function stripOfAlarms(alarms, now) {
   strip(first.level, WORDS[first.level], what(first) + over + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
-// Nobody acknowledges in a recording: there what is over counts no more.
-export function alarmsOfNow({ mode, alarms, now_ms: now }) {
-  return mode === "recording" ? alarms.filter((alarm) => alarm.active || now - alarm.last_ms < RECENT_MS) : alarms;
+// What the strip and the graph tell of. In a recording nobody acknowledges, so that each alarm stays at its worst to the
+// end: there it is what is marked just before the instant, and what lasts.
+export function alarmsOfNow({ mode, alarms, recent = [] }) {
+  if (mode !== "recording") return alarms;
+  const lasting = alarms.filter(({ active, watch }) => active && watch !== "late" && watch !== "lost");
+  return [...recent, ...lasting].sort((one, other) => LEVELS.indexOf(other.level) - LEVELS.indexOf(one.level));
 }
 
 export function showStatus(snapshot) {
@@ -57,7 +60,8 @@ export function showStatus(snapshot) {
   const shown = alarmsOfNow(snapshot);
   if (session.emergency) {
     const when = session.emergency_ms ? `asked ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
-    strip("critical", "Emergency stop", "the motor's force goes to zero, the platform brakes, the session ends", when);
+    const ends = session.state === "ending" ? "the session is over" : "the motor's force goes to zero, the platform brakes, the session ends";
+    strip("critical", "Emergency stop", ends, when);
   } else if (shown.length > 0) {
     stripOfAlarms(shown, now);
   } else if (session.state === "running" || session.state === "paused") {

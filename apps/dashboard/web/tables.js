@@ -101,6 +101,7 @@ export class Tables {
       { text: "CPU", title: "of one core, by this process, over the last second" }, "pid",
       { text: "DDS misses", title: "deadlines missed as its own readers count them, whole milliseconds" },
       { text: "cycle misses", title: "as its own supervision counts them, microseconds" }, "lost ticks", { text: "waits for", left: true }]);
+    this.rigs = new Table("rigs", ["rig", { text: "level", left: true }, { text: "session", left: true }, { text: "worst", left: true }, "samples", "lost"]);
     this.hosts = new Table("hosts", [{ text: "host" }, { text: "processes", left: true }, { text: "CPU", title: "of all its cores" }, "cores", "clock [µs]", "± [µs]"]);
     this.recorders = new Table("recorders", ["recorder", { text: "state", left: true }, { text: "file", left: true }, "received", "lost", "written", "dropped", "file [MB]", "free [GB]", { text: "its last answer", left: true }]);
     this.clocks = new Table("clocks", ["process", "offset [µs]", "± [µs]", "drift [ppm]", "steps"]);
@@ -116,6 +117,7 @@ export class Tables {
         : [us(times.p50_us), us(times.p99_us), us(times.p999_us), us(times.max_us), times.count]);
     }
     for (const service of snapshot.services) this.showService(service);
+    this.showRigs(snapshot.rigs ?? [], snapshot.rig);
     this.showHosts(snapshot.hosts ?? []);
     this.showRecorders(snapshot.recorders ?? []);
     for (const clockOf of snapshot.clocks) {
@@ -191,6 +193,16 @@ export class Tables {
       { text: gone ? "gone" : service.state, look: gone || service.state === "fault" ? "l bad" : "l" }, clock(service.last_ms),
       service.real_time ? (service.priority > 0 ? `yes, ${service.priority}` : "yes") : "no", share(service.cpu_share), service.pid, service.deadline_misses, service.cycle_misses, service.lost_ticks,
       { text: service.waits_for, look: "l" }]);
+  }
+
+  showRigs(rigs, shown) {
+    element("rigs-part").hidden = rigs.length < 2;
+    this.rigs.keep(rigs.map(({ rig }) => String(rig)));
+    for (const each of rigs) {
+      this.rigs.show(String(each.rig), [{ text: each.level, look: each.level === "healthy" ? "l" : "l bad" },
+        { text: (each.running ? "running" : "none") + (each.rig === shown ? ", shown" : ""), look: "l" },
+        { text: each.worst === "" ? "–" : short(each.worst), look: "l" }, each.samples, { text: each.lost, look: each.lost > 0 ? "bad" : "" }]);
+    }
   }
 
   showHosts(hosts) {

@@ -6,6 +6,7 @@ import { what } from "/status.js";
 const LANES = [["late", "sent late"], ["lost", "lost"], ["alarm", "alarms"], ["event", "events"]];
 const UNITS = { lost: "ticks" };
 const STEP_S = 0.1;
+const RECENT_S = 1;
 const MOST_LISTED = 300;
 const LEFT = 74; // [px] names of the lanes
 const LANE_H = 20;
@@ -28,6 +29,8 @@ export class Timeline {
     this.slider = element("instant");
     this.chosen_s = null;
     this.slider.addEventListener("input", () => this.choose(Number(this.slider.value)));
+    this.slider.addEventListener("keydown", (event) => this.step(event));
+    new ResizeObserver(() => this.lanes && this.drawn()).observe(element("timeline"));
     element("miss-before").addEventListener("click", () => this.jump(-1));
     element("miss-behind").addEventListener("click", () => this.jump(1));
     document.addEventListener("keydown", (event) => {
@@ -37,21 +40,18 @@ export class Timeline {
     });
   }
 
+  // Also when the browser has connected again: it may be another recording.
   async begin() {
-    if (this.lanes) return;
     const answer = await fetch("/timeline");
     if (!answer.ok) return;
     this.lanes = await answer.json();
     this.slider.max = this.lanes.length_s;
     this.slider.step = STEP_S / 100;
-    element("timeline-part").hidden = false;
     this.misses = [...this.lanes.marks.late, ...this.lanes.marks.lost].map(({ at_s }) => at_s).sort((one, other) => one - other);
-    new ResizeObserver(() => this.drawn()).observe(element("timeline"));
-    this.slider.addEventListener("keydown", (event) => this.step(event));
     this.drawn();
     this.list();
     const [, wanted] = /^#at=([\d.]+)$/.exec(location.hash) ?? [];
-    this.choose(wanted === undefined ? this.lanes.length_s : Number(wanted));
+    this.choose(this.chosen_s ?? (wanted === undefined ? this.lanes.length_s : Number(wanted)));
   }
 
   // A tenth of a second by an arrow, a second with Shift or by a page key.
@@ -81,6 +81,14 @@ export class Timeline {
     const found = LANES.flatMap(([kind]) => this.lanes.marks[kind].filter(({ at_s }) => Math.abs(at_s - seconds) < 1e-5).map((each) => spoken(kind, each)));
     const trial = this.lanes.trials.find(({ from_s, to_s }) => from_s <= seconds && seconds <= to_s);
     return [trial ? `trial ${trial.trial} (${trial.phase})` : "between trials", ...found].join(" · ");
+  }
+
+  // Misses and losses of the last second up to the chosen instant, as alarms.
+  recent() {
+    return ["late", "lost"].flatMap((kind) => this.lanes.marks[kind]
+      .filter(({ at_s, level }) => level !== "healthy" && at_s <= this.chosen_s + 1e-9 && at_s > this.chosen_s - RECENT_S)
+      .map((each) => ({ ...each, watch: kind, worst: each.amount, unit: UNITS[kind] ?? "ms", active: this.chosen_s - each.at_s < 1e-5,
+        acknowledged: false, since_ms: this.lanes.begin_ms + 1000 * each.at_s })));
   }
 
   jump(way) {
