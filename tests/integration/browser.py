@@ -87,7 +87,9 @@ class Browser:
         ActionChains(self.driver).send_keys(key).perform()
 
     def click(self, selector):
-        self.driver.find_element("css selector", selector).click()
+        node = self.driver.find_element("css selector", selector)
+        self.run("arguments[0].scrollIntoView({ block: 'center' })", node)
+        node.click()
 
     def first_seen(self, after_ms, shown):
         """When the page first showed what a condition on its text asks for [ms since 1970], or None."""

@@ -18,8 +18,7 @@ from lab_process import BUILD, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, next_domai
 
 AXE = BUILD / "apps" / "dashboard" / "web" / "node_modules" / "axe-core" / "axe.min.js"
 SHOWN_WITHIN_MS = 1000  # issue: a miss shows within 1 s
-DELAY_S = 0.020
-TRIES = 5               # a delay that another miss of this machine hides is provoked again
+DELAY_MS = 20
 ESCAPE = "\ue00c"
 HOST = socket.gethostname()
 
@@ -83,9 +82,8 @@ class SessionTest(BrowserCase):
         self.assert_fits(page, "running")
         self.assert_accessible(page, "running")
         self.assert_everything_is_reached_by_tab(page)
-        took_ms = self.delayed(page, lab, dashboard)
-        print(f"{1000 * DELAY_S:.0f} ms of delay in sensing shown after {took_ms:.0f} ms")
-        self.acknowledged(lab, page, dashboard, lambda: page.press("a"))
+        self.delayed(page, lab, dashboard)
+        self.acknowledged(lab, page, lambda: page.press("a"))
 
         page.click("[data-ask='/session/pause']")
         lab.wait_for("a pause", lambda: dashboard.snapshot()["session"]["paused"], TRIAL_LIMIT_S)
@@ -121,28 +119,30 @@ class SessionTest(BrowserCase):
         lab.wait_for("other counts", lambda: numbers() != counts, TRIAL_LIMIT_S)
 
     def delayed(self, page, lab, dashboard):
+        """Holds sensing up by 20 ms, and by what this machine has held it up already."""
+        dashboard.ask("POST", "/acknowledge")
+        worst_ms = max((alarm["worst"] for alarm in dashboard.snapshot()["alarms"]
+                        if (alarm["watch"], alarm["subject"]) == ("late", "stillhand/sensed")), default=0.0)
+        delay_ms = DELAY_MS + worst_ms
+
         def late(text):
             found = re.search(rf"sensed \(sensing on {re.escape(HOST)}\) sent late, by up to ([\d.]+) ms", text)
-            return found and float(found[1]) > 1000 * DELAY_S / 2
-        for _ in range(TRIES):
-            self.acknowledged(lab, page, dashboard, lambda: dashboard.ask("POST", "/acknowledge"))
-            if late(page.text("strip") + page.text("alarms")):
-                continue
-            pid = lab.pid_of("sensing")
-            since_ms = now_ms()
-            os.kill(pid, signal.SIGSTOP)
-            time.sleep(DELAY_S)  # what is provoked, and nothing that is waited for
-            os.kill(pid, signal.SIGCONT)
-            return self.shows(lab, page, since_ms, late, "20 ms of delay")
-        self.skipTest("this machine misses as much by itself")
+            return found and float(found[1]) > worst_ms + DELAY_MS / 2
+        pid = lab.pid_of("sensing")
+        since_ms = now_ms()
+        os.kill(pid, signal.SIGSTOP)
+        time.sleep(delay_ms / 1000)  # what is provoked, and nothing that is waited for
+        os.kill(pid, signal.SIGCONT)
+        took_ms = self.shows(lab, page, since_ms, late, "the delay")
+        print(f"{delay_ms:.0f} ms of delay in sensing shown {took_ms:.0f} ms after its beginning")
 
-    def acknowledged(self, lab, page, dashboard, acknowledge):
-        """What is raised is acknowledged, and what is over goes."""
-        def gone():
-            if any(not alarm["acknowledged"] for alarm in dashboard.snapshot()["alarms"]):
-                acknowledge()  # a busy machine may have missed once more
-            return "sent late" not in page.text("strip")
-        lab.wait_for("acknowledged alarms", gone, TRIAL_LIMIT_S, poll_s=0.3)
+    def acknowledged(self, lab, page, acknowledge):
+        """The page says so, or nothing is raised any longer."""
+        since_ms = now_ms()
+        acknowledge()
+        lab.wait_for("acknowledged alarms", lambda: page.first_seen(
+            since_ms, lambda text: "acknowledged" in text or "sent late" not in text), TRIAL_LIMIT_S)
+        self.assertRegex(page.text("answer"), "Acknowledge: asked at")
 
     def assert_no_force_behind(self, lab, tick, took_ms):
         recording = lab.recording(10**9, "signals")
