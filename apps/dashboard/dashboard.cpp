@@ -10,6 +10,7 @@
 #include "contract/config_error.hpp"
 #include "dashboard/recorded_run.hpp"
 #include "dashboard/remote.hpp"
+#include "dashboard/rigs.hpp"
 #include "dashboard/snapshot_json.hpp"
 #include "dashboard/view_json.hpp"
 #include "rig/core/rig.hpp"
@@ -77,10 +78,11 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
   feed_options.rig = options.rig;
   feed_options.blinded = options.blinded;
   feed_options.listener = live ? "experiment" : "recorder";
-  MessageFeed feed(feed_options);
+  Rigs rigs(feed_options);
+  MessageFeed& feed = rigs.shown();
   around.motor_limit_n = motor_limit_n(options.config);
-  around.screen = settings::load<display::TrackingDisplay::Config>(options.config / "display.yaml",
-                                                                   "display");
+  around.screen =
+      settings::load<display::TrackingDisplay::Config>(options.config / "display.yaml", "display");
 
   std::int64_t now_ns = runtime::system_ns();
   std::optional<Remote> remote;
@@ -99,7 +101,7 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
     // For Fast DDS's threads, which inherit it: on a busy machine a sample would else be stamped
     // when this process gets its turn.  Below the control path, and they only copy.
     if (options.real_time && runtime::become_real_time()) runtime::become_background();
-    bus.emplace(options.bus, feed);
+    bus.emplace(options.bus, rigs);
     bus->start();
     if (!options.read_only) remote.emplace(options.bus, options.rig);
     around.actions = remote.has_value();
@@ -133,7 +135,8 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
     if (bus) {
       around.dropped = bus->dropped();
       around.trouble = bus->trouble();
-      feed.step(now_ns);
+      rigs.step(now_ns);
+      around.rigs = rigs.summaries();
       if (remote) remote->step(now_ns);
     }
     const Parts parts{frame % kGraphEvery == 0, frame % kSpectrumEvery == 0};

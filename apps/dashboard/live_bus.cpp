@@ -7,10 +7,11 @@
 
 namespace stillhand::dashboard {
 
-LiveBus::LiveBus(const LiveOptions& options, MessageFeed& feed)
-    : feed_(feed),
+LiveBus::LiveBus(const LiveOptions& options, Rigs& rigs)
+    : rigs_(rigs),
       tap_({"stillhand-dashboard/" + std::to_string(getpid()), options.domain, options.profiles,
-            options.security, true, [&feed](const std::string& topic) { return feed.wants(topic); },
+            options.security, true,
+            [&rigs](const std::string& topic) { return rigs.shown().wants(topic); },
             [this](const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
               take(writer, sample);
             }}) {}
@@ -40,9 +41,9 @@ void LiveBus::drain() {
     std::swap(filling_, draining_);
     std::swap(new_sources_, sources);
   }
-  for (const Source& source : sources) feed_.add(source);
+  for (const Source& source : sources) rigs_.add(source);
   for (const recording::HeldMessage& held : draining_.messages) {
-    feed_.take({held.channel, held.sequence, static_cast<std::int64_t>(held.publish_time_ns),
+    rigs_.take({held.channel, held.sequence, static_cast<std::int64_t>(held.publish_time_ns),
                 static_cast<std::int64_t>(held.log_time_ns), draining_.content(held)});
   }
   draining_.clear();

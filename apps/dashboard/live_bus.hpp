@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dashboard/message_feed.hpp"
+#include "dashboard/rigs.hpp"
 #include "recording/core/held_message.hpp"
 #include "runtime/tap.hpp"
 
@@ -25,8 +25,8 @@ struct LiveOptions {
 /// only copy a message into a queue that has a bound; whoever owns the feed empties it.
 class LiveBus {
  public:
-  /// @param feed  outlives this; touched by drain() alone  @throws as runtime::Tap does
-  LiveBus(const LiveOptions& options, MessageFeed& feed);
+  /// @param rigs  outlive this; touched by drain() alone  @throws as runtime::Tap does
+  LiveBus(const LiveOptions& options, Rigs& rigs);
 
   void start() { tap_.start(); }
   /// Feeds what has come since the last call.
@@ -40,7 +40,7 @@ class LiveBus {
 
   static constexpr std::size_t kMostBytes = std::size_t{32} << 20;  // of one session: 30 s
 
-  MessageFeed& feed_;
+  Rigs& rigs_;
   mutable std::mutex mutex_;
   recording::MessageBatch filling_;
   std::vector<Source> new_sources_;

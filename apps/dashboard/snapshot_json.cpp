@@ -88,6 +88,19 @@ Json alarm_json(const MessageFeed& feed, const NamedAlarm& named) {
           {"last_ms", instant(alarm.last_ns())}};
 }
 
+Json rigs_json(const std::vector<RigSummary>& rigs) {
+  Json all = Json::array();
+  for (const RigSummary& each : rigs) {
+    all.push_back({{"rig", each.rig},
+                   {"level", word(each.level)},
+                   {"running", each.running},
+                   {"samples", each.samples},
+                   {"lost", each.lost},
+                   {"worst", each.worst}});
+  }
+  return all;
+}
+
 // The worst first; of those, what is upstream comes first already.
 Json alarms_json(const MessageFeed& feed) {
   std::vector<const NamedAlarm*> raised;
@@ -270,6 +283,7 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
                 {"file", around.file},
                 {"domain", around.domain},
                 {"rig", feed.options().rig},
+                {"rigs", rigs_json(around.rigs)},
                 {"now_ms", instant(now_ns)},
                 {"level", word(health.level())},
                 {"level_since_ms", instant(health.level_since_ns())},

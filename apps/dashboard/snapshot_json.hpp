@@ -7,6 +7,7 @@
 
 #include "contract/tick.hpp"
 #include "dashboard/message_feed.hpp"
+#include "dashboard/rigs.hpp"
 #include "display/core/tracking_display.hpp"
 
 namespace stillhand::dashboard {
@@ -18,11 +19,12 @@ struct Surroundings {
   std::uint32_t domain = 0;
   double motor_limit_n = 0.0;  ///< [N] narrower of the canceller's and the drive's
   display::TrackingDisplay::Config screen;
-  std::uint64_t dropped = 0;   ///< messages that came while the queue was full
+  std::uint64_t dropped = 0;  ///< messages that came while the queue was full
   std::vector<std::string> trouble;
-  double cpu_share = 0.0;   ///< [-] of one core, by this process
-  std::size_t clients = 0;  ///< that listen
-  bool actions = false;     ///< it may ask something of the session
+  double cpu_share = 0.0;        ///< [-] of one core, by this process
+  std::size_t clients = 0;       ///< that listen
+  std::vector<RigSummary> rigs;  ///< of a bus
+  bool actions = false;          ///< it may ask something of the session
 };
 
 /// What need not be in every frame.

@@ -74,6 +74,8 @@ class TopicHealth {
   /// [ns] of the last whole second; 0 without a sample in it.
   [[nodiscard]] std::int64_t recent_latency_p99_ns(std::int64_t now_ns) const noexcept;
   [[nodiscard]] const TopicPlan& plan() const noexcept { return plan_; }
+  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   /// [ns] arrival of the newest sample, 0 before the first.
   [[nodiscard]] std::int64_t last_at_ns() const noexcept { return last_at_ns_; }
   [[nodiscard]] std::int64_t first_at_ns() const noexcept { return first_at_ns_; }

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What `stillhand dashboard` costs with many rigs on the bus and many pages open.
+
+    STILLHAND_BUILD=build tests/benchmark/dashboard_load.py [--rigs 15] [--seconds 20] [--clients 24]
+
+Each rig has seven topics at 1 kHz, written by one process on the real bus (dashboard_load.cpp); each client reads the
+stream of events. Processor time is the dashboard's own, of all its threads, user and system, while all of that runs; counted
+is what its page tells of every rig in the end. Prints a row of a table; exit status 1 above 25 % of a core or when a count
+is not what was sent.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+
+BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", "build"))
+TOPICS = 7
+WARM_UP_S = 3.0
+MOST_SHARE = 0.25
+
+
+def cpu_s(pid):
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class Client(threading.Thread):
+    """Reads events until it is told to end, and counts them."""
+
+    def __init__(self, address):
+        super().__init__(daemon=True)
+        self.stream = urllib.request.urlopen(address + "events", timeout=30)
+        self.events = self.bytes = 0
+
+    def run(self):
+        try:
+            while part := self.stream.read1(1 << 16):
+                self.bytes += len(part)
+                self.events += part.count(b"data: {")
+        except (OSError, ValueError):
+            pass
+
+
+def snapshot(address):
+    return json.load(urllib.request.urlopen(address + "snapshot", timeout=30))
+
+
+def main():
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("--rigs", type=int, default=15)
+    words.add_argument("--seconds", type=int, default=20)
+    words.add_argument("--clients", type=int, default=24)
+    options = words.parse_args()
+    domain = str(190 + os.getpid() % 10)
+    dashboard = subprocess.Popen([BUILD / "bin" / "stillhand", "dashboard", "--port", "0", "--domain", domain],
+                                 stdout=subprocess.PIPE, text=True)
+    address = dashboard.stdout.readline().strip()
+    load = subprocess.Popen([BUILD / "tests" / "dashboard_load", domain, str(options.rigs), str(options.seconds)],
+                            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    try:
+        clients = [Client(address) for _ in range(options.clients)]
+        for client in clients:
+            client.start()
+        while snapshot(address)["session"]["tick"] < 1000 * WARM_UP_S:
+            time.sleep(0.1)
+        began, used = time.monotonic(), cpu_s(dashboard.pid)
+        events, most_listening = sum(client.events for client in clients), 0
+        while snapshot(address)["session"]["tick"] < 1000 * (options.seconds - 1):
+            most_listening = max(most_listening, snapshot(address)["dashboard"]["clients"])
+            time.sleep(0.5)
+        share = (cpu_s(dashboard.pid) - used) / (time.monotonic() - began)
+        rate = (sum(client.events for client in clients) - events) / (time.monotonic() - began)
+        told = load.stdout.readline().strip()
+        sent = int(re.match(r"sent (\d+)", told)[1])
+        time.sleep(1)  # what is on its way arrives, and a frame goes by
+        seen = snapshot(address)
+    finally:
+        load.stdin.close()
+        load.wait()
+        dashboard.terminate()
+        dashboard.wait()
+    counted = sum(each["samples"] for each in seen["rigs"])
+    lost = sum(each["lost"] for each in seen["rigs"])
+    print(told)
+    print(f"events {rate:.0f} a second, {rate / options.clients:.1f} a client; {most_listening} listened")
+    print("| topics at 1 kHz | messages a second | clients | CPU [% of a core] | sent | counted | lost | dropped |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    print(f"| {TOPICS * options.rigs} | {TOPICS * options.rigs * 1000} | {most_listening} | {100 * share:.1f} | {sent} | {counted} | {lost} | "
+          f"{seen['dashboard']['dropped']} |")
+    return 0 if share < MOST_SHARE and counted == sent and lost == 0 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
