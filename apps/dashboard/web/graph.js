@@ -3,7 +3,7 @@
 import { clock, create, draw, element, mark, short, write } from "/elements.js";
 import { faultsOf, gone } from "/graph_faults.js";
 import { layOut } from "/graph_layout.js";
-import { alarmsOfNow } from "/status.js";
+import { alarmsOfNow, LEVELS } from "/status.js";
 
 const PITCH_X = 134;
 const PITCH_Y = 66;
@@ -11,7 +11,9 @@ const BOX = { service: { w: 116, h: 42 }, topic: { w: 88, h: 36 } };
 const MARGIN = 14;
 const RAIL_H = 58;
 const SIGNS = { healthy: "", warning: "!", critical: "✕" };
-const worse = (one, other) => (["healthy", "warning", "critical"].indexOf(one) > ["healthy", "warning", "critical"].indexOf(other) ? one : other);
+const worse = (one, other) => (LEVELS.indexOf(one) > LEVELS.indexOf(other) ? one : other);
+
+const gravest = (faults) => faults.reduce((worst, { level }) => worse(worst, level), "healthy");
 
 // A name of several words on two lines.
 function lines(name) {
@@ -141,14 +143,13 @@ export class Graph {
         const service = services.find(({ service: name }) => name === node.name) ?? {};
         const away = gone(service);
         if (away && going) missing.push(node.name);
-        const late = this.faults.filter(({ reader, active }) => active && reader === node.name).length;
-        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : late > 0 ? `${late} edge${late === 1 ? "" : "s"} at fault` : service.state;
-        const level = away && going ? "critical" : service.state === "fault" ? "critical" : late > 0 ? "warning" : "healthy";
+        const touched = this.faults.filter(({ reader, active }) => active && reader === node.name);
+        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : touched.length > 0 ? `${touched.length} edge${touched.length === 1 ? "" : "s"} at fault` : service.state;
+        const level = (away && going) || service.state === "fault" ? "critical" : gravest(touched);
         node.show(away && !going ? "none" : worse(level, levels.get(node.name) ?? "healthy"), told);
       } else {
         const touched = this.faults.filter(({ topic, active }) => active && topic === node.name);
-        const level = touched.reduce((worst, fault) => worse(worst, fault.level), levels.get(node.name) ?? "healthy");
-        node.show(level);
+        node.show(worse(gravest(touched), levels.get(node.name) ?? "healthy"));
       }
     }
     for (const edge of this.edges) {

@@ -5,7 +5,7 @@ import { clock, element, short, span, write } from "/elements.js";
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
 const SESSIONS = { none: "No session", waiting: "Session waits", ending: "Session over", unknown: "Session unknown" };
-const LEVELS = ["healthy", "warning", "critical"];
+export const LEVELS = ["healthy", "warning", "critical"];
 
 function amount(alarm) {
   if (alarm.unit === "ticks") return `${alarm.worst} tick${alarm.worst === 1 ? "" : "s"}`;

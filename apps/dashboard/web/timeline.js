@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording's time line: what happened when, and the instant that the page shows.
 import { clock, create, draw, element, mark, write } from "/elements.js";
-import { what } from "/status.js";
+import { LEVELS, what } from "/status.js";
 
 const LANES = [["late", "sent late"], ["lost", "lost"], ["alarm", "alarms"], ["event", "events"]];
 const UNITS = { lost: "ticks" };
@@ -19,7 +19,7 @@ export function spoken(kind, { subject, writer, what: word, amount, count }) {
   const times = count > 1 ? ` (${count} of them)` : "";
   if (kind === "event") return `${subject}: ${word}${times}`;
   const watch = kind === "alarm" ? word : kind;
-  return what({ watch, subject, writer, worst: amount, unit: UNITS[watch] ?? "ms" }) + times;
+  return (kind === "alarm" ? "alarm: " : "") + what({ watch, subject, writer, worst: amount, unit: UNITS[watch] ?? "ms" }) + times;
 }
 
 export class Timeline {
@@ -116,7 +116,8 @@ export class Timeline {
     LANES.forEach(([kind, name], i) => {
       const y = LANE_H * (i + 1.5);
       svg.append(draw("text", { x: 0, y: y + 4 }, name), draw("path", { d: `M${LEFT} ${y}H${this.width - 10}`, class: "lane" }));
-      for (const each of this.lanes.marks[kind]) {
+      // The graver above the others.
+      for (const each of [...this.lanes.marks[kind]].sort((one, other) => LEVELS.indexOf(one.level) - LEVELS.indexOf(other.level))) {
         const node = draw("path", { d: SHAPES[each.level], class: `mark ${each.level}`, transform: `translate(${this.x(each.at_s).toFixed(1)} ${y})` });
         node.append(draw("title", {}, spoken(kind, each)));
         node.addEventListener("click", (event) => { event.stopPropagation(); this.choose(each.at_s); });
