@@ -52,6 +52,15 @@ Rights rights_of_tap() {
   return rights;
 }
 
+/// Listens like a tap, and asks something of sessions and recorders.
+Rights rights_of_dashboard() {
+  Rights rights = rights_of_tap();
+  rights.identity = topics::kDashboard;
+  rights.publishes = {std::string(topics::kSessionCommand.name),
+                      std::string(topics::kRecorderCommand.name)};
+  return rights;
+}
+
 std::string topic_list(const char* verb, const std::set<std::string>& names) {
   if (names.empty()) return "";
   std::string text = std::string("        <") + verb + ">\n          <topics>\n";
@@ -152,7 +161,7 @@ int main(int argc, char** argv) {
     const Lab lab{argv[1], argv[2], argv[3], argv[4],
                   std::string("      <domains><id_range><min>") + argv[5] + "</min><max>" +
                       argv[6] + "</max></id_range></domains>\n"};
-    std::vector<Rights> all{rights_of_tap()};
+    std::vector<Rights> all{rights_of_tap(), rights_of_dashboard()};
     for (const std::string_view service : topics::kServices) all.push_back(rights_of(service));
     write(lab.folder + "/governance.xml", governance(lab));
     for (const Rights& rights : all) {

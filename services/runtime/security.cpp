@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/security.hpp"
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
@@ -14,6 +16,7 @@
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <memory>
+#include <optional>
 #include <regex>
 
 #include "contract/config_error.hpp"
@@ -119,6 +122,14 @@ std::string signed_text(const fs::path& file, X509_STORE& authority, const Ident
   return text_of(*text);
 }
 
+// A key that others on the machine read is theirs, too.  A group may: that of the lab's users.
+void check_private(const fs::path& file) {
+  constexpr fs::perms kOthers = fs::perms::others_read | fs::perms::others_write;
+  if ((fs::status(file).permissions() & kOthers) == fs::perms::none) return;
+  throw ConfigError(file.string(), "a private key that everybody on this machine may read or write",
+                    "chmod o= " + file.string());
+}
+
 void check_domain(const fs::path& file, const std::string& text, std::uint32_t domain) {
   static const std::regex range("<min>([0-9]{1,3})</min>\\s*<max>([0-9]{1,3})</max>");
   std::smatch match;
@@ -146,12 +157,53 @@ std::array<std::uint8_t, 6> guid_start(const X509& certificate) {
   return start;
 }
 
+/// The only address by which a participant of this profile hears others, "" for that of any
+/// interface; nothing where there may be several, each with a thread of its own.
+std::optional<std::string> only_address(const edds::DomainParticipantQos& qos) {
+  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+  const auto& transports = qos.transport().user_transports;
+  if (qos.transport().use_builtin_transports || transports.size() != 1) return std::nullopt;
+  const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transports.front());
+  if (udp == nullptr || udp->interfaceWhiteList.size() > 1) return std::nullopt;
+  return udp->interfaceWhiteList.empty() ? "" : udp->interfaceWhiteList.front();
+}
+
+// Fast DDS 2.9.1 prepares what a handshake goes through without a lock, in the thread that hears of
+// a participant first (SecurityManager::match_builtin_endpoints, a race mended after it by pull
+// request 4188).  A multicast group and a unicast port are two threads: they mix up two
+// participants, with which no handshake ever comes to an end (qos/README.md, "What security
+// costs").  So only one thread may hear.
+void discover_in_one_thread(edds::DomainParticipantQos& qos) {
+  using eprosima::fastrtps::rtps::IPLocator;
+  using eprosima::fastrtps::rtps::Locator_t;
+  constexpr const char* kLoopback = "127.0.0.1";
+  const std::optional<std::string> address = only_address(qos);
+  if (!address) {
+    throw ConfigError("security", "a participant's profile with several ways to be heard",
+                      "one transport, UDPv4, with at most one address in its interfaceWhiteList");
+  }
+  auto& builtin = qos.wire_protocol().builtin;
+  if (!builtin.metatrafficUnicastLocatorList.empty()) return;  // then there is no multicast
+  if (*address != kLoopback) {
+    throw ConfigError("security", "discovery by multicast in the participant's profile",
+                      "initial peers and a metatrafficUnicastLocatorList, as `stillhand deploy "
+                      "generate` writes them");
+  }
+  builtin.metatrafficUnicastLocatorList.push_back(Locator_t());  // the port that the standard names
+  Locator_t peers;  // of the first maxInitialPeersRange participants
+  IPLocator::setIPv4(peers, kLoopback);
+  builtin.initialPeersList.push_back(peers);
+}
+
 }  // namespace
 
 Identity Identity::of(const fs::path& folder, const std::string& service) {
   const bool known = std::find(topics::kServices.begin(), topics::kServices.end(), service) !=
                      topics::kServices.end();
-  return {folder, known ? service : std::string(topics::kTap)};
+  if (known) return {folder, service};
+  // A dashboard's name ends in a number of its own.
+  return {folder,
+          std::string(service.starts_with(topics::kDashboard) ? topics::kDashboard : topics::kTap)};
 }
 
 void check_identity(const Identity& identity, std::uint32_t domain) {
@@ -163,6 +215,7 @@ void check_identity(const Identity& identity, std::uint32_t domain) {
   verify(identity, *certificate, *store);
 
   const fs::path key_file = own_file(identity, "key.pem");
+  check_private(key_file);
   // A service asks nobody for a password.
   const auto no_password = [](char*, int, int, void*) { return -1; };
   const Key key(PEM_read_bio_PrivateKey(opened(key_file).get(), nullptr, no_password, nullptr));
@@ -204,8 +257,9 @@ void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
                       std::string("a discovery server in ") +
                           (server_in_profile ? "the participant's profile"
                                              : "the environment (ROS_DISCOVERY_SERVER)"),
-                      "simple discovery or initial peers: it would let strangers in");
+                      "initial peers: it would let strangers in");
   }
+  discover_in_one_thread(qos);
   const auto set = [&qos](const std::string& name, const std::string& value) {
     qos.properties().properties().emplace_back(name, value);
   };

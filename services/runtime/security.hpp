@@ -16,9 +16,9 @@ namespace stillhand::runtime {
 /// wrote.
 struct Identity {
   std::filesystem::path folder;  ///< empty: no security
-  std::string name;              ///< one of topics::kServices, or topics::kTap
+  std::string name;              ///< one of topics::kServices, topics::kDashboard or kTap
 
-  /// That of a service; of anything else topics::kTap.
+  /// That of a service or of a dashboard; of anything else topics::kTap.
   static Identity of(const std::filesystem::path& folder, const std::string& service);
   [[nodiscard]] bool none() const { return folder.empty(); }
 };
@@ -26,16 +26,18 @@ struct Identity {
 /// Looks at every file of the identity, since Fast DDS meets some faults in silence, and others
 /// with a null participant and no reason.
 /// @throws ConfigError for a file that is missing, a certificate that is expired, not yet valid or
-/// of another authority, another certificate's key, documents that this authority did not sign or
-/// that are another subject's, and a domain they are not made for.
+/// of another authority, another certificate's key or one that everybody may read, documents that
+/// this authority did not sign or that are another subject's, and a domain they are not made for.
 void check_identity(const Identity& identity, std::uint32_t domain);
 
 /// What to tell the operator when the certificate expires within 30 days; else empty.  A running
 /// session does not notice the end of a certificate.  @throws ConfigError when it cannot be read
 std::string expiry_warning(const Identity& identity);
 
-/// Sets the DDS Security properties.  @throws ConfigError for a discovery server, by profile or
-/// environment: it hands secured samples to unsecured clients (Fast DDS 2.9.1).
+/// Sets the DDS Security properties, and discovery by initial peers on the loopback where the
+/// profile has none.  @throws ConfigError for a discovery server, by profile or environment: it
+/// hands secured samples to unsecured clients (Fast DDS 2.9.1); for multicast on another address
+/// and for a profile that hears in several threads: not everybody would authenticate.
 void secure(eprosima::fastdds::dds::DomainParticipantQos& qos, const Identity& identity);
 
 /// The participant authenticates as `identity`.  Fast DDS runs a misspelt property without any

@@ -11,10 +11,12 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "idl/clock.h"
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "idl/session.h"
@@ -91,6 +93,10 @@ int member(const std::string& service, const std::string& domain, const fs::path
   open<AugmentedModel>(bus, topics::kAugmentedModel);
   open<Event>(bus, topics::kEvent);
   open<ServiceStatus>(bus, topics::kServiceStatus);
+  open<ClockQuestion>(bus, topics::kClockQuestion);
+  open<ClockAnswer>(bus, topics::kClockAnswer);
+  open<ClockOffset>(bus, topics::kClockOffset);
+  open<HostStatus>(bus, topics::kHostStatus);
   bus.start();
   while (!stop.requested() && !bus.missing_peers().empty()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -111,9 +117,8 @@ struct RoundTrip {
   double p50_us = 0.0, p99_us = 0.0;
 };
 
-RoundTrip round_trip(const fs::path& self, const fs::path& security, const fs::path& scratch) {
-  const std::string domain = std::to_string(support::own_domain());
-  support::Child canceller({self, "--echo", domain, security}, scratch / "echo");
+/// The rig's and sensing's place: prints the round trip's p50 and p99 [us].
+int clock_it(const std::string& domain, const fs::path& security) {
   runtime::Bus sensing(options_of("sensing", security, domain));
   runtime::Bus rig(options_of("rig", security, domain));
   auto samples = sensing.publisher<stillhand_msgs::Sensed>(topics::kSensed);
@@ -155,7 +160,23 @@ RoundTrip round_trip(const fs::path& self, const fs::path& security, const fs::p
     const auto index = static_cast<std::size_t>(share * static_cast<double>(trips.size()));
     return static_cast<double>(trips[index]) * 1e-3;
   };
-  return {at(0.5), at(0.99)};
+  std::printf("%f %f\n", at(0.5), at(0.99));
+  return 0;
+}
+
+// Processes of its own: others find a secured process's first participants alone (qos/profiles.xml,
+// maxInitialPeersRange).
+RoundTrip round_trip(const fs::path& self, const fs::path& security, const fs::path& scratch) {
+  const std::string domain = std::to_string(support::own_domain());
+  const support::Child canceller({self, "--echo", domain, security}, scratch / "echo");
+  const support::Child rig({self, "--clock", domain, security}, scratch / "clock");
+  RoundTrip trip;
+  const bool told =
+      support::eventually([&] { return rig.output().ends_with('\n'); }, std::chrono::seconds(40));
+  if (!told || !(std::istringstream(rig.output()) >> trip.p50_us >> trip.p99_us)) {
+    throw std::runtime_error("no round trip was measured");
+  }
+  return trip;
 }
 
 /// [s] infinite when not all had matched within 20 s.
@@ -231,6 +252,7 @@ int main(int argc, char** argv) {
   try {
     if (!runtime::become_real_time()) std::cerr << "security_cost: without SCHED_FIFO\n";
     if (given.size() == 3 && given[0] == "--echo") return echo(given[1], given[2]);
+    if (given.size() == 3 && given[0] == "--clock") return clock_it(given[1], given[2]);
     if (given.size() == 4 && given[0] == "--member") return member(given[1], given[2], given[3]);
     return measure(fs::canonical("/proc/self/exe"), given.empty() ? 5 : std::stoi(given[0]));
   } catch (const std::exception& error) {

@@ -34,13 +34,16 @@ class CycloneTest : public testing::Test {
     if (!output_.empty()) std::filesystem::remove(output_);
   }
   std::unique_ptr<support::Child> peer() {
-    // As our profiles: loopback alone, and its multicast for discovery.
+    // As our profiles: loopback alone, and its multicast for discovery; on a secured bus, which
+    // hears no multicast, it knocks at the doors of the first participants.
     return std::make_unique<support::Child>(
         std::vector<std::string>{kPeer, std::to_string(support::own_domain())}, output_,
         std::vector<std::string>{
             "CYCLONEDDS_URI=<CycloneDDS><Domain><General><Interfaces>"
             "<NetworkInterface address='127.0.0.1' multicast='true'/></Interfaces>"
-            "</General></Domain></CycloneDDS>"});
+            "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+            "<MaxAutoParticipantIndex>31</MaxAutoParticipantIndex>"
+            "<Peers><Peer Address='127.0.0.1'/></Peers></Discovery></Domain></CycloneDDS>"});
   }
 
  private:

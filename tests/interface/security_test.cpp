@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // A secured bus on loopback, with the folders that deploy/security/make.sh makes: what is refused
-// before the bus opens, what a service may do, and what strangers get and bring: nothing.
+// before the bus opens, and what a service may do.  Strangers: strangers_test.cpp.
 #include "runtime/security.hpp"
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/DataWriterListener.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "contract/config_error.hpp"
+#include "idl/recording.h"
+#include "idl/session.h"
 #include "runtime/participant.hpp"
-#include "runtime/playback.hpp"
-#include "runtime/type_tag.hpp"
 #include "support/motion_and_rig.hpp"
 #include "support/security_folder.hpp"
 
@@ -28,8 +24,6 @@ namespace {
 using stillhand_msgs::MotorCommand;
 using stillhand_msgs::PlatformCommand;
 using support::bus_options;
-using support::eventually;
-using support::MotionAndRig;
 using support::reissue;
 using support::SecurityFolders;
 using testing::AllOf;
@@ -38,9 +32,6 @@ namespace edds = eprosima::fastdds::dds;
 namespace fs = std::filesystem;
 
 constexpr long kDay_s = 86400;
-// Steps at which a stranger stays silent and deaf: a second and more, where the lab's own
-// participants match within some tenths.
-constexpr int kSteps = 500;
 
 std::string refusal(const Identity& identity, std::uint32_t domain = 0) {
   try {
@@ -57,11 +48,12 @@ void replace(const fs::path& from, const fs::path& to) {
   fs::copy_file(from, to, fs::copy_options::overwrite_existing);
 }
 
-TEST(CheckIdentityTest, AFolderAsItIsMadeIsGoodForEveryServiceAndTheTap) {
+TEST(CheckIdentityTest, AFolderAsItIsMadeIsGoodForEveryServiceDashboardAndTap) {
   for (const std::string_view service : topics::kServices) {
     EXPECT_EQ(refusal({lab(), std::string(service)}), "");
     EXPECT_EQ(expiry_warning({lab(), std::string(service)}), "");
   }
+  EXPECT_EQ(refusal({lab(), std::string(topics::kDashboard)}), "");
   EXPECT_EQ(refusal({lab(), std::string(topics::kTap)}), "");
 }
 
@@ -144,6 +136,46 @@ TEST(CheckIdentityTest, RefusesADomainThatTheFolderIsNotMadeFor) {
   EXPECT_THAT(refusal({folder, "rig"}, 8), HasSubstr("domain: got 8, want 7 to 7"));
 }
 
+TEST(CheckIdentityTest, RefusesAKeyThatEverybodyMayRead) {
+  const fs::path folder = altered();
+  fs::permissions(folder / "rig/key.pem", fs::perms::group_read, fs::perm_options::add);
+  EXPECT_EQ(refusal({folder, "rig"}), "");
+  fs::permissions(folder / "rig/key.pem", fs::perms::others_read, fs::perm_options::add);
+  EXPECT_THAT(refusal({folder, "rig"}), AllOf(HasSubstr("rig/key.pem"), HasSubstr("chmod o=")));
+}
+
+TEST(IdentityTest, IsThatOfTheServiceOfADashboardOrElseTheTap) {
+  EXPECT_EQ(Identity::of(lab(), "rig").name, "rig");
+  EXPECT_EQ(Identity::of(lab(), "dashboard-17").name, "dashboard");
+  EXPECT_EQ(Identity::of(lab(), "record-17").name, "tap");
+}
+
+/// What secure() says of a participant with this transport, multicast as the standard has it.
+std::string refused_discovery(const std::vector<std::string>& addresses, bool shared_memory) {
+  const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = addresses;
+  edds::DomainParticipantQos qos;
+  qos.transport().use_builtin_transports = shared_memory;
+  qos.transport().user_transports.push_back(udp);
+  try {
+    secure(qos, {lab(), "rig"});
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SecurityTest, DiscoveryByMulticastOnTheNetworkIsRefused) {
+  EXPECT_EQ(refused_discovery({"127.0.0.1"}, false), "");
+  EXPECT_THAT(refused_discovery({"192.0.2.1"}, false), HasSubstr("multicast"));
+  EXPECT_THAT(refused_discovery({}, false), HasSubstr("multicast"));
+}
+
+TEST(SecurityTest, SeveralWaysToBeHeardAreRefused) {
+  EXPECT_THAT(refused_discovery({"127.0.0.1", "192.0.2.1"}, false), HasSubstr("several ways"));
+  EXPECT_THAT(refused_discovery({"127.0.0.1"}, true), HasSubstr("several ways"));
+}
+
 TEST(SecurityTest, ADiscoveryServerIsRefused) {
   ASSERT_EQ(setenv("ROS_DISCOVERY_SERVER", "127.0.0.1:11811", 1), 0);
   EXPECT_THROW(Bus(bus_options("rig", lab())), ConfigError);
@@ -171,6 +203,22 @@ TEST(SecurityTest, AServiceMayWriteAndReadNothingButItsOwnTopics) {
   EXPECT_THAT(refused_at_start(reader), HasSubstr("display read stillhand/platform_command"));
 }
 
+TEST(SecurityTest, ADashboardMayAskAndReadButSteerNothing) {
+  Bus own(bus_options("dashboard-1", lab()));
+  own.publisher<stillhand_msgs::SessionCommand>(topics::kSessionCommand);
+  own.publisher<stillhand_msgs::RecorderCommand>(topics::kRecorderCommand);
+  own.subscribe<stillhand_msgs::RecorderStatus>(topics::kRecorderStatus,
+                                                [](const auto&, const auto&) {});
+  own.subscribe<PlatformCommand>(topics::kPlatformCommand, [](const auto&, const auto&) {});
+  EXPECT_EQ(refused_at_start(own), "");
+  Bus writer(bus_options("dashboard-1", lab()));
+  writer.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+  EXPECT_THAT(refused_at_start(writer), HasSubstr("write stillhand/trial_control"));
+  Bus tap(bus_options("record-1", lab()));
+  tap.publisher<stillhand_msgs::SessionCommand>(topics::kSessionCommand);
+  EXPECT_THAT(refused_at_start(tap), HasSubstr("write stillhand/session_command"));
+}
+
 TEST(SecurityTest, OnlyAParticipantWithThatCertificateCountsAsSecured) {
   edds::DomainParticipant* const plain = create_participant(
       STILLHAND_SOURCE "/qos/profiles.xml", support::own_domain(), "plain", false, {}, nullptr);
@@ -182,177 +230,6 @@ TEST(SecurityTest, OnlyAParticipantWithThatCertificateCountsAsSecured) {
   EXPECT_FALSE(is_secured(*rig, {lab(), "motion"}));
   edds::DomainParticipantFactory::get_instance()->delete_participant(plain);
   edds::DomainParticipantFactory::get_instance()->delete_participant(rig);
-}
-
-/// Somebody who keeps to no rule of Stillhand: Fast DDS itself, with whatever files are at hand.
-/// Reads platform commands and writes motor commands.
-class Stranger : public edds::DataWriterListener {
- public:
-  explicit Stranger(const Identity& identity) {
-    load_profiles(STILLHAND_SOURCE "/qos/profiles.xml");
-    auto* factory = edds::DomainParticipantFactory::get_instance();
-    edds::DomainParticipantQos qos;
-    factory->get_participant_qos_from_profile("stillhand_participant", qos);
-    // Under a name of the session, which is anybody's to take.
-    qos.name("stillhand/1/rig");
-    if (!identity.none()) secure(qos, identity);
-    participant_ = factory->create_participant(support::own_domain(), qos);
-    if (participant_ == nullptr) throw std::runtime_error("Fast DDS refused the stranger itself");
-    edds::Subscriber* subscriber = participant_->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
-    reader_ = subscriber->create_datareader_with_profile(
-        topic<PlatformCommand>(topics::kPlatformCommand), "stream_1khz");
-    edds::Publisher* publisher = participant_->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
-    writer_ = publisher->create_datawriter_with_profile(topic<MotorCommand>(topics::kMotorCommand),
-                                                        "stream_1khz", this);
-  }
-  ~Stranger() override {
-    participant_->delete_contained_entities();
-    edds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
-  }
-  Stranger(const Stranger&) = delete;
-  Stranger& operator=(const Stranger&) = delete;
-
-  [[nodiscard]] bool reads() const { return reader_ != nullptr; }
-  [[nodiscard]] bool writes() const { return writer_ != nullptr; }
-  void step() {
-    MotorCommand command;
-    command.rig(1);
-    command.tick(++tick_);
-    command.force_n(40.0);
-    if (writes()) writer_->write(&command);
-    PlatformCommand taken;
-    edds::SampleInfo info;
-    while (reads() && reader_->take_next_sample(&taken, &info) ==
-                          eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
-      if (info.valid_data) ++received_;
-    }
-  }
-  [[nodiscard]] int received() const { return received_; }
-
- private:
-  template <typename Message>
-  edds::Topic* topic(const topics::Topic& row) {
-    type_tag<Message>().support.register_type(participant_);
-    return participant_->create_topic(std::string(row.name), std::string(row.type),
-                                      edds::TOPIC_QOS_DEFAULT);
-  }
-  edds::DomainParticipant* participant_ = nullptr;
-  edds::DataReader* reader_ = nullptr;
-  edds::DataWriter* writer_ = nullptr;
-  Tick tick_ = 0;
-  int received_ = 0;
-};
-
-/// Nothing comes through, and the lab goes on.
-void expect_shut_out(Stranger& stranger, MotionAndRig& lab_pair) {
-  ASSERT_TRUE(stranger.reads() && stranger.writes());
-  ASSERT_TRUE(lab_pair.exchange(kSteps, [&] { stranger.step(); }));
-  EXPECT_EQ(stranger.received(), 0);
-  EXPECT_EQ(lab_pair.motor_commands.load(), 0);
-}
-
-// That the stranger's silence below is the lab's doing: each half of the same program, let in.
-TEST(StrangersTest, TheSameProgramIsHeardAndHearsWithoutSecurity) {
-  Stranger stranger({});
-  MotionAndRig unsecured("");
-  EXPECT_TRUE(unsecured.exchange(1));
-  EXPECT_TRUE(eventually([&] {
-    unsecured.step();
-    stranger.step();
-    return stranger.received() > 0 && unsecured.motor_commands.load() > 0;
-  }));
-}
-
-TEST(StrangersTest, TheSameProgramIsHeardWithTheCancellersCertificate) {
-  Stranger canceller({lab(), "cancellation"});
-  EXPECT_FALSE(canceller.reads());
-  MotionAndRig secured(lab());
-  EXPECT_TRUE(eventually([&] {
-    canceller.step();
-    return secured.motor_commands.load() > 0;
-  }));
-}
-
-TEST(StrangersTest, TheSameProgramHearsWithTheRecordersCertificate) {
-  Stranger recorder({lab(), "recorder"});
-  EXPECT_FALSE(recorder.writes());
-  MotionAndRig secured(lab());
-  EXPECT_TRUE(eventually([&] {
-    secured.step();
-    recorder.step();
-    return recorder.received() > 0;
-  }));
-}
-
-TEST(StrangersTest, WithoutACertificateNothingIsHeardOrDelivered) {
-  Stranger stranger({});
-  MotionAndRig secured(lab());
-  expect_shut_out(stranger, secured);
-  // Nor does its name, the rig's, count.
-  EXPECT_THAT(secured.rig.duplicate_peers(), testing::IsEmpty());
-}
-
-/// Signs a document of a folder anew, altered by a sed script, as `authority` does.
-void rewrite(const fs::path& folder, const char* file, const std::string& script,
-             const fs::path& authority) {
-  SecurityFolders::shell(
-      "cd " + folder.string() + " && openssl smime -verify -text -CAfile authority.pem -in " +
-      file + " 2>log | sed '" + script + "' >altered.xml && openssl smime -sign -text -in " +
-      "altered.xml -out " + file + " -signer " + (authority / "authority.pem").string() +
-      " -inkey " + (authority / "authority_key.pem").string());
-}
-
-TEST(StrangersTest, WithACertificateOfAnotherAuthorityNothingIsHeardOrDelivered) {
-  const fs::path other = SecurityFolders::get().other();
-  // It may write and read everything, by its own authority.
-  rewrite(other, "rig/permissions.p7s", "s#<topic>[^<]*<#<topic>*<#", other);
-  Stranger stranger({other, "rig"});
-  MotionAndRig secured(lab());
-  expect_shut_out(stranger, secured);
-  // Nor does its name, the rig's, count.
-  EXPECT_THAT(secured.rig.duplicate_peers(), testing::IsEmpty());
-}
-
-TEST(StrangersTest, WithAnExpiredCertificateNothingIsHeardOrDelivered) {
-  // Fast DDS opens no participant with an expired certificate of its own: so it expires after.
-  const fs::path folder = SecurityFolders::get().copy_of_lab("expiring");
-  reissue(folder, "recorder", -kDay_s, 2);
-  reissue(folder, "cancellation", -kDay_s, 2);
-  Stranger reader({folder, "recorder"});
-  Stranger writer({folder, "cancellation"});
-  ASSERT_TRUE(eventually([&] {
-    return !refusal({folder, "recorder"}).empty() && !refusal({folder, "cancellation"}).empty();
-  }));
-  MotionAndRig secured(lab());
-  ASSERT_TRUE(secured.exchange(kSteps, [&] {
-    reader.step();
-    writer.step();
-  }));
-  EXPECT_EQ(reader.received(), 0);
-  EXPECT_EQ(secured.motor_commands.load(), 0);
-}
-
-TEST(StrangersTest, WithTheDisplaysCertificateAndRulesOfItsOwnNoOtherTopicIsHeardOrDelivered) {
-  // A genuine certificate and genuine permissions, but a governance of its own that asks for no
-  // permission, so that its own Fast DDS does not stop it: the lab's must.
-  const fs::path folder = SecurityFolders::get().copy_of_lab("lawless");
-  const fs::path own = folder.parent_path() / "own";
-  SecurityFolders::make(own, "--lab own");
-  rewrite(folder, "governance.p7s", "s/_access_control>true/_access_control>false/", own);
-  SecurityFolders::shell("cat " + (own / "authority.pem").string() + " >>" +
-                         (folder / "authority.pem").string());
-  Stranger stranger({folder, "display"});
-  MotionAndRig secured(lab());
-  expect_shut_out(stranger, secured);
-}
-
-TEST(StrangersTest, AReplayWithoutACertificateOpensNoInterlock) {
-  MotionAndRig secured(lab());
-  MotionAndRig unsecured("");
-  const Playback replay(STILLHAND_SOURCE "/qos/profiles.xml", support::own_domain(), "replay");
-  ASSERT_TRUE(eventually([&] { return unsecured.rig.replay_present(); }));
-  ASSERT_TRUE(secured.exchange(kSteps));
-  EXPECT_FALSE(secured.rig.replay_present());
 }
 
 }  // namespace
