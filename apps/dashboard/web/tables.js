@@ -21,6 +21,10 @@ function share(part) {
   return part === undefined || part === null ? "–" : `${(100 * part).toFixed(part < 0.1 ? 1 : 0)} %`;
 }
 
+function memory({ resident_mb: mb, memory_locked: locked }) {
+  return mb === undefined ? "–" : `${mb.toFixed(0)}${locked ? ", locked" : ""}`;
+}
+
 // Rows that stay: only cells whose text differs are written.
 class Table {
   constructor(id, heads) {
@@ -98,10 +102,12 @@ export class Tables {
     this.chain = new Table("chain", ["up to", "p50", "p99", "p99.9", "max", "samples"]);
     this.services = new Table("services", ["process", { text: "state", left: true }, "last seen",
       { text: "real time", title: "runs with a real-time scheduling policy, and its priority" },
-      { text: "CPU", title: "of one core, by this process, over the last second" }, "pid",
+      { text: "CPU", title: "of one core, by this process, over the last second" }, { text: "memory [MB]", title: "in use, and whether any page of it can be swapped out" }, "pid",
       { text: "DDS misses", title: "deadlines missed as its own readers count them, whole milliseconds" },
       { text: "cycle misses", title: "as its own supervision counts them, microseconds" }, "lost ticks", { text: "waits for", left: true }]);
     this.rigs = new Table("rigs", ["rig", { text: "level", left: true }, { text: "session", left: true }, { text: "worst", left: true }, "samples", "lost"]);
+    this.edges = new Table("edges", ["edge", "matched", "samples", "lost ticks", { text: "cycle misses", title: "its own supervision, microseconds" },
+      { text: "DDS misses", title: "deadlines missed as DDS counts them, whole milliseconds" }, "longest interval [ms]", { text: "latency p99 [µs]", title: "stamp to arrival, the clocks' offset taken off" }]);
     this.hosts = new Table("hosts", [{ text: "host" }, { text: "processes", left: true }, { text: "CPU", title: "of all its cores" }, "cores", "clock [µs]", "± [µs]"]);
     this.recorders = new Table("recorders", ["recorder", { text: "state", left: true }, { text: "file", left: true }, "received", "lost", "written", "dropped", "file [MB]", "free [GB]", { text: "its last answer", left: true }]);
     this.clocks = new Table("clocks", ["process", "offset [µs]", "± [µs]", "drift [ppm]", "steps"]);
@@ -118,6 +124,8 @@ export class Tables {
     }
     for (const service of snapshot.services) this.showService(service);
     this.showRigs(snapshot.rigs ?? [], snapshot.rig);
+    if (snapshot.graph) this.graph = snapshot.graph;
+    if (this.graph && element("edges-part").open) this.showEdges(this.graph);
     this.showHosts(snapshot.hosts ?? []);
     this.showRecorders(snapshot.recorders ?? []);
     for (const clockOf of snapshot.clocks) {
@@ -185,13 +193,13 @@ export class Tables {
 
   showService(service) {
     if (service.state === undefined) {
-      this.services.show(service.service, [{ text: "missing", look: "l faint" }, "–", "–", "–", "–", "–", "–", "–", { text: "", look: "l" }]);
+      this.services.show(service.service, [{ text: "missing", look: "l faint" }, "–", "–", "–", "–", "–", "–", "–", "–", { text: "", look: "l" }]);
       return;
     }
     const gone = service.silent_ms > 300;
     this.services.show(service.service, [
       { text: gone ? "gone" : service.state, look: gone || service.state === "fault" ? "l bad" : "l" }, clock(service.last_ms),
-      service.real_time ? (service.priority > 0 ? `yes, ${service.priority}` : "yes") : "no", share(service.cpu_share), service.pid, service.deadline_misses, service.cycle_misses, service.lost_ticks,
+      service.real_time ? (service.priority > 0 ? `yes, ${service.priority}` : "yes") : "no", share(service.cpu_share), memory(service), service.pid, service.deadline_misses, service.cycle_misses, service.lost_ticks,
       { text: service.waits_for, look: "l" }]);
   }
 
@@ -202,6 +210,18 @@ export class Tables {
       this.rigs.show(String(each.rig), [{ text: each.level, look: each.level === "healthy" ? "l" : "l bad" },
         { text: (each.running ? "running" : "none") + (each.rig === shown ? ", shown" : ""), look: "l" },
         { text: each.worst === "" ? "–" : short(each.worst), look: "l" }, each.samples, { text: each.lost, look: each.lost > 0 ? "bad" : "" }]);
+    }
+  }
+
+  showEdges({ topics }) {
+    for (const { topic, writers, readers } of topics) {
+      for (const reader of readers) {
+        const name = `${writers.length === 1 ? writers[0] : "all"} → ${short(topic)} → ${reader.service}`;
+        const bad = (count) => ({ text: count, look: count > 0 ? "bad" : "" });
+        this.edges.show(name, reader.samples === undefined ? ["–", "–", "–", "–", "–", "–", "–"]
+          : [reader.matched, reader.samples, bad(reader.lost_ticks), bad(reader.cycle_misses), bad(reader.deadline_misses),
+            reader.worst_interval_us > 0 ? (reader.worst_interval_us / 1000).toFixed(3) : "–", reader.latency_p99_us > 0 ? us(reader.latency_p99_us) : "–"]);
+      }
     }
   }
 
