@@ -50,6 +50,9 @@ inline constexpr std::string_view kDashboard = "dashboard";
 /// Text of the rig's event that an emergency stop opened the interlock.
 inline constexpr std::string_view kEmergencyStop = "emergency stop";
 
+/// The recorder's note of its file begins with this, where the process is to end with the session.
+inline constexpr std::string_view kRecordingNote = "records ";
+
 /// One row of the catalogue.
 struct Topic {
   std::string_view name;  ///< DDS topic name

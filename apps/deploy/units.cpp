@@ -33,8 +33,8 @@ SystemCallArchitectures=native
                      shows_a_screen ? "no" : "yes");  // the screen's socket is in /tmp
 }
 
-std::string head(const Inventory& inventory, const Host& host, const std::string& description,
-                 bool forever) {
+// Always: a service ends with each session, to begin the next without anything of the one before.
+std::string head(const Inventory& inventory, const Host& host, const std::string& description) {
   return fmt::format(R"(# {}
 [Unit]
 Description={}, lab {}
@@ -46,19 +46,18 @@ PartOf=stillhand.target
 [Service]
 Type=exec
 User=stillhand
-Restart={}
+Restart=always
 RestartSec=1
 )",
                      generated_note(inventory, host), description, inventory.lab,
-                     "StartLimitIntervalSec=60\nStartLimitBurst=5\n",
-                     forever ? "always" : "on-failure");
+                     "StartLimitIntervalSec=60\nStartLimitBurst=10\n");
 }
 
 std::string command_of(const Inventory& inventory, const Host& host, const Placement& placement) {
   const std::string folder = installed_folder(inventory);
   std::string command = fmt::format(
       "{0}/bin/stillhand-{1} --domain {2} --rig {3} --profiles {4}/profiles.xml "
-      "--config ${{STILLHAND_CONFIG}} --real-time",
+      "--config ${{STILLHAND_CONFIG}} --real-time --one-session",
       host.prefix.string(), placement.service, inventory.domain, placement.rig, folder);
   if (!inventory.security.empty()) command += " --security " + folder + "/security";
   return command;
@@ -75,7 +74,7 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
   const bool screen = placement.service == "display";
   const bool recorder = placement.service == "recorder";
   std::string text =
-      head(inventory, host, fmt::format("Stillhand {} of rig {}", placement.service, rig), false);
+      head(inventory, host, fmt::format("Stillhand {} of rig {}", placement.service, rig));
   // 2: a setting, file or certificate is refused; trying again mends none.
   text += "RestartPreventExitStatus=2\n";
   text += fmt::format("Environment=STILLHAND_CONFIG={}/share/stillhand/deploy/config\n",
@@ -99,7 +98,7 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
 
 GeneratedFile server_unit(const Inventory& inventory, const Host& host) {
   return {"stillhand-discovery.service",
-          head(inventory, host, "Stillhand discovery server", true) +
+          head(inventory, host, "Stillhand discovery server") +
               fmt::format("# Of the Debian package fastdds-tools.\n"
                           "ExecStart=/usr/bin/fast-discovery-server -i 0 -x "
                           "{}/discovery_server.xml\n",

@@ -122,10 +122,16 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Progress progress)
       topics::kServiceStatus, [this, stored](const auto& status, const auto&) {
         stored([&] { seen_.statuses[status.service().c_str()] = status; });
       });
-  service.bus().subscribe<stillhand_msgs::Event>(topics::kEvent,
-                                                 [this, stored](const auto& event, const auto&) {
-                                                   stored([&] { seen_.events.push_back(event); });
-                                                 });
+  service.bus().subscribe<stillhand_msgs::Event>(
+      topics::kEvent, [this, stored](const auto& event, const auto&) {
+        stored([&] {
+          seen_.events.push_back(event);
+          const std::string_view text = event.text().c_str();
+          if (event.source() == "recorder" && text.starts_with(topics::kRecordingNote)) {
+            seen_.recording = text.substr(topics::kRecordingNote.size());
+          }
+        });
+      });
   service.bus().subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel,
       [this, stored](const auto& model, const auto&) { stored([&] { seen_.model = model; }); });
@@ -464,6 +470,11 @@ std::string Conductor::use(const cancellation::AugmentedModel& model) {
 
 std::string Conductor::why_stopped(const std::string& otherwise) const {
   return !trouble_.empty() ? trouble_ : interrupted() ? "interrupted" : otherwise;
+}
+
+std::string Conductor::recording() {
+  const std::lock_guard lock(mutex_);
+  return seen_.recording;
 }
 
 void Conductor::end_session() { announce(nullptr, stillhand_msgs::SESSION_ENDING); }

@@ -83,6 +83,8 @@ class Conductor {
   std::string use(const cancellation::AugmentedModel& model);
   /// A process that ended, an emergency stop, "interrupted", or else `otherwise`.
   [[nodiscard]] std::string why_stopped(const std::string& otherwise) const;
+  /// Where the recorder says that its file is, on its own host; empty: it did not.
+  [[nodiscard]] std::string recording();
   /// Misses no longer count; processes may leave.
   void end_session();
   /// True once the user asked to stop.
@@ -93,6 +95,7 @@ class Conductor {
     std::map<std::string, stillhand_msgs::ServiceStatus> statuses;
     std::vector<stillhand_msgs::Event> events;
     std::optional<stillhand_msgs::FeedthroughModel> model;
+    std::string recording;
     Requests requests;
     bool trial_runs = false;
   };

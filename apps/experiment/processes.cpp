@@ -110,7 +110,9 @@ class TextToRead {
 }  // namespace
 
 std::string describe(const Ended& ended) {
-  std::string text = ended.name + " (pid " + std::to_string(ended.pid) + ") ended: " + ended.how;
+  std::string text = ended.name;
+  if (ended.pid > 0) text += " (pid " + std::to_string(ended.pid) + ")";
+  text += " ended: " + ended.how;
   if (!ended.said.empty()) text += "; it said: " + ended.said;
   return text;
 }

@@ -25,7 +25,7 @@ struct Launch {
 /// How a process ended.
 struct Ended {
   std::string name;  ///< "rig", "rig on desk"
-  pid_t pid;
+  pid_t pid;         ///< 0: none that is known here
   std::string how;   ///< "exit status 2", "signal 9 (Killed)"
   int exit_status;   ///< -1 after a signal
   std::string said;  ///< last line of its log

@@ -102,6 +102,14 @@ void RemoteHost::open() {
   folder_ = made;
 }
 
+void RemoteHost::check(const std::string& script, const std::string& want) {
+  try {
+    run(script);
+  } catch (const std::exception& error) {
+    throw ConfigError(host_.place + ": host " + host_.name, error.what(), want);
+  }
+}
+
 void RemoteHost::close() {
   if (folder_.empty()) return;
   run("rm -r " + shell_word(folder_) + "\n");
@@ -123,7 +131,7 @@ void RemoteHost::fetch(const std::string& name, const std::filesystem::path& to)
   // Under its name only once it is whole.
   const std::filesystem::path part = to.string() + ".part";
   try {
-    run("cat " + shell_word(folder_ + "/" + name) + "\n", part);
+    run("cat " + shell_word((std::filesystem::path(folder_) / name).string()) + "\n", part);
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);

@@ -27,9 +27,13 @@ class RemoteHost {
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
   [[nodiscard]] const deploy::Host& host() const noexcept { return host_; }
 
+  /// Runs a script there that says what is wrong, if anything is, and fails.
+  /// @throws ConfigError with its last line, and with what would be right
+  void check(const std::string& script, const std::string& want);
   /// Writes text files into its folder.  @param files  path below the folder, text
   void put(const std::map<std::string, std::string>& files);
-  /// Copies a file of its folder to a new one here.  @throws std::runtime_error
+  /// Copies a file to a new one here.  @param name  absolute, or below its folder
+  /// @throws std::runtime_error
   void fetch(const std::string& name, const std::filesystem::path& to);
 
   /// The same process there.  It ends when its standard input does: when the lab closes it, dies,

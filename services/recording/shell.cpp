@@ -51,17 +51,39 @@ void Shell::watch() {
   while (!service_.stop().requested() && !recording_->tape().stopped()) {
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWatch_ns);
   }
+  if (service_.options().one_session) see_others_out();
   if (recording_->tape().stopped()) {
     service_.note_event(stillhand_msgs::EVENT_NOTE,
                         "recording stopped: the file cannot be written");
   }
 }
 
-void Shell::run() {
-  service_.run([this] { watch(); });
-  if (const Status status = recording_->tape().close(); !status.ok()) {
-    throw std::runtime_error(status.text);
+// What they say at their end belongs to the session.
+void Shell::see_others_out() {
+  constexpr std::int64_t kPatience_ns = 3'000'000'000;
+  constexpr std::size_t kOthers = topics::kServices.size() - 2;  // but the experiment, which waits
+  const std::int64_t limit_ns = runtime::monotonic_ns() + kPatience_ns;
+  while (runtime::monotonic_ns() < limit_ns && service_.bus().lost_peers().size() < kOthers) {
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kWatch_ns);
   }
+}
+
+void Shell::run() {
+  if (service_.options().one_session) {
+    const std::string file = std::filesystem::absolute(service_.options().out).string();
+    service_.note_event(stillhand_msgs::EVENT_NOTE,
+                        (std::string(topics::kRecordingNote) + file).c_str());
+  }
+  Status closed;
+  service_.run([&] {
+    watch();
+    if (!service_.options().one_session) return;
+    // Its life sign goes on until the file is whole: who waits for the one may take the other.
+    recording_->tape().set_paused(true);  // what still comes is of the time after the session
+    closed = recording_->tape().close();
+  });
+  if (!service_.options().one_session) closed = recording_->tape().close();
+  if (!closed.ok()) throw std::runtime_error(closed.text);
   const TapeStatus end = recording_->tape().status();
   const std::uint64_t missing = end.dropped + unattributed_.load(std::memory_order_relaxed);
   if (missing > 0) {

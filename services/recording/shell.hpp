@@ -23,6 +23,7 @@ class Shell {
  private:
   void subscribe(const topics::Topic& topic);
   void watch();
+  void see_others_out();
 
   runtime::Service& service_;
   std::optional<BusRecording> recording_;  // made last, so that a refusal leaves no file

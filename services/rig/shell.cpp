@@ -72,7 +72,12 @@ void Shell::run() {
     while (!service_.stop().requested()) {
       due_ns += kPeriod_ns;
       runtime::sleep_until_ns(due_ns);
-      if (announced_.load().session == stillhand_msgs::SESSION_WAITING) continue;
+      // An end that is latched from the session before starts no clock; that of its own stops none.
+      const stillhand_msgs::SessionState session = announced_.load().session;
+      if (tick == 0 && (session == stillhand_msgs::SESSION_WAITING ||
+                        session == stillhand_msgs::SESSION_ENDING)) {
+        continue;
+      }
       const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
       if (late_ns > kMaxCatchUp_ns) {
         due_ns += late_ns;

@@ -2,6 +2,7 @@
 #include "runtime/service.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstring>
 #include <iostream>
 
@@ -62,8 +63,10 @@ struct Service::Reporting {
           if (status.state() == stillhand_msgs::SERVICE_READY && status.tick() >= 0) {
             status.state(stillhand_msgs::SERVICE_RUNNING);
           }
+          service.end_without_experiment();
         }) {}
   Reporter reporter;
+  int without_experiment = 0;  // statuses
 };
 
 Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(options)), stop_(stop) {
@@ -93,11 +96,31 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   answer_clock_questions(*bus_);
   bus_->subscribe<stillhand_msgs::TrialControl>(
       topics::kTrialControl, [this](const stillhand_msgs::TrialControl& message, const Arrival&) {
-        bus_->supervise(message.session() == stillhand_msgs::SESSION_RUNNING ||
-                        message.session() == stillhand_msgs::SESSION_PAUSED);
+        follow_session(message.session());
         trial_ = from_idl(message);
         if (on_trial_) on_trial_(trial_, message);
       });
+}
+
+void Service::follow_session(stillhand_msgs::SessionState session) {
+  const bool running =
+      session == stillhand_msgs::SESSION_RUNNING || session == stillhand_msgs::SESSION_PAUSED;
+  bus_->supervise(running);
+  if (running) in_session_.store(true, std::memory_order_relaxed);
+  // An end that is latched from a session before this process started is not its own.
+  if (options_.one_session && session == stillhand_msgs::SESSION_ENDING && in_session_.load()) {
+    stop_.request();
+  }
+}
+
+// Nobody will say that the session ends.
+void Service::end_without_experiment() {
+  constexpr int kPatience = 50;  // statuses: 5 s
+  if (!options_.one_session || !in_session_.load(std::memory_order_relaxed)) return;
+  const std::vector<std::string> lost = bus_->lost_peers();
+  const bool gone = std::ranges::find(lost, "experiment") != lost.end();
+  reporting_->without_experiment = gone ? reporting_->without_experiment + 1 : 0;
+  if (reporting_->without_experiment > kPatience) stop_.request();
 }
 
 // The reporter's thread uses the bus, and the bus's threads the reporter: the thread goes first,
@@ -158,6 +181,8 @@ int run_service(const std::string& name, int argc, char** argv,
   cli.add_option("--security", options.security,
                  "folder of certificates (deploy/security/make.sh); none: no security");
   cli.add_flag("--real-time", options.real_time, "ask for SCHED_FIFO");
+  cli.add_flag("--one-session", options.one_session,
+               "end when the session it took part in does, to be started anew for the next");
   cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
   if (more_options) more_options(cli, options);
   try {

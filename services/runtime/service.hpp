@@ -32,6 +32,7 @@ struct ServiceOptions {
   bool real_time = false;          ///< ask for a real-time scheduling policy
   bool serialized = false;         ///< see Bus::Options
   bool answers_replay = false;     ///< see Bus::Options
+  bool one_session = false;        ///< end with the session this process took part in
   std::filesystem::path out;       ///< where this process may write files
 };
 
@@ -74,6 +75,9 @@ class Service {
   void run(const std::function<void()>& loop);
 
  private:
+  void follow_session(stillhand_msgs::SessionState session);
+  void end_without_experiment();
+
   ServiceOptions options_;
   Stop& stop_;
   std::unique_ptr<Bus> bus_;
@@ -82,6 +86,7 @@ class Service {
   std::function<void(const BusIncident&)> on_incident_;
   std::atomic<Tick> tick_{-1};
   std::atomic<std::int64_t> armed_{-1};
+  std::atomic<bool> in_session_{false};
   struct Reporting;
   std::unique_ptr<Reporting> reporting_;
 };

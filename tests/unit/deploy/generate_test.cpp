@@ -170,7 +170,7 @@ TEST(UnitsTest, ThePriorityIsWhatAProcessAsksFor) {
 
 TEST(UnitsTest, AProcessThatDiesComesBackButOneThatRefusesItsSettingsDoesNot) {
   auto sut = unit_named(example(), "rig-pc", "stillhand-rig@1.service");
-  EXPECT_EQ(sut["Restart"], "on-failure");
+  EXPECT_EQ(sut["Restart"], "always");
   EXPECT_EQ(sut["RestartPreventExitStatus"], "2");
   EXPECT_EQ(sut["WatchdogSec"], "2");
   EXPECT_EQ(sut["NotifyAccess"], "main");

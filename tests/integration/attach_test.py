@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand lab --attach`: services that run already, as systemd starts them, conducted session after session."""
+import os
+import signal
+import subprocess
+import threading
+import time
+
+import lab_process
+from lab_process import BUILD, MATCH_LIMIT_S, SERVICES, SOURCE, TRIAL_LIMIT_S, LabTestCase, next_domain, \
+    quick_session
+
+
+class Units:
+    """Every service but the experiment, each started anew when it ends, as by a unit with Restart=always."""
+
+    def __init__(self, folder, domain, config):
+        self.folder, self.domain, self.config = folder, domain, config
+        self.ending = threading.Event()
+        self.keepers = [threading.Thread(target=self.keep, args=(service,)) for service in SERVICES]
+        for keeper in self.keepers:
+            keeper.start()
+
+    def keep(self, service):
+        started = 0
+        while not self.ending.is_set():
+            words = [str(BUILD / "bin" / f"stillhand-{service}"), "--domain", str(self.domain), "--profiles",
+                     str(SOURCE / "qos" / "profiles.xml"), "--config", str(self.config), "--real-time", "--one-session"]
+            if service == "recorder":
+                words += ["--out", str(self.folder / f"{started}.mcap")]
+            if service == "display":
+                words += ["--headless"]
+            started += 1
+            with open(self.folder / f"{service}.log", "a", encoding="utf-8") as log:
+                process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+                while process.poll() is None and not self.ending.wait(0.05):
+                    pass
+                if process.poll() is None:
+                    process.terminate()
+                process.wait()
+            self.ending.wait(1.0)  # RestartSec of apps/deploy/units.cpp
+
+    def close(self):
+        self.ending.set()
+        for keeper in self.keepers:
+            keeper.join()
+
+
+class AttachTest(LabTestCase):
+    def test_services_that_run_already_hold_one_session_after_the_other(self):
+        domain = next_domain()
+        words = (*quick_session(self.folder / "config"), "--trial-seconds", 5)
+        units = Units(self.folder, domain, self.folder / "config")
+        self.addCleanup(units.close)
+        def whole_session(out):
+            lab = self.lab(*words, "--attach", domain=domain, out=self.folder / out)
+            self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())
+            summary = lab.summary()
+            self.assertTrue(all(trial["completed"] for trial in summary["trials"]))
+            self.assertEqual(summary["recording_damage"], [])
+            # A sample clock of its own: nothing of the session before.
+            self.assertEqual(lab.recording(10**9)["rig"]["tick"][0], 0)
+            return summary["conditions"]["C"]["rms_error_mm"]["mean"]
+
+        first = whole_session("first")
+        # Who goes takes the session with it, and is named.
+        lab = self.lab(*words, "--attach", domain=domain, out=self.folder / "broken")
+        lab.wait_for("a rig", lambda: lab.pid_of("rig"), MATCH_LIMIT_S)
+        time.sleep(3.0)
+        os.kill(lab.pid_of("motion"), signal.SIGKILL)
+        self.assertEqual(lab.end_status(), 1)
+        self.assertIn("motion ended: its life sign is gone", " ".join(lab.errors()))
+        # The next one is whole again, with everybody started anew.
+        self.assertAlmostEqual(whole_session("second"), first, delta=0.02 * first)
+
+
+if __name__ == "__main__":
+    lab_process.main()
