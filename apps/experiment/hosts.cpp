@@ -6,23 +6,36 @@
 #include <stdexcept>
 
 #include "contract/config_error.hpp"
+#include "deploy/generated_file.hpp"
 #include "deploy/machine.hpp"
 #include "deploy/profiles.hpp"
+#include "experiment/keys.hpp"
 #include "experiment/lab.hpp"
 #include "idl/topics.hpp"
 #include "recording/file_io.hpp"
 
 namespace stillhand::experiment {
+namespace {
+
+// Where a host has the keys of its services, for its units as for a session.
+std::filesystem::path installed_keys(const deploy::Inventory& inventory) {
+  return std::filesystem::path(deploy::installed_folder(inventory)) / "security";
+}
+
+}  // namespace
 
 Hosts::Hosts(const LabOptions& options)
     : domain_(options.domain),
       rig_(options.rig),
-      local_{options.profiles, options.config, options.out},
+      local_{options.profiles, options.config, options.out, options.security},
       video_(options.video) {
-  if (options.inventory.empty()) return;
-  inventory_ = deploy::read_inventory(options.inventory);
-  domain_ = inventory_->domain;
-  check(options);
+  if (!options.inventory.empty()) {
+    inventory_ = deploy::read_inventory(options.inventory);
+    domain_ = inventory_->domain;
+    local_.security = inventory_->security;
+    check(options);
+  }
+  check_keys(local_.security, domain_, services_on(host_of("experiment")));
 }
 
 // What an inventory allows and a session over it cannot do.
@@ -58,13 +71,18 @@ void Hosts::check(const LabOptions& options) const {
     throw ConfigError("--operator", "mouse, with display and human_operator on two hosts",
                       "both on the host with the mouse");
   }
-  if (!inventory_->security.empty()) {
-    throw ConfigError(file, "security", "no security with `stillhand lab`; the units start it");
-  }
 }
 
 const deploy::Host* Hosts::host_of(std::string_view service) const {
   return inventory_ ? &inventory_->host_of(service, rig_) : nullptr;
+}
+
+std::vector<std::string> Hosts::services_on(const deploy::Host* host) const {
+  std::vector<std::string> services;
+  for (const std::string_view service : topics::kServices) {
+    if (host_of(service) == host) services.emplace_back(service);
+  }
+  return services;
 }
 
 RemoteHost* Hosts::remote_of(std::string_view service) const {
@@ -94,6 +112,13 @@ void Hosts::open() {
     remote->open();
     files["profiles.xml"] = own;
     remote->put(files);
+    if (!local_.security.empty()) {
+      const std::string authority =
+          recording::read_file((local_.security / "authority.pem").string());
+      const std::filesystem::path keys = installed_keys(*inventory_);
+      remote->check(keys_script(keys, authority, services_on(&host)),
+                    "the keys of its services in " + keys.string() + ", of this lab's authority");
+    }
     remotes_[&host] = std::move(remote);
   }
 }
@@ -102,7 +127,8 @@ Place Hosts::of(std::string_view service) const {
   const RemoteHost* remote = remote_of(service);
   if (remote == nullptr) return local_;
   const std::filesystem::path folder = remote->folder();
-  return {folder / "profiles.xml", folder / "config", folder};
+  return {folder / "profiles.xml", folder / "config", folder,
+          local_.security.empty() ? "" : installed_keys(*inventory_)};
 }
 
 Launch Hosts::placed(const Launch& local) const {

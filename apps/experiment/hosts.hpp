@@ -22,6 +22,7 @@ struct Place {
   std::filesystem::path profiles;
   std::filesystem::path config;
   std::filesystem::path out;
+  std::filesystem::path security;  ///< folder of keys; empty: none
 };
 
 /// The machines of a session: this one alone, or those of an inventory.  One thread.
@@ -52,6 +53,8 @@ class Hosts {
   [[nodiscard]] const deploy::Host* host_of(std::string_view service) const;
   [[nodiscard]] RemoteHost* remote_of(std::string_view service) const;
   void check(const LabOptions& options) const;
+  /// Services of the session on a host; nullptr: all.
+  [[nodiscard]] std::vector<std::string> services_on(const deploy::Host* host) const;
 
   std::optional<deploy::Inventory> inventory_;
   std::uint32_t domain_;

@@ -124,6 +124,7 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
       launch.arguments.insert(launch.arguments.end(), words);
     };
     if (options.real_time) add({"--real-time"});
+    if (!place.security.empty()) add({"--security", place.security.string()});
     if (service == "recorder") {
       add({"--out", (place.out / "session.mcap").string()});
       const std::vector<std::string> words = recording::keep_words(options.keep);
@@ -360,6 +361,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
   }
   const runtime::OrdinaryWhile ordinary;
   const int status = report_session(options, live.outcomes, live.interrupted);
+    service_options.security = hosts.of("experiment").security;
   if (!live.sealed.empty()) open_undeclared_effect(options, live.sealed, "summary.json");
   return status;
 }

@@ -33,6 +33,7 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
+  std::filesystem::path security;       ///< folder of keys; empty: none, or the inventory's
   std::filesystem::path inventory;      ///< the lab's machines; empty: this one
   std::filesystem::path model;          ///< control model for C; empty: the session's own
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing

@@ -81,10 +81,15 @@ void add_lab_command(CLI::App& cli, int& status) {
       ->check(check_seed);
   CLI::Option* domain = lab->add_option("--domain", options->domain, "DDS domain, 0 to 232");
   domain->capture_default_str();
-  lab->add_option("--inventory", options->inventory,
-                  "the lab's machines and which service runs where, as for `stillhand deploy`; it "
-                  "names the domain")
-      ->excludes(domain);
+  CLI::Option* inventory = lab->add_option(
+      "--inventory", options->inventory,
+      "the lab's machines and which service runs where, as for `stillhand deploy`; it "
+      "names the domain and the keys");
+  inventory->excludes(domain);
+  lab->add_option("--security", options->security,
+                  "folder of certificates (deploy/security/make.sh), each process's own and this "
+                  "verb's; none: no security")
+      ->excludes(inventory);
   lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
   lab->add_option("--match-seconds", options->match_s,
                   "patience until every endpoint has matched [s]")
