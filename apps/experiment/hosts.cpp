@@ -28,14 +28,17 @@ Hosts::Hosts(const LabOptions& options)
     : domain_(options.domain),
       rig_(options.rig),
       local_{options.profiles, options.config, options.out, options.security},
-      video_(options.video) {
+      video_(options.video),
+      attach_(options.attach) {
   if (!options.inventory.empty()) {
     inventory_ = deploy::read_inventory(options.inventory);
     domain_ = inventory_->domain;
     local_.security = inventory_->security;
     check(options);
   }
-  check_keys(local_.security, domain_, services_on(host_of("experiment")));
+  // Of services that run already each has looked at its own.
+  check_keys(local_.security, domain_,
+             attach_ ? std::vector<std::string>{"experiment"} : services_on(host_of("experiment")));
 }
 
 // What an inventory allows and a session over it cannot do.
@@ -107,6 +110,7 @@ void Hosts::open() {
       if (!status.ok()) throw std::runtime_error(status.text);
       continue;
     }
+    if (attach_) continue;  // its services have theirs
     auto remote =
         std::make_unique<RemoteHost>(host, local_.out / "logs" / ("host_" + host.name + ".log"));
     remote->open();
@@ -161,6 +165,23 @@ void Hosts::bring_back() noexcept {
     }
   }
   remotes_.clear();
+}
+
+void Hosts::bring_recording(const std::filesystem::path& file) noexcept {
+  const std::filesystem::path to = local_.out / "session.mcap";
+  const deploy::Host* host = host_of("recorder");
+  try {
+    if (file.empty()) throw std::runtime_error("the recorder named no file");
+    if (host == nullptr || host->start.empty()) {
+      std::filesystem::copy_file(file, to);
+    } else {
+      RemoteHost(*host, local_.out / "logs" / ("host_" + host->name + ".log")).fetch(file, to);
+    }
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand lab: the recording stays "
+              << (host == nullptr ? "where it is" : "on host " + host->name) << ", " << file << ": "
+              << error.what() << '\n';
+  }
 }
 
 }  // namespace stillhand::experiment

@@ -46,6 +46,8 @@ class Hosts {
   /// Brings what services wrote elsewhere into the folder of the session, and clears the hosts.
   /// What stays behind is told on standard error.
   void bring_back() noexcept;
+  /// The same for a recorder that somebody else has started.  @param file  where it says it wrote
+  void bring_recording(const std::filesystem::path& file) noexcept;
   /// Clears the hosts of what was not brought back.
   void clear() noexcept;
 
@@ -60,7 +62,7 @@ class Hosts {
   std::uint32_t domain_;
   std::uint32_t rig_;
   Place local_;
-  bool video_;
+  bool video_, attach_;
   std::map<const deploy::Host*, std::unique_ptr<RemoteHost>> remotes_;
 };
 

@@ -147,6 +147,38 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
   return list;
 }
 
+/// Looks for a service whose life sign is gone for good, where nobody here is its parent.  One
+/// thread.
+class LostService {
+ public:
+  explicit LostService(const runtime::Bus& bus) : bus_(bus) {}
+
+  std::optional<Ended> operator()() {
+    // Between trials nothing asks for an unbroken life sign.
+    constexpr std::int64_t kPatience_ns = 500'000'000;
+    const std::vector<std::string> lost = bus_.lost_peers();
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (lost.empty()) since_ns_ = now_ns;
+    if (now_ns - since_ns_ < kPatience_ns) return std::nullopt;
+    return Ended{lost.front(), 0, "its life sign is gone", -1, ""};
+  }
+
+ private:
+  const runtime::Bus& bus_;
+  std::int64_t since_ns_ = runtime::monotonic_ns();
+};
+
+/// Services that end with the session leave when they hear of its end; the recorder is the last.
+void see_services_out(const runtime::Bus& bus) {
+  constexpr std::int64_t kPatience_ns = 10'000'000'000;
+  const std::int64_t limit_ns = runtime::monotonic_ns() + kPatience_ns;
+  while (runtime::monotonic_ns() < limit_ns) {
+    const std::vector<std::string> lost = bus.lost_peers();
+    if (std::ranges::find(lost, "recorder") != lost.end()) return;
+    runtime::sleep_until_ns(runtime::monotonic_ns() + runtime::kNsPerSecond / 20);
+  }
+}
+
 /// The session proper, once every process runs.
 class Session final : public LiveTrials {
  public:
@@ -156,9 +188,10 @@ class Session final : public LiveTrials {
         asked_(asked),
         outcomes_(outcomes),
         clocks_(service),
-        conductor_(
-            service, [&processes] { return processes.reap(); },
-            [this](const std::string& what, double done) { progress_.show(what, done); }) {}
+        conductor_(service,
+                   options.attach ? Conductor::Watch(LostService(service.bus()))
+                                  : Conductor::Watch([&processes] { return processes.reap(); }),
+                   [this](const std::string& what, double done) { progress_.show(what, done); }) {}
 
   void run(const Script& script) {
     conductor_.await_everybody(options_.match_s);
@@ -169,6 +202,7 @@ class Session final : public LiveTrials {
     progress_.finish();
   }
   void end() { conductor_.end_session(); }
+  [[nodiscard]] std::string recording() { return conductor_.recording(); }
 
   const TrialOutcome& run(const PlannedTrial& planned) override {
     if (options_.wait_for_start) conductor_.pause();
@@ -228,6 +262,12 @@ AskedMotions check(const LabOptions& options) {
   }
   if (options.who == Operator::kMouse && options.headless) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
+  }
+  if (options.attach &&
+      (options.undeclared_effect != 0 || options.video || options.who == Operator::kMouse ||
+       options.protocol.motion != Motion::kBandNoise)) {
+    throw ConfigError("--attach", "it with --undeclared-effect, --video, --operator or --motion",
+                      "those as arguments of the services, which run already");
   }
   if (!(options.match_s > 0.0 && options.match_s <= 3600.0)) {
     throw ConfigError("--match-seconds", std::to_string(options.match_s), "up to 3600 seconds");
@@ -307,6 +347,11 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
   if (options.undeclared_effect != 0) {
     live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
   }
+  std::string recorded;
+  const auto bring_back = [&] {
+    if (options.attach) return hosts.bring_recording(recorded);
+    hosts.bring_back();
+  };
   try {
     hosts.open();
     runtime::ServiceOptions service_options;
@@ -316,28 +361,36 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
     service_options.seed = options.protocol.seed;
     service_options.profiles = hosts.of("experiment").profiles;
     service_options.config = options.config;
+    service_options.security = hosts.of("experiment").security;
     // Its life sign holds the interlock closed like everybody's.
     service_options.real_time = options.real_time && runtime::become_real_time();
     runtime::Service service(service_options, stop);
     Processes processes;
     Session session(options, asked, service, processes, live.outcomes);
-    for (const Launch& launch : launches(options, hosts, live.sealed)) processes.start(launch);
+    if (!options.attach) {
+      for (const Launch& launch : launches(options, hosts, live.sealed)) processes.start(launch);
+    }
     service.run([&] {
       session.run(script);
       session.end();
       live.interrupted = session.interrupted();
-      processes.end_all("recorder", kEndPatience_s);
+      if (options.attach) {
+        recorded = session.recording();
+        see_services_out(service.bus());
+      } else {
+        processes.end_all("recorder", kEndPatience_s);
+      }
     });
   } catch (...) {
     if (live.outcomes.empty()) {
       hosts.clear();  // first: what they say goes into the folder
       live.folder->discard();
     } else {
-      hosts.bring_back();
+      bring_back();
     }
     throw;
   }
-  if (!live.outcomes.empty()) hosts.bring_back();
+  if (!live.outcomes.empty()) bring_back();
   hosts.clear();
   if (live.outcomes.empty() && live.interrupted) live.folder->discard();
   return live;
@@ -361,7 +414,6 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
   }
   const runtime::OrdinaryWhile ordinary;
   const int status = report_session(options, live.outcomes, live.interrupted);
-    service_options.security = hosts.of("experiment").security;
   if (!live.sealed.empty()) open_undeclared_effect(options, live.sealed, "summary.json");
   return status;
 }

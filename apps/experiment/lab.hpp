@@ -38,6 +38,7 @@ struct LabOptions {
   std::filesystem::path model;          ///< control model for C; empty: the session's own
   std::uint64_t undeclared_effect = 0;  ///< seed of what only the rig is told of; 0: nothing
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
+  bool attach = false;                  ///< to services that somebody else has started
   bool wait_for_start = false;          ///< each trial waits for a start from the dashboard
   recording::KeepOptions keep;          ///< of the session's recording
 };

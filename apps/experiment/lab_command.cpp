@@ -97,6 +97,9 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_option("--profiles", options->profiles, "QoS profiles")->capture_default_str();
   lab->add_option("--config", options->config, "folder with the settings of each service")
       ->capture_default_str();
+  lab->add_flag("--attach", options->attach,
+                "start no service: conduct those that run already, as systemd starts them with "
+                "--one-session, and fetch their recording");
   lab->add_flag("--wait-for-start", options->wait_for_start,
                 "each trial waits until somebody presses Start on the dashboard");
   recording::add_keep_options(*lab, options->keep);

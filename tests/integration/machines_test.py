@@ -5,12 +5,13 @@ The same session on one machine gives the same results; a cable pulled for two s
 take the motor's force away, are told by name, and leave a recording.
 """
 import os
+import subprocess
 import sys
 import time
 
 import lab_process
 import network
-from lab_process import CTEST_SKIPPED, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
+from lab_process import BUILD, CTEST_SKIPPED, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
 
 SESSION_LIMIT_S = 150
 FORCE_LIMIT_TICKS = 50
@@ -59,6 +60,37 @@ class MachinesTest(LabTestCase):
                 away_us = 1e6 * (found["offset_s"] - machine.clock_ahead_s)
                 self.assertLessEqual(abs(away_us), found["uncertainty_us"], service)
                 self.assertLess(found["uncertainty_us"], 5000.0, service)
+
+    def test_services_that_run_already_are_conducted_from_the_desk(self):
+        # As step 3 and 4 of deploy/README.md bring it about; the recorder on a machine of its own.
+        inventory = self.folder / "lab.yaml"
+        domain = next_domain()
+        inventory.write_text(self.network.inventory(domain).read_text().replace(", recorder", "").replace(
+            "services: [display", "services: [recorder, display"))
+        subprocess.run([str(STILLHAND), "deploy", "generate", str(inventory), "--out", str(self.folder / "files")],
+                       check=True, capture_output=True)
+        placed = {"rig-pc": ["rig", "sensing", "motion", "cancellation"],
+                  "screen-pc": ["recorder", "display", "human_operator"], network.HERE: ["identification"]}
+        self.assertEqual(sorted(sum(placed.values(), [])), sorted(lab_process.SERVICES))
+        for name, services in placed.items():
+            machine = self.network[name]
+            there = network.BUILD_THERE if name != network.HERE else BUILD
+            profiles = f"/tmp/stillhand-units-{domain}.xml"
+            machine.run("sh", "-c", f"cat > {profiles}", text=(self.folder / "files" / name / "profiles.xml").read_text())
+            self.addCleanup(machine.run, "sh", "-c", f"rm /tmp/stillhand-units-{domain}.*")
+            for service in services:
+                words = [f"{there}/bin/stillhand-{service}", "--domain", str(domain), "--profiles", profiles, "--config",
+                         f"{there}/share/stillhand/deploy/config", "--real-time", "--one-session"]
+                words += ["--headless"] if service == "display" else []
+                words += ["--out", f"/tmp/stillhand-units-{domain}.mcap"] if service == "recorder" else []
+                unit = subprocess.Popen([*machine.words(), *words], stdin=subprocess.DEVNULL)
+                self.addCleanup(unit.wait)
+                self.addCleanup(unit.kill)
+        lab = self.lab("--conditions", "C", "--identify-seconds", 5, "--trial-seconds", 5, "--seed", 2, "--attach",
+                       domain=domain, start=self.network[network.HERE].words(), inventory=inventory)
+        self.assertEqual(lab.end_status(SESSION_LIMIT_S), 0, lab.errors())
+        self.assertEqual(lab.summary()["recording_damage"], [])
+        self.assertGreater(lab.summary()["conditions"]["C"]["cancelled_share"], 0.5)
 
     def test_a_clock_that_drifts_and_then_jumps_is_told_and_known(self):
         drift_ppm, step_ms, until_step_s = 50.0, 20.0, 35.0
