@@ -14,6 +14,9 @@ static_assert(std::endian::native == std::endian::little);
 using Bytes = std::span<const std::byte>;
 
 constexpr std::size_t kPrefix = 12, kEntity = 4, kHeader = 20, kSubmessageHeader = 4;
+// From here on a vendor's own, passed over by others (9.4.5.1.1); Fast DDS ends each message with
+// one.
+constexpr std::uint8_t kVendors = 0x80;
 constexpr std::uint8_t kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kData = 0x15;
 constexpr std::uint8_t kLittleEndian = 0x01, kInlineQos = 0x02, kHasData = 0x04;
 constexpr std::uint8_t kInvalidate = 0x02;  // of a time stamp
@@ -73,7 +76,7 @@ std::optional<RtpsSample> only_sample(Bytes datagram) noexcept {
   std::ranges::copy(datagram.subspan(8, kPrefix), sample.writer.begin());
   bool stamped = false, found = false;
   for (Bytes rest = datagram.subspan(kHeader); !rest.empty();) {
-    if (rest.size() < kSubmessageHeader || found) return std::nullopt;
+    if (rest.size() < kSubmessageHeader) return std::nullopt;
     const auto id = at<std::uint8_t>(rest, 0);
     const auto flags = at<std::uint8_t>(rest, 1);
     std::size_t length = at<std::uint16_t>(rest, 2);
@@ -82,6 +85,8 @@ std::optional<RtpsSample> only_sample(Bytes datagram) noexcept {
     if (length == 0) length = rest.size();  // the last one may leave it out
     const Bytes body = rest.first(length);
     rest = rest.subspan(length);
+    if (id >= kVendors) continue;
+    if (found) return std::nullopt;
     if (id == kInfoDestination && body.size() >= kPrefix) {
       std::ranges::copy(body.first(kPrefix), sample.destination.begin());
     } else if (id == kInfoTimestamp && take_timestamp(flags, body, sample)) {

@@ -20,9 +20,9 @@ struct RtpsSample {
 };
 
 /// An RTPS message of one DATA with a time stamp and nothing that asks for an answer: what a
-/// best-effort writer sends a sample in.  RTPS 2.3, 8.3.7 and 9.4.  Everything else is nullopt and
-/// DDS's own business: discovery, heartbeats, fragments, disposed instances, protected messages,
-/// other byte orders, and what is no RTPS.  Pure.
+/// best-effort writer sends a sample in; a vendor's own parts are passed over.  RTPS 2.3, 8.3.7
+/// and 9.4.  Everything else is nullopt and DDS's own business: discovery, heartbeats, fragments,
+/// disposed instances, protected messages, other byte orders, and what is no RTPS.  Pure.
 std::optional<RtpsSample> only_sample(std::span<const std::byte> datagram) noexcept;
 
 }  // namespace stillhand::runtime

@@ -82,7 +82,7 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   std::set<ReaderKey> asked_for;
   std::deque<std::pair<ReaderKey, std::string>> waiting;
   std::vector<std::string> trouble;
-  std::atomic<std::uint64_t> unattributed{0};
+  std::atomic<std::uint64_t> unattributed{0}, past_dds{0};
 
   // Of the opening thread alone.
   std::map<std::string, edds::Topic*> topics;
@@ -227,6 +227,7 @@ bool Tap::Impl::take_datagram(std::span<const std::byte> datagram, std::int64_t 
   // The same once more by another address, or overtaken.
   if (sample->sequence <= mine.newest) return true;
   mine.newest = sample->sequence;
+  past_dds.fetch_add(1, std::memory_order_relaxed);
   eprosima::fastrtps::rtps::Time_t sent;
   sent.seconds(sample->sent_s);
   sent.fraction(sample->sent_fraction);
@@ -303,6 +304,8 @@ std::vector<std::string> Tap::trouble() const {
   const std::lock_guard lock(impl_->mutex);
   return impl_->trouble;
 }
+
+std::uint64_t Tap::past_dds() const { return impl_->past_dds.load(std::memory_order_relaxed); }
 
 std::uint64_t Tap::unattributed() const {
   return impl_->unattributed.load(std::memory_order_relaxed);

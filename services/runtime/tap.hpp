@@ -48,6 +48,8 @@ class Tap {
   [[nodiscard]] std::vector<FoundWriter> writers() const;
   /// What could not be subscribed to, and why; one line each.
   [[nodiscard]] std::vector<std::string> trouble() const;
+  /// Samples that were read in batches, Options::batched.
+  [[nodiscard]] std::uint64_t past_dds() const;
   /// Samples of writers that DDS never announced; 0 unless DDS is at fault.
   [[nodiscard]] std::uint64_t unattributed() const;
 

@@ -99,6 +99,8 @@ TEST(TapTest, ReadInBatchesItHearsTheSame) {
   ASSERT_TRUE(eventually([&] { return plain.heard().size() >= all; })) << plain.heard().size();
   ASSERT_TRUE(eventually([&] { return batched.heard().size() >= all; })) << batched.heard().size();
   EXPECT_EQ(plain.heard(), batched.heard());
+  EXPECT_EQ(batched.tap().past_dds(), kTicks);
+  EXPECT_EQ(plain.tap().past_dds(), 0u);
   EXPECT_EQ(batched.tap().unattributed(), 0u);
   EXPECT_EQ(batched.tap().trouble(), std::vector<std::string>());
   // The kernel's stamp is of the clock that the writer's is of.

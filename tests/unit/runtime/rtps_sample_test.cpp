@@ -84,6 +84,12 @@ TEST(RtpsSampleTest, TheLastOneMayLeaveItsLengthOut) {
   EXPECT_EQ(got->bytes.size(), kPayload.size());
 }
 
+TEST(RtpsSampleTest, WhatAVendorAddsIsPassedOver) {
+  const Bytes own = submessage(0x80, 1, Bytes(56));
+  EXPECT_TRUE(only_sample(kHeader + own + kStamp + data() + own));
+  EXPECT_FALSE(only_sample(kHeader + kStamp + data() + own + data()));
+}
+
 TEST(RtpsSampleTest, WhatAsksForMoreIsLeftToDds) {
   const Bytes heartbeat = submessage(0x07, 1, Bytes(28));
   const Bytes others[]{
