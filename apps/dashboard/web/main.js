@@ -7,7 +7,7 @@ import { Graph } from "/graph.js";
 import { TrackingScreen } from "/screen.js";
 import { Sound } from "/sound.js";
 import { Spectrum } from "/spectrum.js";
-import { showLost, showStatus } from "/status.js";
+import { showLost, showStatus, withMismatches } from "/status.js";
 import { Stream } from "/stream.js";
 import { Tables } from "/tables.js";
 import { Timeline } from "/timeline.js";
@@ -25,6 +25,7 @@ let tablesAt = -Infinity;
 
 function show(snapshot, whole) {
   const past = snapshot.mode === "recording";
+  snapshot.alarms = withMismatches(snapshot);
   element("timeline-part").hidden = !past;
   if (past) snapshot.recent = timeline.recent();
   showStatus(snapshot);

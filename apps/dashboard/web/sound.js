@@ -14,27 +14,29 @@ export class Sound {
     this.button.addEventListener("click", () => {
       this.on = !this.on;
       localStorage.setItem(KEY, this.on ? "on" : "off");
-      if (this.on) this.beep(TONES.warning);
+      if (this.on) this.allow().then(() => this.beep(TONES.warning));
       this.show();
     });
-    // A browser lets a page sound once somebody has touched it.
-    for (const name of ["pointerdown", "keydown"]) document.addEventListener(name, () => this.on && this.ready());
+    for (const name of ["pointerdown", "keydown"]) document.addEventListener(name, () => this.on && this.allow());
+    this.show();
+  }
+
+  // A browser lets a page sound once somebody has touched it.
+  async allow() {
+    if (!navigator.userActivation.hasBeenActive) return;
+    this.audio ??= new AudioContext();
+    if (this.audio.state === "suspended") await this.audio.resume();
     this.show();
   }
 
   show() {
     this.button.setAttribute("aria-pressed", this.on);
-    write(this.button, this.on ? "Sound on" : "Sound off");
-  }
-
-  ready() {
-    this.audio ??= new AudioContext();
-    if (this.audio.state === "suspended") this.audio.resume();
-    return this.audio;
+    write(this.button, !this.on ? "Sound off" : this.audio?.state === "running" ? "Sound on" : "Sound on: touch the page once");
   }
 
   beep({ hz, beeps }) {
-    const audio = this.ready();
+    const { audio } = this;
+    if (audio?.state !== "running") return;
     for (let i = 0; i < beeps; ++i) {
       const from = audio.currentTime + 0.25 * i;
       const tone = new OscillatorNode(audio, { type: "triangle", frequency: hz });

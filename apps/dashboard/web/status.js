@@ -21,6 +21,7 @@ export function what(alarm) {
     case "lost": return `${topic}${from} lost up to ${amount(alarm)} in a row`;
     case "silent": return `${topic}${from} silent for ${amount(alarm)}`;
     case "latency": return `${topic}${from} takes ${amount(alarm)} (p99)`;
+    case "qos": return `${topic} of ${alarm.writer} is not matched: QoS mismatch, ${alarm.policy}`;
     case "chain": return `sensor to motor takes ${amount(alarm)}`;
     case "missing": return `${alarm.subject}${at} shows no life sign, for ${amount(alarm)}`;
     default: return `${alarm.watch} ${alarm.subject}`;
@@ -41,6 +42,15 @@ function stripOfAlarms(alarms, now) {
   const others = alarms.length > 1 ? `; ${alarms.length - 1} more` : "";
   const over = first.active ? "" : first.watch === "missing" || first.watch === "silent" ? "; back again" : "; not now";
   strip(first.level, WORDS[first.level], what(first) + over + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
+}
+
+// With the QoS mismatches, which no threshold raises and nobody can acknowledge away. The graph is not in every snapshot.
+let mismatches = [];
+export function withMismatches({ alarms, graph }) {
+  mismatches = graph?.qos_mismatches ?? mismatches;
+  const standing = mismatches.map(({ topic, service, policy, since_ms }) => (
+    { watch: "qos", subject: topic, writer: service, policy, level: "critical", active: true, acknowledged: true, count: 1, since_ms, last_ms: since_ms }));
+  return [...standing, ...alarms];
 }
 
 // What the strip and the graph tell of. In a recording nobody acknowledges, so that each alarm stays at its worst to the
@@ -69,7 +79,9 @@ export function showStatus(snapshot) {
     const before = alarms.length > 0 ? `; ${alarms.length} alarm${alarms.length === 1 ? "" : "s"} before` : "";
     strip("healthy", WORDS.healthy, paused + title + before, recording ? clock(now) : `since ${clock(snapshot.level_since_ms)}\n${span(now - snapshot.level_since_ms)}`);
   } else {
-    strip("none", SESSIONS[session.state] ?? session.state, title, recording ? clock(now) : "");
+    const absent = snapshot.services.filter(({ state }) => state === undefined).map(({ service }) => service);
+    const waits = session.state === "waiting" && absent.length > 0 ? `; not there yet: ${absent.join(", ")}` : "";
+    strip("none", SESSIONS[session.state] ?? session.state, title + waits, recording ? clock(now) : "");
   }
   delete document.body.dataset.stale;
 }
