@@ -108,6 +108,7 @@ export class Tables {
     this.rigs = new Table("rigs", ["rig", { text: "level", left: true }, { text: "session", left: true }, { text: "worst", left: true }, "samples", "lost"]);
     this.edges = new Table("edges", ["edge", "matched", "samples", "lost ticks", { text: "cycle misses", title: "its own supervision, microseconds" },
       { text: "DDS misses", title: "deadlines missed as DDS counts them, whole milliseconds" }, "longest interval [ms]", { text: "latency p99 [µs]", title: "stamp to arrival, the clocks' offset taken off" }]);
+    element("edges-part").addEventListener("toggle", () => this.graph && this.showEdges(this.graph));
     this.hosts = new Table("hosts", [{ text: "host" }, { text: "processes", left: true }, { text: "CPU", title: "of all its cores" }, "cores", "clock [µs]", "± [µs]"]);
     this.recorders = new Table("recorders", ["recorder", { text: "state", left: true }, { text: "file", left: true }, "received", "lost", "written", "dropped", "file [MB]", "free [GB]", { text: "its last answer", left: true }]);
     this.clocks = new Table("clocks", ["process", "offset [µs]", "± [µs]", "drift [ppm]", "steps"]);
