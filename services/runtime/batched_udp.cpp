@@ -24,7 +24,7 @@ namespace rtps = eprosima::fastdds::rtps;
 
 namespace {
 
-constexpr std::int64_t kTurn_ns = 2'000'000;
+constexpr std::int64_t kTurn_ns = 4'000'000;
 constexpr std::size_t kSlots = 64;
 constexpr std::size_t kLargest = 65536;  // a datagram's, by UDP itself
 

@@ -21,7 +21,7 @@ namespace stillhand::runtime {
 using TakeDatagram =
     std::function<bool(std::span<const std::byte> datagram, std::int64_t arrived_ns)>;
 
-/// UDPv4 for a listener to much: what has come is read every 2 ms, many datagrams a call, in one
+/// UDPv4 for a listener to much: what has come is read every 4 ms, many datagrams a call, in one
 /// thread.  Fast DDS's own transport sleeps in a call for each datagram, and every *sender* pays
 /// for waking it (README, "Batched UDP").  When a datagram came,
 /// the kernel tells, so the waiting shows in no latency.  Sends and joins groups as Fast DDS's.
