@@ -39,6 +39,7 @@ Json readers_json(const MessageFeed& feed, const topics::Topic& topic) {
       reader["worst_interval_us"] = number(counts.worst_interval_us);
       reader["latency_p99_us"] = number(counts.latency_p99_us);
       reader["late"] = times(found->second.late());
+      reader["missed"] = times(found->second.missed());
       reader["lost"] = times(found->second.lost());
     }
     readers.push_back(std::move(reader));

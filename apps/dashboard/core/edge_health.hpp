@@ -35,9 +35,8 @@ class EdgeHealth {
     const bool again = counts.samples < counts_.samples;  // another process of that name
     if (again) *this = {};
     if (known_) {
-      late_.note(counts.cycle_misses > counts_.cycle_misses ||
-                     counts.deadline_misses > counts_.deadline_misses,
-                 at_ns);
+      late_.note(counts.cycle_misses > counts_.cycle_misses, at_ns);
+      missed_.note(counts.deadline_misses > counts_.deadline_misses, at_ns);
       lost_.note(counts.lost_ticks > counts_.lost_ticks, at_ns);
     }
     counts_ = counts;
@@ -45,12 +44,15 @@ class EdgeHealth {
   }
 
   [[nodiscard]] const EndCounts& counts() const noexcept { return counts_; }
+  /// By its own supervision.
   [[nodiscard]] const Growth& late() const noexcept { return late_; }
+  /// By DDS's.
+  [[nodiscard]] const Growth& missed() const noexcept { return missed_; }
   [[nodiscard]] const Growth& lost() const noexcept { return lost_; }
 
  private:
   EndCounts counts_;
-  Growth late_, lost_;
+  Growth late_, missed_, lost_;
   bool known_ = false;
 };
 

@@ -67,7 +67,7 @@ class Edge {
     const active = faults.filter(({ active }) => active);
     const kind = active.length > 0 ? active[0].kind : faults.length > 0 ? "was" : "well";
     mark(this.group, "data-kind", kind);
-    write(this.text, { unmatched: "✕", qos: "QoS", late: "late", lost: "lost" }[kind] ?? "");
+    write(this.text, { unmatched: "✕", qos: "QoS", late: "late", missed: "late", lost: "lost" }[kind] ?? "");
   }
 }
 
@@ -144,7 +144,8 @@ export class Graph {
         const away = gone(service);
         if (away && going) missing.push(node.name);
         const touched = this.faults.filter(({ reader, active }) => active && reader === node.name);
-        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : touched.length > 0 ? `${touched.length} edge${touched.length === 1 ? "" : "s"} at fault` : service.state;
+        const edges = new Set(touched.map(({ topic }) => topic)).size;
+        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} edge${edges === 1 ? "" : "s"} late or bad` : service.state;
         const level = (away && going) || service.state === "fault" ? "critical" : gravest(touched);
         node.show(away && !going ? "none" : worse(level, levels.get(node.name) ?? "healthy"), told);
       } else {
@@ -157,7 +158,7 @@ export class Graph {
     }
     const active = this.faults.filter(({ active: now }) => now).length;
     const absent = missing.length > 0 ? `missing: ${missing.join(", ")}` : "every process that is awaited is there";
-    mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no edge is at fault now" : `${active} edges are at fault now, listed below`}`);
+    mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no edge is at fault now" : `${active} faults of edges now, listed below`}`);
   }
 
   // The same in words.

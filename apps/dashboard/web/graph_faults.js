@@ -25,19 +25,21 @@ function unmatched({ services, graph }) {
   return [...found.values()];
 }
 
-const times = (count, what) => `${count} ${what}${count === 1 ? "" : what.endsWith("s") ? "es" : "s"}`;
+const times = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
 
 function trouble({ topic, writers }, reader, now) {
   const found = [];
-  const { service, late, lost } = reader;
+  const { service, late, missed, lost } = reader;
   const writer = writers.length === 1 ? writers[0] : "";
-  const misses = reader.cycle_misses + reader.deadline_misses;
-  const add = (kind, growth, text) => {
+  const add = (kind, level, growth, text) => {
     const active = growth.last_ms !== null && now - growth.last_ms < RECENT_MS;
-    found.push({ kind, topic, writer, reader: service, level: "warning", active, text, since_ms: growth.first_ms, last_ms: growth.last_ms });
+    found.push({ kind, topic, writer, reader: service, level, active, text, since_ms: growth.first_ms, last_ms: growth.last_ms });
   };
-  if (misses > 0) add("late", late, `late: ${times(reader.cycle_misses, "cycle miss")}, ${times(reader.deadline_misses, "DDS miss")}, longest interval ${(reader.worst_interval_us / 1000).toFixed(1)} ms`);
-  if (reader.lost_ticks > 0) add("lost", lost, `lost ${times(reader.lost_ticks, "tick")}`);
+  const longest = `longest interval ${(reader.worst_interval_us / 1000).toFixed(1)} ms`;
+  if (reader.lost_ticks > 0) add("lost", "warning", lost, `lost ${times(reader.lost_ticks, "tick")}`);
+  if (reader.deadline_misses > 0) add("missed", "warning", missed, `${times(reader.deadline_misses, "DDS deadline")} missed, ${longest}`);
+  // What the loop is made to bear: told, and no warning.
+  if (reader.cycle_misses > 0) add("late", "healthy", late, `${times(reader.cycle_misses, "cycle")} late, ${longest}`);
   return found;
 }
 
@@ -61,6 +63,6 @@ export function faultsOf(snapshot) {
       if (reader.samples !== undefined) found.push(...trouble(topic, reader, now));
     }
   }
-  const rank = (fault) => (fault.level === "critical" ? 0 : fault.active ? 1 : 2);
+  const rank = (fault) => (fault.level === "critical" ? 0 : !fault.active ? 3 : fault.level === "warning" ? 1 : 2);
   return found.map((fault, i) => ({ fault, i })).sort((one, other) => rank(one.fault) - rank(other.fault) || one.i - other.i).map(({ fault }) => fault);
 }

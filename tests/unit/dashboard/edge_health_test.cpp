@@ -27,13 +27,14 @@ TEST(EdgeHealthTest, TellsWhenACountFirstGrewAndWhenItDidLast) {
   EXPECT_EQ(sut.counts().cycle_misses, 3u);
 }
 
-TEST(EdgeHealthTest, DdsOwnCountMakesItLateToo) {
+TEST(EdgeHealthTest, DdsCountIsApart) {
   EdgeHealth sut;
   EndCounts missed = counts(200, 0, 0);
   missed.deadline_misses = 1;
   sut.step(counts(100, 0, 0), 1);
   sut.step(missed, 2);
-  EXPECT_EQ(sut.late().first_at_ns, 2);
+  EXPECT_EQ(sut.missed().first_at_ns, 2);
+  EXPECT_EQ(sut.late().first_at_ns, 0);
 }
 
 TEST(EdgeHealthTest, WhatWasCountedBeforeTheFirstReportHasNoTime) {

@@ -23,7 +23,7 @@ const TOPICS = [
 
 const NOW = 1_000_000;
 const reader = (service, more = {}) => ({ service, matched: 1, samples: 100, lost_ticks: 0, cycle_misses: 0, deadline_misses: 0,
-  worst_interval_us: 1500, latency_p99_us: 100, late: { first_ms: null, last_ms: null }, lost: { first_ms: null, last_ms: null }, ...more });
+  worst_interval_us: 1500, latency_p99_us: 100, late: { first_ms: null, last_ms: null }, missed: { first_ms: null, last_ms: null }, lost: { first_ms: null, last_ms: null }, ...more });
 const snapshot = (readers, more = {}) => ({ now_ms: NOW, session: { state: "running" }, services: [],
   graph: { topics: [{ topic: "sensed", writers: ["sensing"], readers }], qos_mismatches: [] }, ...more });
 
@@ -63,12 +63,18 @@ test("who writes to a neighbour of its column stands beside it", () => {
 });
 
 test("an edge is late now for five seconds after its count grew, then it was", () => {
-  const late = (last_ms) => faultsOf(snapshot([reader("motion", { cycle_misses: 1, deadline_misses: 2, late: { first_ms: 5000, last_ms } })]));
+  const late = (last_ms) => faultsOf(snapshot([reader("motion", { cycle_misses: 1, late: { first_ms: 5000, last_ms } })]));
   const [now] = late(NOW - 4999);
   assert.deepEqual([now.kind, now.active, now.writer, now.reader, now.since_ms], ["late", true, "sensing", "motion", 5000]);
-  assert.equal(now.text, "late: 1 cycle miss, 2 DDS misses, longest interval 1.5 ms");
+  assert.equal(now.text, "1 cycle late, longest interval 1.5 ms");
   assert.equal(late(NOW - 5001)[0].active, false);
   assert.deepEqual(faultsOf(snapshot([reader("motion")])), []);
+});
+
+test("what DDS counts as missed and what is lost is a warning, what only comes late is none", () => {
+  const found = faultsOf(snapshot([reader("motion", { cycle_misses: 1, deadline_misses: 2, lost_ticks: 3, late: { first_ms: 1, last_ms: NOW },
+    missed: { first_ms: 1, last_ms: NOW }, lost: { first_ms: 1, last_ms: NOW - 6000 } })]));
+  assert.deepEqual(found.map(({ kind, level, active }) => [kind, level, active]), [["missed", "warning", true], ["late", "healthy", true], ["lost", "warning", false]]);
 });
 
 test("what both ends do not match is one edge, and a cut-off name is none", () => {
