@@ -10,30 +10,35 @@ function tell(text, bad = false) {
   write(element("answer"), text);
 }
 
-// true: it was asked for.
+// Why not; nothing: it was asked for.
 async function ask(path, name) {
   try {
     const answer = await fetch(path, { method: "POST", signal: AbortSignal.timeout(2000) });
     if (answer.ok) {
       tell(`${name}: asked at ${clock(Date.now())}`);
-      return true;
+      return "";
     }
-    tell(`${name}: refused: ${(await answer.text()).trim()}`, true);
+    const why = (await answer.text()).trim();
+    tell(`${name}: refused: ${why}`, true);
+    return why;
   } catch {
     tell(`${name}: not delivered, the dashboard's process does not answer`, true);
+    return "the dashboard's process does not answer";
   }
-  return false;
 }
 
 async function emergencyStop(button) {
   button.dataset.state = "asking";
   for (let i = 0; i < TRIES; ++i) {
-    if (await ask("/emergency-stop", "Emergency stop")) {
+    const why = await ask("/emergency-stop", "Emergency stop");
+    if (why === "") {
       button.dataset.state = "asked";
+      // From then on the session's own word counts.
+      setTimeout(() => { if (button.dataset.state === "asked") delete button.dataset.state; }, 5000);
       return;
     }
     button.dataset.state = "failed";
-    tell("EMERGENCY STOP NOT DELIVERED: use the rig's own. Trying again …", true);
+    tell(`EMERGENCY STOP NOT DELIVERED (${why}): use the rig's own. Trying again …`, true);
     await new Promise((then) => setTimeout(then, 250));
   }
   tell("EMERGENCY STOP NOT DELIVERED: use the rig's own.", true);
