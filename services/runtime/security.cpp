@@ -215,7 +215,6 @@ void check_identity(const Identity& identity, std::uint32_t domain) {
   verify(identity, *certificate, *store);
 
   const fs::path key_file = own_file(identity, "key.pem");
-  check_private(key_file);
   // A service asks nobody for a password.
   const auto no_password = [](char*, int, int, void*) { return -1; };
   const Key key(PEM_read_bio_PrivateKey(opened(key_file).get(), nullptr, no_password, nullptr));
@@ -224,6 +223,7 @@ void check_identity(const Identity& identity, std::uint32_t domain) {
     throw ConfigError(key_file.string(), "another key",
                       "that of " + own_file(identity, "certificate.pem").string());
   }
+  check_private(key_file);
 
   const fs::path governance = governance_file(identity);
   check_domain(governance, signed_text(governance, *store, identity), domain);

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand lab --security`: a session of processes with keys, and a stranger beside it that has none (stranger.cpp).
+
+It receives nothing and nobody hears it, the results are those of a session without keys; keys with a fault are refused
+before anything starts.
+"""
+import os
+import re
+import shutil
+import subprocess
+
+import lab_process
+from lab_process import BUILD, END_LIMIT_S, SOURCE, LabTestCase, next_domain
+
+MAKE = SOURCE / "deploy" / "security" / "make.sh"
+STRANGER = BUILD / "tests" / "stranger"
+SESSION_LIMIT_S = 150
+WORDS = ["--conditions", "C", "--identify-seconds", 20, "--trial-seconds", 20, "--seed", 2]
+
+
+def make_keys(folder, *options):
+    subprocess.run([str(MAKE), str(folder), *options], check=True, capture_output=True,
+                   env={**os.environ, "STILLHAND_BUILD": str(BUILD)})
+    return folder
+
+
+class SecuredSessionTest(LabTestCase):
+    def setUp(self):
+        super().setUp()
+        self.keys = make_keys(self.folder / "keys")
+
+    def session(self, name, stranger_does, *words):
+        """A whole session with a stranger beside it; what it received, and how many readers it had."""
+        domain = next_domain()
+        stranger = subprocess.Popen([str(STRANGER), str(domain), stranger_does], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(stranger.stdout.close)
+        self.addCleanup(stranger.wait)
+        self.addCleanup(stranger.kill)
+        lab = self.lab(*WORDS, *words, domain=domain, out=self.folder / name)
+        self.assertEqual(lab.end_status(SESSION_LIMIT_S), 0, lab.errors())
+        stranger.terminate()
+        said = stranger.stdout.read()
+        print(name, said.strip(), f"ticks lost {lab.summary()['lost_ticks']}", flush=True)
+        return lab, [int(number) for number in re.findall(r"\d+", said)]
+
+    def test_a_stranger_hears_and_moves_nothing_and_the_results_are_those_without_keys(self):
+        # That its silence is the keys' doing: without them the same program hears.
+        plain, (received, _) = self.session("plain", "reads")
+        self.assertGreater(received, 20_000)
+        secured, (received, heard_by) = self.session("secured", "writes", "--security", self.keys)
+        self.assertEqual((received, heard_by), (0, 0))
+        errors_mm, shares = [], []
+        for lab in (plain, secured):
+            result = lab.summary()["conditions"]["C"]
+            errors_mm.append(result["rms_error_mm"]["mean"])
+            shares.append(result["cancelled_share"])
+            self.assertEqual(lab.recording(1)["damage"], [])
+        print(f"RMS error {errors_mm[0]:.3f} and {errors_mm[1]:.3f} mm, cancelled {shares[0]:.4f} and {shares[1]:.4f}",
+              flush=True)
+        # The simulated subject hears of a tick a little later or earlier, as from session to session.
+        self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.05 * errors_mm[0])
+        self.assertAlmostEqual(shares[0], shares[1], delta=0.02)
+
+    def assert_refused(self, *words, **keywords):
+        lab = self.lab(*WORDS, "--security", self.keys, **keywords)
+        self.assertEqual(lab.end_status(END_LIMIT_S), 2, lab.errors())
+        self.assertEqual(len(lab.errors()), 1, lab.errors())
+        for word in words:
+            self.assertIn(str(word), lab.errors()[0])
+        self.assertFalse(lab.out.exists(), "results of a session that never was")
+
+    def test_a_missing_key_is_refused(self):
+        (self.keys / "display" / "key.pem").unlink()
+        self.assert_refused(self.keys / "display" / "key.pem", "make.sh")
+
+    def test_a_folder_that_is_not_there_is_refused(self):
+        shutil.rmtree(self.keys)
+        self.assert_refused(self.keys / "authority.pem", "make.sh")
+
+    def test_an_expired_certificate_is_refused(self):
+        request = self.folder / "request.pem"
+        rig = self.keys / "rig"
+        for words in (["-in", rig / "certificate.pem", "-x509toreq", "-signkey", rig / "key.pem", "-out", request],
+                      ["-req", "-in", request, "-days", "-1", "-CA", self.keys / "authority.pem", "-CAkey",
+                       self.keys / "authority_key.pem", "-set_serial", "7", "-out", rig / "certificate.pem"]):
+            subprocess.run(["openssl", "x509", *map(str, words)], check=True, capture_output=True)
+        self.assert_refused(rig / "certificate.pem", "expired on")
+
+    def test_another_authority_s_certificate_is_refused(self):
+        other = make_keys(self.folder / "other")
+        shutil.copy(other / "motion" / "certificate.pem", self.keys / "motion" / "certificate.pem")
+        self.assert_refused(self.keys / "motion" / "certificate.pem", "authority.pem")
+
+    def test_a_key_that_everybody_may_read_is_refused(self):
+        (self.keys / "experiment" / "key.pem").chmod(0o644)
+        self.assert_refused(self.keys / "experiment" / "key.pem", "chmod o=")
+
+    def test_keys_of_another_domain_are_refused(self):
+        self.keys = make_keys(self.folder / "domain-7", "--domain", "7")
+        self.assert_refused("domain: got 8, want 7 to 7", domain=8)
+
+
+if __name__ == "__main__":
+    lab_process.main()

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// stranger DOMAIN reads|writes
+// A program of nobody's beside a session: plain Fast DDS, without a certificate.  Reads every topic
+// of the catalogue but, with "writes", two of which it writes: it asks the motor for 40 N and tells
+// everybody that the session ends, a hundred times a second.  After SIGTERM it says what it
+// received, and how many readers its writers have had.
+#include <atomic>
+#include <cstdio>
+#include <deque>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <string_view>
+#include <thread>
+
+#include "idl/control_loop.h"
+#include "idl/session.h"
+#include "idl/topics.hpp"
+#include "runtime/participant.hpp"
+#include "runtime/stop.hpp"
+#include "runtime/type_tag.hpp"
+
+namespace {
+
+namespace edds = eprosima::fastdds::dds;
+namespace runtime = stillhand::runtime;
+namespace topics = stillhand::topics;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+std::atomic<long> received{0};
+std::atomic<long> readers{0};
+
+struct Reading final : edds::DataReaderListener {
+  explicit Reading(edds::TypeSupport type_) : type(std::move(type_)), data(type.create_data()) {}
+  ~Reading() override { type.delete_data(data); }
+  Reading(const Reading&) = delete;
+  Reading& operator=(const Reading&) = delete;
+  void on_data_available(edds::DataReader* reader) override {
+    edds::SampleInfo info;
+    while (reader->take_next_sample(data, &info) == ReturnCode_t::RETCODE_OK) {
+      if (info.valid_data) ++received;
+    }
+  }
+  edds::TypeSupport type;
+  void* data;
+};
+
+struct Writing final : edds::DataWriterListener {
+  void on_publication_matched(edds::DataWriter* /*writer*/,
+                              const edds::PublicationMatchedStatus& status) override {
+    if (status.current_count_change > 0) readers += status.current_count_change;
+  }
+};
+
+struct Stranger {
+  explicit Stranger(std::uint32_t domain)
+      : participant(runtime::create_participant(STILLHAND_SOURCE "/qos/profiles.xml", domain,
+                                                "stranger", false, {}, nullptr)),
+        subscriber(participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT)),
+        publisher(participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT)) {}
+  ~Stranger() {
+    participant->delete_contained_entities();
+    edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+  Stranger(const Stranger&) = delete;
+  Stranger& operator=(const Stranger&) = delete;
+
+  edds::Topic* topic(const topics::Topic& row) {
+    const std::string name(row.name);
+    if (edds::TopicDescription* known = participant->lookup_topicdescription(name)) {
+      return static_cast<edds::Topic*>(known);
+    }
+    runtime::find_type(row.type)->support.register_type(participant);
+    return participant->create_topic(name, std::string(row.type), edds::TOPIC_QOS_DEFAULT);
+  }
+  void read(const topics::Topic& row) {
+    Reading& listener = listening.emplace_back(runtime::find_type(row.type)->support);
+    subscriber->create_datareader_with_profile(
+        topic(row), std::string(topics::profile_of(row.pattern)), &listener);
+  }
+  edds::DataWriter* writer(const topics::Topic& row) {
+    return publisher->create_datawriter_with_profile(
+        topic(row), std::string(topics::profile_of(row.pattern)), &telling);
+  }
+
+  // Listeners outlive the readers and writers that call them.
+  std::deque<Reading> listening;
+  Writing telling;
+  edds::DomainParticipant* participant;
+  edds::Subscriber* subscriber;
+  edds::Publisher* publisher;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  runtime::Stop stop;
+  {
+    Stranger stranger(static_cast<std::uint32_t>(std::stoul(argv[1])));
+    const bool writes = argv[2] == std::string_view("writes");
+    for (const topics::Topic* row : topics::kCatalogue) {
+      const bool its_own = row == &topics::kMotorCommand || row == &topics::kTrialControl;
+      if (!writes || !its_own) stranger.read(*row);
+    }
+    edds::DataWriter* motor = writes ? stranger.writer(topics::kMotorCommand) : nullptr;
+    edds::DataWriter* control = writes ? stranger.writer(topics::kTrialControl) : nullptr;
+    stillhand_msgs::MotorCommand push;
+    push.rig(1);
+    push.force_n(40.0);
+    stillhand_msgs::TrialControl end;
+    end.rig(1);
+    end.session(stillhand_msgs::SESSION_ENDING);
+    while (!stop.requested()) {
+      push.tick(push.tick() + 1);
+      if (motor != nullptr) motor->write(&push);
+      if (control != nullptr) control->write(&end);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  std::printf("received %ld, heard by %ld\n", received.load(), readers.load());
+  return 0;
+}
