@@ -7,6 +7,11 @@ namespace stillhand::runtime {
 /// no thread settings: its threads inherit).  @return false when the system does not grant it.
 bool become_real_time() noexcept;
 
+/// Keeps every page of this process that is or will be in use from being swapped out, where the
+/// limit (RLIMIT_MEMLOCK) has room for a process: with less, later allocations would fail.
+/// @return false when it hasn't, or the system does not grant it.
+bool lock_memory() noexcept;
+
 /// Lowers a real-time thread below the control path, for threads that report or write files.  They
 /// stay real-time: they share locks with the control path inside Fast DDS (its send resources), and
 /// an ordinary thread that is preempted while it holds one stalls the loop for as long as the

@@ -193,7 +193,10 @@ int run_service(const std::string& name, int argc, char** argv,
   try {
     if (with_parent) end_with_parent();
     Stop stop;
-    if (options.real_time) options.real_time = become_real_time();
+    if (options.real_time) {
+      options.real_time = become_real_time();
+      lock_memory();  // host_status tells whether it is
+    }
     Service service(options, stop);
     warn_of_expiry(options);
     body(service);
