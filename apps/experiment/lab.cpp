@@ -363,7 +363,8 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
     service_options.config = options.config;
     service_options.security = hosts.of("experiment").security;
     // Its life sign holds the interlock closed like everybody's.
-    service_options.real_time = options.real_time && runtime::become_real_time();
+    service_options.real_time =
+        options.real_time && runtime::become_real_time(!service_options.security.empty());
     runtime::Service service(service_options, stop);
     Processes processes;
     Session session(options, asked, service, processes, live.outcomes);

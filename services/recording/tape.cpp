@@ -132,7 +132,7 @@ std::vector<std::uint64_t> Tape::written_by_channel() const {
 }
 
 void Tape::work(const std::stop_token& stop) {
-  runtime::become_background();
+  runtime::become_background(runtime::Locks::kOwn);
   MessageBatch batch;
   for (bool last = false; !last;) {
     std::vector<std::string> triggers;

@@ -13,17 +13,17 @@ namespace stillhand::runtime {
 
 namespace {
 
-bool take_priority(int priority) noexcept {
+bool take_priority(int policy, int priority) noexcept {
   sched_param parameter{};
   parameter.sched_priority = priority;
-  return sched_setscheduler(0, SCHED_FIFO, &parameter) == 0;
+  return sched_setscheduler(0, policy, &parameter) == 0;
 }
 
 }  // namespace
 
-bool become_real_time() noexcept {
+bool become_real_time(bool secured) noexcept {
   constexpr int kControlPriority = 40;  // below the kernel's threaded interrupts at 50
-  return take_priority(kControlPriority);
+  return take_priority(secured ? SCHED_RR : SCHED_FIFO, kControlPriority);
 }
 
 bool lock_memory() noexcept {
@@ -35,9 +35,12 @@ bool lock_memory() noexcept {
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
-void become_background() noexcept {
+void become_background(Locks locks) noexcept {
   constexpr int kBackgroundPriority = 10;
-  if (sched_getscheduler(0) == SCHED_FIFO) take_priority(kBackgroundPriority);
+  const int policy = sched_getscheduler(0);
+  if (policy == SCHED_FIFO || (policy == SCHED_RR && locks == Locks::kOwn)) {
+    take_priority(policy, kBackgroundPriority);
+  }
 }
 
 OrdinaryWhile::OrdinaryWhile() noexcept : policy_(sched_getscheduler(0)) {

@@ -4,19 +4,29 @@
 namespace stillhand::runtime {
 
 /// Asks for SCHED_FIFO for the calling thread and those it starts from now on (Fast DDS 2.9.1 has
-/// no thread settings: its threads inherit).  @return false when the system does not grant it.
-bool become_real_time() noexcept;
+/// no thread settings: its threads inherit).
+/// @param secured  SCHED_RR instead.  Under security Fast DDS takes read-write locks for each
+///                 message, and glibc's spins while another thread hands one over: with two
+///                 spinning on two processors, that thread would never get its turn (measured
+///                 2026-11: for minutes).  Turns of 100 ms end that; no thread of the loop runs for
+///                 so long.
+/// @return false when the system does not grant it.
+bool become_real_time(bool secured = false) noexcept;
 
 /// Keeps every page of this process that is or will be in use from being swapped out, where the
 /// limit (RLIMIT_MEMLOCK) has room for a process: with less, later allocations would fail.
 /// @return false when it hasn't, or the system does not grant it.
 bool lock_memory() noexcept;
 
+/// Whose locks a thread takes.
+enum class Locks : bool { kOwn, kFastDds };
+
 /// Lowers a real-time thread below the control path, for threads that report or write files.  They
 /// stay real-time: they share locks with the control path inside Fast DDS (its send resources), and
 /// an ordinary thread that is preempted while it holds one stalls the loop for as long as the
-/// machine is busy (measured 2026-11: up to 200 ms beside a parallel build).
-void become_background() noexcept;
+/// machine is busy (measured 2026-11: up to 200 ms beside a parallel build).  Of a secured process
+/// only those go lower that share none: see become_real_time().
+void become_background(Locks locks = Locks::kFastDds) noexcept;
 
 /// Ordinary policy for the calling thread as long as this lives, then what it had before: for long
 /// work (drawing, fitting) that holds no lock.

@@ -64,7 +64,9 @@ std::string host_name() {
 // The main thread's, which the receiving threads inherited.
 int priority_of_process() {
   sched_param parameter{};
-  if (sched_getscheduler(getpid()) != SCHED_FIFO) return 0;
+  if (const int policy = sched_getscheduler(getpid()); policy != SCHED_FIFO && policy != SCHED_RR) {
+    return 0;
+  }
   return sched_getparam(getpid(), &parameter) == 0 ? parameter.sched_priority : 0;
 }
 
