@@ -163,6 +163,7 @@ class SessionTest(BrowserCase):
         wait_for("the time line", lambda: not page.run("return document.getElementById('timeline-part').hidden"))
         wait_for("its topics", lambda: "sensed" in page.text("topics"))
         self.assertFalse(page.run("return !document.getElementById('emergency').hidden"))
+        self.assert_everything_is_reached_by_tab(page)  # from the page's beginning: nothing was focused yet
         before = page.text("when")
         page.run("document.getElementById('instant').focus()")
         page.press("\ue012")  # an instant back
@@ -170,7 +171,6 @@ class SessionTest(BrowserCase):
         self.assert_fits(page, "recording")
         page.keep("recording")
         self.assert_accessible(page, "recording")
-        self.assert_everything_is_reached_by_tab(page)
         self.assert_keeps_to_itself(page, dashboard)
         recorded, live = streams(dashboard.snapshot()), streams(live)
         same = [name for name in recorded if same_for_every_listener(recorded[name]) == same_for_every_listener(live[name])]
