@@ -145,7 +145,7 @@ export class Graph {
         if (away && going) missing.push(node.name);
         const touched = this.faults.filter(({ reader, active }) => active && reader === node.name);
         const edges = new Set(touched.map(({ topic }) => topic)).size;
-        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} edge${edges === 1 ? "" : "s"} late or bad` : service.state;
+        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} late or bad` : service.state;
         const level = (away && going) || service.state === "fault" ? "critical" : gravest(touched);
         node.show(away && !going ? "none" : worse(level, levels.get(node.name) ?? "healthy"), told);
       } else {
