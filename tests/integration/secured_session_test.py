@@ -15,7 +15,8 @@ from lab_process import BUILD, END_LIMIT_S, SOURCE, LabTestCase, next_domain
 MAKE = SOURCE / "deploy" / "security" / "make.sh"
 STRANGER = BUILD / "tests" / "stranger"
 SESSION_LIMIT_S = 150
-WORDS = ["--conditions", "C", "--identify-seconds", 20, "--trial-seconds", 20, "--seed", 2]
+WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
+TRIES = 3  # a secured session takes nearly all of two cores, and one that comes to be late ends as it should
 
 
 def make_keys(folder, *options):
@@ -31,17 +32,26 @@ class SecuredSessionTest(LabTestCase):
 
     def session(self, name, stranger_does, *words):
         """A whole session with a stranger beside it; what it received, and how many readers it had."""
+        for left in range(TRIES - 1, -1, -1):
+            lab, numbers = self.one_session(f"{name}{left}", stranger_does, *words)
+            if lab.end_status() == 0:
+                break
+            self.assertIn("a process is missing", " ".join(lab.errors()))
+            print(name, "once more:", lab.errors()[-1], flush=True)
+        self.assertEqual(lab.end_status(), 0, lab.errors())
+        print(name, numbers, f"ticks lost {lab.summary()['lost_ticks']}", flush=True)
+        return lab, numbers
+
+    def one_session(self, name, stranger_does, *words):
         domain = next_domain()
         stranger = subprocess.Popen([str(STRANGER), str(domain), stranger_does], stdout=subprocess.PIPE, text=True)
         self.addCleanup(stranger.stdout.close)
         self.addCleanup(stranger.wait)
         self.addCleanup(stranger.kill)
         lab = self.lab(*WORDS, *words, domain=domain, out=self.folder / name)
-        self.assertEqual(lab.end_status(SESSION_LIMIT_S), 0, lab.errors())
+        lab.end_status(SESSION_LIMIT_S)
         stranger.terminate()
-        said = stranger.stdout.read()
-        print(name, said.strip(), f"ticks lost {lab.summary()['lost_ticks']}", flush=True)
-        return lab, [int(number) for number in re.findall(r"\d+", said)]
+        return lab, [int(number) for number in re.findall(r"\d+", stranger.stdout.read())]
 
     def test_a_stranger_hears_and_moves_nothing_and_the_results_are_those_without_keys(self):
         # That its silence is the keys' doing: without them the same program hears.
