@@ -75,7 +75,10 @@ TEST_F(RecoverTest, ADamagedChunkIsLostAloneAndNamed) {
   write_sample(path("a.mcap"));
   std::string bytes = recording::read_file(path("a.mcap"));
   const auto whole = messages_in(path("a.mcap"));
-  bytes[bytes.size() / 3] ^= 1;
+  const std::string zstd_frame("\x28\xb5\x2f\xfd");  // RFC 8878, 3.1.1
+  const std::size_t second_chunk = bytes.find(zstd_frame, bytes.find(zstd_frame) + 1);
+  ASSERT_NE(second_chunk, std::string::npos);
+  bytes[second_chunk + 40] ^= 1;
   ASSERT_TRUE(recording::write_file_atomically(path("a.mcap"), bytes).ok());
   const Recovered sut = recover(path("a.mcap"), {});
   EXPECT_LT(sut.messages, whole.size());
