@@ -11,7 +11,7 @@ import time
 
 import lab_process
 import network
-from lab_process import BUILD, CTEST_SKIPPED, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
+from lab_process import BUILD, CTEST_SKIPPED, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
 
 SESSION_LIMIT_S = 150
 FORCE_LIMIT_TICKS = 50
@@ -77,10 +77,15 @@ class MachinesTest(LabTestCase):
             there = network.BUILD_THERE if name != network.HERE else BUILD
             profiles = f"/tmp/stillhand-units-{domain}.xml"
             machine.run("sh", "-c", f"cat > {profiles}", text=(self.folder / "files" / name / "profiles.xml").read_text())
-            self.addCleanup(machine.run, "sh", "-c", f"rm /tmp/stillhand-units-{domain}.*")
+            # Sources below /tmp are hidden there, so the settings come along.
+            settings = f"/tmp/stillhand-units-{domain}.d"
+            machine.run("mkdir", settings)
+            for file in (SOURCE / "deploy" / "config").glob("*.yaml"):
+                machine.run("sh", "-c", f"cat > {settings}/{file.name}", text=file.read_text())
+            self.addCleanup(machine.run, "sh", "-c", f"rm -r /tmp/stillhand-units-{domain}.*")
             for service in services:
                 words = [f"{there}/bin/stillhand-{service}", "--domain", str(domain), "--profiles", profiles, "--config",
-                         f"{there}/share/stillhand/deploy/config", "--real-time", "--one-session"]
+                         settings, "--real-time", "--one-session"]
                 words += ["--headless"] if service == "display" else []
                 words += ["--out", f"/tmp/stillhand-units-{domain}.mcap"] if service == "recorder" else []
                 unit = subprocess.Popen([*machine.words(), *words], stdin=subprocess.DEVNULL)
