@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t kMostHeader = 8192;
 constexpr std::size_t kMostBody = 4096;
-constexpr std::size_t kMostDiscarded = 64 * 1024;
+constexpr std::size_t kMostDiscarded = std::size_t{64} * 1024;
 constexpr int kSendBuffer = 64 * 1024;
 constexpr int kBacklog = 1024;  // a flood fills it; who knocks behind waits a second in the kernel
 constexpr std::chrono::seconds kRequestTime{10};
