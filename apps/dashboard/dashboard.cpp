@@ -99,8 +99,11 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
   std::optional<LiveBus> bus;
   if (live) {
     // For Fast DDS's threads, which inherit it: on a busy machine a sample would else be stamped
-    // when this process gets its turn.  Below the control path, and they only copy.
-    if (options.real_time && runtime::become_real_time()) runtime::become_background();
+    // when this process gets its turn.  Below the control path, and they only copy.  Not with
+    // security: they would share Fast DDS's locks with the ordinary thread here, see
+    // become_real_time().
+    const bool plain = options.bus.security.empty();
+    if (options.real_time && plain && runtime::become_real_time()) runtime::become_background();
     bus.emplace(options.bus, rigs);
     bus->start();
     if (!options.read_only) remote.emplace(options.bus, options.rig);

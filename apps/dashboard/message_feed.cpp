@@ -7,6 +7,7 @@
 #include "dashboard/core/time_difference.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
+#include "idl/session_state.hpp"
 #include "recording/sample_clock.hpp"
 
 namespace stillhand::dashboard {
@@ -178,8 +179,7 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
       if (service_number(service) != kNone) clocks_[service] = offset;
     });
   } else if (known.row == &topics::kEvent) {
-    decode<stillhand_msgs::Event>(message,
-                                  [&](const auto& event) { take_event(event, at_ns); });
+    decode<stillhand_msgs::Event>(message, [&](const auto& event) { take_event(event, at_ns); });
   } else if (known.row == &topics::kHostStatus) {
     decode<stillhand_msgs::HostStatus>(message, [this](const auto& host) { take_host(host); });
   }
@@ -215,9 +215,7 @@ void MessageFeed::take_recorder(const Message& message) {
 
 void MessageFeed::take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns) {
   control_ = control;
-  health_.set_running(control.session() == stillhand_msgs::SESSION_RUNNING ||
-                          control.session() == stillhand_msgs::SESSION_PAUSED,
-                      at_ns);
+  health_.set_running(is_running(control.session()), at_ns);
 }
 
 void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::int64_t at_ns) {

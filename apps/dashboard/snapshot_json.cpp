@@ -278,6 +278,7 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
     if (feed.wants(topic.plan().name)) topics.push_back(topic_json(topic, now_ns));
   }
   std::vector<double> edges_us;
+  edges_us.reserve(kJitterEdges_ns.size());
   for (const std::int64_t edge_ns : kJitterEdges_ns) edges_us.push_back(us(edge_ns));
   Json snapshot{{"mode", around.mode},
                 {"file", around.file},

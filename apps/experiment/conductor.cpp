@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cancellation/codec.hpp"
+#include "idl/session_state.hpp"
 #include "runtime/clock.hpp"
 
 namespace stillhand::experiment {
@@ -23,63 +24,6 @@ std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
-}
-
-const char* name_of(stillhand_msgs::EventKind kind) {
-  switch (kind) {
-    case stillhand_msgs::EVENT_DEADLINE_MISSED:
-      return "deadline missed";
-    case stillhand_msgs::EVENT_CYCLE_MISSED:
-      return "cycle missed";
-    case stillhand_msgs::EVENT_TICKS_LOST:
-      return "ticks lost";
-    case stillhand_msgs::EVENT_LIVELINESS_LOST:
-      return "liveliness lost";
-    case stillhand_msgs::EVENT_LIVELINESS_RECOVERED:
-      return "liveliness recovered";
-    case stillhand_msgs::EVENT_INTERLOCK_OPENED:
-      return "interlock opened";
-    case stillhand_msgs::EVENT_FORCE_ZERO:
-      return "motor force zero after interlock opened";
-    case stillhand_msgs::EVENT_MODEL_REFUSED:
-      return "model refused";
-    case stillhand_msgs::EVENT_MODEL_LOADED:
-      return "model loaded";
-    case stillhand_msgs::EVENT_INCOMPATIBLE_QOS:
-      return "incompatible QoS";
-    case stillhand_msgs::EVENT_CLOCK_STEPPED:
-      return "clock stepped";
-    case stillhand_msgs::EVENT_CLOCK_DRIFTS:
-      return "clock drifts";
-    case stillhand_msgs::EVENT_COMMAND:
-      return "asked from outside";
-    case stillhand_msgs::EVENT_NOTE:
-      return "note";
-  }
-  return "event";
-}
-
-std::string line_of(const Mark& mark) {
-  std::string line = mark.source + ": " + mark.what;
-  if (!mark.topic.empty()) line += " on " + mark.topic;
-  if (!mark.peer.empty()) line += " of " + mark.peer;
-  if (!mark.text.empty()) line += " (" + mark.text + ")";
-  return line;
-}
-
-Mark mark_of(const stillhand_msgs::Event& event) {
-  return {name_of(event.kind()),
-          event.source().c_str(),
-          event.topic().c_str(),
-          event.peer().c_str(),
-          event.text().c_str(),
-          event.tick(),
-          1,
-          event.by_us()};
-}
-
-bool same(const Mark& a, const Mark& b) {
-  return a.what == b.what && a.source == b.source && a.topic == b.topic && a.peer == b.peer;
 }
 
 bool saw(const std::vector<stillhand_msgs::Event>& events, stillhand_msgs::EventKind kind) {
@@ -230,8 +174,7 @@ void Conductor::announce(const PlannedTrial* planned, stillhand_msgs::SessionSta
     message.ramp_ticks(planned->trial.ramp_ticks);
     message.reference_seed(planned->reference_seed);
   }
-  service_.bus().supervise(session == stillhand_msgs::SESSION_RUNNING ||
-                           session == stillhand_msgs::SESSION_PAUSED);
+  service_.bus().supervise(is_running(session));
   control_.write(message);
 }
 
@@ -420,14 +363,7 @@ void Conductor::collect(TrialOutcome& outcome, const MissCounts& before) {
   const std::lock_guard lock(mutex_);
   for (const stillhand_msgs::Event& event : seen_.events) {
     const Mark mark = mark_of(event);
-    const auto known = std::find_if(outcome.marks.begin(), outcome.marks.end(),
-                                    [&](const Mark& other) { return same(mark, other); });
-    if (known == outcome.marks.end()) {
-      outcome.marks.push_back(mark);
-    } else {
-      ++known->count;
-      known->worst_us = std::max(known->worst_us, mark.worst_us);
-    }
+    add_mark(outcome.marks, mark);
     if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
       outcome.completed = false;
       if (outcome.aborted.empty()) outcome.aborted = line_of(mark);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cancellation/core/augmented_model.hpp"
+#include "experiment/marks.hpp"
 #include "experiment/processes.hpp"
 #include "experiment/protocol.hpp"
 #include "experiment/requests.hpp"
@@ -20,18 +21,6 @@
 #include "runtime/service.hpp"
 
 namespace stillhand::experiment {
-
-/// What happened during a trial, events of one kind, topic, process and peer as one.
-struct Mark {
-  std::string what;         ///< "deadline missed", ...
-  std::string source;       ///< process that said so
-  std::string topic;        ///< or empty
-  std::string peer;         ///< or empty
-  std::string text;         ///< of the first
-  std::int64_t first_tick;  ///< -1: not known
-  std::int64_t count;       ///< events; each may stand for several within a tenth of a second
-  double worst_us;          ///< [us], or [ticks] of "ticks lost"
-};
 
 /// Misses that every reader counted since the session began.
 struct MissCounts {

@@ -327,7 +327,7 @@ void set_places(LabOptions& options) {
 
 cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
                                            const std::filesystem::path& config) {
-  const auto model =
+  auto model =
       cancellation::parse_control_model(recording::read_file(file.string()), file.string(), rig);
   cancellation::require_sound(
       model, settings::load<cancellation::Config>(config / "cancellation.yaml", "cancellation"),

@@ -48,7 +48,7 @@ int run(Words words) {
   runtime::Stop stop;
   if (!words.remote.empty()) return run_remote(words.remote, options, stop);
   // Before the participant: Fast DDS's threads inherit it.  Where it is refused, it goes without.
-  if (!words.ordinary) runtime::become_real_time();
+  if (!words.ordinary) runtime::become_real_time(!options.security.empty());
   return run_record(options, stop);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "idl/session_state.hpp"
+
 namespace stillhand::rig {
 namespace {
 
@@ -73,11 +75,7 @@ void Shell::run() {
       due_ns += kPeriod_ns;
       runtime::sleep_until_ns(due_ns);
       // An end that is latched from the session before starts no clock; that of its own stops none.
-      const stillhand_msgs::SessionState session = announced_.load().session;
-      if (tick == 0 && (session == stillhand_msgs::SESSION_WAITING ||
-                        session == stillhand_msgs::SESSION_ENDING)) {
-        continue;
-      }
+      if (tick == 0 && !is_running(announced_.load().session)) continue;
       const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
       if (late_ns > kMaxCatchUp_ns) {
         due_ns += late_ns;

@@ -16,9 +16,6 @@ namespace edds = eprosima::fastdds::dds;
 
 namespace {
 constexpr std::uint32_t kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
-}
-
-namespace {
 
 void read_in_batches(edds::DomainParticipantQos& qos, const TakeDatagram& take) {
   using eprosima::fastdds::rtps::UDPv4TransportDescriptor;

@@ -282,7 +282,7 @@ void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
 bool is_secured(const edds::DomainParticipant& participant, const Identity& identity) {
   const Certificate certificate = certificate_in(own_file(identity, "certificate.pem"));
   const auto expected = guid_start(*certificate);
-  const eprosima::fastrtps::rtps::GUID_t guid = participant.guid();
+  const eprosima::fastrtps::rtps::GUID_t& guid = participant.guid();
   return std::equal(expected.begin(), expected.end(), std::begin(guid.guidPrefix.value));
 }
 

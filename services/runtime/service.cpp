@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "contract/config_error.hpp"
+#include "idl/session_state.hpp"
 #include "runtime/clock_answer.hpp"
 #include "runtime/real_time.hpp"
 #include "runtime/reporting.hpp"
@@ -103,8 +104,7 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
 }
 
 void Service::follow_session(stillhand_msgs::SessionState session) {
-  const bool running =
-      session == stillhand_msgs::SESSION_RUNNING || session == stillhand_msgs::SESSION_PAUSED;
+  const bool running = is_running(session);
   bus_->supervise(running);
   if (running) in_session_.store(true, std::memory_order_relaxed);
   // An end that is latched from a session before this process started is not its own.

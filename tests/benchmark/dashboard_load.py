@@ -24,6 +24,8 @@ BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", "build"))
 TOPICS = 7
 WARM_UP_S = 3.0
 MOST_SHARE = 0.25
+LIMIT_S = 30.0
+POLL_S = 0.1
 
 
 def cpu_s(pid):
@@ -52,6 +54,20 @@ def snapshot(address):
     return json.load(urllib.request.urlopen(address + "snapshot", timeout=30))
 
 
+def counted_of(seen):
+    return sum(each["samples"] for each in seen["rigs"])
+
+
+def wait_for(what, condition, fails=True):
+    limit = time.monotonic() + LIMIT_S
+    while not condition():
+        if time.monotonic() > limit:
+            if fails:
+                sys.exit(f"dashboard_load: no {what} within {LIMIT_S:g} s")
+            return
+        time.sleep(POLL_S)
+
+
 def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--rigs", type=int, default=15)
@@ -68,8 +84,7 @@ def main():
         clients = [Client(address) for _ in range(options.clients)]
         for client in clients:
             client.start()
-        while snapshot(address)["session"]["tick"] < 1000 * WARM_UP_S:
-            time.sleep(0.1)
+        wait_for("the load's first seconds", lambda: snapshot(address)["session"]["tick"] >= 1000 * WARM_UP_S)
         began, used = time.monotonic(), cpu_s(dashboard.pid)
         events, most_listening = sum(client.events for client in clients), 0
         while snapshot(address)["session"]["tick"] < 1000 * (options.seconds - 1):
@@ -79,14 +94,15 @@ def main():
         rate = (sum(client.events for client in clients) - events) / (time.monotonic() - began)
         told = load.stdout.readline().strip()
         sent = int(re.match(r"sent (\d+)", told)[1])
-        time.sleep(1)  # what is on its way arrives, and a frame goes by
+        # What is on its way arrives; the row tells when it does not.
+        wait_for("all that was sent", lambda: counted_of(snapshot(address)) == sent, fails=False)
         seen = snapshot(address)
     finally:
         load.stdin.close()
         load.wait()
         dashboard.terminate()
         dashboard.wait()
-    counted = sum(each["samples"] for each in seen["rigs"])
+    counted = counted_of(seen)
     lost = sum(each["lost"] for each in seen["rigs"])
     print(told)
     print(f"events {rate:.0f} a second, {rate / options.clients:.1f} a client; {most_listening} listened")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand lab --attach`: services that run already, as systemd starts them, conducted session after session."""
+import json
 import os
 import signal
 import subprocess
@@ -7,7 +8,7 @@ import threading
 import time
 
 import lab_process
-from lab_process import BUILD, MATCH_LIMIT_S, SERVICES, SOURCE, TRIAL_LIMIT_S, LabTestCase, next_domain, \
+from lab_process import BUILD, INSPECT, SERVICES, SOURCE, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, next_domain, \
     quick_session
 
 
@@ -46,6 +47,16 @@ class Units:
             keeper.join()
 
 
+def newest_tick(folder, since_s):
+    """Of the rig, in what the recorder has written since; -1 before there is any."""
+    files = [file for file in folder.glob("*.mcap") if file.stat().st_mtime > since_s]
+    if not files:
+        return -1
+    newest = max(files, key=lambda file: file.stat().st_mtime)
+    inspected = subprocess.run([str(INSPECT), str(newest), "1"], capture_output=True, text=True, check=False)
+    return (json.loads(inspected.stdout)["rig"]["tick"] or [-1])[-1] if inspected.returncode == 0 else -1
+
+
 class AttachTest(LabTestCase):
     def test_services_that_run_already_hold_one_session_after_the_other(self):
         domain = next_domain()
@@ -64,9 +75,10 @@ class AttachTest(LabTestCase):
 
         first = whole_session("first")
         # Who goes takes the session with it, and is named.
+        started = time.time()
         lab = self.lab(*words, "--attach", domain=domain, out=self.folder / "broken")
-        lab.wait_for("a rig", lambda: lab.pid_of("rig"), MATCH_LIMIT_S)
-        time.sleep(3.0)
+        lab.wait_for("a second of its sample clock", lambda: newest_tick(self.folder, started) > TICKS_PER_S,
+                     TRIAL_LIMIT_S, poll_s=0.3)
         os.kill(lab.pid_of("motion"), signal.SIGKILL)
         self.assertEqual(lab.end_status(), 1)
         self.assertIn("motion ended: its life sign is gone", " ".join(lab.errors()))

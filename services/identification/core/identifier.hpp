@@ -57,8 +57,8 @@ IdentificationSteps identify_stepwise(const Record& recorded, const Config& conf
                                       bool refine_beside);
 
 /// The whole chain of paper III-A: preprocessed(), fit_arx(), refine_output_error() when asked or
-/// when the paper's fit is unstable or does not convert, to_control_rate(); of lower order where even
-/// the refined model does not convert.  Pure.
+/// when the paper's fit is unstable or does not convert, to_control_rate(); of lower order where
+/// even the refined model does not convert.  Pure.
 /// @param recorded  at 100 Hz or more
 /// @throws stillhand::ConfigError with the reason when no usable model comes out.
 FeedthroughModel identify(const Record& recorded, const Config& config = {});

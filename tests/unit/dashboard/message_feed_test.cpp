@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dashboard/message_feed.hpp"
 
-#include <fastcdr/Cdr.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -9,23 +8,13 @@
 
 #include "dashboard/snapshot_json.hpp"
 #include "idl/control_loop.h"
+#include "support/session_file.hpp"
 
 namespace stillhand::dashboard {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kBegin = 1000 * 1000 * kMs;
-
-template <typename Message_>
-std::vector<std::byte> to_cdr(const Message_& message) {
-  eprosima::fastcdr::FastBuffer buffer;
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  const auto* begin = reinterpret_cast<const std::byte*>(buffer.getBuffer());
-  return {begin, begin + cdr.getSerializedDataLength()};
-}
 
 class MessageFeedTest : public ::testing::Test {
  protected:
@@ -36,7 +25,7 @@ class MessageFeedTest : public ::testing::Test {
   std::uint32_t add(const topics::Topic& topic) { return add(topic, sut_); }
   template <typename Message_>
   void take(MessageFeed& feed, std::uint32_t source, const Message_& message, std::int64_t at_ms) {
-    const auto bytes = to_cdr(message);
+    const auto bytes = tests::cdr_of(message);
     feed.take({source, ++sequence_, kBegin + at_ms * kMs, kBegin + at_ms * kMs, bytes});
   }
   void control(MessageFeed& feed, stillhand_msgs::Phase phase, Tick start_tick) {
@@ -127,7 +116,7 @@ TEST_F(MessageFeedTest, AnotherHostsClockIsTakenOffItsLatencies) {
   take(sut_, add(topics::kClockOffset), offset, 0);
   stillhand_msgs::Sensed sensed;
   sensed.rig(1);
-  const auto bytes = to_cdr(sensed);
+  const auto bytes = tests::cdr_of(sensed);
   sut_.take({add(topics::kSensed), 1, kBegin + 5 * kMs, kBegin + kMs, bytes});
   EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).latency.max_ns, kMs);
 }

@@ -2,7 +2,6 @@
 // The page's counts of a bus are those of its recording, at its end and at any instant of it.
 #include "dashboard/recorded_run.hpp"
 
-#include <fastcdr/Cdr.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "dashboard/view_json.hpp"
 #include "recording/core/mcap_writer.hpp"
 #include "recording/file_io.hpp"
+#include "support/session_file.hpp"
 
 namespace stillhand::dashboard {
 namespace {
@@ -32,17 +32,6 @@ std::vector<std::byte> head(Tick tick, std::int64_t stamp_ns) {
   std::memcpy(bytes.data() + 12, &tick, sizeof(tick));
   std::memcpy(bytes.data() + 20, &stamp_ns, sizeof(stamp_ns));
   return bytes;
-}
-
-template <typename Message_>
-std::vector<std::byte> to_cdr(const Message_& message) {
-  eprosima::fastcdr::FastBuffer buffer;
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  const auto* begin = reinterpret_cast<const std::byte*>(buffer.getBuffer());
-  return {begin, begin + cdr.getSerializedDataLength()};
 }
 
 struct Recorded {
@@ -69,7 +58,7 @@ std::vector<Recorded> session() {
   control.phase(stillhand_msgs::PHASE_PEGGED);
   control.start_tick(5000);
   control.duration_ticks(10'000);
-  all.push_back({2, 1, kBegin, kBegin, to_cdr(control)});
+  all.push_back({2, 1, kBegin, kBegin, tests::cdr_of(control)});
   for (Tick tick = 0; tick < kTicks; ++tick) {
     for (const std::size_t source : {std::size_t{0}, std::size_t{1}}) {
       if (source == 0 && tick % 7000 == 3) continue;               // lost
@@ -85,7 +74,7 @@ std::vector<Recorded> session() {
     event.rig(1);
     event.kind(stillhand_msgs::EVENT_LIVELINESS_LOST);
     event.source("sensing");
-    all.push_back({3, 1, kBegin + tick * kMs, kBegin + tick * kMs + 700'000, to_cdr(event)});
+    all.push_back({3, 1, kBegin + tick * kMs, kBegin + tick * kMs + 700'000, tests::cdr_of(event)});
   }
   return all;
 }

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dashboard/view_json.hpp"
 
-#include <fastcdr/Cdr.h>
 #include <gtest/gtest.h>
+
+#include "support/session_file.hpp"
 
 namespace stillhand::dashboard {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-
-template <typename Message_>
-std::vector<std::byte> to_cdr(const Message_& message) {
-  eprosima::fastcdr::FastBuffer buffer;
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  const auto* begin = reinterpret_cast<const std::byte*>(buffer.getBuffer());
-  return {begin, begin + cdr.getSerializedDataLength()};
-}
 
 // A status of the canceller, which reads `sensed` and something that nobody knows.
 stillhand_msgs::ServiceStatus status(std::uint64_t samples, std::uint64_t cycle_misses) {
@@ -44,7 +34,7 @@ class GraphJsonTest : public ::testing::Test {
   void take(const topics::Topic& topic, const Message_& message, std::int64_t at_ms) {
     const auto source = sut_.add(
         {std::string(topic.name), std::string(topic.type), "stillhand/1/cancellation", false});
-    const auto bytes = to_cdr(message);
+    const auto bytes = tests::cdr_of(message);
     sut_.take({source, ++sequence_, at_ms * kMs, at_ms * kMs, bytes});
   }
   Json edge(const std::string& topic, const std::string& service) {

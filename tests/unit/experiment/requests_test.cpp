@@ -33,7 +33,8 @@ TEST(RequestsTest, APauseHoldsUntilAStart) {
 
 TEST(RequestsTest, AStopEndsTheTrialThatRunsAndPauses) {
   Requests sut;
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_STOP, 1), true), HasSubstr("the trial ends"));
+  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_STOP, 1), true),
+              HasSubstr("the trial ends"));
   EXPECT_EQ(sut.trial_stopped(), "stopped, asked by desk");
   EXPECT_TRUE(sut.paused());
   sut.begin_trial();
