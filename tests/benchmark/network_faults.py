@@ -137,13 +137,11 @@ def force_words(rig, cut_ns, end_tick):
     greatest = max((abs(rig["motor_force_n"][i]) for i in behind), default=0.0)
     if opened is None:
         return f"goes on, at most {greatest:.1f} N"
-    zero = next((i for i in behind if i >= opened and rig["motor_force_n"][i] == 0.0), None)
-    if zero is None:
-        return f"NOT ZERO within the recording, at most {greatest:.1f} N"
-    late_ms = (rig["stamp_ns"][opened] - cut_ns) * 1e-6
-    again = any(rig["motor_force_n"][i] != 0.0 for i in behind if i > zero)
-    held = f"interlock open after {late_ms:.0f} ms, zero {rig['tick'][zero] - rig['tick'][opened]} ticks later"
-    return held + (", AGAIN later" if again else "") + f"; at most {greatest:.1f} N"
+    last = max((i for i in behind if rig["motor_force_n"][i] != 0.0), default=behind[0])
+    if last == behind[-1]:
+        return f"NOT ZERO to the trial's end, at most {greatest:.1f} N"
+    opened_ms, last_ms = ((rig["stamp_ns"][i] - cut_ns) * 1e-6 for i in (opened, last))
+    return f"none from {last_ms:.0f} ms on, the rig's interlock open after {opened_ms:.0f} ms; at most {greatest:.1f} N"
 
 
 def recorded_words(lab):
@@ -195,6 +193,8 @@ def main():
     options = arguments.parse_args()
     if reason := network.why_not():
         sys.exit(f"network_faults: {reason}")
+    if options.keep and options.keep.exists():
+        sys.exit(f"network_faults: --keep {options.keep}: is there already, want a folder that is not")
     lab_network = network.Network(os.getpid())
     try:
         print("| fault | motor force | screen | recorded | session |\n| --- | --- | --- | --- | --- |", flush=True)
