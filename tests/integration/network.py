@@ -2,8 +2,8 @@
 """A lab of several machines on this one: network namespaces joined by a bridge.
 
 Each machine has an address, a loopback and a /dev/shm of its own; all but the desk, where the test itself runs
-`stillhand lab`, have processes, a /tmp and a monotonic clock of their own too. Nothing of the network of this machine is
-touched. Needs root and namespaces: why_not() says what is missing.
+`stillhand lab`, have processes, a /tmp, an /etc and a monotonic clock of their own too. Nothing of the network of this
+machine is touched. Needs root and namespaces: why_not() says what is missing.
 """
 import contextlib
 import pathlib
@@ -22,6 +22,8 @@ SERVICES = {
     "desk": ["identification", "recorder", "experiment"],
 }
 HERE = "desk"
+LAB = "test"
+KEYS_THERE = f"/etc/stillhand/{LAB}/security"
 CLOCKS_APART_S = 1000
 # Where the build shows on machines with a /tmp of their own.
 BUILD_THERE = "/mnt/stillhand"
@@ -73,7 +75,7 @@ class Machine:
         if self.name != HERE:
             isolation += ["--pid", "--mount-proc", "--time", "--monotonic", str(self.clock_ahead_s)]
             script += (f"mount -t tmpfs tmpfs /mnt; mkdir {BUILD_THERE}; mount --bind '{BUILD}' {BUILD_THERE}; "
-                       "mount -t tmpfs tmpfs /tmp; ")
+                       "mkdir /mnt/etc; cp -a /etc/. /mnt/etc; mount --bind /mnt/etc /etc; mount -t tmpfs tmpfs /tmp; ")
         self._init = subprocess.Popen(["ip", "netns", "exec", self.namespace, *isolation, "sh", "-c",
                                        "set -e; " + script + "echo on; exec sleep infinity"],
                                       stdout=subprocess.PIPE, text=True)
@@ -100,6 +102,12 @@ class Machine:
         if done.returncode != 0:
             raise RuntimeError(f"{self.name}: {' '.join(map(str, words))}: {done.stderr.strip()}")
         return done.stdout
+
+    def give_keys(self, keys):
+        """Those of its services alone, out of a folder of deploy/security/make.sh."""
+        mine = ["authority.pem", "governance.p7s", *SERVICES[self.name]]
+        packed = subprocess.run(["tar", "-C", keys, "-c", *mine], check=True, capture_output=True).stdout
+        subprocess.run([*self.words(), "sh", "-c", f"mkdir -p {KEYS_THERE}; tar -C {KEYS_THERE} -x"], check=True, input=packed)
 
     def clock_ns(self):
         """Its monotonic clock now."""
@@ -171,12 +179,14 @@ class Network:
     def __getitem__(self, name):
         return self.machines[name]
 
-    def inventory(self, domain, before=None):
+    def inventory(self, domain, before=None, keys=None):
         """File with the lab as `stillhand lab --inventory` reads it.
 
-        before: {machine: further words before a command there}.
+        before: {machine: further words before a command there}; keys: folder of deploy/security/make.sh.
         """
-        lines = ["lab: test", f"domain: {domain}", "discovery: peers", "hosts:"]
+        lines = [f"lab: {LAB}", f"domain: {domain}", "discovery: peers"]
+        lines += [f"security: {keys}"] if keys else []
+        lines += ["hosts:"]
         for name, services in SERVICES.items():
             machine = self.machines[name]
             lines += [f"  - name: {name}", f"    address: {machine.address}", f"    services: [{', '.join(services)}]"]

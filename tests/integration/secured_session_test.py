@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand lab --security`: a session of processes with keys, and a stranger beside it that has none (stranger.cpp).
 
-It receives nothing and nobody hears it, the results are those of a session without keys; keys with a fault are refused
-before anything starts.
+It receives nothing and nobody hears it, the results are those of a session without keys, on one machine and over three
+(network.py); keys with a fault are refused before anything starts.
 """
 import os
 import re
@@ -10,6 +10,7 @@ import shutil
 import subprocess
 
 import lab_process
+import network
 from lab_process import BUILD, END_LIMIT_S, SOURCE, LabTestCase, next_domain
 
 MAKE = SOURCE / "deploy" / "security" / "make.sh"
@@ -25,22 +26,41 @@ def make_keys(folder, *options):
     return folder
 
 
-class SecuredSessionTest(LabTestCase):
+class KeysCase(LabTestCase):
     def setUp(self):
         super().setUp()
         self.keys = make_keys(self.folder / "keys")
 
-    def session(self, name, stranger_does, *words):
-        """A whole session with a stranger beside it; what it received, and how many readers it had."""
+    def completed(self, name, one_session):
+        """The lab, and what else one_session(name of it) gives, of the first session that comes to its end."""
         for left in range(TRIES - 1, -1, -1):
-            lab, numbers = self.one_session(f"{name}{left}", stranger_does, *words)
+            lab, told = one_session(f"{name}{left}")
             if lab.end_status() == 0:
                 break
             self.assertIn("a process is missing", " ".join(lab.errors()))
             print(name, "once more:", lab.errors()[-1], flush=True)
         self.assertEqual(lab.end_status(), 0, lab.errors())
-        print(name, numbers, f"ticks lost {lab.summary()['lost_ticks']}", flush=True)
-        return lab, numbers
+        print(name, told, f"ticks lost {lab.summary()['lost_ticks']}", flush=True)
+        return lab, told
+
+    def assert_same_results(self, plain, secured):
+        errors_mm, shares = [], []
+        for lab in (plain, secured):
+            result = lab.summary()["conditions"]["C"]
+            errors_mm.append(result["rms_error_mm"]["mean"])
+            shares.append(result["cancelled_share"])
+            self.assertEqual(lab.recording(1)["damage"], [])
+        print(f"RMS error {errors_mm[0]:.3f} and {errors_mm[1]:.3f} mm, cancelled {shares[0]:.4f} and {shares[1]:.4f}",
+              flush=True)
+        # The simulated subject hears of a tick a little later or earlier, as from session to session.
+        self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.05 * errors_mm[0])
+        self.assertAlmostEqual(shares[0], shares[1], delta=0.02)
+
+
+class SecuredSessionTest(KeysCase):
+    def session(self, name, stranger_does, *words):
+        """A whole session with a stranger beside it; what it received, and how many readers it had."""
+        return self.completed(name, lambda each: self.one_session(each, stranger_does, *words))
 
     def one_session(self, name, stranger_does, *words):
         domain = next_domain()
@@ -59,17 +79,7 @@ class SecuredSessionTest(LabTestCase):
         self.assertGreater(received, 20_000)
         secured, (received, heard_by) = self.session("secured", "writes", "--security", self.keys)
         self.assertEqual((received, heard_by), (0, 0))
-        errors_mm, shares = [], []
-        for lab in (plain, secured):
-            result = lab.summary()["conditions"]["C"]
-            errors_mm.append(result["rms_error_mm"]["mean"])
-            shares.append(result["cancelled_share"])
-            self.assertEqual(lab.recording(1)["damage"], [])
-        print(f"RMS error {errors_mm[0]:.3f} and {errors_mm[1]:.3f} mm, cancelled {shares[0]:.4f} and {shares[1]:.4f}",
-              flush=True)
-        # The simulated subject hears of a tick a little later or earlier, as from session to session.
-        self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.05 * errors_mm[0])
-        self.assertAlmostEqual(shares[0], shares[1], delta=0.02)
+        self.assert_same_results(plain, secured)
 
     def assert_refused(self, *words, **keywords):
         lab = self.lab(*WORDS, "--security", self.keys, **keywords)
@@ -108,6 +118,35 @@ class SecuredSessionTest(LabTestCase):
     def test_keys_of_another_domain_are_refused(self):
         self.keys = make_keys(self.folder / "domain-7", "--domain", "7")
         self.assert_refused("domain: got 8, want 7 to 7", domain=8)
+
+
+class SecuredMachinesTest(KeysCase):
+    def setUp(self):
+        super().setUp()
+        if reason := network.why_not():
+            self.skipTest(reason)
+        self.network = network.Network(os.getpid())
+        self.addCleanup(self.network.close)
+
+    def across(self, name, keys):
+        domain = next_domain()
+        lab = self.lab(*WORDS, domain=domain, out=self.folder / name, start=self.network[network.HERE].words(),
+                       inventory=self.network.inventory(domain, keys=keys))
+        lab.end_status(SESSION_LIMIT_S)
+        return lab
+
+    def test_a_session_over_three_machines_each_with_its_own_keys_gives_what_it_gives_without(self):
+        remote = [machine for machine in self.network.machines.values() if machine.name != network.HERE]
+        remote[0].give_keys(self.keys)
+        lab = self.across("refused", self.keys)
+        self.assertEqual(lab.end_status(), 2, lab.errors())
+        self.assertEqual(len(lab.errors()), 1, lab.errors())
+        for word in (remote[1].name, network.KEYS_THERE):
+            self.assertIn(word, lab.errors()[0])
+        remote[1].give_keys(self.keys)
+        secured, _ = self.completed("secured", lambda each: (self.across(each, self.keys), "over three machines"))
+        plain, _ = self.completed("plain", lambda each: (self.across(each, None), "over three machines"))
+        self.assert_same_results(plain, secured)
 
 
 if __name__ == "__main__":
