@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "cancellation/codec.hpp"
-#include "idl/session_state.hpp"
 #include "runtime/clock.hpp"
 
 namespace stillhand::experiment {
@@ -174,7 +173,7 @@ void Conductor::announce(const PlannedTrial* planned, stillhand_msgs::SessionSta
     message.ramp_ticks(planned->trial.ramp_ticks);
     message.reference_seed(planned->reference_seed);
   }
-  service_.bus().supervise(is_running(session));
+  service_.follow_session(session);
   control_.write(message);
 }
 

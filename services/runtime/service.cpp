@@ -61,7 +61,7 @@ struct Service::Reporting {
           status.armed_trial(
               static_cast<std::int32_t>(service.armed_.load(std::memory_order_relaxed)));
           status.real_time(service.options_.real_time);
-          if (status.state() == stillhand_msgs::SERVICE_READY && status.tick() >= 0) {
+          if (service.session_runs_.load(std::memory_order_relaxed)) {
             status.state(stillhand_msgs::SERVICE_RUNNING);
           }
           service.end_without_experiment();
@@ -106,6 +106,7 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
 void Service::follow_session(stillhand_msgs::SessionState session) {
   const bool running = is_running(session);
   bus_->supervise(running);
+  session_runs_.store(running, std::memory_order_relaxed);
   if (running) in_session_.store(true, std::memory_order_relaxed);
   // An end that is latched from a session before this process started is not its own.
   if (options_.one_session && session == stillhand_msgs::SESSION_ENDING && in_session_.load()) {

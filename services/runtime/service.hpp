@@ -64,6 +64,8 @@ class Service {
   void note_tick(Tick tick) noexcept { tick_.store(tick, std::memory_order_relaxed); }
   /// This process is prepared for a trial.
   void note_armed(std::int64_t trial) noexcept { armed_.store(trial, std::memory_order_relaxed); }
+  /// What trial control says of the session; the experiment, which writes it, calls this itself.
+  void follow_session(stillhand_msgs::SessionState session);
   /// An event on the bus, from any thread, without lock or allocation.
   void note_event(stillhand_msgs::EventKind kind, const char* text, double by_us = 0.0) noexcept;
 
@@ -75,7 +77,6 @@ class Service {
   void run(const std::function<void()>& loop);
 
  private:
-  void follow_session(stillhand_msgs::SessionState session);
   void end_without_experiment();
 
   ServiceOptions options_;
@@ -86,7 +87,8 @@ class Service {
   std::function<void(const BusIncident&)> on_incident_;
   std::atomic<Tick> tick_{-1};
   std::atomic<std::int64_t> armed_{-1};
-  std::atomic<bool> in_session_{false};
+  std::atomic<bool> session_runs_{false};
+  std::atomic<bool> in_session_{false};  // now, or once
   struct Reporting;
   std::unique_ptr<Reporting> reporting_;
 };

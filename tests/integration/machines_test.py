@@ -30,7 +30,7 @@ class MachinesTest(LabTestCase):
                         inventory=self.network.inventory(domain, before))
 
     def test_a_session_over_three_machines_gives_what_one_machine_gives(self):
-        words = ["--conditions", "C", "--identify-seconds", 20, "--trial-seconds", 20, "--seed", 2]
+        words = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
         across = self.across("--video", *words)
         self.assertEqual(across.end_status(SESSION_LIMIT_S), 0, across.errors())
         one = self.lab(*words, out=self.folder / "one")

@@ -37,11 +37,17 @@ function strip(level, word, text, since) {
   document.title = `${word} – Stillhand`;
 }
 
-function stripOfAlarms(alarms, now) {
+// A silence is over because somebody speaks again, or because the session is.
+function ended({ active, watch }, state) {
+  if (active) return "";
+  if (watch !== "missing" && watch !== "silent") return "; not now";
+  return state === "ending" ? "; the session is over" : "; back again";
+}
+
+function stripOfAlarms(alarms, state, now) {
   const first = alarms[0];
   const others = alarms.length > 1 ? `; ${alarms.length - 1} more` : "";
-  const over = first.active ? "" : first.watch === "missing" || first.watch === "silent" ? "; back again" : "; not now";
-  strip(first.level, WORDS[first.level], what(first) + over + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
+  strip(first.level, WORDS[first.level], what(first) + ended(first, state) + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
 // With the QoS mismatches, which no threshold raises and nobody can acknowledge away. The graph is not in every snapshot.
@@ -73,7 +79,7 @@ export function showStatus(snapshot) {
     const ends = session.state === "ending" ? "the session is over" : "the motor's force goes to zero, the platform brakes, the session ends";
     strip("critical", "Emergency stop", ends, when);
   } else if (shown.length > 0) {
-    stripOfAlarms(shown, now);
+    stripOfAlarms(shown, session.state, now);
   } else if (session.state === "running" || session.state === "paused") {
     const paused = session.state === "paused" || session.paused ? "no trial begins until Start; " : "";
     const before = alarms.length > 0 ? `; ${alarms.length} alarm${alarms.length === 1 ? "" : "s"} before` : "";
