@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "dashboard/core/time_difference.hpp"
+#include "contract/time_difference.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/session_state.hpp"

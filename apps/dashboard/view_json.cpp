@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "contract/time_difference.hpp"
 #include "dashboard/core/residual_spectrum.hpp"
-#include "dashboard/core/time_difference.hpp"
 #include "dashboard/words.hpp"
 
 namespace stillhand::dashboard {

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "contract/tick.hpp"
+#include "contract/time_difference.hpp"
 #include "dashboard/core/log_histogram.hpp"
-#include "dashboard/core/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

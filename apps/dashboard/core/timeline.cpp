@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dashboard/core/time_difference.hpp"
+#include "contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

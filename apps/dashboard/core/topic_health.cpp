@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "dashboard/core/time_difference.hpp"
+#include "contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace stillhand::dashboard {
+namespace stillhand {
 
 /// a - b [ns] of two times that somebody else wrote, within 30 years: whatever they are, what is
-/// computed on with it does not overflow.
+/// computed on with it does not overflow.  Pure.
 inline std::int64_t difference_ns(std::int64_t a_ns, std::int64_t b_ns) noexcept {
   constexpr std::int64_t kMost_ns = 1'000'000'000'000'000'000;
   std::int64_t difference = 0;
@@ -15,4 +15,4 @@ inline std::int64_t difference_ns(std::int64_t a_ns, std::int64_t b_ns) noexcept
   return std::clamp(difference, -kMost_ns, kMost_ns);
 }
 
-}  // namespace stillhand::dashboard
+}  // namespace stillhand

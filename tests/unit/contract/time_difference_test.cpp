@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/time_difference.hpp"
+#include "contract/time_difference.hpp"
 
 #include <gtest/gtest.h>
 
-namespace stillhand::dashboard {
+namespace stillhand {
 namespace {
 
 TEST(TimeDifferenceTest, IsExactUpToThirtyYearsAndNoMoreBeyond) {
@@ -16,4 +16,4 @@ TEST(TimeDifferenceTest, IsExactUpToThirtyYearsAndNoMoreBeyond) {
 }
 
 }  // namespace
-}  // namespace stillhand::dashboard
+}  // namespace stillhand
