@@ -25,7 +25,6 @@ class Handover {
   Handover() : worker_([this](const std::stop_token& stop) { work(stop); }) {}
   ~Handover() {
     worker_.request_stop();
-    wake_.notify_all();
     worker_.join();
     delete fresh_.load();
     delete spent_.load();
@@ -63,7 +62,8 @@ class Handover {
       Make make;
       {
         std::unique_lock lock(mutex_);
-        wake_.wait(lock, [&] { return stop.stop_requested() || pending_; });
+        // With the token: a stop between the look at `pending_` and the sleep wakes it, too.
+        wake_.wait(lock, stop, [this] { return static_cast<bool>(pending_); });
         make = std::exchange(pending_, nullptr);
       }
       delete spent_.exchange(nullptr, std::memory_order_acq_rel);
@@ -80,7 +80,7 @@ class Handover {
   }
 
   std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable_any wake_;
   Make pending_;
   std::atomic<T*> fresh_{nullptr};
   std::atomic<T*> spent_{nullptr};

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "support/wait.hpp"
 
 namespace stillhand::runtime {
@@ -42,13 +44,24 @@ TEST(HandoverTest, KeepsTheOldOneWhenThereIsNoNewOne) {
   Handover<Counted> sut;
   sut.prepare([] { return std::make_unique<Counted>(7); });
   ASSERT_TRUE(support::eventually([&] { return sut.current() != nullptr; }));
-  std::atomic<bool> asked{false};
+  // One at a time, in turn: once the third is being made, what the second returned has been seen
+  // to.
+  std::atomic<bool> asked{false}, making{false}, go_on{false};
   sut.prepare([&]() -> std::unique_ptr<Counted> {
     asked = true;
     return nullptr;
   });
   ASSERT_TRUE(support::eventually([&] { return asked.load(); }));
-  EXPECT_EQ(sut.current()->number, 7);
+  sut.prepare([&] {
+    making = true;
+    support::eventually([&] { return go_on.load(); });
+    return std::make_unique<Counted>(8);
+  });
+  EXPECT_TRUE(support::eventually([&] { return making.load(); }));
+  const Counted* kept = sut.current();
+  EXPECT_TRUE(kept != nullptr && kept->number == 7);
+  go_on = true;
+  EXPECT_TRUE(support::eventually([&] { return sut.current()->number == 8; }));
 }
 
 }  // namespace
