@@ -185,8 +185,12 @@ inline constexpr std::array<const Topic*, 19> kCatalogue{
 
 /// Remote control of `stillhand record` and `stillhand replay`: outside of every session, so that
 /// no process waits for them.
-inline constexpr Topic kRecorderCommand{
-    "stillhand/recorder_command", "stillhand_msgs::RecorderCommand", Pattern::kEvent, 0.0, {}, {}};
+inline constexpr Topic kRecorderCommand{"stillhand/recorder_command",
+                                        "stillhand_msgs::RecorderCommand",
+                                        Pattern::kCommand,
+                                        0.0,
+                                        {},
+                                        {}};
 inline constexpr Topic kRecorderStatus{"stillhand/recorder_status",
                                        "stillhand_msgs::RecorderStatus",
                                        Pattern::kStreamSlow,

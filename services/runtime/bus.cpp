@@ -182,6 +182,14 @@ void Bus::stop_receiving() {
   for (const auto& endpoint : impl_->endpoints) endpoint->close_reader(*impl_->subscriber);
 }
 
+std::set<std::string> Bus::matched_peers(const topics::Topic& topic) const {
+  std::set<std::string> peers;
+  for (const auto& endpoint : impl_->endpoints) {
+    if (&endpoint->topic() == &topic) peers.merge(endpoint->matched_services());
+  }
+  return peers;
+}
+
 std::vector<std::string> Bus::missing_peers() const {
   std::vector<std::string> missing;
   for (const auto& endpoint : impl_->endpoints) {

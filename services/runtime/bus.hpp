@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -168,6 +169,9 @@ class Bus {
   /// No callback of a subscription runs after this returns.  Publishers stay usable.
   void stop_receiving();
 
+  /// Names of who is matched with this process's endpoints of a topic: processes of this rig, none
+  /// of them a Tap.
+  [[nodiscard]] std::set<std::string> matched_peers(const topics::Topic& topic) const;
   /// Catalogue peers that are not matched yet, as "service (topic)", empty when complete.
   [[nodiscard]] std::vector<std::string> missing_peers() const;
   /// Services that are on the bus more than once under this rig number.

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cstddef>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -34,6 +35,8 @@ class RemoteControl {
       : bus_(std::move(options)), statuses_(bus_.publisher<Status>(statuses)) {
     bus_.subscribe<Command>(commands, [this](const Command& command, const Arrival&) {
       const std::lock_guard lock(mutex_);
+      if (command.request() == newest_) return;  // ask() writes it again for others
+      newest_ = command.request();
       waiting_.push_back(command);
     });
     bus_.start();
@@ -82,11 +85,13 @@ class RemoteControl {
   Publisher<Status> statuses_;
   std::mutex mutex_;
   std::deque<Command> waiting_;
+  std::uint64_t newest_ = 0;  // request
   std::uint64_t answered_ = 0;
   std::string refusal_;
 };
 
-/// The side that asks: sends one command, waits for its answer at most `limit_ns`.
+/// The side that asks: sends one command to everybody who is found until somebody answers, and
+/// waits for that at most `limit_ns`.
 /// @returns the status that answered, nothing when nobody did
 template <typename Command, typename Status>
 std::optional<Status> ask(const Bus::Options& options, const topics::Topic& commands,
@@ -103,14 +108,18 @@ std::optional<Status> ask(const Bus::Options& options, const topics::Topic& comm
     if (status.answered() == request && !answer) answer = status;
   });
   bus.start();
-  publisher.write(command);  // latched: whoever matches later gets it too
   const std::int64_t end_ns = monotonic_ns() + limit_ns;
   constexpr std::int64_t kPoll_ns = 10'000'000;
+  std::size_t told = 0;
   while (monotonic_ns() < end_ns && !stop.requested()) {
     {
       const std::lock_guard lock(mutex);
       if (answer) break;
     }
+    // A command reaches only who is there when it is written; a tap matches too, and obeys nobody.
+    const std::size_t there = bus.matched_peers(commands).size();
+    if (there > told) publisher.write(command);
+    told = there;
     sleep_until_ns(monotonic_ns() + kPoll_ns);
   }
   bus.stop_receiving();

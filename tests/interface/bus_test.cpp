@@ -7,11 +7,13 @@
 
 #include <atomic>
 #include <fstream>
+#include <set>
 
 #include "contract/config_error.hpp"
 #include "idl/clock.h"
 #include "idl/control_loop.h"
 #include "idl/model.h"
+#include "idl/recording.h"
 #include "idl/session.h"
 #include "support/own_domain.hpp"
 #include "support/wait.hpp"
@@ -69,6 +71,31 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
   expect_delivery<ClockOffset>(topics::kClockOffset);
   expect_delivery<HostStatus>(topics::kHostStatus);
   expect_delivery<SessionCommand>(topics::kSessionCommand);
+  expect_delivery<RecorderCommand>(topics::kRecorderCommand);
+}
+
+TEST(BusTest, WhoComesLaterHearsNoCommandOfBeforeAndIsNamedToWhoAsks) {
+  Bus asker(options_of("remote-1"));
+  auto publisher = asker.publisher<stillhand_msgs::RecorderCommand>(topics::kRecorderCommand);
+  asker.start();
+  stillhand_msgs::RecorderCommand command;
+  command.request(1);
+  publisher.write(command);
+  Bus recorder(options_of("record-2"));
+  std::atomic<std::uint64_t> first{0};
+  recorder.subscribe<stillhand_msgs::RecorderCommand>(
+      topics::kRecorderCommand, [&](const stillhand_msgs::RecorderCommand& m, const Arrival&) {
+        if (first == 0) first = m.request();
+      });
+  EXPECT_TRUE(asker.matched_peers(topics::kRecorderCommand).empty());
+  recorder.start();
+  ASSERT_TRUE(eventually([&] {
+    return asker.matched_peers(topics::kRecorderCommand) == std::set<std::string>{"record-2"};
+  }));
+  command.request(2);
+  publisher.write(command);
+  ASSERT_TRUE(eventually([&] { return first != 0; }));  // reliable, so in order
+  EXPECT_EQ(first, 2u);
 }
 
 TEST(BusTest, ALateJoinerGetsTheLatchedState) {
