@@ -4,17 +4,18 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/domain.hpp"
+
 namespace stillhand::deploy {
 
 struct Inventory;
 
-/// UDP ports of a DDS domain, RTPS 2.2, 9.6.1.1, with the default parameters: a block of 250 for
-/// each domain.
+/// UDP ports of a DDS domain within its block (runtime/domain.hpp).
 ///
 ///   multicast, discovery   7400 + 250 domain          user data   + 1
 ///   participant p, discovery  + 10 + 2 p              user data   + 11 + 2 p
 struct DomainPorts {
-  explicit constexpr DomainPorts(std::uint32_t domain) : first(7400 + 250 * domain) {}
+  explicit constexpr DomainPorts(std::uint32_t domain) : first(runtime::first_port_of(domain)) {}
 
   [[nodiscard]] constexpr std::uint32_t multicast() const { return first; }
   /// Of the discovery server: none of the block's ports that the standard uses.
@@ -24,7 +25,7 @@ struct DomainPorts {
     return first + 11 + 2 * (participants - 1);
   }
   /// Of one host, before their ports would be the next domain's.
-  static constexpr std::uint32_t kMostParticipants = (250 - 10) / 2;
+  static constexpr std::uint32_t kMostParticipants = (runtime::kDomainPorts - 10) / 2;
 
   std::uint32_t first;
 };

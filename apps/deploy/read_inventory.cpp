@@ -11,6 +11,7 @@
 #include "deploy/inventory_values.hpp"
 #include "deploy/ports.hpp"
 #include "idl/topics.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/shipped.hpp"
 #include "settings/nearest.hpp"
 #include "settings/section.hpp"
@@ -20,8 +21,6 @@ namespace {
 
 using settings::Entry;
 using settings::SectionReader;
-
-constexpr double kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
 
 struct SeenHost {
   std::string path;
@@ -42,7 +41,7 @@ class Reader {
     inventory_.lab = name_in(required(reader, top_, "inventory", "lab", "lab: a name for the lab"),
                              "inventory.lab");
     std::int64_t domain = 0;
-    reader("domain", domain, Range{0, kMaxDomain}, "DDS domain");
+    reader("domain", domain, Range{0, runtime::kMaxDomain}, "DDS domain");
     inventory_.domain = static_cast<std::uint32_t>(domain);
     read_discovery(reader);
     read_security(reader);

@@ -26,6 +26,7 @@
 #include "recording/file_io.hpp"
 #include "rig/sealed_file.hpp"
 #include "runtime/clock.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/real_time.hpp"
 #include "runtime/shipped.hpp"
 #include "settings/load.hpp"
@@ -63,9 +64,7 @@ class DomainLock {
 
 /// Another program on the domain's discovery port would keep everybody apart in silence.
 void check_port(std::uint32_t domain) {
-  constexpr std::uint32_t kPortBase = 7400;  // RTPS 2.2, 9.6.1.1: PB + DG * domain
-  constexpr std::uint32_t kDomainGain = 250;
-  const auto port = static_cast<std::uint16_t>(kPortBase + kDomainGain * domain);
+  const auto port = static_cast<std::uint16_t>(runtime::first_port_of(domain));
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const int shared = 1;  // as Fast DDS opens it: other participants do not count
   setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &shared, sizeof(shared));
@@ -254,8 +253,10 @@ class Session final : public LiveTrials {
 // What can be known to be wrong before anything is touched.
 AskedMotions check(const LabOptions& options) {
   plan(options.protocol);  // checks durations and road
-  if (options.domain > 232)
-    throw ConfigError("--domain", std::to_string(options.domain), "0 to 232");
+  if (options.domain > runtime::kMaxDomain) {
+    throw ConfigError("--domain", std::to_string(options.domain),
+                      "0 to " + std::to_string(runtime::kMaxDomain));
+  }
   if ((options.protocol.motion == Motion::kRide) == options.ride.empty()) {
     throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
                       "a file together with --motion ride, and only then");

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "runtime/bus.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/replay_mark.hpp"
 
 namespace stillhand::runtime {
@@ -15,8 +16,6 @@ using eprosima::fastrtps::types::ReturnCode_t;
 namespace edds = eprosima::fastdds::dds;
 
 namespace {
-constexpr std::uint32_t kMaxDomain = 232;  // RTPS 2.2, 9.6.1.1: ports run out above
-
 void read_in_batches(edds::DomainParticipantQos& qos, const TakeDatagram& take) {
   using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
   for (auto& transport : qos.transport().user_transports) {
@@ -57,7 +56,9 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
                                             bool marked, const Identity& identity,
                                             edds::DomainParticipantListener* listener,
                                             const TakeDatagram& take) {
-  if (domain > kMaxDomain) throw ConfigError("domain", std::to_string(domain), "0 to 232");
+  if (domain > kMaxDomain) {
+    throw ConfigError("domain", std::to_string(domain), "0 to " + std::to_string(kMaxDomain));
+  }
   if (!identity.none()) check_identity(identity, domain);
   edds::Log::SetVerbosity(edds::Log::Kind::Error);
   load_profiles(profiles);
