@@ -5,11 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <set>
 #include <sstream>
 
-#include "deploy/host_files.hpp"
+#include "runtime/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -56,6 +57,17 @@ bool covers(const std::vector<PortRange>& ranges, std::uint32_t port) {
       ranges, [&](const PortRange& each) { return each.first <= port && port <= each.second; });
 }
 
+/// Whether a local address takes what is sent to one of IPv4: of IPv6 [::] and ::ffff:0:0/96, as
+/// four words in this machine's order of bytes.
+bool hears_ipv4(std::string_view address) {
+  constexpr std::size_t kIpv4Digits = 8;
+  const bool mapped = std::endian::native == std::endian::little
+                          ? address.starts_with("0000000000000000FFFF0000")
+                          : address.starts_with("00000000000000000000FFFF");
+  return address.size() == kIpv4Digits || mapped ||
+         address.find_first_not_of('0') == std::string_view::npos;
+}
+
 }  // namespace
 
 Finding check_address(const Host& host, const std::vector<std::string>& own) {
@@ -82,7 +94,7 @@ Finding check_clock(const std::optional<ClockState>& clock) {
 }
 
 Finding check_real_time(const Rights& rights) {
-  constexpr std::uint64_t kWanted = kRealTimePriority;
+  constexpr std::uint64_t kWanted = runtime::kControlPriority;
   if (rights.all || rights.real_time_priority >= kWanted) {
     return good("real-time", "SCHED_FIFO is granted");
   }
@@ -96,8 +108,9 @@ Finding check_real_time(const Rights& rights) {
 }
 
 Finding check_memory_lock(const Rights& rights) {
-  constexpr std::uint64_t kWanted = std::uint64_t{1} << 30;  // some times what a process uses
-  if (rights.all || rights.locked_memory >= kWanted) return good("memory-lock", "large enough");
+  if (rights.all || rights.locked_memory >= runtime::kMemoryToLock) {
+    return good("memory-lock", "large enough");
+  }
   return wrong("memory-lock",
                fmt::format("{} kB may be locked, want no limit", rights.locked_memory / 1024),
                "echo '@stillhand - memlock unlimited' | sudo tee -a "
@@ -133,7 +146,7 @@ std::vector<TakenPort> taken_ports(std::string_view proc_net_udp, std::uint32_t 
     for (std::string word; columns >> word;) words.push_back(word);
     if (words.size() <= kInode) continue;
     const auto colon = words[kLocal].find(':');
-    if (colon == std::string::npos) continue;
+    if (colon == std::string::npos || !hears_ipv4(words[kLocal].substr(0, colon))) continue;
     const auto port =
         number_at<std::uint32_t>(std::string_view(words[kLocal]).substr(colon + 1), 16);
     const auto inode = number_at<std::uint64_t>(words[kInode]);

@@ -36,8 +36,8 @@ Finding check_clock(const std::optional<ClockState>& clock);
 
 /// What a process of this user may ask for.
 struct Rights {
-  std::uint64_t real_time_priority;  ///< RLIMIT_RTPRIO, hard
-  std::uint64_t locked_memory;       ///< RLIMIT_MEMLOCK, hard [bytes]; ~0: no limit
+  std::uint64_t real_time_priority;  ///< RLIMIT_RTPRIO, soft: it is what the kernel goes by
+  std::uint64_t locked_memory;       ///< RLIMIT_MEMLOCK, soft [bytes]; ~0: no limit
   bool all;                          ///< CAP_SYS_NICE and CAP_IPC_LOCK, such as root's
 };
 Finding check_real_time(const Rights& rights);
@@ -52,7 +52,7 @@ struct TakenPort {
   std::uint64_t inode;
   std::string program;  ///< its owner's name; empty: unknown
 };
-/// Sockets of /proc/net/udp with a local port from `first` to `last`.
+/// Sockets of /proc/net/udp and udp6 that IPv4 reaches, with a local port from `first` to `last`.
 std::vector<TakenPort> taken_ports(std::string_view proc_net_udp, std::uint32_t first,
                                    std::uint32_t last);
 /// Other programs than stillhand's on them.

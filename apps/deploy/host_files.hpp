@@ -8,10 +8,6 @@
 
 namespace stillhand::deploy {
 
-/// SCHED_FIFO priority of every process: what runtime::become_real_time() asks for
-/// (unit.deploy.generate compares them).
-inline constexpr int kRealTimePriority = 40;
-
 /// systemd units of a host: one for each service but the experiment, which a person starts, one for
 /// the discovery server where it runs, and stillhand.target, which wants them all.
 std::vector<GeneratedFile> units_of(const Inventory& inventory, const Host& host);

@@ -9,6 +9,7 @@
 #include <sys/timex.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -50,7 +51,7 @@ Rights rights() {
   rlimit memory{};
   getrlimit(RLIMIT_RTPRIO, &priority);
   getrlimit(RLIMIT_MEMLOCK, &memory);
-  return {priority.rlim_max, memory.rlim_max, has_all_rights()};
+  return {priority.rlim_cur, memory.rlim_cur, has_all_rights()};
 }
 
 // Programs by the inode of a socket that they hold; of other users' root alone sees them.
@@ -71,7 +72,8 @@ std::map<std::uint64_t, std::string> owners_of_sockets() {
 }
 
 std::vector<TakenPort> taken_ports_with_owners(std::uint32_t first, std::uint32_t last) {
-  std::vector<TakenPort> taken = taken_ports(text_of("/proc/net/udp"), first, last);
+  std::vector<TakenPort> taken =
+      taken_ports(text_of("/proc/net/udp") + text_of("/proc/net/udp6"), first, last);
   if (taken.empty()) return taken;
   const auto owners = owners_of_sockets();
   for (TakenPort& each : taken) {
@@ -112,7 +114,14 @@ std::vector<std::string> own_addresses() {
 Finding check_keys_of(const Inventory& inventory, const Host& host) {
   std::set<std::string> names;
   for (const Placement& placement : host.services) names.insert(placement.service);
-  if (names.empty()) names.emplace(topics::kTap);
+  // Its tools' where they are: a host needs none of a tool that does not run there.
+  const std::array<std::string, 2> tools{std::string(topics::kTap),
+                                         std::string(topics::kDashboard)};
+  for (const std::string& tool : tools) {
+    std::error_code unseen;
+    if (fs::exists(inventory.security / tool, unseen)) names.insert(tool);
+  }
+  if (names.empty()) names.insert(tools.begin(), tools.end());
   std::set<std::string> refused;  // of a domain that no key is for each says the same
   std::vector<std::string> expiring;
   for (const std::string& name : names) {

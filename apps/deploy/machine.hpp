@@ -11,7 +11,8 @@ namespace stillhand::deploy {
 /// IPv4 addresses of this machine's interfaces, in the system's order.
 std::vector<std::string> own_addresses();
 
-/// The keys of each service that runs on the host, or of the tap where none does.
+/// The keys of each service that runs on the host, and of the tools' (tap, dashboard) those that
+/// are there; without any of both, the tools'.
 Finding check_keys_of(const Inventory& inventory, const Host& host);
 
 /// Every check, of this machine as that host.  Reads /proc, /sys and the folder of keys.

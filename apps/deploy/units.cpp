@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "deploy/host_files.hpp"
+#include "runtime/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -91,7 +92,7 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
   text += fmt::format(
       "CPUSchedulingPolicy=fifo\nCPUSchedulingPriority={0}\nLimitRTPRIO={0}\n"
       "LimitMEMLOCK=infinity\n",
-      kRealTimePriority);
+      runtime::kControlPriority);
   text += hardening(host, screen) + "\n[Install]\nWantedBy=stillhand.target\n";
   return {fmt::format("stillhand-{}@{}.service", placement.service, rig), std::move(text)};
 }

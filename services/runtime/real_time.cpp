@@ -22,14 +22,12 @@ bool take_priority(int policy, int priority) noexcept {
 }  // namespace
 
 bool become_real_time(bool secured) noexcept {
-  constexpr int kControlPriority = 40;  // below the kernel's threaded interrupts at 50
   return take_priority(secured ? SCHED_RR : SCHED_FIFO, kControlPriority);
 }
 
 bool lock_memory() noexcept {
-  constexpr rlim_t kRoom = rlim_t{1} << 30;  // [B] what `stillhand deploy check` asks for
   rlimit limit{};
-  const bool limited = getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || limit.rlim_cur < kRoom;
+  const bool limited = getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || limit.rlim_cur < kMemoryToLock;
   if (limited && geteuid() != 0) return false;  // for root, CAP_IPC_LOCK, it does not count
   // As they are touched: the stacks of Fast DDS's threads alone are some 50 MB, mostly unused.
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 namespace stillhand::runtime {
+
+/// Real-time priority of the control path: below the kernel's threaded interrupts at 50.
+inline constexpr int kControlPriority = 40;
+/// [B] What lock_memory() wants to be allowed: some times what a process uses.
+inline constexpr std::uint64_t kMemoryToLock = std::uint64_t{1} << 30;
 
 /// Asks for SCHED_FIFO for the calling thread and those it starts from now on (Fast DDS 2.9.1 has
 /// no thread settings: its threads inherit).

@@ -4,9 +4,16 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
+
+#include <fstream>
+#include <optional>
+#include <thread>
 
 #include "deploy/machine.hpp"
 #include "deploy/ports.hpp"
@@ -91,6 +98,23 @@ TEST(CheckTest, SocketsOnTheDomainsPortsAreFound) {
   EXPECT_THAT(taken_ports("rubbish\n1: 2 3 4 5 6 7 8 9 10 11\n", 0, 65535), IsEmpty());
 }
 
+// As Linux 6.1 prints /proc/net/udp6: [::]:10400, [::1]:10402, [::ffff:127.0.0.1]:10410.
+TEST(CheckTest, SocketsOfIPv6ThatIPv4ReachesAreFound) {
+  const std::string six =
+      "  sl  local_address                         remote_address                        st "
+      "tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode ref pointer drops\n"
+      " 1: 00000000000000000000000000000000:28A0 00000000000000000000000000000000:0000 07 "
+      "00000000:00000000 00:00000000 00000000     0        0 4721 2 0000000000000000 0\n"
+      " 2: 00000000000000000000000001000000:28A2 00000000000000000000000000000000:0000 07 "
+      "00000000:00000000 00:00000000 00000000     0        0 4722 2 0000000000000000 0\n"
+      " 3: 0000000000000000FFFF00000100007F:28AA 00000000000000000000000000000000:0000 07 "
+      "00000000:00000000 00:00000000 00000000     0        0 4723 2 0000000000000000 0\n";
+  EXPECT_THAT(
+      taken_ports(kProcNetUdp + six, 10400, 10441),
+      testing::ElementsAre(Field(&TakenPort::inode, 4711U), Field(&TakenPort::inode, 4712U),
+                           Field(&TakenPort::inode, 4721U), Field(&TakenPort::inode, 4723U)));
+}
+
 TEST(CheckTest, AnotherProgramOnThePortsIsNamed) {
   EXPECT_THAT(check_ports({}), good());
   EXPECT_THAT(check_ports({{10410, 1, "stillhand-rig"}, {10402, 2, "fast-discovery-"}}), good());
@@ -134,6 +158,34 @@ TEST(CheckTest, KeysThatAreNotThereAreNamedForEachServiceOfTheHost) {
               wrong(folder.path().string(), "make.sh"));
 }
 
+// Of nobody: no key is kept of it.
+constexpr const char* kAuthority =
+    "-----BEGIN CERTIFICATE-----\n"
+    "MIIBPjCB8aADAgECAhQ24n+/PVrSpHp4JAsvBnlP4Bt8iTAFBgMrZXAwFDESMBAG\n"
+    "A1UEAwwJYXV0aG9yaXR5MCAXDTI2MTEyMjIxNDEyNFoYDzIxMjYxMDI5MjE0MTI0\n"
+    "WjAUMRIwEAYDVQQDDAlhdXRob3JpdHkwKjAFBgMrZXADIQDadRPUWh+6hJ1BZAOV\n"
+    "2K/MwsJ+kJx4bs5Szl0v6NrfmaNTMFEwHQYDVR0OBBYEFHsFp/CAUN2Ivbcooz3h\n"
+    "FFQi+GRXMB8GA1UdIwQYMBaAFHsFp/CAUN2Ivbcooz3hFFQi+GRXMA8GA1UdEwEB\n"
+    "/wQFMAMBAf8wBQYDK2VwA0EAiKFEPjf1R6IN3Eo8CtZWOiFUuKj174jgSGzwifHU\n"
+    "bWYGSVu4cYRPWebJKW1ONpkLvSyesykWl8QJNlmt4IGzAw==\n"
+    "-----END CERTIFICATE-----\n";
+
+// A watching host serves the page or records, or both, and needs the keys of no more.
+TEST(CheckTest, OfAToolsKeysThoseThatAreThereAreLookedAt) {
+  const SampleFolder folder;
+  Inventory inventory = sample_inventory(two_rigs());
+  inventory.security = folder.path();
+  std::ofstream(folder.path() / "authority.pem") << kAuthority;
+  const Host& watcher = *inventory.find_host("watcher");
+  const auto tap = HasSubstr("tap/certificate.pem");
+  const auto dashboard = HasSubstr("dashboard/certificate.pem");
+  EXPECT_THAT(check_keys_of(inventory, watcher).what, AllOf(tap, dashboard));
+  std::filesystem::create_directory(folder.path() / "dashboard");
+  EXPECT_THAT(check_keys_of(inventory, watcher).what, AllOf(testing::Not(tap), dashboard));
+  EXPECT_THAT(check_keys_of(inventory, inventory.hosts[0]).what,
+              AllOf(HasSubstr("rig/certificate.pem"), dashboard, testing::Not(tap)));
+}
+
 TEST(CheckTest, ThatTheOthersAnswerIsNotPretended) {
   const Inventory inventory = sample_inventory(two_rigs());
   const Finding sut = tell_reachability(inventory, inventory.hosts[0]);
@@ -149,24 +201,62 @@ Finding found(const std::vector<Finding>& all, const std::string& check) {
   return {};
 }
 
+Inventory this_machine() {
+  return sample_inventory("lab: bench\ndomain: " + std::to_string(support::own_domain()) +
+                          "\nhosts: [{name: pc, address: 127.0.0.1, services: [" + kAllServices +
+                          "]}]");
+}
+
 // The real machine: this test holds a port of a domain that nobody else has.
 TEST(CheckTest, ThisMachineIsRead) {
-  const Inventory inventory = sample_inventory(
-      "lab: bench\ndomain: " + std::to_string(support::own_domain()) +
-      "\nhosts: [{name: pc, address: 127.0.0.1, services: [" + kAllServices + "]}]");
+  const Inventory inventory = this_machine();
   const auto before = check_machine(inventory, inventory.hosts[0], {1, 1});
   EXPECT_THAT(found(before, "address"), good());
   EXPECT_THAT(found(before, "buffers"), good());
   EXPECT_THAT(found(before, "ports"), good());
-  const int holder = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(DomainPorts(inventory.domain).first));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ASSERT_EQ(bind(holder, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-  const auto after = check_machine(inventory, inventory.hosts[0], {1, 1});
-  close(holder);
-  EXPECT_THAT(found(after, "ports"), wrong("(unit_deploy_che", "another domain"));
+  const auto port = htons(static_cast<std::uint16_t>(DomainPorts(inventory.domain).first));
+  sockaddr_in four{};
+  four.sin_family = AF_INET;
+  four.sin_port = port;
+  four.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  sockaddr_in6 six{};  // [::], which takes IPv4's too
+  six.sin6_family = AF_INET6;
+  six.sin6_port = port;
+  const auto held = [&](int family, const void* address, socklen_t size) {
+    const int holder = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const bool holds = bind(holder, static_cast<const sockaddr*>(address), size) == 0;
+    const Finding ports = found(check_machine(inventory, inventory.hosts[0], {1, 1}), "ports");
+    close(holder);
+    return holds ? std::optional(ports) : std::nullopt;
+  };
+  EXPECT_THAT(held(AF_INET, &four, sizeof(four)),
+              testing::Optional(wrong("(unit_deploy_che", "another domain")));
+  if (const auto ports = held(AF_INET6, &six, sizeof(six))) {  // where the machine has IPv6
+    EXPECT_THAT(*ports, wrong("(unit_deploy_che", "another domain"));
+  }
+}
+
+/// In a thread without root's rights: the limits count.
+std::vector<Finding> checked_without_rights(const Inventory& inventory) {
+  std::vector<Finding> findings;
+  std::thread([&] {
+    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+    __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3]{};
+    ASSERT_EQ(syscall(SYS_capset, &header, none), 0);
+    findings = check_machine(inventory, inventory.hosts[0], {1, 1});
+  }).join();
+  return findings;
+}
+
+// The kernel grants by the soft limit, and the programs ask by it, however large the hard one is.
+TEST(CheckTest, TheSoftLimitCounts) {
+  rlimit memory{};
+  ASSERT_EQ(getrlimit(RLIMIT_MEMLOCK, &memory), 0);
+  const rlimit less{65536, memory.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_MEMLOCK, &less), 0);
+  const auto findings = checked_without_rights(this_machine());
+  setrlimit(RLIMIT_MEMLOCK, &memory);
+  EXPECT_THAT(found(findings, "memory-lock"), wrong("64 kB may be locked", "memlock unlimited"));
 }
 
 }  // namespace
