@@ -65,6 +65,14 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   struct Reader;
 
   explicit Impl(Options given) : options(std::move(given)) {}
+  // Also when the constructor of Tap throws: the participant calls this as long as it is there.
+  ~Impl() override {
+    if (participant == nullptr) return;
+    participant->delete_contained_entities();
+    edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   void on_participant_discovery(edds::DomainParticipant* participant,
                                 ParticipantDiscoveryInfo&& info) override;
@@ -277,11 +285,7 @@ void Tap::start() {
       std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->open_readers(stop); });
 }
 
-Tap::~Tap() {
-  stop();
-  impl_->participant->delete_contained_entities();
-  edds::DomainParticipantFactory::get_instance()->delete_participant(impl_->participant);
-}
+Tap::~Tap() { stop(); }
 
 void Tap::stop() {
   {

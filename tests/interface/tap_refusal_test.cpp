@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A process of its own: Fast DDS keeps the profiles of every file that one has read.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "contract/config_error.hpp"
+#include "runtime/tap.hpp"
+#include "support/own_domain.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+std::string without_profile(const std::string& name) {
+  std::ifstream stream(STILLHAND_SOURCE "/qos/profiles.xml");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string named = "profile_name=\"" + name + "\"";
+  for (std::size_t at = 0; (at = text.find(named)) != std::string::npos;) {
+    text.replace(at, named.size(), "profile_name=\"another\"");
+  }
+  return text;
+}
+
+// What hears of others on the bus is gone with the tap; DDS must not call it any more.
+TEST(TapTest, RefusedForAProfileItLeavesNoParticipant) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "stillhand_without_record_reliable.xml";
+  std::ofstream(file) << without_profile("record_reliable");
+  Tap::Options options;
+  options.name = "test-tap";
+  options.domain = support::own_domain();
+  options.profiles = file;
+  options.wanted = [](const std::string&) { return true; };
+  options.on_sample = [](const FoundWriter&, const TappedSample&) {};
+  std::string refusal;
+  try {
+    const Tap sut(options);
+  } catch (const ConfigError& error) {
+    refusal = error.what();
+  }
+  std::filesystem::remove(file);
+  EXPECT_THAT(refusal, testing::HasSubstr("record_reliable"));
+  EXPECT_EQ(eprosima::fastdds::dds::DomainParticipantFactory::get_instance()->lookup_participant(
+                options.domain),
+            nullptr);
+}
+
+}  // namespace
+}  // namespace stillhand::runtime
