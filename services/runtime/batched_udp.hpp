@@ -61,6 +61,8 @@ class BatchedUdp final : public eprosima::fastdds::rtps::ChainingTransport {
   class Slots;
 
   void run(const std::stop_token& stop);
+  /// @returns how many datagrams came
+  std::size_t take_batch(const Channel& channel, int socket, Slots& slots);
 
   BatchedUdpDescriptor descriptor_;
   mutable std::mutex mutex_;
