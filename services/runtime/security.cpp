@@ -183,11 +183,14 @@ void discover_in_one_thread(edds::DomainParticipantQos& qos) {
                       "one transport, UDPv4, with at most one address in its interfaceWhiteList");
   }
   auto& builtin = qos.wire_protocol().builtin;
-  if (!builtin.metatrafficUnicastLocatorList.empty()) return;  // then there is no multicast
-  if (*address != kLoopback) {
-    throw ConfigError("security", "discovery by multicast in the participant's profile",
-                      "initial peers and a metatrafficUnicastLocatorList, as `stillhand deploy "
-                      "generate` writes them");
+  const bool group = !builtin.metatrafficMulticastLocatorList.empty();
+  // Without a group of the profile's own, a unicast list means that there is none.
+  if (!builtin.metatrafficUnicastLocatorList.empty() && !group) return;
+  if (group || *address != kLoopback) {
+    throw ConfigError(
+        "security", "discovery by multicast in the participant's profile",
+        "initial peers and a metatrafficUnicastLocatorList alone, as `stillhand deploy "
+        "generate` writes them");
   }
   builtin.metatrafficUnicastLocatorList.push_back(Locator_t());  // the port that the standard names
   Locator_t peers;  // of the first maxInitialPeersRange participants

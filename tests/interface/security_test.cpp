@@ -4,6 +4,7 @@
 #include "runtime/security.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -150,13 +151,19 @@ TEST(IdentityTest, IsThatOfTheServiceOfADashboardOrElseTheTap) {
   EXPECT_EQ(Identity::of(lab(), "record-17").name, "tap");
 }
 
-/// What secure() says of a participant with this transport, multicast as the standard has it.
-std::string refused_discovery(const std::vector<std::string>& addresses, bool shared_memory) {
+using Builtin = eprosima::fastrtps::rtps::BuiltinAttributes;
+
+/// What secure() says of a participant with this transport, multicast as the standard has it but
+/// for what `change` says.
+std::string refused_discovery(
+    const std::vector<std::string>& addresses, bool shared_memory,
+    const std::function<void(Builtin&)>& change = [](Builtin&) {}) {
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses;
   edds::DomainParticipantQos qos;
   qos.transport().use_builtin_transports = shared_memory;
   qos.transport().user_transports.push_back(udp);
+  change(qos.wire_protocol().builtin);
   try {
     secure(qos, {lab(), "rig"});
   } catch (const ConfigError& error) {
@@ -169,6 +176,28 @@ TEST(SecurityTest, DiscoveryByMulticastOnTheNetworkIsRefused) {
   EXPECT_EQ(refused_discovery({"127.0.0.1"}, false), "");
   EXPECT_THAT(refused_discovery({"192.0.2.1"}, false), HasSubstr("multicast"));
   EXPECT_THAT(refused_discovery({}, false), HasSubstr("multicast"));
+}
+
+// As in a profile with metatrafficMulticastLocatorList: two threads, whatever else the profile has.
+TEST(SecurityTest, AGroupBesideUnicastIsRefusedAndUnicastAloneIsNot) {
+  const auto unicast = [](Builtin& builtin) {
+    builtin.metatrafficUnicastLocatorList.push_back(eprosima::fastrtps::rtps::Locator_t());
+  };
+  const auto group = [](Builtin& builtin) {
+    eprosima::fastrtps::rtps::Locator_t locator;
+    eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, "239.255.0.1");
+    builtin.metatrafficMulticastLocatorList.push_back(locator);
+  };
+  EXPECT_EQ(refused_discovery({"192.0.2.1"}, false, unicast), "");
+  EXPECT_THAT(refused_discovery({"127.0.0.1"}, false, group), HasSubstr("multicast"));
+  for (const char* address : {"192.0.2.1", "127.0.0.1"}) {
+    EXPECT_THAT(refused_discovery({address}, false,
+                                  [&](Builtin& builtin) {
+                                    unicast(builtin);
+                                    group(builtin);
+                                  }),
+                HasSubstr("multicast"));
+  }
 }
 
 TEST(SecurityTest, SeveralWaysToBeHeardAreRefused) {
