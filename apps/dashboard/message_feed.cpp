@@ -75,10 +75,12 @@ bool MessageFeed::wants(const std::string& topic) const {
 }
 
 std::uint32_t MessageFeed::add(const Source& source) {
-  Known known{kNone, nullptr, ""};
+  Known known{kNone, nullptr, "", source.replayed};
   for (std::size_t topic = 0; topic < kTopics.size(); ++topic) {
     if (kTopics[topic]->name != source.topic || kTopics[topic]->type != source.type) continue;
-    if (wants(source.topic)) known = {topic, kTopics[topic], ""};
+    if (!wants(source.topic)) continue;
+    known.topic = topic;
+    known.row = kTopics[topic];
   }
   if (source.topic == topics::kRecorderStatus.name && source.type == topics::kRecorderStatus.type) {
     known.row = &topics::kRecorderStatus;
@@ -91,12 +93,25 @@ std::uint32_t MessageFeed::add(const Source& source) {
   return static_cast<std::uint32_t>(sources_.size() - 1);
 }
 
+bool MessageFeed::passed_over(const Known& known) {
+  if (known.replayed) return session_heard_;
+  if (session_heard_ || service_number(known.service) == kNone) return false;
+  if (replayed_) {
+    MessageFeed anew(options_);
+    anew.sources_.swap(sources_);  // its elements stay where they are
+    anew.replayed_ = true;
+    *this = std::move(anew);
+  }
+  session_heard_ = true;
+  return false;
+}
+
 Heard MessageFeed::take(const Message& message) {
   const Known& known = sources_.at(message.source);
   if (known.row == &topics::kRecorderStatus) take_recorder(message);
   if (known.topic == kNone) return {};
   const recording::SampleHead head = recording::sample_head(message.bytes);
-  if (head.rig != options_.rig) return {};  // also what is no message
+  if (head.rig != options_.rig || passed_over(known)) return {};  // also what is no message
   Sample sample{message.source, message.sequence, -1, 0, message.source_ns, message.arrived_ns};
   if (known.row->pattern == topics::Pattern::kStream1khz) {
     if (head.tick < 0 || head.tick > kLastTick) {
@@ -105,10 +120,11 @@ Heard MessageFeed::take(const Message& message) {
     }
     sample.tick = head.tick;
     sample.stamp_ns = head.stamp_ns;
-    newest_tick_ = head.tick;
   }
   const Verdict verdict = health_.take(known.topic, sample, system_ahead_ns(known.service));
+  if (!verdict.counted) return {};
   if (known.row->pattern == topics::Pattern::kStream1khz) {
+    newest_tick_ = head.tick;
     take_stream(known, message);
   } else {
     look_into(known, message);
@@ -146,7 +162,8 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
     if (rig_writer_ && *rig_writer_ != message.source) {
       health_.chain().clear();
       forces_ = {};
-      emergency_ns_ = 0;  // another rig process, which nobody has stopped
+      // A process that begins now nobody has stopped.
+      if (message.source > *rig_writer_) emergency_ns_ = 0;
     }
     rig_writer_ = message.source;
     decode<stillhand_msgs::RigTruth>(message, [this](const auto& truth) {
@@ -272,8 +289,9 @@ std::int64_t MessageFeed::ahead_of_rig_ns(const std::string& service) const {
 
 void MessageFeed::step(std::int64_t now_ns) {
   constexpr std::int64_t kForgotten_ns = 60'000'000'000;
-  std::erase_if(recorders_,
-                [&](const auto& entry) { return now_ns - entry.second.at_ns > kForgotten_ns; });
+  std::erase_if(recorders_, [&](const auto& entry) {
+    return difference_ns(now_ns, entry.second.at_ns) > kForgotten_ns;
+  });
   health_.step(now_ns);
 }
 

@@ -73,8 +73,9 @@ struct Heard {
 };
 
 /// The one way from messages to the dashboard's numbers: a live bus and a recording both go through
-/// it, so that they cannot count differently.  One thread; no clock: time comes with messages and
-/// step().  A copy goes on by itself.
+/// it, so that they cannot count differently.  What a replay plays is counted until a session's own
+/// process is heard, and not beside it: nobody of the session hears it either.  One thread; no
+/// clock: time comes with messages and step().  A copy goes on by itself.
 class MessageFeed {
  public:
   /// @throws ConfigError as BusHealth does
@@ -123,10 +124,12 @@ class MessageFeed {
     std::size_t topic;  // place in the list, or kNone
     const topics::Topic* row;
     std::string service;  // of this rig, or empty
+    bool replayed;
   };
 
   template <typename Decoded, typename Use>
   void decode(const Message& message, Use use);
+  [[nodiscard]] bool passed_over(const Known& known);
   void look_into(const Known& known, const Message& message);
   void take_stream(const Known& known, const Message& message);
   void take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns);
@@ -152,7 +155,7 @@ class MessageFeed {
   ForceRecord forces_;
   QosMismatches qos_mismatches_;
   std::optional<std::uint32_t> rig_writer_;
-  bool replayed_ = false;
+  bool replayed_ = false, session_heard_ = false;
   Tick newest_tick_ = -1;
   std::uint64_t malformed_ = 0;
 };

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "contract/time_difference.hpp"
+
 namespace stillhand::dashboard {
 
 namespace {
@@ -64,13 +66,14 @@ std::size_t BusHealth::add(Watch watch, std::string subject, Threshold threshold
 
 bool BusHealth::armed(std::int64_t began_ns, std::int64_t now_ns) const noexcept {
   const std::int64_t from_ns = std::max(began_ns, running_since_ns_);
-  return running_ && ms(now_ns - from_ns) >= config_.grace_s * 1e3;
+  return running_ && ms(difference_ns(now_ns, from_ns)) >= config_.grace_s * 1e3;
 }
 
 Verdict BusHealth::take(std::size_t topic, const Sample& sample, std::int64_t ahead_ns) {
   TopicHealth& health = topics_.at(topic);
   const Verdict verdict = health.step(sample, ahead_ns);
-  if (health.plan().deadline_ns == 0 || !armed(health.first_at_ns(), sample.arrived_ns)) {
+  if (health.plan().deadline_ns == 0 || !verdict.counted ||
+      !armed(health.first_at_ns(), sample.arrived_ns)) {
     return verdict;
   }
   const TopicAlarms& mine = topic_alarms_[topic];
@@ -95,7 +98,7 @@ void BusHealth::step(std::int64_t now_ns) {
     const TopicAlarms& mine = topic_alarms_[topic];
     const bool on = armed(0, now_ns);
     const std::int64_t since_ns = std::max(topics_[topic].last_at_ns(), running_since_ns_);
-    alarms_[mine.silent].alarm.step(on ? ms(now_ns - since_ns) : 0.0, now_ns);
+    alarms_[mine.silent].alarm.step(on ? ms(difference_ns(now_ns, since_ns)) : 0.0, now_ns);
     const bool told = armed(topics_[topic].first_at_ns(), now_ns);
     alarms_[mine.latency].alarm.step(told ? ms(topics_[topic].recent_latency_p99_ns(now_ns)) : 0.0,
                                      now_ns);
@@ -109,7 +112,7 @@ void BusHealth::step(std::int64_t now_ns) {
   for (std::size_t service = 0; service < alive_ns_.size(); ++service) {
     const std::int64_t since_ns = std::max(alive_ns_[service], running_since_ns_);
     alarms_[first_service_alarm_ + service].alarm.step(
-        armed(0, now_ns) ? ms(now_ns - since_ns) : 0.0, now_ns);
+        armed(0, now_ns) ? ms(difference_ns(now_ns, since_ns)) : 0.0, now_ns);
   }
   if (level_since_ns_ == 0 || level() != stepped_level_) level_since_ns_ = now_ns;
   stepped_level_ = level();

@@ -25,6 +25,11 @@ void note(Lateness& lateness, std::int64_t by_ns, std::int64_t at_ns) {
 
 TopicHealth::TopicHealth(TopicPlan plan) : plan_(std::move(plan)) {}
 
+bool TopicHealth::superseded(const Sample& sample) const noexcept {
+  return sample.tick >= 0 && !writers_.empty() && sample.writer < writers_.front().number &&
+         difference_ns(sample.arrived_ns, writers_.front().last_at_ns) < kSecond_ns;
+}
+
 TopicHealth::Writer& TopicHealth::writer_of(const Sample& sample) {
   const auto known = std::ranges::find(writers_, sample.writer, &Writer::number);
   if (known != writers_.end()) return *known;
@@ -59,6 +64,7 @@ std::int64_t TopicHealth::late_by(std::int64_t interval_ns, std::int64_t lost) c
 }
 
 Verdict TopicHealth::step(const Sample& sample, std::int64_t ahead_ns) {
+  if (superseded(sample)) return {0, 0, 0, false};
   Writer& writer = writer_of(sample);
   turn_to(sample.arrived_ns / kSecond_ns);
   const bool first = writer.count.received() == 0;

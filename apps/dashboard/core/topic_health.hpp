@@ -21,7 +21,7 @@ struct TopicPlan {
 
 /// One sample of one writer, as any listener has it.
 struct Sample {
-  std::size_t writer = 0;       ///< the writer's number
+  std::size_t writer = 0;       ///< the writer's number, in the order of finding
   std::int64_t sequence = 0;    ///< DDS's, counted by the writer
   Tick tick = -1;               ///< -1: the type has none
   std::int64_t stamp_ns = 0;    ///< [ns] writer's monotonic clock; with a tick only
@@ -34,6 +34,7 @@ struct Verdict {
   std::int64_t lost = 0;          ///< [ticks] or messages missing just before it
   std::int64_t sent_late_ns = 0;  ///< [ns] interval of the stamps beyond what ticks explain; >= 0
   std::int64_t arrived_late_ns = 0;  ///< [ns] the same of the arrivals
+  bool counted = true;               ///< false: of a writer that another has taken the place of
 };
 
 /// Intervals beyond the deadline.
@@ -60,7 +61,9 @@ struct TopicReport {
 /// missed deadlines.  What rests on ticks, sequence numbers and stamps is the same for every
 /// listener that lost nothing; what rests on arrivals is this listener's own.
 ///
-/// A topic with ticks has one writer: another one is another session, and counting begins anew.
+/// A topic with ticks has one writer: one that is found later is another session, and counting
+/// begins anew.  Who was found before it isn't counted any longer, unless the later one is silent
+/// for a second: two that write at the same time cannot make it begin anew again and again.
 /// Pure: time enters with the samples.  Allocates at a writer's first sample alone; one thread.
 class TopicHealth {
  public:
@@ -97,6 +100,7 @@ class TopicHealth {
   };
 
   Writer& writer_of(const Sample& sample);
+  [[nodiscard]] bool superseded(const Sample& sample) const noexcept;
   void turn_to(std::int64_t second);
   [[nodiscard]] const Second* whole_second(std::int64_t now_ns) const noexcept;
   [[nodiscard]] std::int64_t late_by(std::int64_t interval_ns, std::int64_t lost) const noexcept;

@@ -120,6 +120,27 @@ TEST_F(BusHealthTest, ALongChainIsTold) {
   EXPECT_EQ(alarm(Watch::kChain, "").alarm.level(), Level::kCritical);
 }
 
+TEST_F(BusHealthTest, ASecondWriterOfATopicTakesNoAlarmAway) {
+  sut.set_running(true, kBegin);
+  const auto second = [&](std::int64_t n) {
+    const std::int64_t sent = kBegin + n * kMs;
+    sut.take(1, {7, n + 1, n, sent, sent, sent + kMs / 10});
+  };
+  for (std::int64_t n = 0; n < 5000; ++n) {
+    take(0, n);
+    take(1, n);
+    if (n % 1000 != 999) second(n);
+  }
+  EXPECT_EQ(alarm(Watch::kLost, "sensed").alarm.level(), Level::kWarning);
+}
+
+TEST_F(BusHealthTest, TimesThatCannotBeRaiseNothing) {
+  constexpr std::int64_t kFar = 9'000'000'000'000'000'000;  // of a damaged file
+  sut.set_running(true, kFar);
+  sut.step(-kFar);
+  EXPECT_EQ(sut.level(), Level::kHealthy);
+}
+
 TEST(BusHealthConfigTest, AWarningAboveItsCriticalValueIsRefused) {
   Config config;
   config.silent_warning_ms = 400.0;

@@ -18,9 +18,10 @@ constexpr std::int64_t kBegin = 1000 * 1000 * kMs;
 
 class MessageFeedTest : public ::testing::Test {
  protected:
-  std::uint32_t add(const topics::Topic& topic, MessageFeed& feed) {
-    return feed.add({std::string(topic.name), std::string(topic.type),
-                     "stillhand/1/" + std::string(topic.writers.front()), false});
+  std::uint32_t add(const topics::Topic& topic, MessageFeed& feed, bool replayed = false) {
+    const std::string who = replayed ? "replay-5" : std::string(topic.writers.front());
+    return feed.add(
+        {std::string(topic.name), std::string(topic.type), "stillhand/1/" + who, replayed});
   }
   std::uint32_t add(const topics::Topic& topic) { return add(topic, sut_); }
   template <typename Message_>
@@ -38,6 +39,25 @@ class MessageFeedTest : public ::testing::Test {
     control.duration_ticks(10'000);
     take(feed, add(topics::kTrialControl, feed), control, 0);
   }
+  void truth(std::uint32_t source, Tick tick) {
+    stillhand_msgs::RigTruth truth;
+    truth.rig(1);
+    truth.tick(tick);
+    truth.stamp_ns(tick * kMs);
+    truth.motor_tick(-1);
+    take(sut_, source, truth, tick);
+  }
+  void stop_at_once() {
+    stillhand_msgs::Event event;
+    event.rig(1);
+    event.kind(stillhand_msgs::EVENT_INTERLOCK_OPENED);
+    event.text(topics::kEmergencyStop.data());
+    take(sut_,
+         sut_.add({std::string(topics::kEvent.name), std::string(topics::kEvent.type),
+                   "stillhand/1/rig", false}),
+         event, 0);
+  }
+  TopicReport truths() const { return sut_.health().topics().at(3).report(kBegin); }
   // A second of the rig with a force of the motor.
   void push(MessageFeed& feed) {
     const std::uint32_t source = add(topics::kRigTruth, feed);
@@ -75,6 +95,43 @@ TEST_F(MessageFeedTest, AnotherRigsMessagesAreNotCounted) {
     take(sut_, source, sensed, 0);
   }
   EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).samples, 2u);
+}
+
+TEST_F(MessageFeedTest, AReplayBesideASessionIsNotCounted) {
+  const std::uint32_t replay = add(topics::kRigTruth, sut_, true);
+  truth(replay, 500);
+  EXPECT_EQ(truths().samples, 1u);  // as long as nothing else is there
+  const std::uint32_t rig = add(topics::kRigTruth);
+  truth(rig, 0);
+  stop_at_once();
+  for (Tick tick = 1; tick < 10; ++tick) {
+    truth(replay, 500 + tick);
+    truth(rig, tick);
+    truth(add(topics::kRigTruth, sut_, true), 900 + tick);
+  }
+  EXPECT_EQ(truths().samples, 10u);
+  EXPECT_EQ(truths().first_tick, 0);
+  EXPECT_EQ(truths().last_tick, 9);
+  EXPECT_EQ(sut_.newest_tick(), 9);
+  EXPECT_EQ(sut_.emergency_ns(), kBegin);
+  EXPECT_TRUE(sut_.replayed());
+}
+
+TEST_F(MessageFeedTest, AnEmergencyStopIsForgottenWithItsRigAlone) {
+  const std::uint32_t before = add(topics::kRigTruth), rig = add(topics::kRigTruth);
+  truth(before, 0);
+  truth(rig, 0);
+  stop_at_once();
+  for (Tick tick = 1; tick < 10; ++tick) {
+    truth(before, tick);
+    truth(rig, tick);
+  }
+  EXPECT_EQ(sut_.emergency_ns(), kBegin);
+  truth(before, 2000);  // the other one ended; nobody started it anew
+  EXPECT_EQ(sut_.newest_tick(), 2000);
+  EXPECT_EQ(sut_.emergency_ns(), kBegin);
+  truth(add(topics::kRigTruth), 0);
+  EXPECT_EQ(sut_.emergency_ns(), 0);
 }
 
 TEST_F(MessageFeedTest, WhileAPersonTracksTheMotorsForceStaysHidden) {

@@ -109,6 +109,32 @@ TEST(TopicHealthTest, AnotherWriterOfAStreamIsAnotherSession) {
   EXPECT_EQ(sut.report(fresh.arrived_ns).samples, 1u);
 }
 
+TEST(TopicHealthTest, OfTwoThatWriteAtTheSameTimeTheOneFoundLaterCounts) {
+  TopicHealth sut(kStream);
+  for (std::int64_t n = 0; n < 10; ++n) sut.step(on_time(n));
+  for (std::int64_t n = 10; n < 100; ++n) {
+    Sample later = on_time(n);
+    later.writer = 2;
+    if (n % 10 != 9) {
+      EXPECT_TRUE(sut.step(later).counted) << n;
+    }
+    EXPECT_FALSE(sut.step(on_time(n)).counted) << n;
+  }
+  EXPECT_EQ(sut.report(kBegin + 100 * kMs).samples, 81u);
+  EXPECT_EQ(sut.report(kBegin + 100 * kMs).lost, 8u);  // nobody knows of the last yet
+}
+
+TEST(TopicHealthTest, WhoWroteBeforeCountsAgainOnceTheOtherIsSilent) {
+  TopicHealth sut(kStream);
+  sut.step(on_time(0));
+  Sample later = on_time(1);
+  later.writer = 2;
+  sut.step(later);
+  EXPECT_FALSE(sut.step(on_time(1000)).counted);
+  EXPECT_TRUE(sut.step(on_time(1001)).counted);
+  EXPECT_EQ(sut.report(kBegin + 1001 * kMs).samples, 1u);
+}
+
 TEST(TopicHealthTest, WritersOfOneTopicAreCountedApartAndAddedUp) {
   TopicHealth sut({"stillhand/service_status", 100 * kMs, 0});
   for (std::int64_t n = 0; n < 20; ++n) {
