@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contract/config_error.hpp"
+#include "contract/time_difference.hpp"
 #include "dashboard/words.hpp"
 
 namespace stillhand::dashboard {
@@ -47,8 +48,10 @@ Heard RecordedRun::Playing::take(const recording::MessageView& message) {
   const std::int64_t arrived_ns = ns(message.log_time_ns);
   at_ns = std::max(at_ns, arrived_ns);
   // Time goes on between messages too; a step a tenth of a second, as on the bus.
-  if (stepped_ns == 0 || arrived_ns - stepped_ns > kLongest_ns) stepped_ns = arrived_ns;
-  for (; stepped_ns + kStep_ns <= arrived_ns; stepped_ns += kStep_ns) {
+  if (stepped_ns == 0 || difference_ns(arrived_ns, stepped_ns) > kLongest_ns) {
+    stepped_ns = arrived_ns;
+  }
+  for (; difference_ns(arrived_ns, stepped_ns) >= kStep_ns; stepped_ns += kStep_ns) {
     feed.step(stepped_ns + kStep_ns);
   }
   ++messages;
@@ -86,9 +89,9 @@ void RecordedRun::keep(const Playing& playing, std::int64_t next_ns) {
   while (kept_.size() > 1 && kept_.back().at_ns >= next_ns) kept_.pop_back();
   if (kept_.size() > kMostKept || next_ns <= playing.at_ns) return;
   const std::int64_t apart_ns =
-      std::max(kSecond_ns, (timeline_.end_ns() - timeline_.begin_ns()) / kMostKept);
+      std::max(kSecond_ns, difference_ns(timeline_.end_ns(), timeline_.begin_ns()) / kMostKept);
   const std::int64_t since_ns = kept_.size() == 1 ? timeline_.begin_ns() : kept_.back().at_ns;
-  if (playing.at_ns - since_ns >= apart_ns) kept_.push_back(playing);
+  if (difference_ns(playing.at_ns, since_ns) >= apart_ns) kept_.push_back(playing);
 }
 
 void RecordedRun::note(const Heard& heard, const MessageFeed& feed, std::int64_t at_ns) {
@@ -132,7 +135,7 @@ void RecordedRun::note_alarms(const MessageFeed& feed) {
 }
 
 std::int64_t RecordedRun::instant_ns(double at_s) const noexcept {
-  const std::int64_t length_ns = timeline_.end_ns() - timeline_.begin_ns();
+  const std::int64_t length_ns = difference_ns(timeline_.end_ns(), timeline_.begin_ns());
   const double length_s = static_cast<double>(length_ns) / 1e9;
   const double since_s = std::clamp(at_s, 0.0, length_s);
   return timeline_.begin_ns() +
@@ -150,8 +153,8 @@ MessageFeed RecordedRun::as_of(std::int64_t at_ns) {
     playing.take(message);
     return true;
   }));
-  for (; playing.messages > 0 && playing.stepped_ns + kStep_ns <= at_ns &&
-         at_ns - playing.stepped_ns <= kLongest_ns;
+  for (; playing.messages > 0 && difference_ns(at_ns, playing.stepped_ns) >= kStep_ns &&
+         difference_ns(at_ns, playing.stepped_ns) <= kLongest_ns;
        playing.stepped_ns += kStep_ns) {
     playing.feed.step(playing.stepped_ns + kStep_ns);
   }

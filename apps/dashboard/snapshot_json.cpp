@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "contract/time_difference.hpp"
 #include "dashboard/view_json.hpp"
 #include "dashboard/words.hpp"
 
@@ -148,7 +149,7 @@ Json services_json(const MessageFeed& feed, std::int64_t now_ns) {
     if (view.status) {
       const auto state = static_cast<std::size_t>(view.status->state());
       service["state"] = state < kStates.size() ? kStates[state] : "unknown";
-      service["silent_ms"] = us(now_ns - last_ns) / 1e3;
+      service["silent_ms"] = us(difference_ns(now_ns, last_ns)) / 1e3;
       service["pid"] = view.status->pid();
       service["real_time"] = view.status->real_time();
       service["waits_for"] = view.status->missing().to_string();
@@ -205,7 +206,7 @@ Json recorders_json(const MessageFeed& feed, std::int64_t now_ns) {
                    {"free_bytes", status.free_bytes()},
                    {"trouble", status.trouble().to_string()},
                    {"answer", status.answer().to_string()},
-                   {"silent_ms", us(now_ns - view.at_ns) / 1e3}});
+                   {"silent_ms", us(difference_ns(now_ns, view.at_ns)) / 1e3}});
   }
   return all;
 }
