@@ -62,9 +62,11 @@ struct HttpServer::Impl {
   const Pages& pages;
   const Access& access;
   Served served;
-  std::size_t connections = 0;
-  std::list<Connection*> asking;  // no whole request yet; who has been longest at it comes first
-  asio::io_context io{1};         // its end is that of every Connection in it
+  std::size_t connections = 0, streams = 0;
+  // Who can be closed where connections run out, in this order, the oldest first: who has the last
+  // answer and does not close, and who has sent no whole request yet.
+  std::list<Connection*> leaving, asking;
+  asio::io_context io{1};  // its end is that of every Connection in it
   tcp::acceptor acceptor{io};
   asio::steady_timer pause{io};
   std::set<std::shared_ptr<Connection>> listeners;
@@ -77,14 +79,15 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
     ++server_.connections;
   }
   ~Connection() {
-    asked();
+    stand_nowhere();
+    if (streams_) --server_.streams;
     --server_.connections;
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
   void read() {
-    asking_ = server_.asking.insert(server_.asking.end(), this);
+    stand_in(server_.asking);
     parser_.emplace();
     parser_->header_limit(kMostHeader);
     parser_->body_limit(kMostBody);
@@ -101,21 +104,25 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
     if (queue_.size() == 1) write_frame();
   }
 
-  /// It waits for no request any longer.
-  void asked() {
-    if (asking_) server_.asking.erase(*asking_);
-    asking_.reset();
-  }
-
   void close() {
+    stand_nowhere();
     error_code ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
     stream_.close();
   }
 
  private:
+  void stand_in(std::list<Connection*>& list) {
+    stand_nowhere();
+    place_.emplace(&list, list.insert(list.end(), this));
+  }
+  void stand_nowhere() {
+    if (place_) place_->first->erase(place_->second);
+    place_.reset();
+  }
+
   void answer_read(error_code error) {
-    asked();
+    stand_nowhere();
     if (error == http::error::header_limit) return refuse(431, "a header of at most 8 KiB");
     if (error == http::error::body_limit) return refuse(413, "a body of at most 4 KiB");
     if (error && error.category() == http::make_error_code(http::error::bad_method).category() &&
@@ -132,7 +139,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
                             view(request[http::field::cookie])};
     const Answer found = answer(question, server_.pages, server_.access, server_.served);
     if (!found.streams) return respond(found, request.keep_alive());
-    if (server_.listeners.size() < kMostListeners) return listen();
+    if (server_.streams < kMostListeners) return listen();
     Answer full;
     full.status = 503;
     full.body = "want fewer pages at once: " + std::to_string(kMostListeners) + " listen\n";
@@ -166,6 +173,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
                         if (keep_alive) return self->read();
                         error_code ignored;
                         self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                        self->stand_in(self->server_.leaving);
                         self->stream_.expires_after(kLeaveTime);
                         self->discard(kMostDiscarded);
                       });
@@ -182,6 +190,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
   }
 
   void listen() {
+    streams_ = true;  // from now on, also while its header is under way
+    ++server_.streams;
     error_code ignored;
     stream_.socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
     header_.emplace();
@@ -215,7 +225,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
 
   beast::tcp_stream stream_;
   Impl& server_;
-  std::optional<std::list<Connection*>::iterator> asking_;
+  std::optional<std::pair<std::list<Connection*>*, std::list<Connection*>::iterator>> place_;
+  bool streams_ = false;
   beast::flat_buffer buffer_{kMostHeader + kMostBody};
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
@@ -253,14 +264,16 @@ void HttpServer::Impl::accept() {
   });
 }
 
-// Who connects and asks nothing is the first to go: a flood of such displaces itself, and who asks
-// at once is answered before it is his turn.
+// Who has had the last answer goes first, and then who connects and asks nothing: a flood of such
+// displaces itself, and who asks at once is answered before it is his turn.
 bool HttpServer::Impl::make_room() {
   if (connections < kMostConnections) return true;
-  if (asking.empty()) return false;
-  asking.front()->close();
-  asking.front()->asked();
-  return true;
+  for (const std::list<Connection*>* idle : {&leaving, &asking}) {
+    if (idle->empty()) continue;
+    idle->front()->close();
+    return true;
+  }
+  return false;
 }
 
 HttpServer::HttpServer(const Options& options, const Pages& pages, const Access& access,

@@ -14,7 +14,7 @@ namespace stillhand::dashboard {
 /// HTTP/1.1 in the thread that calls run_for(), and in no other.  Everything a client can make it
 /// hold has a bound: connections, header, body, time for a request, frames that wait for a client;
 /// who exceeds one is answered or dropped, never waited for.  Where connections run out, those that
-/// asked nothing yet make room, the oldest first.
+/// have had their last answer make room, then those that asked nothing yet, the oldest first.
 class HttpServer {
  public:
   struct Options {

@@ -6,6 +6,7 @@ import os
 import pathlib
 import resource
 import selectors
+import signal
 import socket
 import threading
 import time
@@ -64,7 +65,50 @@ class Honest(threading.Thread):
         self.join()
 
 
-class HostileClientsTest(DashboardCase):
+class ClientsCase(DashboardCase):
+    def connected(self, dashboard, said=b""):
+        client = socket.create_connection(("127.0.0.1", dashboard.port), timeout=LIMIT_S)
+        self.addCleanup(client.close)
+        client.sendall(said)
+        return client
+
+    def asked_at_once(self, dashboard, request, times):
+        """Who ask at the same instant: the dashboard finds them all when it gets its turn."""
+        os.kill(dashboard.process.pid, signal.SIGSTOP)
+        try:
+            return [self.connected(dashboard, request) for _ in range(times)]
+        finally:
+            os.kill(dashboard.process.pid, signal.SIGCONT)
+
+    def status_of(self, client):
+        """What it was answered with; b"" when it was not."""
+        try:
+            return client.recv(12).removeprefix(b"HTTP/1.1 ")
+        except ConnectionError:
+            return b""
+
+
+class CrowdTest(ClientsCase):
+    def test_streams_asked_for_at_once_leave_room_for_an_emergency_stop(self):
+        dashboard = self.dashboard("--domain", next_domain())
+        crowd = self.asked_at_once(dashboard, b"GET /events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", MOST_CONNECTIONS)
+        answers = [self.status_of(client) for client in crowd]
+        self.assertEqual((answers.count(b"200"), answers.count(b"503")), (MOST_LISTENERS, MOST_CONNECTIONS - MOST_LISTENERS))
+        self.assertEqual(dashboard.ask("POST", "/emergency-stop")[0], 409)  # an answer: no rig is there
+
+    def test_who_was_refused_and_stays_takes_nobodys_place(self):
+        file = self.folder / "token"
+        file.write_text(TOKEN + "\n")
+        file.chmod(0o600)
+        dashboard = self.dashboard("--domain", next_domain(), "--token-file", file)
+        head = b"POST /emergency-stop HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
+        strangers = [self.connected(dashboard, head + b"\r\n") for _ in range(MOST_CONNECTIONS)]
+        self.assertEqual({self.status_of(client) for client in strangers}, {b"403"})
+        own = self.asked_at_once(dashboard, head + b"Authorization: Bearer " + TOKEN.encode() + b"\r\n\r\n", MOST_CONNECTIONS)
+        self.assertEqual({self.status_of(client) for client in own}, {b"409"})
+
+
+class HostileClientsTest(ClientsCase):
     def test_a_session_runs_on_whatever_clients_do(self):
         domain = next_domain()
         dashboard = self.dashboard("--domain", domain)
@@ -98,12 +142,6 @@ class HostileClientsTest(DashboardCase):
             return False
         except OSError:
             return True
-
-    def connected(self, dashboard, said=b""):
-        client = socket.create_connection(("127.0.0.1", dashboard.port), timeout=LIMIT_S)
-        self.addCleanup(client.close)
-        client.sendall(said)
-        return client
 
     def slow_ones(self, dashboard):
         """Who tells a header bit by bit holds a place for a while, and no longer."""
