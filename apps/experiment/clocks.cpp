@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "experiment/clocks.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "contract/time_difference.hpp"
+#include "idl/topics.hpp"
 #include "runtime/clock_answer.hpp"
 #include "runtime/real_time.hpp"
 
@@ -53,12 +56,14 @@ void Clocks::work(const std::stop_token& stop) {
 
 void Clocks::take(const stillhand_msgs::ClockAnswer& answer, const runtime::Arrival& arrival) {
   const std::string who = answer.service().c_str();
+  if (std::ranges::find(topics::kServices, who) == topics::kServices.end()) return;  // a stranger
   const std::lock_guard lock(mutex_);
   Other& other = others_[who];
   other.same_clock = identity_ == answer.clock().c_str();
   const std::int64_t system_ahead_ns =
-      (answer.system_ns() - answer.stamp_ns()) - (arrival.logged_ns - arrival.received_ns);
-  const std::int64_t moved_ns = system_ahead_ns - other.system_ahead_ns;
+      difference_ns(difference_ns(answer.system_ns(), answer.stamp_ns()),
+                    arrival.logged_ns - arrival.received_ns);
+  const std::int64_t moved_ns = difference_ns(system_ahead_ns, other.system_ahead_ns);
   if (other.answered && std::abs(moved_ns) > kSystemStep_ns) {
     ++other.system_steps;
     tell(stillhand_msgs::EVENT_CLOCK_STEPPED, who, "its system clock jumped by %+.1f ms",

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "contract/config_error.hpp"
+#include "contract/time_difference.hpp"
 #include "runtime/endpoint.hpp"
 #include "runtime/found_writers.hpp"
 #include "runtime/participant.hpp"
@@ -209,6 +210,8 @@ bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
 bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
 std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
 void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
+  // Whoever writes on the bus may name whom he likes; kept are offsets of a session's own.
+  if (std::ranges::find(topics::kServices, service) == topics::kServices.end()) return;
   const std::lock_guard lock(impl_->clock_mutex);
   impl_->clock_offsets_ns[service] = offset_ns;
   const auto own = impl_->clock_offsets_ns.find(options_.service);
@@ -217,7 +220,9 @@ void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
     const auto& writers = endpoint->topic().writers;
     if (endpoint->writes() || writers.size() != 1) continue;
     const auto writer = impl_->clock_offsets_ns.find(std::string(writers.front()));
-    if (writer != impl_->clock_offsets_ns.end()) endpoint->set_clock_ahead(writer->second - own_ns);
+    if (writer != impl_->clock_offsets_ns.end()) {
+      endpoint->set_clock_ahead(difference_ns(writer->second, own_ns));
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
+#include "contract/time_difference.hpp"
 #include "runtime/serialized_type.hpp"
 #include "runtime/type_tag.hpp"
 
@@ -148,7 +149,7 @@ void ReaderEndpoint::on_data_available(edds::DataReader* source) {
 void ReaderEndpoint::supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns) {
   if (!supervising_.load(std::memory_order_relaxed)) return;
   const std::int64_t ahead_ns = clock_ahead_ns_.load(std::memory_order_relaxed);
-  const auto verdict = monitor_.step(tick, sent_ns - ahead_ns, arrived_ns);
+  const auto verdict = monitor_.step(tick, difference_ns(sent_ns, ahead_ns), arrived_ns);
   if (verdict.lost > 0) {
     tell(BusIncident::Kind::kTicksLost, "", static_cast<double>(verdict.lost));
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contract/time_difference.hpp"
+
 namespace stillhand::clock {
 namespace {
 
@@ -34,14 +36,14 @@ bool ClockOffset::drifts() const noexcept {
 }
 
 std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noexcept {
-  const std::int64_t there_ns = exchange.answered_ns - exchange.received_ns;
-  const std::int64_t here_ns = exchange.back_ns - exchange.asked_ns;
+  const std::int64_t there_ns = difference_ns(exchange.answered_ns, exchange.received_ns);
+  const std::int64_t here_ns = difference_ns(exchange.back_ns, exchange.asked_ns);
   const double round_trip_s = seconds(here_ns - there_ns);
   if (here_ns < 0 || there_ns < 0 || round_trip_s < 0.0 || round_trip_s > kLongest_s)
     return std::nullopt;
   // Eq. CK-1; differences first: the clocks themselves may be days apart.
   const std::int64_t offset_ns =
-      exchange.received_ns - exchange.asked_ns - (here_ns - there_ns) / 2;
+      difference_ns(exchange.received_ns, exchange.asked_ns) - (here_ns - there_ns) / 2;
   if (count_ == 0) {
     origin_ns_ = exchange.back_ns;
     origin_offset_ns_ = offset_ns;

@@ -179,5 +179,15 @@ TEST(ClockComparisonTest, WhatIsNoExchangeIsPassedOver) {
   EXPECT_EQ(before.steps, after.steps);
 }
 
+// Anybody on the bus may write any stamp: a difference that wraps round would be one nanosecond.
+TEST(ClockComparisonTest, StampsThatNoDifferenceCanHoldAreNoExchange) {
+  ClockComparison sut;
+  for (std::int64_t back_ns = kSecond_ns; back_ns < 20 * kSecond_ns; back_ns += kEvery_ns) {
+    EXPECT_FALSE(sut.take({back_ns - 1000, INT64_MAX, INT64_MIN, back_ns}));
+    EXPECT_FALSE(sut.take({INT64_MIN, INT64_MAX, INT64_MAX, back_ns}));
+  }
+  EXPECT_FALSE(sut.offset(20 * kSecond_ns));
+}
+
 }  // namespace
 }  // namespace stillhand::clock
