@@ -31,8 +31,9 @@ std::string keys_script(const std::filesystem::path& folder, const std::string& 
   }
   script += "for file in " + files + "; do\n" +
             "  [ -r $file ] || { echo \"no $PWD/$file to read\"; exit 1; }\n" + "done\n";
-  return script + "cmp -s authority.pem - <<'END' || { echo \"$PWD/authority.pem is another\"; " +
-         "exit 1; }\n" + authority + "END\n";
+  // Between $( and ), which leave out the ends of lines at the end: a copy may lack its last.
+  return script + "[ \"$(cat authority.pem)\" = \"$(cat " + here_document(authority) +
+         ")\" ] || { echo \"$PWD/authority.pem is another\"; exit 1; }\n";
 }
 
 }  // namespace stillhand::experiment

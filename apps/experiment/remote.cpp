@@ -15,6 +15,7 @@ namespace {
 constexpr std::int64_t kPatience_ns = 30 * runtime::kNsPerSecond;  // with a host that is silent
 constexpr std::int64_t kPoll_ns = 5'000'000;
 constexpr std::string_view kFolder = "/tmp/stillhand-";
+constexpr std::string_view kMade = "\nstillhand made ";  // a line that nobody else prints
 
 std::uintmax_t size_of(const std::filesystem::path& file) {
   std::error_code none;
@@ -56,6 +57,22 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
+std::string here_document(const std::string& text) {
+  const std::string end = end_mark(text);
+  const bool whole = text.empty() || text.ends_with('\n');
+  return "<<'" + end + "'\n" + text + (whole ? "" : "\n") + end + "\n";
+}
+
+std::string folder_told(const std::string& printed) {
+  const std::size_t line = printed.rfind(kMade);
+  if (line == std::string::npos) return "";
+  const std::size_t from = line + kMade.size();
+  const std::size_t end = printed.find('\n', from);
+  if (end == std::string::npos) return "";
+  std::string folder = printed.substr(from, end - from);
+  return folder.starts_with(kFolder) ? folder : "";
+}
+
 RemoteHost::RemoteHost(const deploy::Host& host, std::filesystem::path log)
     : host_(host), log_(std::move(log)) {}
 
@@ -89,10 +106,11 @@ void RemoteHost::run(const std::string& script, const std::filesystem::path& out
 void RemoteHost::open() {
   std::string made;
   try {
-    run("mktemp -d " + std::string(kFolder) + "XXXXXXXX\n");
-    made = text_of(log_);
-    while (!made.empty() && made.back() == '\n') made.pop_back();
-    if (!made.starts_with(kFolder)) throw std::runtime_error("it answered \"" + made + "\"");
+    // The log also has what ssh says, and what a login prints.
+    run("folder=$(mktemp -d " + std::string(kFolder) + "XXXXXXXX) || exit 1\n" +
+        "printf '\\nstillhand made %s\\n' \"$folder\"\n");
+    made = folder_told(text_of(log_));
+    if (made.empty()) throw std::runtime_error("no folder was made in /tmp");
   } catch (const std::exception& error) {
     std::string words;
     for (const std::string& word : host_.start) words += word + " ";
@@ -121,8 +139,7 @@ void RemoteHost::put(const std::map<std::string, std::string>& files) {
   for (const auto& [name, text] : files) {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     if (!folder.empty()) script += "mkdir -p " + shell_word(folder.string()) + "\n";
-    const std::string end = end_mark(text);
-    script += "cat > " + shell_word(name) + " <<'" + end + "'\n" + text + "\n" + end + "\n";
+    script += "cat > " + shell_word(name) + " " + here_document(text);
   }
   run(script);
 }

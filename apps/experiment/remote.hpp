@@ -53,4 +53,11 @@ class RemoteHost {
 /// A word as a POSIX shell reads it back.
 std::string shell_word(const std::string& word);
 
+/// `<<'END'` and what follows, by which a command reads this text; a last line without an end gets
+/// one.
+std::string here_document(const std::string& text);
+
+/// The folder that open()'s script has made, of all that a host printed; empty: none.
+std::string folder_told(const std::string& printed);
+
 }  // namespace stillhand::experiment
