@@ -103,7 +103,7 @@ void add_lab_command(CLI::App& cli, int& status) {
   lab->add_flag("--wait-for-start", options->wait_for_start,
                 "each trial waits until somebody presses Start on the dashboard");
   recording::add_keep_options(*lab, options->keep);
-  lab->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
+  lab->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
   lab->callback([options, words, &status] {
     options->protocol.conditions = parse_conditions(words->conditions);
     options->who = words->who == "mouse" ? Operator::kMouse : Operator::kSimulated;

@@ -98,7 +98,7 @@ void add_record_command(CLI::App& cli, int& status) {
   recording::add_keep_options(*verb, words->keep);
   verb->add_option("--remote", words->remote,
                    "instead: tell the recorder on this domain to pause, resume, trigger or stop");
-  verb->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
+  verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
   verb->add_option("--security", options.security,

@@ -95,7 +95,7 @@ void add_replay_command(CLI::App& cli, int& status) {
   verb->add_option("--remote", words->remote,
                    "instead: tell the replay on this domain: play, pause, step, stop, \"seek S\", "
                    "\"rate R\", \"loop S S\", loop-off");
-  verb->add_flag("--no-real-time", words->ordinary, "do not ask for SCHED_FIFO");
+  verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
   verb->callback([words, &status] { status = run(*words); });

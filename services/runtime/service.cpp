@@ -181,7 +181,8 @@ int run_service(const std::string& name, int argc, char** argv,
   cli.add_option("--out", options.out, "folder or file this process may write");
   cli.add_option("--security", options.security,
                  "folder of certificates (deploy/security/make.sh); none: no security");
-  cli.add_flag("--real-time", options.real_time, "ask for SCHED_FIFO");
+  cli.add_flag("--real-time", options.real_time,
+               "ask for real-time priority: SCHED_FIFO, with keys SCHED_RR");
   cli.add_flag("--one-session", options.one_session,
                "end when the session it took part in does, to be started anew for the next");
   cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
