@@ -72,11 +72,12 @@ class ClientsCase(DashboardCase):
         client.sendall(said)
         return client
 
-    def asked_at_once(self, dashboard, request, times):
-        """Who ask at the same instant: the dashboard finds them all when it gets its turn."""
+    def say_at_once(self, dashboard, clients, request):
+        """At the same instant: the dashboard finds all of it when it gets its turn."""
         os.kill(dashboard.process.pid, signal.SIGSTOP)
         try:
-            return [self.connected(dashboard, request) for _ in range(times)]
+            for client in clients:
+                client.sendall(request)
         finally:
             os.kill(dashboard.process.pid, signal.SIGCONT)
 
@@ -91,7 +92,10 @@ class ClientsCase(DashboardCase):
 class CrowdTest(ClientsCase):
     def test_streams_asked_for_at_once_leave_room_for_an_emergency_stop(self):
         dashboard = self.dashboard("--domain", next_domain())
-        crowd = self.asked_at_once(dashboard, b"GET /events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", MOST_CONNECTIONS)
+        without = descriptors(dashboard.process.pid)
+        crowd = [self.connected(dashboard) for _ in range(MOST_CONNECTIONS)]
+        wait_for("a place for each", lambda: descriptors(dashboard.process.pid) >= without + MOST_CONNECTIONS)
+        self.say_at_once(dashboard, crowd, b"GET /events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
         answers = [self.status_of(client) for client in crowd]
         self.assertEqual((answers.count(b"200"), answers.count(b"503")), (MOST_LISTENERS, MOST_CONNECTIONS - MOST_LISTENERS))
         self.assertEqual(dashboard.ask("POST", "/emergency-stop")[0], 409)  # an answer: no rig is there
@@ -104,7 +108,8 @@ class CrowdTest(ClientsCase):
         head = b"POST /emergency-stop HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
         strangers = [self.connected(dashboard, head + b"\r\n") for _ in range(MOST_CONNECTIONS)]
         self.assertEqual({self.status_of(client) for client in strangers}, {b"403"})
-        own = self.asked_at_once(dashboard, head + b"Authorization: Bearer " + TOKEN.encode() + b"\r\n\r\n", MOST_CONNECTIONS)
+        own = [self.connected(dashboard) for _ in range(MOST_CONNECTIONS)]
+        self.say_at_once(dashboard, own, head + b"Authorization: Bearer " + TOKEN.encode() + b"\r\n\r\n")
         self.assertEqual({self.status_of(client) for client in own}, {b"409"})
 
 
