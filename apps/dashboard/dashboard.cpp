@@ -51,15 +51,16 @@ double motor_limit_n(const std::filesystem::path& config) {
   return std::min(canceller.limits.max_force_n, rig.motor.limits.max_force_n);
 }
 
-// What a request of the page comes to.  @return as Served::act
-std::optional<std::string> act(std::string_view path, MessageFeed& feed,
-                               std::optional<Remote>& remote) {
+// What a request of the page comes to.
+Outcome act(std::string_view path, MessageFeed& feed, std::optional<Remote>& remote) {
   if (path == "/acknowledge") {
-    feed.acknowledge();
-    if (remote) remote->note("alarms acknowledged");
-    return "";
+    const Outcome told = remote ? remote->note("alarms acknowledged") : Outcome{};
+    if (told.kind == Outcome::Kind::kDone) feed.acknowledge();
+    return told;
   }
-  if (!remote) return "this dashboard only looks: a recording, or --read-only";
+  if (!remote) {
+    return {Outcome::Kind::kRefused, "this dashboard only looks: a recording, or --read-only"};
+  }
   return remote->ask(path);
 }
 
@@ -140,7 +141,7 @@ int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
       around.trouble = bus->trouble();
       rigs.step(now_ns);
       around.rigs = rigs.summaries();
-      if (remote) remote->step(now_ns);
+      if (remote) remote->step();
     }
     const Parts parts{frame % kGraphEvery == 0, frame % kSpectrumEvery == 0};
     ++frame;

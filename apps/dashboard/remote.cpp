@@ -33,10 +33,16 @@ constexpr std::array kRecorder{
     RecorderPath{"/recorder/trigger", stillhand_msgs::RECORDER_TRIGGER, "recorders: trigger"},
     RecorderPath{"/recorder/stop", stillhand_msgs::RECORDER_STOP, "recorders: stop"}};
 
+Outcome too_many() {
+  return {Outcome::Kind::kTooMany, "more than " + std::to_string(RequestRate::kMostPerSecond) +
+                                       " requests within a second"};
+}
+
+// The process too: hosts of one name are told apart, and two dashboards of one.
 std::string name_of_asker() {
-  std::array<char, 48> host{};  // with the rest it fits string<64> of idl/session.idl
+  std::array<char, 41> host{};  // with the rest it fits string<64> of idl/session.idl
   gethostname(host.data(), host.size() - 1);
-  return "dashboard on " + std::string(host.data());
+  return "dashboard on " + std::string(host.data()) + " (" + std::to_string(getpid()) + ")";
 }
 
 runtime::Bus::Options bus_options(const LiveOptions& options, std::uint32_t rig) {
@@ -53,58 +59,70 @@ runtime::Bus::Options bus_options(const LiveOptions& options, std::uint32_t rig)
 }  // namespace
 
 Remote::Remote(const LiveOptions& options, std::uint32_t rig)
-    : domain_(options.domain),
+    : nobody_("nobody listens on domain " + std::to_string(options.domain)),
       bus_(bus_options(options, rig)),
       session_(bus_.publisher<stillhand_msgs::SessionCommand>(topics::kSessionCommand)),
       recorder_(bus_.publisher<stillhand_msgs::RecorderCommand>(topics::kRecorderCommand)),
-      asker_(name_of_asker()) {
+      asker_(name_of_asker()),
+      // Behind every one of an earlier process of this number, by a clock that nobody sets.
+      request_(static_cast<std::uint64_t>(runtime::monotonic_ns())) {
   bus_.start();
-}
-
-bool Remote::heard(const topics::Topic& topic) const {
-  return std::ranges::any_of(bus_.report(), [&](const runtime::EndpointReport& report) {
-    return report.topic == &topic && report.matched > 0;
-  });
 }
 
 void Remote::send(stillhand_msgs::SessionAction action, const std::string& text) {
   stillhand_msgs::SessionCommand command;
-  // Larger than any before, also than those of an earlier dashboard on this host.
-  command.request(static_cast<std::uint64_t>(runtime::system_ns()));
+  command.request(++request_);
   command.action(action);
   command.asker(asker_);
   command.text(text);
   session_.write(command);
 }
 
-std::optional<std::string> Remote::ask(std::string_view path) {
-  const std::string nobody = "nobody listens on domain " + std::to_string(domain_);
-  if (const auto* found = std::ranges::find(kSession, path, &SessionPath::path);
-      found != kSession.end()) {
-    const bool emergency = found->action == stillhand_msgs::SESSION_EMERGENCY_STOP;
-    if (emergency) stop_until_ns_ = runtime::system_ns() + 5 * runtime::kNsPerSecond;
-    if (!heard(topics::kSessionCommand)) {
-      return nobody + (emergency ? ": asked again for 5 s" : ": no session runs");
-    }
-    send(found->action, "");
-    return "";
-  }
-  const auto* found = std::ranges::find(kRecorder, path, &RecorderPath::path);
-  if (found == kRecorder.end()) return std::nullopt;
-  if (!heard(topics::kRecorderCommand)) return nobody + ": no `stillhand record` runs";
-  stillhand_msgs::RecorderCommand command;
-  command.request(static_cast<std::uint64_t>(runtime::system_ns()));
-  command.action(found->action);
-  command.text(asker_);
-  recorder_.write(command);
-  note(found->word);
-  return "";
+Outcome Remote::stop_at_once() {
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  const bool asked = now_ns < stop_until_ns_;  // then step() writes it
+  stop_until_ns_ = now_ns + 5 * runtime::kNsPerSecond;
+  if (!asked) send(stillhand_msgs::SESSION_EMERGENCY_STOP, "");
+  if (bus_.matched_peers(topics::kSessionCommand).contains("rig")) return {};
+  return {Outcome::Kind::kRefused, nobody_ + ": no rig is there; asked again for 5 s"};
 }
 
-void Remote::note(const std::string& what) { send(stillhand_msgs::SESSION_NOTE, what); }
+Outcome Remote::ask(std::string_view path) {
+  const auto* session = std::ranges::find(kSession, path, &SessionPath::path);
+  const auto* recorder = std::ranges::find(kRecorder, path, &RecorderPath::path);
+  if (session != kSession.end()) {
+    if (session->action == stillhand_msgs::SESSION_EMERGENCY_STOP) return stop_at_once();
+    if (!bus_.matched_peers(topics::kSessionCommand).contains("experiment")) {
+      return {Outcome::Kind::kRefused, nobody_ + ": no session runs"};
+    }
+    if (!rate_.take(runtime::monotonic_ns())) return too_many();
+    send(session->action, "");
+    return {};
+  }
+  if (recorder == kRecorder.end()) return {Outcome::Kind::kUnknown, ""};
+  // By the name of its process (runtime::outsider).
+  if (!std::ranges::any_of(bus_.matched_peers(topics::kRecorderCommand),
+                           [](const std::string& peer) { return peer.starts_with("record-"); })) {
+    return {Outcome::Kind::kRefused, nobody_ + ": no `stillhand record` runs"};
+  }
+  if (!rate_.take(runtime::monotonic_ns())) return too_many();
+  stillhand_msgs::RecorderCommand command;
+  command.request(++request_);
+  command.action(recorder->action);
+  command.text(asker_);
+  recorder_.write(command);
+  send(stillhand_msgs::SESSION_NOTE, recorder->word);
+  return {};
+}
 
-void Remote::step(std::int64_t now_ns) {
-  if (now_ns < stop_until_ns_) send(stillhand_msgs::SESSION_EMERGENCY_STOP, "");
+Outcome Remote::note(const std::string& what) {
+  if (!rate_.take(runtime::monotonic_ns())) return too_many();
+  send(stillhand_msgs::SESSION_NOTE, what);
+  return {};
+}
+
+void Remote::step() {
+  if (runtime::monotonic_ns() < stop_until_ns_) send(stillhand_msgs::SESSION_EMERGENCY_STOP, "");
 }
 
 }  // namespace stillhand::dashboard

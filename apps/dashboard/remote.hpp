@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "dashboard/core/request_rate.hpp"
 #include "dashboard/live_bus.hpp"
+#include "dashboard/routes.hpp"
 #include "idl/recording.h"
 #include "idl/session.h"
 #include "runtime/bus.hpp"
@@ -22,24 +23,27 @@ class Remote {
 
   /// @param path  "/session/start", "/session/pause", "/session/stop", "/emergency-stop",
   ///              "/recorder/pause", "/recorder/resume", "/recorder/trigger", "/recorder/stop"
-  /// @return why it could not be asked, "" when it was; nothing when there is no such action
-  std::optional<std::string> ask(std::string_view path);
+  /// Done is what somebody heard who does it: the rig an emergency stop, the experiment the others,
+  /// a `stillhand record` its own.
+  Outcome ask(std::string_view path);
   /// Into the session's events.
-  void note(const std::string& what);
+  Outcome note(const std::string& what);
   /// Ten times a second: an emergency stop is written again for some seconds, so that it reaches a
   /// rig that was out of reach when it was asked for.
-  void step(std::int64_t now_ns);
+  void step();
 
  private:
+  Outcome stop_at_once();
   void send(stillhand_msgs::SessionAction action, const std::string& text);
-  [[nodiscard]] bool heard(const topics::Topic& topic) const;
 
-  std::uint32_t domain_;
+  std::string nobody_;
   runtime::Bus bus_;
   runtime::Publisher<stillhand_msgs::SessionCommand> session_;
   runtime::Publisher<stillhand_msgs::RecorderCommand> recorder_;
   std::string asker_;
-  std::int64_t stop_until_ns_ = 0;
+  std::uint64_t request_;
+  RequestRate rate_;
+  std::int64_t stop_until_ns_ = 0;  // monotonic clock
 };
 
 }  // namespace stillhand::dashboard

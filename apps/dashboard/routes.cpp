@@ -15,6 +15,22 @@ Answer refusal(unsigned status, std::string why) {
   return answer;
 }
 
+Answer answer_to(const Outcome& outcome) {
+  switch (outcome.kind) {
+    case Outcome::Kind::kUnknown:
+      return refusal(404, "no such action");
+    case Outcome::Kind::kRefused:
+      return refusal(409, outcome.why);
+    case Outcome::Kind::kTooMany:
+      return refusal(429, outcome.why);
+    case Outcome::Kind::kDone:
+      break;
+  }
+  Answer done;
+  done.status = 204;
+  return done;
+}
+
 std::optional<double> finite(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -41,12 +57,7 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
   if (!access.allows(request)) return refusal(403, "not without the token, or by another name");
   if (question.method == "POST") {
     if (!access.allows_change(request)) return refusal(403, "not for a page of another site");
-    const std::optional<std::string> why_not = served.act(path);
-    if (!why_not) return refusal(404, "no such action");
-    if (!why_not->empty()) return refusal(409, *why_not);
-    Answer done;
-    done.status = 204;
-    return done;
+    return answer_to(served.act(path));
   }
   if (question.method != "GET") return refusal(405, "GET, or POST of an action");
   Answer found;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,14 +25,20 @@ struct Answer {
   bool streams = false;          ///< no body: server-sent events from now on
 };
 
+/// What became of an action that was asked for.
+struct Outcome {
+  enum class Kind : std::uint8_t { kDone, kUnknown, kRefused, kTooMany };
+  Kind kind = Kind::kDone;
+  std::string why;  ///< one line for a person, where it was not done
+};
+
 /// What the server can be asked for.
 struct Served {
   /// Whole, as JSON.  @param at_s  [s] since the beginning of a recording; none: the newest
   std::function<std::string(std::optional<double> at_s)> snapshot;
   std::function<std::string()> timeline;  ///< of a recording, as JSON; empty on a bus
   /// Does what a path asks for, "/session/pause" and the like.
-  /// @return why not, "" when it was done or asked; nothing when there is no such action
-  std::function<std::optional<std::string>(std::string_view path)> act;
+  std::function<Outcome(std::string_view path)> act;
 };
 
 /// The answer to any request, however odd; without a socket.

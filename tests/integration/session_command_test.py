@@ -4,11 +4,13 @@
 The page's buttons are these requests (tests/integration/dashboard_browser_test.py); here is what comes of them.
 """
 import subprocess
+import time
 
 import lab_process
 from dashboard_test import DashboardCase, main, wait_for
 from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, next_domain, quick_session
 
+REQUESTS_PER_S = 10  # and no more reach the bus
 FORCE_LIMIT_TICKS = 50  # the motor force ramps to zero within 50 ms
 
 
@@ -88,6 +90,10 @@ class SessionCommandTest(DashboardCase):
 
     def test_nobody_is_asked_for_what_nobody_does(self):
         dashboard = self.dashboard("--domain", next_domain())
+        # Once the dashboard hears itself: its own ear on the bus is nobody.
+        wait_for("its own word", lambda: dashboard.ask("POST", "/acknowledge") and any(
+            topic["topic"] == "stillhand/session_command" and topic["samples"] > 0
+            for topic in dashboard.snapshot()["topics"]))
         for path in ("/session/start", "/session/stop", "/emergency-stop", "/recorder/pause"):
             status, answer, _ = dashboard.ask("POST", path)
             self.assertEqual(status, 409, path)
@@ -96,12 +102,28 @@ class SessionCommandTest(DashboardCase):
         self.assertFalse(onlooker.snapshot()["actions"]["enabled"])
         self.assertEqual(onlooker.ask("POST", "/emergency-stop")[0], 409)
 
+    def test_a_storm_of_requests_is_refused_and_an_emergency_stop_is_not(self):
+        dashboard = self.dashboard("--domain", next_domain())
+        head = b"POST %s HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+        began = time.monotonic()
+        answers = dashboard.raw((head + b"\r\n") % b"/acknowledge" * 200 +
+                                (head + b"Connection: close\r\n\r\n") % b"/emergency-stop")
+        done, refused = answers.count(b"HTTP/1.1 204"), answers.count(b"HTTP/1.1 429")
+        self.assertEqual(done + refused, 200)
+        self.assertGreater(done, 0)
+        self.assertLessEqual(done, REQUESTS_PER_S * (1 + time.monotonic() - began))
+        self.assertEqual(answers.count(b"HTTP/1.1 409"), 1, "the emergency stop, which no rig heard")
+
+    def recorder(self, domain, file):
+        recorder = subprocess.Popen([str(lab_process.STILLHAND), "record", "--domain", str(domain), "--out",
+                                     str(self.folder / file)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(recorder.kill)
+        return recorder
+
     def test_a_recorder_obeys_and_the_page_tells(self):
         domain = next_domain()
         dashboard = self.dashboard("--domain", domain)
-        recorder = subprocess.Popen([str(lab_process.STILLHAND), "record", "--domain", str(domain), "--out",
-                                     str(self.folder / "any.mcap")], stderr=subprocess.DEVNULL)
-        self.addCleanup(recorder.kill)
+        recorder = self.recorder(domain, "first.mcap")
 
         def recorders():
             return dashboard.snapshot()["recorders"]
@@ -110,6 +132,15 @@ class SessionCommandTest(DashboardCase):
         wait_for("its pause", lambda: recorders()[0]["paused"])
         self.asked(dashboard, "/recorder/resume")
         wait_for("its end", lambda: not recorders()[0]["paused"])
+        first = recorders()[0]["name"]
+        self.asked(dashboard, "/recorder/stop")
+        self.assertEqual(recorder.wait(timeout=20), 0)
+
+        # What the one before was asked is nothing to the next. It hears itself at least, ten times a second.
+        recorder = self.recorder(domain, "next.mcap")
+        wait_for("two seconds of the next", lambda: any(
+            each["received"] > 20 and not each["paused"] for each in recorders() if each["name"] != first))
+        self.assertIsNone(recorder.poll())
         self.asked(dashboard, "/recorder/stop")
         self.assertEqual(recorder.wait(timeout=20), 0)
 

@@ -141,10 +141,10 @@ class RequestFuzzTest : public ::testing::Test {
   int acted_ = 0;
   Served served_{[](std::optional<double> /*at_s*/) { return std::string("{}"); },
                  [] { return std::string("{}"); },
-                 [this](std::string_view path) -> std::optional<std::string> {
+                 [this](std::string_view path) -> Outcome {
                    ++acted_;
-                   if (path != "/acknowledge") return std::nullopt;
-                   return "";
+                   if (path != "/acknowledge") return {Outcome::Kind::kUnknown, ""};
+                   return {};
                  }};
 };
 

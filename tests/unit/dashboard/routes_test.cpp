@@ -37,11 +37,12 @@ class RoutesTest : public ::testing::Test {
 
   std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_pages_");
   std::optional<Pages> pages_;
-  std::optional<std::string> act(std::string_view path) {
-    if (path == "/session/stop") return "nobody listens";
-    if (path != "/acknowledge") return std::nullopt;
+  Outcome act(std::string_view path) {
+    if (path == "/session/stop") return {Outcome::Kind::kRefused, "nobody listens"};
+    if (path == "/session/start") return {Outcome::Kind::kTooMany, "not so fast"};
+    if (path != "/acknowledge") return {Outcome::Kind::kUnknown, ""};
     ++acknowledged_;
-    return "";
+    return {};
   }
   int acknowledged_ = 0;
   std::optional<double> at_s_;
@@ -100,6 +101,9 @@ TEST_F(RoutesTest, AnActionThatCouldNotBeAskedSaysWhy) {
   const Answer refused = ask("POST", "/session/stop");
   EXPECT_EQ(refused.status, 409u);
   EXPECT_EQ(refused.body, "nobody listens\n");
+  const Answer later = ask("POST", "/session/start");
+  EXPECT_EQ(later.status, 429u);
+  EXPECT_EQ(later.body, "not so fast\n");
 }
 
 TEST_F(RoutesTest, TheTokenGoesFromTheAddressIntoACookie) {
