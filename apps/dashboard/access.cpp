@@ -15,7 +15,7 @@ namespace stillhand::dashboard {
 
 namespace {
 
-constexpr std::string_view kCookie = "stillhand_token=";
+constexpr std::string_view kCookie = "stillhand_token";
 constexpr std::string_view kBearer = "Bearer ";
 constexpr std::string_view kQuery = "token=";
 constexpr std::size_t kShortest = 16, kLongest = 256;
@@ -24,6 +24,15 @@ constexpr std::size_t kShortest = 16, kLongest = 256;
 std::string_view name_of(std::string_view host) {
   if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
   return host.substr(0, host.find(':'));
+}
+
+/// "stillhand_token_8340=" for "lab:8340"; it goes into a header, so of a port only digits do.
+std::string cookie_key(std::string_view host) {
+  const std::string_view port = host.substr(name_of(host).size());
+  const bool digits = port.size() > 1 && std::ranges::all_of(port.substr(1), [](char c) {
+                        return c >= '0' && c <= '9';
+                      });
+  return std::string(kCookie) + (digits ? "_" + std::string(port.substr(1)) : "") + "=";
 }
 
 /// Value of the first "<key>value" between separators.
@@ -57,7 +66,7 @@ bool Access::allows(const Request& request) const {
   if (request.authorization.starts_with(kBearer)) {
     return is_token(request.authorization.substr(kBearer.size()));
   }
-  return is_token(value_behind(request.cookie, kCookie, ';'));
+  return is_token(value_behind(request.cookie, cookie_key(request.host), ';'));
 }
 
 bool Access::allows_change(const Request& request) const {
@@ -66,8 +75,8 @@ bool Access::allows_change(const Request& request) const {
          request.origin == "https://" + std::string(request.host);
 }
 
-std::string Access::cookie() const {
-  return std::string(kCookie) + token_ + "; Path=/; HttpOnly; SameSite=Strict";
+std::string Access::cookie(const Request& request) const {
+  return cookie_key(request.host) + token_ + "; Path=/; HttpOnly; SameSite=Strict";
 }
 
 std::string read_token(const std::string& file) {

@@ -27,7 +27,9 @@ class Access {
   [[nodiscard]] bool allows_change(const Request& request) const;
   /// The query shows the right token: it goes into a cookie, and out of the address.
   [[nodiscard]] bool signs_in(const Request& request) const;
-  [[nodiscard]] std::string cookie() const;
+  /// Named by the port that the browser asked, since cookies are of a host and know no ports:
+  /// another dashboard there is not signed out.
+  [[nodiscard]] std::string cookie(const Request& request) const;
 
  private:
   [[nodiscard]] bool is_token(std::string_view word) const;

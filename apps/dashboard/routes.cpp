@@ -8,6 +8,10 @@ namespace stillhand::dashboard {
 
 namespace {
 
+constexpr const char* kSignIn =
+    "signed out: open this page as /?token=... once, with the token of --token-file; without one, "
+    "as 127.0.0.1, localhost or [::1]";
+
 Answer refusal(unsigned status, std::string why) {
   Answer answer;
   answer.status = status;
@@ -51,10 +55,10 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
   if (question.method == "GET" && path == "/" && access.signs_in(request)) {
     Answer signed_in = refusal(303, "signed in");
     signed_in.location = "/";
-    signed_in.cookie = access.cookie();
+    signed_in.cookie = access.cookie(request);
     return signed_in;
   }
-  if (!access.allows(request)) return refusal(403, "not without the token, or by another name");
+  if (!access.allows(request)) return refusal(403, kSignIn);
   if (question.method == "POST") {
     if (!access.allows_change(request)) return refusal(403, "not for a page of another site");
     return answer_to(served.act(path));

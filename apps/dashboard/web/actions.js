@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page can ask for. The emergency stop needs one key from anywhere and asks no question back.
-import { clock, element, write } from "/elements.js";
+import { SIGN_IN, clock, element, write } from "/elements.js";
 
 const TRIES = 40; // of an emergency stop that gets no answer, four a second
 const plain = (event) => !event.ctrlKey && !event.metaKey && !event.altKey;
@@ -18,7 +18,7 @@ async function ask(path, name) {
       tell(`${name}: asked at ${clock(Date.now())}`);
       return "";
     }
-    const why = (await answer.text()).trim();
+    const why = answer.status === 403 ? `signed out: ${SIGN_IN}` : (await answer.text()).trim();
     tell(`${name}: refused: ${why}`, true);
     return why;
   } catch {

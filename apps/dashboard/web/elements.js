@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small words for the document.
+export const SIGN_IN = "open this page again with ?token=… of its --token-file";
 export const element = (id) => document.getElementById(id);
 
 // A screen reader speaks what changes: nothing is written that is there already.

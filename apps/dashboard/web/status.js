@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The strip that is read from across the room.
-import { clock, element, short, span, write } from "/elements.js";
+import { SIGN_IN, clock, element, short, span, write } from "/elements.js";
 
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
@@ -92,7 +92,8 @@ export function showStatus(snapshot) {
   delete document.body.dataset.stale;
 }
 
-export function showLost(since) {
-  strip("none", "No connection", `no word from the dashboard's process since ${clock(since)}`, `${span(Date.now() - since)} ago`);
+export function showLost(since, signedOut) {
+  const silent = `no word from the dashboard's process since ${clock(since)}`;
+  strip("none", signedOut ? "Signed out" : "No connection", signedOut ? SIGN_IN : silent, `${span(Date.now() - since)} ago`);
   document.body.dataset.stale = "";
 }

@@ -6,11 +6,13 @@ const DEAF_MS = 4000; // a host that is gone closes nothing
 const AGAIN_MS = 500;
 
 export class Stream {
-  // opened(): it runs, anew; heard(snapshot); lost(since): no word since then, told again and again.
+  // opened(): it runs, anew; heard(snapshot); lost(since, signedOut): no word since then, told again
+  // and again.
   constructor({ opened, heard, lost }) {
     this.calls = { opened, heard, lost };
     this.heardAt = performance.now();
     this.lastWord = new Date();
+    this.signedOut = false;
     setInterval(() => this.watch(), 250);
     this.open();
   }
@@ -20,7 +22,10 @@ export class Stream {
     this.source?.close();
     this.openedAt = performance.now();
     this.source = new EventSource("/events");
-    this.source.onopen = () => this.calls.opened();
+    this.source.onopen = () => {
+      this.signedOut = false;
+      this.calls.opened();
+    };
     this.source.onmessage = (event) => {
       this.heardAt = performance.now();
       this.lastWord = new Date();
@@ -28,15 +33,22 @@ export class Stream {
     };
     this.source.onerror = () => {
       this.source.close();
-      this.calls.lost(this.lastWord);
+      this.calls.lost(this.lastWord, this.signedOut);
+      this.askWhy();
       this.again = setTimeout(() => this.open(), AGAIN_MS);
     };
+  }
+
+  // An EventSource does not tell a refusal from a silence.
+  async askWhy() {
+    const answer = await fetch("/style.css", { cache: "no-store" }).catch(() => null);
+    this.signedOut = answer?.status === 403;
   }
 
   watch() {
     const now = performance.now();
     if (now - this.heardAt <= SILENT_MS) return;
-    this.calls.lost(this.lastWord);
+    this.calls.lost(this.lastWord, this.signedOut);
     if (now - this.heardAt > DEAF_MS && now - this.openedAt > DEAF_MS) this.open();
   }
 }

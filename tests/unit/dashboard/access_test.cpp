@@ -51,6 +51,25 @@ TEST(AccessTest, WithATokenItIsTheTokenThatCounts) {
   EXPECT_TRUE(sut.signs_in({"", "", "", "", "x=1&token=" + kToken}));
 }
 
+TEST(AccessTest, TwoDashboardsOfAHostHaveACookieEach) {
+  const Access sut(kToken), other(std::string(20, 'b'));
+  const auto pair = [](const Access& access, std::string_view host) {
+    const std::string cookie = access.cookie({host, "", "", "", ""});
+    return cookie.substr(0, cookie.find(';'));
+  };
+  EXPECT_EQ(pair(sut, "lab:8340"), "stillhand_token_8340=" + kToken);
+  EXPECT_EQ(pair(sut, "[::1]:8340"), "stillhand_token_8340=" + kToken);
+  EXPECT_EQ(pair(sut, "lab"), "stillhand_token=" + kToken);
+  const std::string both = pair(sut, "lab:8340") + "; " + pair(other, "lab:8341");
+  EXPECT_TRUE(sut.allows({"lab:8340", "", "", both, ""}));
+  EXPECT_TRUE(other.allows({"lab:8341", "", "", both, ""}));
+  EXPECT_FALSE(sut.allows({"lab:8341", "", "", both, ""}));
+  // Nothing of a name but digits goes into a header.
+  for (const char* host : {"lab:", "lab:80;x", "lab:a", "lab: 1", "[::1", "lab:1\r\n"}) {
+    EXPECT_EQ(pair(sut, host), "stillhand_token=" + kToken) << host;
+  }
+}
+
 TEST(AccessTest, WithoutATokenNoneIsRight) {
   const Access sut("");
   EXPECT_FALSE(sut.signs_in({"", "", "", "", "token="}));

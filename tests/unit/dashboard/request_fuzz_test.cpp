@@ -86,7 +86,9 @@ Spoilt request(Random& random) {
       one_of(kMethods, random), one_of(kTargets, random), one_of(kHosts, random), "", "", ""};
   if (below(random, 3) == 0) all.origin = "http://" + one_of(kHosts, random);
   if (below(random, 3) == 0) all.authorization = "Bearer " + kToken;
-  if (below(random, 3) == 0) all.cookie = "a=b; stillhand_token=" + kToken;
+  if (below(random, 3) == 0) {
+    all.cookie = "a=b; " + Access(kToken).cookie({all.host, "", "", "", ""});
+  }
   for (std::string* text :
        {&all.method, &all.target, &all.host, &all.origin, &all.authorization, &all.cookie}) {
     for (std::size_t times = below(random, 3); times > 0; --times) spoil(*text, random);
