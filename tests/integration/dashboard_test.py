@@ -101,6 +101,25 @@ class DashboardCase(LabTestCase):
         self.addCleanup(dashboard.close)
         return dashboard
 
+    def assert_counted_alike(self, pages, files):
+        """Of topics: which could be compared, and which were the same to the last sample.
+
+        Exactly the same from the first sample to the last that both heard. (What is on its way when its writer leaves,
+        one may hear and the other not: the end may differ, and nothing before it.)
+        """
+        compared, same = [], []
+        for name in STREAMS:
+            page, file = pages[name], files[name]
+            if page["first_tick"] != file["first_tick"] or page["lost"] != page["not_sent"] or file["lost"] != file["not_sent"]:
+                continue  # one joined late or lost something on its way: it cannot count the same
+            compared.append(name)
+            end = file["last_tick"] - page["last_tick"]
+            self.assertEqual(file["samples"] + file["lost"] - end, page["samples"] + page["lost"], name)
+            if end == 0:
+                self.assertEqual(same_for_every_listener(page), same_for_every_listener(file), name)
+                same.append(name)
+        return compared, same
+
 
 class BesideASessionTest(DashboardCase):
     def test_the_page_counts_what_the_recording_holds_whatever_clients_do(self):
@@ -145,19 +164,7 @@ class BesideASessionTest(DashboardCase):
         recorded = self.dashboard("--recording", lab.out / "session.mcap").snapshot()
         ours, theirs = streams(over), streams(recorded)
         self.assertEqual(set(ours), set(STREAMS))
-        # Exactly the same from the first sample to the last that both heard. (What is on its way when its writer leaves,
-        # one may hear and the other not: the end may differ, and nothing before it.)
-        compared, same = [], []
-        for name in STREAMS:
-            page, file = ours[name], theirs[name]
-            if page["first_tick"] != file["first_tick"] or page["lost"] != page["not_sent"] or file["lost"] != file["not_sent"]:
-                continue  # one joined late or lost something on its way: it cannot count the same
-            compared.append(name)
-            end = file["last_tick"] - page["last_tick"]
-            self.assertEqual(file["samples"] + file["lost"] - end, page["samples"] + page["lost"], name)
-            if end == 0:
-                self.assertEqual(same_for_every_listener(page), same_for_every_listener(file), name)
-                same.append(name)
+        compared, same = self.assert_counted_alike(ours, theirs)
         if not compared:
             self.skipTest("on this busy machine one of the two lost samples of every topic")
         if {"sensed", "motor_command", "rig_truth"} <= set(same):
@@ -230,13 +237,14 @@ class RequestsTest(DashboardCase):
         file.chmod(0o600)
         dashboard = self.dashboard("--domain", next_domain(), "--token-file", file)
         for headers in ({}, {"Authorization": "Bearer " + TOKEN[:-1] + "x"}, {"Authorization": "Bearer " + "a" * 7000},
-                        {"Cookie": "stillhand_token=" + TOKEN[:-1]}, {"Authorization": "Basic " + TOKEN}):
+                        {"Cookie": f"stillhand_token_{dashboard.port}=" + TOKEN[:-1]}, {"Authorization": "Basic " + TOKEN}):
             self.assertEqual(dashboard.ask("GET", "/snapshot", headers)[0], 403, headers)
         self.assertEqual(dashboard.ask("GET", "/snapshot", {"Authorization": "Bearer " + TOKEN})[0], 200)
         self.assertEqual(dashboard.ask("GET", "/?token=wrong")[0], 403)
         status, _, headers = dashboard.ask("GET", "/?token=" + TOKEN)
         self.assertEqual((status, headers["Location"]), (303, "/"))
         self.assertIn("HttpOnly", headers["Set-Cookie"])
+        self.assertTrue(headers["Set-Cookie"].startswith(f"stillhand_token_{dashboard.port}="), headers["Set-Cookie"])
         self.assertEqual(dashboard.ask("GET", "/", {"Cookie": headers["Set-Cookie"].split(";")[0]})[0], 200)
 
     def test_who_never_reads_is_dropped_and_others_go_on(self):
