@@ -16,6 +16,7 @@ using eprosima::fastrtps::types::ReturnCode_t;
 namespace edds = eprosima::fastdds::dds;
 
 namespace {
+
 void read_in_batches(edds::DomainParticipantQos& qos, const TakeDatagram& take) {
   using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
   for (auto& transport : qos.transport().user_transports) {
