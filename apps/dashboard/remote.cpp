@@ -34,8 +34,8 @@ constexpr std::array kRecorder{
     RecorderPath{"/recorder/stop", stillhand_msgs::RECORDER_STOP, "recorders: stop"}};
 
 Outcome too_many() {
-  return {Outcome::Kind::kTooMany, "more than " + std::to_string(RequestRate::kMostPerSecond) +
-                                       " requests within a second"};
+  return {Outcome::Kind::kTooMany,
+          "more than " + std::to_string(RequestRate::kMostPerSecond) + " requests within a second"};
 }
 
 // The process too: hosts of one name are told apart, and two dashboards of one.
