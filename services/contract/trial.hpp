@@ -24,6 +24,13 @@ struct Trial {
   Tick duration_ticks = 0;  ///< [ticks] measured length
   Tick ramp_ticks = 0;      ///< [ticks] length of each ramp
 
+  /// True where start, length and ramps are 0 to 2^60 ticks: adding them cannot overflow, whatever
+  /// a message said.  The functions below are for those alone.
+  [[nodiscard]] bool sound() const noexcept {
+    constexpr Tick kLast = Tick{1} << 60;
+    return start_tick >= 0 && start_tick <= kLast && duration_ticks >= 0 &&
+           duration_ticks <= kLast && ramp_ticks >= 0 && ramp_ticks <= kLast;
+  }
   /// True for the measured ticks and both ramps.
   [[nodiscard]] bool covers(Tick tick) const noexcept {
     return phase != TrialPhase::kIdle && tick >= start_tick - ramp_ticks &&

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "motion/shell.hpp"
+#include "settings/check_name.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;
@@ -14,7 +15,8 @@ int main(int argc, char** argv) {
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.add_option("--ride", way.ride,
-                       "recorded ride to follow: CSV with a_y [m/s^2], or .mcap");
+                       "recorded ride to follow: CSV with a_y [m/s^2], or .mcap")
+            ->check(settings::check_name);
         cli.add_option("--road-class", way.road_class, "ISO 8608 road, A (very good) to H")
             ->capture_default_str();
         cli.add_option("--speed-m-s", way.road_speed_m_s, "speed on the road [m/s]")

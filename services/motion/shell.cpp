@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "contract/config_error.hpp"
 #include "motion/codec.hpp"
@@ -18,7 +19,7 @@ Shell::Shell(runtime::Service& service, RideAndRoad way)
   if (!way_.ride.empty()) ride_ = read_ride(way_.ride.string());
   service.on_trial([this](const Trial& trial, const auto&) {
     // Another trial, or none: what the platform follows is over, ended or not.
-    if (armed_ != nullptr && armed_->trial.number != trial.number) core_.disarm();
+    if (armed_ != trial.number) core_.disarm();
     prepare_when_complete();
   });
   service.bus().subscribe<stillhand_msgs::TrialAssignment>(
@@ -81,16 +82,17 @@ void Shell::tell_motion(const MotionProfile& profile, const MotionReport& report
 }
 
 void Shell::on_sensed(Tick tick) {
-  if (Prepared* newest = handover_.current();
-      newest != nullptr && newest != armed_ && newest->trial.number == service_.trial().number) {
-    armed_ = newest;
-    core_.arm(newest->trajectory, newest->trial);
-    service_.note_armed(newest->trial.number);
+  if (Prepared* newest = handover_.current(); newest != nullptr &&
+                                              newest->trial.number == service_.trial().number &&
+                                              newest->trial.number != armed_) {
+    armed_ = newest->trial.number;
+    core_.arm(std::move(newest->trajectory), newest->trial);
+    service_.note_armed(armed_);
   }
   // Lost sensed samples leave a gap here; the rig needs every command, within reason.
   const Tick first = std::max(last_ + 1, tick + 1);
   for (Tick next = first; next <= tick + kLead; ++next) {
-    auto message = to_idl(core_.step(next), next, armed_ == nullptr ? -1 : armed_->trial.number);
+    auto message = to_idl(core_.step(next), next, armed_);
     command_.write(message);
     last_ = next;
   }

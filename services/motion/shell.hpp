@@ -51,7 +51,7 @@ class Shell {
   RideRecord ride_;
   runtime::Publisher<stillhand_msgs::PlatformCommand> command_;
   runtime::Handover<Prepared> handover_;
-  Prepared* armed_ = nullptr;
+  std::int64_t armed_ = -1;  // number of a trial
   std::optional<stillhand_msgs::TrialAssignment> assignment_;
   std::int64_t prepared_trial_ = -1;
   Tick last_ = -1;

@@ -113,22 +113,17 @@ void Shell::tick_once(Tick tick) {
 }
 
 void Shell::tell_interlock(const Trial& trial, Tick tick, double motor_force_n) {
-  if (!interlock_.latched(trial)) {
-    latched_tick_ = -1;
-    told_zero_ = false;
-    return;
-  }
-  if (latched_tick_ < 0) {
-    latched_tick_ = tick;
+  const auto told =
+      interlock_report_.step(interlock_.latched(trial), interlock_.stopped(), tick, motor_force_n);
+  if (told.opened) {
     service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
                         interlock_.stopped()              ? topics::kEmergencyStop.data()
                         : service_.bus().replay_present() ? "a replay is on the bus"
                                                           : "a process is missing");
   }
-  if (!told_zero_ && motor_force_n == 0.0) {
-    told_zero_ = true;
+  if (told.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",
-                        static_cast<double>(tick - latched_tick_) * kControlPeriod_s * 1e6);
+                        static_cast<double>(told.after_ticks) * kControlPeriod_s * 1e6);
   }
 }
 

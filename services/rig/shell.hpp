@@ -8,6 +8,7 @@
 #include "idl/control_loop.h"
 #include "rig/codec.hpp"
 #include "rig/core/rig.hpp"
+#include "rig/interlock_report.hpp"
 #include "runtime/interlock.hpp"
 #include "runtime/latest_value.hpp"
 #include "runtime/service.hpp"
@@ -38,8 +39,7 @@ class Shell {
   runtime::Service& service_;
   Rig core_;
   runtime::Interlock interlock_;
-  Tick latched_tick_ = -1;  ///< when the interlock opened for good, -1: closed
-  bool told_zero_ = false;
+  InterlockReport interlock_report_;
 
   runtime::Publisher<stillhand_msgs::RawSample> raw_;
   runtime::Publisher<stillhand_msgs::RigTruth> truth_;

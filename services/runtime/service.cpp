@@ -12,6 +12,8 @@
 #include "runtime/real_time.hpp"
 #include "runtime/reporting.hpp"
 #include "runtime/security.hpp"
+#include "runtime/trial_codec.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::runtime {
 namespace {
@@ -38,18 +40,6 @@ void warn_of_expiry(const ServiceOptions& options) {
   if (options.security.empty()) return;
   const std::string warning = expiry_warning({options.security, options.service});
   if (!warning.empty()) std::cerr << "stillhand-" << options.service << ": " << warning << '\n';
-}
-
-Trial from_idl(const stillhand_msgs::TrialControl& message) {
-  Trial trial;
-  trial.number = message.trial();
-  trial.phase = message.phase() == stillhand_msgs::PHASE_PEGGED     ? TrialPhase::kPegged
-                : message.phase() == stillhand_msgs::PHASE_TRACKING ? TrialPhase::kTracking
-                                                                    : TrialPhase::kIdle;
-  trial.start_tick = message.start_tick();
-  trial.duration_ticks = message.duration_ticks();
-  trial.ramp_ticks = message.ramp_ticks();
-  return trial;
 }
 
 }  // namespace
@@ -180,7 +170,8 @@ int run_service(const std::string& name, int argc, char** argv,
       ->required();
   cli.add_option("--out", options.out, "folder or file this process may write");
   cli.add_option("--security", options.security,
-                 "folder of certificates (deploy/security/make.sh); none: no security");
+                 "folder of certificates (deploy/security/make.sh); none: no security")
+      ->check(settings::check_name);
   cli.add_flag("--real-time", options.real_time,
                "ask for real-time priority: SCHED_FIFO, with keys SCHED_RR");
   cli.add_flag("--one-session", options.one_session,

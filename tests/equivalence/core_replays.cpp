@@ -11,6 +11,7 @@
 #include "motion/codec.hpp"
 #include "motion/core/motion_generator.hpp"
 #include "rig/codec.hpp"
+#include "runtime/trial_codec.hpp"
 #include "sensing/codec.hpp"
 
 namespace stillhand::equivalence {
@@ -45,7 +46,7 @@ Replay replay_motion(const SessionRecording& session, const SessionSettings& set
   std::int64_t armed = -1;
   const auto step = [&](Tick tick, const msgs::PlatformCommand& like) {
     if (like.trial() != armed) {
-      const Trial trial = trial_of(of_trial(session.trial_controls, like.trial()));
+      const Trial trial = runtime::from_idl(of_trial(session.trial_controls, like.trial()));
       const auto profile =
           motion::from_idl(of_trial(session.trial_assignments, like.trial()), trial);
       if (profile.kind == motion::MotionKind::kRide) {
@@ -106,7 +107,7 @@ Replay replay_display(const SessionRecording& session, const SessionSettings& se
   const auto step = [&](Tick tick, const msgs::TrackingSample& like) {
     if (like.trial() != armed) {
       const msgs::TrialControl& control = of_trial(session.trial_controls, like.trial());
-      const Trial trial = trial_of(control);
+      const Trial trial = runtime::from_idl(control);
       if (trial.phase == TrialPhase::kTracking) {
         core.arm(
             display::reference_on_screen(config, trial.duration_ticks, control.reference_seed()),
@@ -129,7 +130,7 @@ Replay replay_human_operator(const SessionRecording& session, const SessionSetti
   std::int64_t armed = -1;
   const auto step = [&](Tick tick, const msgs::OperatorForce& like) {
     if (like.trial() != armed) {
-      core.arm(trial_of(of_trial(session.trial_controls, like.trial())));
+      core.arm(runtime::from_idl(of_trial(session.trial_controls, like.trial())));
       armed = like.trial();
     }
     const auto input = human_operator::from_idl(tracking.at(tick), like.active());

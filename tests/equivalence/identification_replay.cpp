@@ -7,6 +7,7 @@
 #include "equivalence/recorded_trial.hpp"
 #include "identification/codec.hpp"
 #include "identification/shell.hpp"
+#include "runtime/trial_codec.hpp"
 
 namespace stillhand::equivalence {
 namespace {
@@ -61,7 +62,7 @@ Replay replay_identification(const SessionRecording& session, const SessionSetti
   result.core = "identification";
   try {
     for (const msgs::FeedthroughModel& model : session.models) {
-      const Trial trial = trial_of(of_trial(session.trial_controls, model.trial()));
+      const Trial trial = runtime::from_idl(of_trial(session.trial_controls, model.trial()));
       const Tick end = trial.start_tick + trial.duration_ticks;
       if (result.compared == 0) result.first_tick = trial.start_tick;
       const std::set<Tick> lost = lost_by_identification(session, trial.start_tick, end);

@@ -11,12 +11,10 @@ namespace stillhand::motion {
 
 MotionGenerator::MotionGenerator(const Config& config) : guard_(config.limits) {}
 
-void MotionGenerator::arm(MotionTrajectory trajectory, const Trial& trial) {
-  // Far from the ends of Tick: start and length add without overflow, whatever a message says.
-  constexpr Tick kLast = Tick{1} << 60;
-  if (trial.start_tick < 0 || trial.start_tick > kLast) {
-    throw ConfigError("motion.trial.start_tick", std::to_string(trial.start_tick),
-                      "0 to " + std::to_string(kLast));
+void MotionGenerator::arm(MotionTrajectory&& trajectory, const Trial& trial) {
+  if (!trial.sound()) {
+    throw ConfigError("motion.trial", "a start at " + std::to_string(trial.start_tick),
+                      "start, length and ramps of 0 to 2^60 ticks");
   }
   if (trial.duration_ticks != trajectory.duration_ticks() ||
       trial.ramp_ticks != trajectory.ramp_ticks()) {
@@ -26,7 +24,7 @@ void MotionGenerator::arm(MotionTrajectory trajectory, const Trial& trial) {
                       "those of its trajectory: " + std::to_string(trajectory.duration_ticks()) +
                           " and " + std::to_string(trajectory.ramp_ticks()));
   }
-  trajectory_ = std::move(trajectory);
+  std::swap(trajectory_, trajectory);
   trial_ = trial;
 }
 

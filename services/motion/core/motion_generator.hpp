@@ -15,7 +15,7 @@ namespace stillhand::motion {
 /// or late trial brakes and returns instead of jumping.
 /// A gap in the ticks is stepped through (at most kMaxCatchUp ticks) and flagged kInputGap; a
 /// repeated tick repeats the answer; a tick before the last one is a new sample clock.
-/// step() never allocates, locks or throws; arm() and disarm() may; one thread.
+/// step(), and arm() of what fits, never allocate, lock or throw; one thread.
 class MotionGenerator {
  public:
   struct Config {
@@ -33,9 +33,10 @@ class MotionGenerator {
   /// @throws stillhand::ConfigError when a limit is out of range.
   explicit MotionGenerator(const Config& config);
 
-  /// Takes over the motion of a trial, in place of the one before.
-  /// @throws stillhand::ConfigError when their lengths differ.
-  void arm(MotionTrajectory trajectory, const Trial& trial);
+  /// Takes over the motion of a trial; `trajectory` is left with that of the one before, so that
+  /// nothing is copied or freed here.
+  /// @throws stillhand::ConfigError when their lengths differ or the trial is not sound().
+  void arm(MotionTrajectory&& trajectory, const Trial& trial);
   /// Drops the trial: the platform returns to the middle.
   void disarm() noexcept { trial_ = Trial{}; }
 

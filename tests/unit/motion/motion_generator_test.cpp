@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "contract/config_error.hpp"
 
@@ -48,6 +49,17 @@ TEST(MotionGeneratorTest, TheTrialGetsItsTrajectoryAndEveryOtherTickTheMiddle) {
     ASSERT_EQ(got.acceleration_m_s2, want.acceleration_m_s2) << "tick " << tick;
     ASSERT_EQ(got.flags, kGood) << "tick " << tick;
   }
+}
+
+TEST(MotionGeneratorTest, ArmedAnewItHandsTheOldTrajectoryBack) {
+  auto sut = armed();
+  auto fresh = trajectory(4);
+  const double fresh_m = fresh.at(2'000).position_m;
+  ASSERT_NE(trajectory().at(2'000).position_m, fresh_m);
+  sut.arm(std::move(fresh), trial());
+  EXPECT_EQ(sut.trajectory().at(2'000).position_m, fresh_m);
+  // NOLINTNEXTLINE(bugprone-use-after-move): exchanged, not emptied
+  EXPECT_EQ(fresh.at(2'000).position_m, trajectory().at(2'000).position_m);
 }
 
 TEST(MotionGeneratorTest, WithoutATrialItHoldsStill) {

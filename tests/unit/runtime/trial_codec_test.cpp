@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/trial_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace stillhand::runtime {
+namespace {
+
+stillhand_msgs::TrialControl message() {
+  stillhand_msgs::TrialControl control;
+  control.trial(4);
+  control.phase(stillhand_msgs::PHASE_TRACKING);
+  control.start_tick(5000);
+  control.duration_ticks(20'000);
+  control.ramp_ticks(1000);
+  return control;
+}
+
+TEST(TrialCodecTest, KeepsEveryTick) {
+  const Trial trial = from_idl(message());
+  EXPECT_EQ(trial.number, 4);
+  EXPECT_EQ(trial.phase, TrialPhase::kTracking);
+  EXPECT_EQ(trial.start_tick, 5000);
+  EXPECT_EQ(trial.duration_ticks, 20'000);
+  EXPECT_EQ(trial.ramp_ticks, 1000);
+}
+
+TEST(TrialCodecTest, TicksThatCannotBeAddedAreNoTrial) {
+  constexpr Tick kMost = std::numeric_limits<Tick>::max();
+  for (const Tick hostile : {Tick{-1}, -kMost, kMost, (Tick{1} << 60) + 1}) {
+    auto start = message();
+    start.start_tick(hostile);
+    auto length = message();
+    length.duration_ticks(hostile);
+    auto ramp = message();
+    ramp.ramp_ticks(hostile);
+    for (const auto& control : {start, length, ramp}) {
+      EXPECT_EQ(from_idl(control).number, -1) << hostile;
+      EXPECT_FALSE(from_idl(control).covers(5000)) << hostile;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::runtime
