@@ -35,8 +35,8 @@ constexpr std::string_view profile_of(Pattern pattern) {
   return "";
 }
 
-/// Every process of a session.  "recorder" reads every topic and "experiment" is the session's
-/// conductor; neither is repeated in the catalogue rows.
+/// Every process of a session.  "recorder" reads every topic, "experiment" is the session's
+/// conductor.
 inline constexpr std::array<std::string_view, 9> kServices{
     "motion",         "rig",      "sensing",   "cancellation", "display", "human_operator",
     "identification", "recorder", "experiment"};

@@ -84,8 +84,9 @@ void Loop::try_model(Round& round, std::string why_not) {
     result_.control_model = model;
     round.outcome += "the hand is stiller: kept";
   } else {
-    session_.use(result_.control_model);
+    const std::string refused = session_.use(result_.control_model);
     round.outcome += "the hand isn't stiller: the last good model stays";
+    if (!refused.empty()) round.outcome += ", but the canceller did not take it back: " + refused;
   }
 }
 

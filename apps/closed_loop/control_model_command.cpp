@@ -16,6 +16,7 @@
 #include "measurement/read.hpp"
 #include "recording/file_io.hpp"
 #include "report/result_files.hpp"
+#include "settings/check_name.hpp"
 #include "settings/load.hpp"
 
 namespace stillhand::closed_loop {
@@ -80,7 +81,7 @@ void add_control_model_command(CLI::App& cli, int& status) {
                    "of a session's recording: number of the trial, or its condition's letter");
   verb->add_option("--save", words->save, "file of the control model")
       ->required()
-      ->check(report::check_name);
+      ->check(settings::check_name);
   verb->add_option("--rig", words->rig, "number of the rig that it is for")->capture_default_str();
   verb->add_option("--lead-ms", words->lead_ms,
                    "how late the motor is [ms]: the prediction comes sooner by as much")

@@ -6,6 +6,7 @@
 
 #include "dashboard/dashboard.hpp"
 #include "runtime/shipped.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::dashboard {
 
@@ -28,9 +29,11 @@ void add_dashboard_command(CLI::App& cli, int& status) {
                    "address to listen on; beyond loopback it wants --token-file")
       ->capture_default_str();
   verb->add_option("--token-file", options->token_file,
-                   "file with a token that a browser has to show once, as /?token=...");
+                   "file with a token that a browser has to show once, as /?token=...")
+      ->check(settings::check_name);
   verb->add_option("--recording", options->recording,
-                   "instead of the bus: what this MCAP file of a session holds");
+                   "instead of the bus: what this MCAP file of a session holds")
+      ->check(settings::check_name);
   verb->add_flag("!--unblinded", options->blinded,
                  "show a trial's condition, and the motor's force while a person tracks");
   verb->add_flag("--read-only", options->read_only,
@@ -43,10 +46,11 @@ void add_dashboard_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--profiles", options->bus.profiles, "QoS profiles")->capture_default_str();
   verb->add_option(
-      "--security", options->bus.security,
-      "folder of certificates (deploy/security/make.sh): this verb listens with that of "
-      "the tap and\nasks with that of the dashboard, which --read-only does without; "
-      "none: no security");
+          "--security", options->bus.security,
+          "folder of certificates (deploy/security/make.sh): this verb listens with that of "
+          "the tap and\nasks with that of the dashboard, which --read-only does without; "
+          "none: no security")
+      ->check(settings::check_name);
   verb->callback([options, &status] {
     runtime::Stop stop;
     status = run_dashboard(*options, stop);

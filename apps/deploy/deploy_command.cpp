@@ -15,6 +15,7 @@
 #include "deploy/machine.hpp"
 #include "report/result_files.hpp"
 #include "runtime/shipped.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -129,7 +130,7 @@ void add_deploy_command(CLI::App& cli, int& status) {
   common(make);
   make->add_option("--out", words->out, "folder for the machines' folders")
       ->required()
-      ->check(report::check_name);
+      ->check(settings::check_name);
   make->callback([words, &status] { status = run_generate(*words); });
   CLI::App* check = verb->add_subcommand(
       "check",
@@ -140,7 +141,7 @@ void add_deploy_command(CLI::App& cli, int& status) {
   check->add_option("--host", words->host,
                     "which host this machine is; else the one whose address it has");
   check->add_option("--json", words->json, "write the findings to this file, too")
-      ->check(report::check_name);
+      ->check(settings::check_name);
   check->callback([words, &status] { status = run_check(*words); });
 }
 

@@ -2,10 +2,10 @@
 #include "deploy/generate.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <list>
 
 #include "deploy/host_files.hpp"
-#include "recording/file_io.hpp"
 #include "report/staged_folder.hpp"
 
 namespace stillhand::deploy {
@@ -13,15 +13,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files of a folder that an earlier run made, by their mark.
+// By the mark in its first lines.  What cannot be read is somebody else's.
+bool is_generated(const fs::path& file) {
+  constexpr std::streamsize kHead = 4096;
+  std::string head(static_cast<std::size_t>(kHead), '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), kHead);
+  return head.find(kGeneratedMark) != std::string::npos;
+}
+
+// Files of a folder that an earlier run made.
 std::vector<std::string> made_before(const fs::path& folder) {
   std::vector<std::string> names;
-  if (!fs::is_directory(folder)) return names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    if (recording::read_file(entry.path().string()).find(kGeneratedMark) == std::string::npos) {
-      continue;
-    }
+  std::error_code unreadable;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, unreadable)) {
+    if (!entry.is_regular_file(unreadable) || !is_generated(entry.path())) continue;
     names.push_back(entry.path().filename().string());
   }
   return names;
@@ -29,8 +35,9 @@ std::vector<std::string> made_before(const fs::path& folder) {
 
 std::vector<fs::path> folders_of_nobody(const Inventory& inventory, const fs::path& out) {
   std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(out)) {
-    if (!entry.is_directory() || made_before(entry.path()).empty()) continue;
+  std::error_code unreadable;
+  for (const fs::directory_entry& entry : fs::directory_iterator(out, unreadable)) {
+    if (!entry.is_directory(unreadable) || made_before(entry.path()).empty()) continue;
     if (inventory.find_host(entry.path().filename().string()) == nullptr) {
       found.push_back(entry.path());
     }
@@ -54,7 +61,8 @@ std::vector<GeneratedFile> files_of(const Inventory& inventory, const Host& host
 }
 
 std::vector<fs::path> generate(const Inventory& inventory, const LabProfiles& profiles,
-                               const fs::path& out) {
+                               const fs::path& wanted) {
+  const fs::path out = fs::weakly_canonical(wanted);
   // The outer one holds the lock, and takes back a folder that it made.
   report::StagedFolder whole(out);
   std::list<report::StagedFolder> folders;
@@ -64,6 +72,7 @@ std::vector<fs::path> generate(const Inventory& inventory, const LabProfiles& pr
       folder.write(file.name, file.text);
     }
   }
+  for (const report::StagedFolder& folder : folders) folder.check();
   auto host = inventory.hosts.begin();
   for (report::StagedFolder& folder : folders) folder.publish(made_before(out / (host++)->name));
   whole.publish({});

@@ -114,7 +114,9 @@ std::string printed(const XMLDocument& document) {
 
 void add_note(XMLDocument& document, const Inventory& inventory, const Host& host) {
   XMLElement* dds = document.RootElement();
-  const std::string note = " " + generated_note(inventory, host) + " ";
+  std::string note = " " + generated_note(inventory, host) + " ";
+  // Nothing that looks like a comment's end; a name may hold it.
+  for (std::size_t at = 0; (at = note.find("--")) != std::string::npos;) note.replace(at, 2, "- -");
   document.InsertAfterChild(dds->PreviousSibling(), document.NewComment(note.c_str()));
 }
 

@@ -19,6 +19,7 @@
 #include "report/result_files.hpp"
 #include "report/staged_folder.hpp"
 #include "runtime/stop.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -129,10 +130,10 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   verb->add_option("--trial", words->read.trial,
                    "of a session's recording: number of the trial, or its condition's letter");
   verb->add_option("--save", words->save, "file for the augmented model, for `stillhand predict`")
-      ->check(report::check_name);
-  verb->add_option("--json", words->json, "file for the verdict")->check(report::check_name);
+      ->check(settings::check_name);
+  verb->add_option("--json", words->json, "file for the verdict")->check(settings::check_name);
   verb->add_option("--report", words->report, "folder for a page with figures")
-      ->check(report::check_name);
+      ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

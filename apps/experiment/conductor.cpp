@@ -16,6 +16,8 @@ namespace {
 constexpr double kLead_s = 1.0;
 constexpr double kArmLimit_s = 10.0;
 constexpr std::chrono::milliseconds kPollPeriod{50};
+// A session of hours has fewer; what a stranger makes up must not fill the memory.
+constexpr std::size_t kMostEvents = 100'000;
 // Prepared before a trial may begin; the others only follow samples.
 constexpr std::string_view kArmed[]{"motion", "rig", "cancellation", "display", "human_operator"};
 
@@ -63,12 +65,14 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Progress progress)
   };
   service.bus().subscribe<stillhand_msgs::ServiceStatus>(
       topics::kServiceStatus, [this, stored](const auto& status, const auto&) {
-        stored([&] { seen_.statuses[status.service().c_str()] = status; });
+        const std::string from = status.service().c_str();
+        if (std::ranges::find(topics::kServices, from) == topics::kServices.end()) return;
+        stored([&] { seen_.statuses[from] = status; });
       });
   service.bus().subscribe<stillhand_msgs::Event>(
       topics::kEvent, [this, stored](const auto& event, const auto&) {
         stored([&] {
-          seen_.events.push_back(event);
+          if (seen_.events.size() < kMostEvents) seen_.events.push_back(event);
           const std::string_view text = event.text().c_str();
           if (event.source() == "recorder" && text.starts_with(topics::kRecordingNote)) {
             seen_.recording = text.substr(topics::kRecordingNote.size());
@@ -246,11 +250,18 @@ void Conductor::pause() {
   seen_.requests.pause();
 }
 
-bool Conductor::await_start(const PlannedTrial& planned) {
+// What is asked from here on is asked of the trial.
+bool Conductor::await_start(const PlannedTrial& planned, MissCounts& before) {
   constexpr double kForEver_s = 1e9;
   bool waited = false;
   return wait_for(kForEver_s, [&](Seen& seen) {
-    if (!seen.requests.paused() && seen.requests.emergency().empty()) return true;
+    if (!seen.requests.paused() && seen.requests.emergency().empty()) {
+      seen.events.clear();
+      seen.requests.begin_trial();
+      seen.trial_runs = true;
+      before = count(seen);
+      return true;
+    }
     if (!std::exchange(waited, true)) announce(nullptr, stillhand_msgs::SESSION_PAUSED);
     progress_("paused before trial " + std::to_string(planned.trial.number) +
                   ", for a start from the dashboard",
@@ -262,17 +273,10 @@ bool Conductor::await_start(const PlannedTrial& planned) {
 TrialOutcome Conductor::run(PlannedTrial planned) {
   TrialOutcome outcome;
   outcome.planned = planned;
-  if (!await_start(planned)) {
+  MissCounts before;
+  if (!await_start(planned, before)) {
     outcome.aborted = why_stopped("");
     return outcome;
-  }
-  MissCounts before;
-  {
-    const std::lock_guard lock(mutex_);
-    seen_.events.clear();
-    seen_.requests.begin_trial();
-    seen_.trial_runs = true;
-    before = count(seen_);
   }
   planned.trial.start_tick = newest_tick() + ticks_in(kLead_s) + planned.trial.ramp_ticks;
   assign(planned);
@@ -303,7 +307,10 @@ void Conductor::follow(const PlannedTrial& planned, TrialOutcome& outcome) {
                              static_cast<double>(trial.duration_ticks),
                          0.0, 1.0));
     stopped = !seen.requests.trial_stopped().empty() && now < end;
-    return stopped || now >= end || saw(seen.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
+    // Who asks for its stop now comes too late.
+    seen.trial_runs =
+        !stopped && now < end && !saw(seen.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
+    return !seen.trial_runs;
   });
   outcome.completed = came && !stopped;
   if (!came) outcome.aborted = why_stopped("the trial did not end in time");

@@ -92,7 +92,8 @@ class Conductor {
   /// Waits until `done(seen)` holds.  @return false after `limit_s`, on trouble or on a stop.
   bool wait_for(double limit_s, const std::function<bool(Seen&)>& done);
   void take_requests();
-  bool await_start(const PlannedTrial& planned);
+  /// Waits out a pause and begins the trial.  @param before  the misses until then
+  bool await_start(const PlannedTrial& planned, MissCounts& before);
   void announce(const PlannedTrial* planned, stillhand_msgs::SessionState session);
   void assign(const PlannedTrial& planned);
   [[nodiscard]] Tick newest_tick();

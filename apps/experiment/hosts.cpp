@@ -93,7 +93,7 @@ RemoteHost* Hosts::remote_of(std::string_view service) const {
   return remote == remotes_.end() ? nullptr : remote->second.get();
 }
 
-void Hosts::open() {
+void Hosts::open(const runtime::Stop& stop) {
   if (!inventory_) return;
   const deploy::LabProfiles profiles(local_.profiles);
   std::map<std::string, std::string> files;
@@ -113,7 +113,7 @@ void Hosts::open() {
     if (attach_) continue;  // its services have theirs
     auto remote =
         std::make_unique<RemoteHost>(host, local_.out / "logs" / ("host_" + host.name + ".log"));
-    remote->open();
+    remote->open(stop);
     files["profiles.xml"] = own;
     remote->put(files);
     if (!local_.security.empty()) {

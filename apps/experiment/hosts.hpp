@@ -38,8 +38,8 @@ class Hosts {
   /// DDS domain of the session.
   [[nodiscard]] std::uint32_t domain() const noexcept { return domain_; }
   /// Makes a folder on every other host, and gives it profiles and settings.
-  /// @throws ConfigError when a host cannot be reached
-  void open();
+  /// @throws ConfigError when a host cannot be reached, Interrupted on a stop meanwhile
+  void open(const runtime::Stop& stop);
   [[nodiscard]] Place of(std::string_view service) const;
   /// The process as it is started from here, on the host of its service.
   [[nodiscard]] Launch placed(const Launch& local) const;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -146,26 +147,38 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
   return list;
 }
 
-/// Looks for a service whose life sign is gone for good, where nobody here is its parent.  One
-/// thread.
+/// Looks for a service whose life sign is gone for good: it hangs, or ended where nobody here is
+/// its parent.  One thread.
 class LostService {
  public:
-  explicit LostService(const runtime::Bus& bus) : bus_(bus) {}
+  /// @param patience_s  between trials nothing asks for an unbroken life sign
+  LostService(const runtime::Bus& bus, double patience_s)
+      : bus_(bus), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)) {}
 
   std::optional<Ended> operator()() {
-    // Between trials nothing asks for an unbroken life sign.
-    constexpr std::int64_t kPatience_ns = 500'000'000;
     const std::vector<std::string> lost = bus_.lost_peers();
     const std::int64_t now_ns = runtime::monotonic_ns();
     if (lost.empty()) since_ns_ = now_ns;
-    if (now_ns - since_ns_ < kPatience_ns) return std::nullopt;
+    if (now_ns - since_ns_ < patience_ns_) return std::nullopt;
     return Ended{lost.front(), 0, "its life sign is gone", -1, ""};
   }
 
  private:
   const runtime::Bus& bus_;
+  std::int64_t patience_ns_;
   std::int64_t since_ns_ = runtime::monotonic_ns();
 };
+
+// A child that ended is known at once and with what it said; one that hangs by its silence alone.
+Conductor::Watch watch_of(const runtime::Bus& bus, Processes& processes, bool attach) {
+  constexpr double kGone_s = 0.5;
+  constexpr double kHangs_s = 3.0;
+  if (attach) return LostService(bus, kGone_s);
+  return [&processes, lost = LostService(bus, kHangs_s)]() mutable {
+    const auto ended = processes.reap();
+    return ended ? ended : lost();
+  };
+}
 
 /// Services that end with the session leave when they hear of its end; the recorder is the last.
 void see_services_out(const runtime::Bus& bus) {
@@ -174,6 +187,7 @@ void see_services_out(const runtime::Bus& bus) {
   while (runtime::monotonic_ns() < limit_ns) {
     const std::vector<std::string> lost = bus.lost_peers();
     if (std::ranges::find(lost, "recorder") != lost.end()) return;
+    if (!bus.missing_peers().empty() && lost.empty()) return;  // it was never complete
     runtime::sleep_until_ns(runtime::monotonic_ns() + runtime::kNsPerSecond / 20);
   }
 }
@@ -187,9 +201,7 @@ class Session final : public LiveTrials {
         asked_(asked),
         outcomes_(outcomes),
         clocks_(service),
-        conductor_(service,
-                   options.attach ? Conductor::Watch(LostService(service.bus()))
-                                  : Conductor::Watch([&processes] { return processes.reap(); }),
+        conductor_(service, watch_of(service.bus(), processes, options.attach),
                    [this](const std::string& what, double done) { progress_.show(what, done); }) {}
 
   void run(const Script& script) {
@@ -354,7 +366,7 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
     hosts.bring_back();
   };
   try {
-    hosts.open();
+    hosts.open(stop);
     runtime::ServiceOptions service_options;
     service_options.service = "experiment";
     service_options.domain = hosts.domain();
@@ -373,7 +385,13 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
       for (const Launch& launch : launches(options, hosts, live.sealed)) processes.start(launch);
     }
     service.run([&] {
-      session.run(script);
+      // However it came to an end: the others hear of it, and the recorder closes its file.
+      std::exception_ptr trouble;
+      try {
+        session.run(script);
+      } catch (...) {
+        trouble = std::current_exception();
+      }
       session.end();
       live.interrupted = session.interrupted();
       if (options.attach) {
@@ -382,6 +400,7 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
       } else {
         processes.end_all("recorder", kEndPatience_s);
       }
+      if (trouble) std::rethrow_exception(trouble);
     });
   } catch (...) {
     if (live.outcomes.empty()) {

@@ -7,6 +7,7 @@
 
 #include "contract/config_error.hpp"
 #include "experiment/lab.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -67,14 +68,16 @@ void add_lab_command(CLI::App& cli, int& status) {
       ->check(CLI::IsMember({"noise", "road", "ride"}))
       ->capture_default_str();
   lab->add_option("--ride", options->ride,
-                  "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap");
+                  "recorded ride for --motion ride: CSV with a_y [m/s^2], or .mcap")
+      ->check(settings::check_name);
   lab->add_option("--road-class", words->road_class,
                   "road for --motion road: A (very good) to H, by ISO 8608 [B]");
   lab->add_option("--speed-m-s", words->road_speed_m_s,
                   "speed of the vehicle on it [m/s], 0.5 to 70 [20]");
   lab->add_option("--model", options->model,
                   "control model that condition C uses instead of the session's own, as "
-                  "`stillhand close-the-loop` and `stillhand control-model` write it");
+                  "`stillhand close-the-loop` and `stillhand control-model` write it")
+      ->check(settings::check_name);
   lab->add_option("--undeclared-effect", options->undeclared_effect,
                   "seed of an effect that only the rig knows of, sealed until the results are "
                   "written; 0: none")
@@ -85,11 +88,12 @@ void add_lab_command(CLI::App& cli, int& status) {
       "--inventory", options->inventory,
       "the lab's machines and which service runs where, as for `stillhand deploy`; it "
       "names the domain and the keys");
-  inventory->excludes(domain);
+  inventory->excludes(domain)->check(settings::check_name);
   lab->add_option("--security", options->security,
                   "folder of certificates (deploy/security/make.sh), each process's own and this "
                   "verb's; none: no security")
-      ->excludes(inventory);
+      ->excludes(inventory)
+      ->check(settings::check_name);
   lab->add_option("--rig", options->rig, "number of the rig on the bus")->capture_default_str();
   lab->add_option("--match-seconds", options->match_s,
                   "patience until every endpoint has matched [s]")

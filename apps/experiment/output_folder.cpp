@@ -96,11 +96,12 @@ void OutputFolder::make() {
 
 void OutputFolder::prove_writable() const {
   const std::filesystem::path probe = path_ / ".stillhand-probe";
+  std::error_code error;
+  std::filesystem::remove(probe, error);  // a link of that name leads to somebody else's file
   std::ofstream file(probe);
   file << "probe";
   file.close();  // a full disk shows here at the latest
   const bool written = file.good();
-  std::error_code error;
   std::filesystem::remove(probe, error);
   if (!written) {
     throw ConfigError("--out", path_.string() + ", which cannot be written",

@@ -76,7 +76,8 @@ std::string folder_told(const std::string& printed) {
 RemoteHost::RemoteHost(const deploy::Host& host, std::filesystem::path log)
     : host_(host), log_(std::move(log)) {}
 
-void RemoteHost::run(const std::string& script, const std::filesystem::path& output) {
+void RemoteHost::run(const std::string& script, const std::filesystem::path& output,
+                     const runtime::Stop* stop) {
   Launch errand;
   errand.name = "the shell";
   errand.host = host_.name;
@@ -95,6 +96,7 @@ void RemoteHost::run(const std::string& script, const std::filesystem::path& out
       printed = now;
       limit_ns = runtime::monotonic_ns() + kPatience_ns;
     }
+    if (stop != nullptr && stop->requested()) throw Interrupted();
     if (runtime::monotonic_ns() > limit_ns) {
       throw std::runtime_error("host " + host_.name + " did not answer within 30 s");
     }
@@ -103,14 +105,17 @@ void RemoteHost::run(const std::string& script, const std::filesystem::path& out
   if (ended->exit_status != 0) throw std::runtime_error(describe(*ended));
 }
 
-void RemoteHost::open() {
+void RemoteHost::open(const runtime::Stop& stop) {
   std::string made;
   try {
     // The log also has what ssh says, and what a login prints.
     run("folder=$(mktemp -d " + std::string(kFolder) + "XXXXXXXX) || exit 1\n" +
-        "printf '\\nstillhand made %s\\n' \"$folder\"\n");
+            "printf '\\nstillhand made %s\\n' \"$folder\"\n",
+        {}, &stop);
     made = folder_told(text_of(log_));
     if (made.empty()) throw std::runtime_error("no folder was made in /tmp");
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     std::string words;
     for (const std::string& word : host_.start) words += word + " ";

@@ -3,12 +3,20 @@
 
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "deploy/inventory.hpp"
 #include "experiment/processes.hpp"
+#include "runtime/stop.hpp"
 
 namespace stillhand::experiment {
+
+/// Somebody asked for the end before there was anything to keep.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted before the first trial") {}
+};
 
 /// Another machine of the lab, reached by the words that its inventory gives (`ssh rig-pc`): a
 /// shell there reads what to do from its standard input, so that nothing has to be quoted twice and
@@ -20,8 +28,8 @@ class RemoteHost {
   RemoteHost(const deploy::Host& host, std::filesystem::path log);
 
   /// Makes a folder there, for as long as the session lasts.
-  /// @throws ConfigError when the host cannot be reached
-  void open();
+  /// @throws ConfigError when the host cannot be reached, Interrupted on a stop meanwhile
+  void open(const runtime::Stop& stop);
   /// Takes the folder away again.  @throws std::runtime_error
   void close();
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
@@ -43,7 +51,9 @@ class RemoteHost {
  private:
   /// Runs a script there, and gives it as long as it goes on printing.
   /// @param output  file for what it prints; empty: the log
-  void run(const std::string& script, const std::filesystem::path& output = {});
+  /// @param stop    ends it, too; none where what it does is to be done in any case
+  void run(const std::string& script, const std::filesystem::path& output = {},
+           const runtime::Stop* stop = nullptr);
 
   const deploy::Host& host_;
   std::filesystem::path log_;

@@ -12,6 +12,7 @@
 #include "identify/identify_output.hpp"
 #include "measurement/read.hpp"
 #include "report/result_files.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::identify {
 namespace {
@@ -68,9 +69,9 @@ void add_identify_command(CLI::App& cli, int& status) {
       "--trial", words->read.trial,
       "of a session: number, or letter of its condition (I, A, B, C) [identification]");
   verb->add_option("--save", words->save, "file of the model, as the cancellation reads it")
-      ->check(report::check_name);
+      ->check(settings::check_name);
   verb->add_option("--json", words->json, "file of everything that was found")
-      ->check(report::check_name);
+      ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

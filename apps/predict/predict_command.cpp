@@ -12,6 +12,7 @@
 #include "recording/core/csv.hpp"
 #include "recording/file_io.hpp"
 #include "report/result_files.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::predict {
 namespace {
@@ -54,7 +55,7 @@ void add_predict_command(CLI::App& cli, int& status) {
                    "of a session's recording: number of the trial, or its condition's letter");
   verb->add_option("--out", words->out, "CSV file of the prediction")
       ->required()
-      ->check(report::check_name);
+      ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/clock.hpp"
 #include "runtime/real_time.hpp"
 #include "runtime/shipped.hpp"
+#include "settings/check_name.hpp"
 
 namespace stillhand::record {
 namespace {
@@ -103,7 +104,8 @@ void add_record_command(CLI::App& cli, int& status) {
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
   verb->add_option("--security", options.security,
                    "folder of certificates (deploy/security/make.sh), of which this verb is the "
-                   "tap; none: no security");
+                   "tap; none: no security")
+      ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

@@ -66,10 +66,6 @@ struct Beside {
 
 }  // namespace
 
-std::string check_name(const std::string& word) {
-  return word.empty() ? "got an empty name, want one" : "";
-}
-
 ResultFiles::ResultFiles(const std::vector<ResultFile>& files,
                          const std::vector<fs::path>& inputs) {
   for (const ResultFile& file : files) {

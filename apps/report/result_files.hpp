@@ -13,10 +13,6 @@ struct ResultFile {
   std::filesystem::path path;  ///< empty: not asked for
 };
 
-/// For CLI11: what is wrong with the name that an option was given, or nothing.  (An empty one,
-/// from a script's unset variable, would pass for an option that wasn't given.)
-std::string check_name(const std::string& word);
-
 /// Files of results that appear together, over files of the same names, or not at all.  What isn't
 /// a plain file, such as /dev/stdout, is written as it stands.
 class ResultFiles {

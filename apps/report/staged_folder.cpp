@@ -30,7 +30,7 @@ fs::path first_missing(fs::path path) {
 
 fs::path made_absolute(const fs::path& path, const std::string& option) {
   std::error_code error;
-  fs::path out = fs::absolute(path, error).lexically_normal();
+  fs::path out = fs::weakly_canonical(fs::absolute(path, error), error);
   if (!out.has_filename()) out = out.parent_path();  // a slash at the end
   if (path.empty() || error) {
     throw ConfigError(option, "\"" + path.string() + "\"", "a folder that can be made");
@@ -98,13 +98,17 @@ void StagedFolder::write(const std::string& name, const std::string& text) const
   if (!status.ok()) throw std::runtime_error((out_ / name).string() + ": " + status.text);
 }
 
-void StagedFolder::publish(const std::vector<std::string>& own) {
+void StagedFolder::check() const {
   for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
     const fs::path target = out_ / file.path().filename();
     if (fs::is_directory(target)) {
       throw ConfigError(option_, target.string() + ", a folder", "no folder where a file is to be");
     }
   }
+}
+
+void StagedFolder::publish(const std::vector<std::string>& own) {
+  check();
   for (const std::string& name : own) {
     if (!fs::exists(staging_ / name) && !fs::is_directory(out_ / name)) fs::remove(out_ / name);
   }

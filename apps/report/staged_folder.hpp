@@ -24,10 +24,12 @@ class StagedFolder {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staging_; }
   /// A whole file in path().  @throws std::runtime_error which, and why
   void write(const std::string& name, const std::string& text) const;
+  /// @throws ConfigError naming what is in the way of a file in path(); publish() asks first, too.
+  void check() const;
   /// Moves everything into place, over files of the same name.
   /// @param own  every name that this program may write here: those that were not written now are
   ///             of an earlier run and go
-  /// @throws std::runtime_error naming what is in the way; nothing was moved then.
+  /// @throws ConfigError naming what is in the way; nothing was moved then.
   void publish(const std::vector<std::string>& own);
 
  private:

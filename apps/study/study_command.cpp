@@ -15,6 +15,7 @@
 #include "report/draw.hpp"
 #include "rig/sealed_file.hpp"
 #include "runtime/stop.hpp"
+#include "settings/check_name.hpp"
 #include "settings/load.hpp"
 #include "study/output.hpp"
 #include "study/study.hpp"
@@ -86,7 +87,8 @@ void add_study_command(CLI::App& cli, int& status) {
                   "C again with another subject's model and with the mean of all others'");
   study->add_option("--population", words->population,
                     "file with the population's distributions; deploy/experiments/population.yaml "
-                    "shows every key");
+                    "shows every key")
+      ->check(settings::check_name);
   study->add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
       ->capture_default_str();
   study

@@ -52,7 +52,10 @@ fs::path own_file(const Identity& identity, const char* file) {
 }
 
 Bytes opened(const fs::path& file) {
-  Bytes bytes(BIO_new_file(file.c_str(), "r"));
+  // Nothing that would be waited for, such as a pipe.
+  std::error_code ignored;
+  Bytes bytes(std::filesystem::is_regular_file(file, ignored) ? BIO_new_file(file.c_str(), "r")
+                                                              : nullptr);
   if (bytes == nullptr) throw ConfigError("security", "no " + file.string() + " to read", kMaker);
   return bytes;
 }

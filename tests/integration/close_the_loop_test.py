@@ -14,6 +14,8 @@ import tempfile
 import time
 import unittest
 
+from lab_process import INSPECT
+
 BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
 STILLHAND = str(BUILD / "bin" / "stillhand")
 SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3"]
@@ -23,6 +25,13 @@ METRICS = ("rms_error", "dwell_ratio", "crossover")
 def close_the_loop(*arguments, **options):
     return subprocess.run([STILLHAND, "close-the-loop", *map(str, arguments)], capture_output=True, text=True,
                           timeout=240, **options)
+
+
+def measuring(file):
+    """Whether the measured part of a trial is in a recording so far."""
+    told = subprocess.run([INSPECT, file, "1"], capture_output=True, text=True)
+    found = json.loads(told.stdout) if told.returncode == 0 else {"trials": [], "rig": {"tick": []}}
+    return any(trial["start_tick"] < tick for trial in found["trials"] for tick in found["rig"]["tick"][-1:])
 
 
 class CloseTheLoopTest(unittest.TestCase):
@@ -172,6 +181,23 @@ class CloseTheLoopTest(unittest.TestCase):
         self.assertNotEqual(process.wait(timeout=60), 0)
         self.assertFalse(self.out.exists())
         process.communicate()
+
+    def test_ctrl_c_during_a_live_trial_leaves_a_whole_recording(self):
+        process = subprocess.Popen([STILLHAND, "close-the-loop", "--live", "--domain", "71", *SHORT, "--out", str(self.out)],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        file = self.out / "session.mcap"
+        deadline = time.monotonic() + 60
+        while not measuring(file) and time.monotonic() < deadline:
+            self.assertIsNone(process.poll())
+            time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("interrupted", said)
+        # The recorder closed it; one that is killed leaves a file without an end.
+        checked = subprocess.run([STILLHAND, "verify", file], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
 
 if __name__ == "__main__":

@@ -50,6 +50,15 @@ class ProcessDeathTest(LabTestCase):
         self.assert_told(lab, f"{service} (pid {pid}) ended: signal 9 (Killed)")
         return lab, killed_ns
 
+    def test_a_rig_that_hangs_ends_the_session_and_is_named(self):
+        lab = self.lab(*quick_session(self.folder / "config"))
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        os.kill(lab.pid_of("rig"), signal.SIGSTOP)  # the interlock is told by the rig, and nobody but its silence tells of that
+        self.assertEqual(lab.end_status(), 1, lab.errors())
+        self.assert_nothing_left(lab)
+        self.assert_told(lab, "rig ended: its life sign is gone")
+        self.assertEqual(lab.recording(1)["damage"], [])
+
     def assert_told(self, lab, death):
         self.assertEqual(len([line for line in lab.errors() if death in line]), 1, lab.errors())
         trial = lab.summary()["trials"][-1]

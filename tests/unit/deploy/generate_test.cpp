@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -213,6 +214,26 @@ TEST(HostFilesTest, TheKernelHasRoomForTheProfilesBuffers) {
   EXPECT_THAT(
       sut, AllOf(HasSubstr("net.core.rmem_max = 5000\n"), HasSubstr("net.core.wmem_max = 1000\n"),
                  HasSubstr("net.ipv4.ip_local_reserved_ports = 10400-10441\n")));
+}
+
+TEST(GenerateTest, AFolderInTheWayOfOneHostLeavesTheOthersToo) {
+  const fs::path out = fs::temp_directory_path() / ("stillhand-way-" + std::to_string(getpid()));
+  const Inventory inventory = example();
+  fs::create_directories(out / inventory.hosts.back().name / "profiles.xml");
+  EXPECT_THROW(generate(inventory, profiles(), out), ConfigError);
+  EXPECT_EQ(names_in(out), std::set<std::string>{inventory.hosts.back().name});
+  fs::remove_all(out);
+}
+
+TEST(GenerateTest, ANameWithDashesEndsNoXmlComment) {
+  Inventory inventory = example();
+  inventory.lab = "a---b--";
+  const std::string text = profiles().of(inventory, inventory.hosts.front());
+  const auto mark = text.find(kGeneratedMark);
+  ASSERT_NE(mark, std::string::npos);
+  const auto end = text.find("-->", mark);
+  EXPECT_EQ(text.substr(mark, end - mark).find("--"), std::string::npos);
+  EXPECT_THAT(text.substr(mark, end - mark), HasSubstr("a- - -b- -"));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "unit/diagnosis/made_measurement.hpp"
 
 // The free run against difference equations that are written out here, stage by stage of the model
-// (README "The model"); two stretches, so that nothing leaks from one into the other.
+// (services/diagnosis/README.md); two stretches, so that nothing leaks from one into the other.
 namespace stillhand::diagnosis {
 namespace {
 

@@ -94,9 +94,10 @@ TEST(FolderToldTest, IsThatOfTheLineWhichTheScriptAlonePrints) {
 
 TEST(RemoteHostTest, AFolderIsMadeFilledReadAndTakenAwayWhateverALoginPrints) {
   const SampleFolder here;
+  const runtime::Stop stop;
   const deploy::Host host = talkative();
   RemoteHost sut(host, here.path() / "host.log");
-  sut.open();
+  sut.open(stop);
   const fs::path there = sut.folder();
   ASSERT_THAT(there.string(), StartsWith("/tmp/stillhand-"));
   ASSERT_TRUE(fs::is_directory(there));
@@ -127,15 +128,25 @@ TEST(RemoteHostTest, AFileIsFetchedWhole) {
 
 TEST(RemoteHostTest, AHostWithoutAShellIsNamedWithItsPlaceAndWords) {
   const SampleFolder here;
+  const runtime::Stop stop;
   const deploy::Host host = host_by({"sh", "-c", "echo no route to it >&2; exit 255"});
   RemoteHost sut(host, here.path() / "host.log");
   try {
-    sut.open();
+    sut.open(stop);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("lab.yaml:5:5: host rig-pc"),
                                     HasSubstr("no route to it"), HasSubstr("bash -s")));
   }
+}
+
+TEST(RemoteHostTest, AStopEndsTheWaitForAHostThatIsSilent) {
+  const SampleFolder here;
+  runtime::Stop stop;
+  stop.request();
+  const deploy::Host host = host_by({"sh", "-c", "sleep 60"});
+  RemoteHost sut(host, here.path() / "host.log");
+  EXPECT_THROW(sut.open(stop), Interrupted);
 }
 
 // The program takes its place beside the host's others, its words reach it as they are, and what

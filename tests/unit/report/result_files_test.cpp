@@ -100,11 +100,6 @@ TEST_F(ResultFilesTest, PlacesThatCannotBeAreRefused) {
               HasSubstr("--json: got"));
 }
 
-TEST_F(ResultFilesTest, AnEmptyNameIsNone) {
-  EXPECT_EQ(check_name("out.json"), "");
-  EXPECT_EQ(check_name(""), "got an empty name, want one");
-}
-
 TEST_F(ResultFilesTest, AnInputIsNotWrittenOver) {
   std::ofstream(at("ride.csv")) << "t [s]";
   fs::create_hard_link(at("ride.csv"), at("twin"));
