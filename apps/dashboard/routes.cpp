@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <exception>
 
 namespace stillhand::dashboard {
 
@@ -74,7 +75,11 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
     if (!served.timeline) return refusal(404, "at=: a bus has no past");
     const std::optional<double> at_s = finite(query.substr(3));
     if (!at_s) return refusal(400, "at=: want seconds since the beginning, as 12.5");
-    found.body = served.snapshot(at_s);
+    try {
+      found.body = served.snapshot(at_s);
+    } catch (const std::exception& error) {  // the file is no longer what it was
+      return refusal(500, error.what());
+    }
     return found;
   }
   if (path == "/timeline" && served.timeline) {

@@ -79,6 +79,16 @@ TEST_F(RoutesTest, ARecordingIsAskedForItsTimeLineAndForAnyInstant) {
   EXPECT_EQ(at_s_, std::nullopt);
 }
 
+TEST_F(RoutesTest, ARecordingThatCannotBeReadAnyLongerIsAnAnswerOfItsOwn) {
+  served_.timeline = [] { return std::string("[]"); };
+  served_.snapshot = [](std::optional<double>) -> std::string {
+    throw std::runtime_error("run.mcap: the file became shorter");
+  };
+  const Answer told = ask("GET", "/snapshot?at=12");
+  EXPECT_EQ(told.status, 500u);
+  EXPECT_EQ(told.body, "run.mcap: the file became shorter\n");
+}
+
 TEST_F(RoutesTest, NoPathLeadsAnywhereElse) {
   for (const char* target :
        {"/secret", "/../secret", "/..%2fsecret", "//etc/passwd", "/./main.js", "/main.js/",
