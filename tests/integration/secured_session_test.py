@@ -18,6 +18,7 @@ STRANGER = BUILD / "tests" / "stranger"
 SESSION_LIMIT_S = 150
 WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
 TRIES = 3  # a secured session takes nearly all of two cores, and one that comes to be late ends as it should
+MOST_LOST_TICKS = 400  # of 175,000; with many more less is cancelled, keys or not
 LATE = "a process is missing|ticks of the pegged trial were lost"
 
 
@@ -36,10 +37,11 @@ class SecuredSessionTest(LabTestCase):
         """The lab, and what else one_session(name of it) gives, of the first session that comes to its end."""
         for left in range(TRIES - 1, -1, -1):
             lab, told = one_session(f"{name}{left}")
-            if lab.end_status() == 0:
+            if lab.end_status() != 0:
+                self.assertRegex(" ".join(lab.errors()), LATE)
+            elif sum(lab.summary()["lost_ticks"].values()) <= MOST_LOST_TICKS:
                 break
-            self.assertRegex(" ".join(lab.errors()), LATE)
-            print(name, "once more:", lab.errors()[-1], flush=True)
+            print(name, "once more:", *lab.errors()[-1:], flush=True)
         self.assertEqual(lab.end_status(), 0, lab.errors())
         self.assertEqual(lab.recording(1)["damage"], [])
         result = lab.summary()["conditions"]["C"]
