@@ -7,6 +7,7 @@
 #include "contract/config_error.hpp"
 #include "contract/time_difference.hpp"
 #include "dashboard/words.hpp"
+#include "runtime/trial_codec.hpp"
 
 namespace stillhand::dashboard {
 
@@ -27,16 +28,6 @@ Source source_of(const recording::MessageView& message) {
 }
 
 std::int64_t ns(std::uint64_t time_ns) { return static_cast<std::int64_t>(time_ns); }
-
-Trial trial_of(const stillhand_msgs::TrialControl& control) {
-  Trial trial;
-  trial.number = control.trial();
-  if (control.phase() == stillhand_msgs::PHASE_PEGGED) trial.phase = TrialPhase::kPegged;
-  if (control.phase() == stillhand_msgs::PHASE_TRACKING) trial.phase = TrialPhase::kTracking;
-  trial.start_tick = control.start_tick();
-  trial.duration_ticks = control.duration_ticks();
-  return trial;
-}
 
 }  // namespace
 
@@ -112,7 +103,7 @@ void RecordedRun::note(const Heard& heard, const MessageFeed& feed, std::int64_t
   if (heard.topic == &topics::kSensed) {
     timeline_.tick(feed.newest_tick(), at_ns);
   } else if (heard.topic == &topics::kTrialControl && feed.control()) {
-    timeline_.announce(trial_of(*feed.control()), at_ns);
+    timeline_.announce(runtime::from_idl(*feed.control()), at_ns);
   } else if (heard.topic == &topics::kEvent && !feed.events().empty()) {
     const HeardEvent& newest = feed.events().front();
     if (newest.at_ns != at_ns) return;  // this one was malformed
