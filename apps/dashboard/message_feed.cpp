@@ -198,7 +198,7 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
   } else if (known.row == &topics::kEvent) {
     decode<stillhand_msgs::Event>(message, [&](const auto& event) { take_event(event, at_ns); });
   } else if (known.row == &topics::kHostStatus) {
-    decode<stillhand_msgs::HostStatus>(message, [this](const auto& host) { take_host(host); });
+    decode<stillhand_msgs::HostStatus>(message, [&](const auto& host) { take_host(host, at_ns); });
   }
 }
 
@@ -215,9 +215,11 @@ void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at
   }
 }
 
-void MessageFeed::take_host(const stillhand_msgs::HostStatus& host) {
+void MessageFeed::take_host(const stillhand_msgs::HostStatus& host, std::int64_t at_ns) {
   const std::size_t number = service_number(host.service().to_string());
-  if (number != kNone) services_[number].host = host;
+  if (number == kNone) return;
+  services_[number].host = host;
+  services_[number].host_at_ns = at_ns;
 }
 
 // A recorder stands outside of every session and rig.

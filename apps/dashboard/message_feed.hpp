@@ -50,6 +50,7 @@ struct FeedOptions {
 struct ServiceView {
   std::optional<stillhand_msgs::ServiceStatus> status;
   std::optional<stillhand_msgs::HostStatus> host;
+  std::int64_t host_at_ns = 0;                                          ///< when that came
   std::uint64_t deadline_misses = 0, cycle_misses = 0, lost_ticks = 0;  ///< of all it reads
   std::map<std::string, EdgeHealth> reads;                              ///< by topic
 };
@@ -134,7 +135,7 @@ class MessageFeed {
   void take_stream(const Known& known, const Message& message);
   void take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns);
   void take_status(const stillhand_msgs::ServiceStatus& status, std::int64_t at_ns);
-  void take_host(const stillhand_msgs::HostStatus& host);
+  void take_host(const stillhand_msgs::HostStatus& host, std::int64_t at_ns);
   void take_recorder(const Message& message);
   void take_event(const stillhand_msgs::Event& event, std::int64_t at_ns);
   [[nodiscard]] bool motor_hidden() const noexcept;

@@ -172,6 +172,7 @@ Json services_json(const MessageFeed& feed, std::int64_t now_ns) {
 // Each process tells of its host; the newest word counts.
 Json hosts_json(const MessageFeed& feed) {
   std::map<std::string, Json> by_name;
+  std::map<std::string, std::int64_t> newest_ns;
   for (const ServiceView& view : feed.services()) {
     if (!view.host) continue;
     const std::string name = view.host->host().to_string();
@@ -179,8 +180,11 @@ Json hosts_json(const MessageFeed& feed) {
     Json& host = by_name[name];
     if (host.is_null()) host = {{"host", name}, {"services", Json::array()}};
     host["services"].push_back(service);
-    host["cores"] = view.host->cores();
-    host["cpu_share"] = number(view.host->host_cpu_share());
+    if (std::int64_t& newest = newest_ns[name]; view.host_at_ns >= newest) {
+      newest = view.host_at_ns;
+      host["cores"] = view.host->cores();
+      host["cpu_share"] = number(view.host->host_cpu_share());
+    }
     if (const auto clock = feed.clocks().find(service); clock != feed.clocks().end()) {
       host["clock_offset_us"] = us(clock->second.offset_ns());
       host["clock_uncertainty_us"] = number(clock->second.uncertainty_ns() / 1e3);

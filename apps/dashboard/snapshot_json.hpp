@@ -33,7 +33,7 @@ struct Parts {
   bool spectrum = true;  ///< takes milliseconds
 };
 
-/// Everything the page shows at one instant, README "Snapshot".
+/// Everything the page shows at one instant, README "HTTP".
 /// @param after  traces behind this tick, -1: all that are kept
 std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, std::int64_t now_ns,
                           Tick after, Parts parts = {});

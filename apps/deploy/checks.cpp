@@ -195,15 +195,21 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
 
 Finding check_governor(const std::vector<std::string>& governors) {
   if (governors.empty()) return not_checked("governor", "the processors tell none");
-  std::set<std::string> slow;
+  std::set<std::string> others;
+  std::size_t count = 0;
   for (const std::string& each : governors) {
     const std::string name = each.substr(0, each.find('\n'));
-    if (name != "performance") slow.insert(name);
+    if (name == "performance") continue;
+    others.insert(name);
+    ++count;
   }
-  if (slow.empty()) return good("governor", "performance");
+  if (others.empty()) return good("governor", "performance");
   return wrong("governor",
-               fmt::format("{}: the clock speed follows the load", fmt::join(slow, ", ")),
-               "sudo apt install linux-cpupower; sudo cpupower frequency-set -g performance");
+               fmt::format("{} on {} of {} processors, want performance: else the clock speed "
+                           "follows the load, or stays low",
+                           fmt::join(others, ", "), count, governors.size()),
+               "sudo apt install linux-cpupower; sudo cpupower frequency-set -g performance, "
+               "again after each restart");
 }
 
 Finding check_keys(const std::vector<std::string>& refused,

@@ -51,7 +51,7 @@ class BrowserCase(DashboardCase):
         domain = next_domain()
         dashboard = self.dashboard("--domain", domain)
         page = self.open(dashboard)
-        self.assertIn("No session", page.text("word"))
+        wait_for("a page that knows of no session", lambda: "No session" in page.text("word"))
         return dashboard, page, self.lab(*quick_session(self.folder / "config"), *words, domain=domain)
 
     def assert_keeps_to_itself(self, page, dashboard):

@@ -178,6 +178,25 @@ TEST_F(MessageFeedTest, AnotherHostsClockIsTakenOffItsLatencies) {
   EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).latency.max_ns, kMs);
 }
 
+// The experiment, last in the catalogue, is gone: its last word is the oldest.
+TEST_F(MessageFeedTest, OfAHostsProcessesTheNewestWordIsTold) {
+  int at_ms = 0;
+  for (const auto& [service, share] :
+       {std::pair{"experiment", 0.9}, {"rig", 0.7}, {"sensing", 0.25}}) {
+    stillhand_msgs::HostStatus host;
+    host.rig(1);
+    host.service(service);
+    host.host("rig-pc");
+    host.cores(4);
+    host.host_cpu_share(share);
+    take(sut_, add(topics::kHostStatus), host, ++at_ms);
+  }
+  const auto hosts = nlohmann::json::parse(snapshot_json(sut_, {}, kBegin, -1)).at("hosts");
+  ASSERT_EQ(hosts.size(), 1u);
+  EXPECT_EQ(hosts[0].at("services"), nlohmann::json({"rig", "sensing", "experiment"}));
+  EXPECT_EQ(hosts[0].at("cpu_share"), 0.25);
+}
+
 TEST_F(MessageFeedTest, BytesThatAreNoMessageAreCountedAndHarmNothing) {
   std::mt19937 random(7);
   std::vector<std::uint32_t> sources;

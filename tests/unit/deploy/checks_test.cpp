@@ -137,7 +137,10 @@ TEST(CheckTest, ProgramsThatAskForAnyPortMustGetNoneOfTheDomains) {
 
 TEST(CheckTest, EveryProcessorMustKeepItsSpeed) {
   EXPECT_THAT(check_governor({"performance\n", "performance\n"}), good());
-  EXPECT_THAT(check_governor({"performance\n", "powersave\n"}), wrong("powersave", "cpupower"));
+  EXPECT_THAT(check_governor({"performance\n", "powersave\n"}),
+              wrong("powersave on 1 of 2", "cpupower"));
+  EXPECT_THAT(check_governor({"schedutil\n", "performance\n", "powersave\n", "powersave\n"}),
+              wrong("powersave, schedutil on 3 of 4", "after each restart"));
   EXPECT_THAT(check_governor({}), not_checked());
 }
 
