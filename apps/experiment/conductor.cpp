@@ -110,6 +110,9 @@ bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done)
       if (trouble_.empty()) trouble_ = seen_.requests.emergency();
     }
     if (const auto ended = watch_()) {
+      // Ctrl-C reaches a process that is just being started, too: it is no reason of its own.
+      runtime::sleep_until_ns(runtime::monotonic_ns() + runtime::kNsPerSecond / 20);
+      if (interrupted()) return false;
       mendable_ = ended->exit_status == 2 && !ended->said.empty();
       trouble_ = mendable_ ? ended->said : describe(*ended);
     }
