@@ -113,6 +113,7 @@ bool Conductor::wait_for(double limit_s, const std::function<bool(Seen&)>& done)
       // Ctrl-C reaches a process that is just being started, too: it is no reason of its own.
       runtime::sleep_until_ns(runtime::monotonic_ns() + runtime::kNsPerSecond / 20);
       if (interrupted()) return false;
+      silent_ = ended->pid == 0;
       mendable_ = ended->exit_status == 2 && !ended->said.empty();
       trouble_ = mendable_ ? ended->said : describe(*ended);
     }
@@ -328,7 +329,8 @@ void Conductor::see_force_out(bool completed) {
   constexpr std::chrono::milliseconds kAfterwards{300};
   std::unique_lock lock(mutex_);
   // Asked for: no trial, no force, and no event that it opened.
-  const bool stopped = !completed && (!seen_.requests.trial_stopped().empty() ||
+  const bool unheard = silent_ && !saw(seen_.events, stillhand_msgs::EVENT_INTERLOCK_OPENED);
+  const bool stopped = !completed && (!seen_.requests.trial_stopped().empty() || unheard ||
                                       (trouble_.empty() && interrupted()));
   if (stopped || !seen_.requests.emergency().empty()) {
     announce(nullptr, stillhand_msgs::SESSION_RUNNING);

@@ -110,6 +110,7 @@ class Conductor {
 
   runtime::Service& service_;
   Watch watch_;
+  bool silent_ = false;  ///< the trouble is a process's silence: it may still be there
   Progress progress_;
   runtime::Publisher<stillhand_msgs::TrialControl> control_;
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;

@@ -152,11 +152,15 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
 class LostService {
  public:
   /// @param patience_s  between trials nothing asks for an unbroken life sign
-  LostService(const runtime::Bus& bus, double patience_s)
-      : bus_(bus), patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)) {}
+  /// @param only        the one that is looked for; empty: all
+  LostService(const runtime::Bus& bus, double patience_s, std::string only = "")
+      : bus_(bus),
+        patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)),
+        only_(std::move(only)) {}
 
   std::optional<Ended> operator()() {
-    const std::vector<std::string> lost = bus_.lost_peers();
+    std::vector<std::string> lost = bus_.lost_peers();
+    std::erase_if(lost, [&](const std::string& name) { return !only_.empty() && name != only_; });
     const std::int64_t now_ns = runtime::monotonic_ns();
     if (lost.empty()) since_ns_ = now_ns;
     if (now_ns - since_ns_ < patience_ns_) return std::nullopt;
@@ -166,15 +170,21 @@ class LostService {
  private:
   const runtime::Bus& bus_;
   std::int64_t patience_ns_;
+  std::string only_;
   std::int64_t since_ns_ = runtime::monotonic_ns();
 };
 
-// A child that ended is known at once and with what it said; one that hangs by its silence alone.
-Conductor::Watch watch_of(const runtime::Bus& bus, Processes& processes, bool attach) {
+// A child that ended is known at once and with what it said.  Of one that hangs the rig tells,
+// whose interlock opens; of the rig nothing but its silence.  A network may hold up life signs for
+// a while that the rig itself hears.
+Conductor::Watch watch_of(const runtime::Bus& bus, Processes& processes,
+                          const LabOptions& options) {
   constexpr double kGone_s = 0.5;
   constexpr double kHangs_s = 3.0;
-  if (attach) return LostService(bus, kGone_s);
-  return [&processes, lost = LostService(bus, kHangs_s)]() mutable {
+  constexpr double kHangsElsewhere_s = 10.0;
+  if (options.attach) return LostService(bus, kGone_s);
+  const double patience_s = options.inventory.empty() ? kHangs_s : kHangsElsewhere_s;
+  return [&processes, lost = LostService(bus, patience_s, "rig")]() mutable {
     const auto ended = processes.reap();
     return ended ? ended : lost();
   };
@@ -201,7 +211,7 @@ class Session final : public LiveTrials {
         asked_(asked),
         outcomes_(outcomes),
         clocks_(service),
-        conductor_(service, watch_of(service.bus(), processes, options.attach),
+        conductor_(service, watch_of(service.bus(), processes, options),
                    [this](const std::string& what, double done) { progress_.show(what, done); }) {}
 
   void run(const Script& script) {
