@@ -18,6 +18,7 @@
 #include "experiment/clocks.hpp"
 #include "experiment/conductor.hpp"
 #include "experiment/hosts.hpp"
+#include "experiment/lost_service.hpp"
 #include "experiment/output_folder.hpp"
 #include "experiment/processes.hpp"
 #include "experiment/progress.hpp"
@@ -146,33 +147,6 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
   }
   return list;
 }
-
-/// Looks for a service whose life sign is gone for good: it hangs, or ended where nobody here is
-/// its parent.  One thread.
-class LostService {
- public:
-  /// @param patience_s  between trials nothing asks for an unbroken life sign
-  /// @param only        the one that is looked for; empty: all
-  LostService(const runtime::Bus& bus, double patience_s, std::string only = "")
-      : bus_(bus),
-        patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)),
-        only_(std::move(only)) {}
-
-  std::optional<Ended> operator()() {
-    std::vector<std::string> lost = bus_.lost_peers();
-    std::erase_if(lost, [&](const std::string& name) { return !only_.empty() && name != only_; });
-    const std::int64_t now_ns = runtime::monotonic_ns();
-    if (lost.empty()) since_ns_ = now_ns;
-    if (now_ns - since_ns_ < patience_ns_) return std::nullopt;
-    return Ended{lost.front(), 0, "its life sign is gone", -1, ""};
-  }
-
- private:
-  const runtime::Bus& bus_;
-  std::int64_t patience_ns_;
-  std::string only_;
-  std::int64_t since_ns_ = runtime::monotonic_ns();
-};
 
 // A child that ended is known at once and with what it said.  Of one that hangs the rig tells,
 // whose interlock opens; of the rig nothing but its silence.  A network may hold up life signs for

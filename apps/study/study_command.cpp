@@ -85,9 +85,10 @@ void add_study_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   study->add_flag("--wrong-models", options.wrong_models,
                   "C again with another subject's model and with the mean of all others'");
-  study->add_option("--population", words->population,
-                    "file with the population's distributions; deploy/experiments/population.yaml "
-                    "shows every key")
+  study
+      ->add_option("--population", words->population,
+                   "file with the population's distributions; deploy/experiments/population.yaml "
+                   "shows every key")
       ->check(settings::check_name);
   study->add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
       ->capture_default_str();
