@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/dashboard.hpp"
+#include "apps/dashboard/dashboard.hpp"
 
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cstdio>
 #include <optional>
 
-#include "cancellation/core/canceller.hpp"
-#include "contract/config_error.hpp"
-#include "dashboard/recorded_run.hpp"
-#include "dashboard/remote.hpp"
-#include "dashboard/rigs.hpp"
-#include "dashboard/snapshot_json.hpp"
-#include "dashboard/view_json.hpp"
-#include "rig/core/rig.hpp"
-#include "runtime/clock.hpp"
-#include "runtime/cpu_share.hpp"
-#include "runtime/real_time.hpp"
-#include "settings/load.hpp"
+#include "apps/dashboard/feed/recorded_run.hpp"
+#include "apps/dashboard/feed/rigs.hpp"
+#include "apps/dashboard/remote.hpp"
+#include "apps/dashboard/view/snapshot_json.hpp"
+#include "apps/dashboard/view/view_json.hpp"
+#include "services/cancellation/core/canceller.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/cpu_share.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "dashboard/http_server.hpp"
-#include "dashboard/live_bus.hpp"
-#include "runtime/stop.hpp"
+#include "apps/dashboard/feed/live_bus.hpp"
+#include "apps/dashboard/server/http_server.hpp"
+#include "services/runtime/process/stop.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/dashboard_command.hpp"
+#include "apps/dashboard/dashboard_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "dashboard/dashboard.hpp"
-#include "runtime/shipped.hpp"
-#include "settings/check_name.hpp"
+#include "apps/dashboard/dashboard.hpp"
+#include "services/runtime/process/shipped.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::dashboard {
 

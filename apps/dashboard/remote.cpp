@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/remote.hpp"
+#include "apps/dashboard/remote.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 
-#include "runtime/clock.hpp"
+#include "services/runtime/process/clock.hpp"
 
 namespace stillhand::dashboard {
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "dashboard/core/request_rate.hpp"
-#include "dashboard/live_bus.hpp"
-#include "dashboard/routes.hpp"
+#include "apps/dashboard/core/request_rate.hpp"
+#include "apps/dashboard/feed/live_bus.hpp"
+#include "apps/dashboard/server/routes.hpp"
 #include "idl/recording.h"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
+#include "services/runtime/bus/bus.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/checks.hpp"
+#include "apps/deploy/checks.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "runtime/real_time.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "deploy/profiles.hpp"
+#include "apps/deploy/profiles.hpp"
 
 namespace stillhand::deploy {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/deploy_command.hpp"
+#include "apps/deploy/deploy_command.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,12 +10,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "contract/config_error.hpp"
-#include "deploy/generate.hpp"
-#include "deploy/machine.hpp"
-#include "report/result_files.hpp"
-#include "runtime/shipped.hpp"
-#include "settings/check_name.hpp"
+#include "apps/deploy/generate.hpp"
+#include "apps/deploy/machine.hpp"
+#include "apps/report/result_files.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/shipped.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/generate.hpp"
+#include "apps/deploy/generate.hpp"
 
 #include <algorithm>
 #include <fstream>
 #include <list>
 
-#include "deploy/host_files.hpp"
-#include "report/staged_folder.hpp"
+#include "apps/deploy/host_files.hpp"
+#include "apps/report/staged_folder.hpp"
 
 namespace stillhand::deploy {
 namespace {

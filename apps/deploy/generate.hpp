@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "deploy/generated_file.hpp"
-#include "deploy/profiles.hpp"
+#include "apps/deploy/generated_file.hpp"
+#include "apps/deploy/profiles.hpp"
 
 namespace stillhand::deploy {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/generated_file.hpp"
+#include "apps/deploy/generated_file.hpp"
 
 namespace stillhand::deploy {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "deploy/inventory.hpp"
+#include "apps/deploy/inventory.hpp"
 
 namespace stillhand::deploy {
 

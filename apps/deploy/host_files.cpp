@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/host_files.hpp"
+#include "apps/deploy/host_files.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "deploy/ports.hpp"
+#include "apps/deploy/ports.hpp"
 
 namespace stillhand::deploy {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "deploy/generated_file.hpp"
-#include "deploy/profiles.hpp"
+#include "apps/deploy/generated_file.hpp"
+#include "apps/deploy/profiles.hpp"
 
 namespace stillhand::deploy {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/inventory.hpp"
+#include "apps/deploy/inventory.hpp"
 
 #include <algorithm>
 
-#include "contract/expects.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::deploy {
 

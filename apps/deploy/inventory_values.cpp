@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/inventory_values.hpp"
+#include "apps/deploy/inventory_values.hpp"
 
 #include <arpa/inet.h>
 
 #include <algorithm>
 #include <cstdint>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::deploy {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "settings/section.hpp"
+#include "services/settings/section.hpp"
 
 namespace stillhand::deploy {
 

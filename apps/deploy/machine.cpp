@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/machine.hpp"
+#include "apps/deploy/machine.hpp"
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -16,10 +16,10 @@
 #include <map>
 #include <set>
 
-#include "contract/config_error.hpp"
-#include "deploy/ports.hpp"
+#include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
-#include "runtime/security.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/security.hpp"
 
 namespace stillhand::deploy {
 namespace {

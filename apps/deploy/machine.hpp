@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "deploy/checks.hpp"
+#include "apps/deploy/checks.hpp"
 
 namespace stillhand::deploy {
 

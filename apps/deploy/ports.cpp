@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/ports.hpp"
+#include "apps/deploy/ports.hpp"
 
 #include <algorithm>
 
-#include "deploy/inventory.hpp"
+#include "apps/deploy/inventory.hpp"
 
 namespace stillhand::deploy {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime/domain.hpp"
+#include "services/runtime/process/domain.hpp"
 
 namespace stillhand::deploy {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/profiles.hpp"
+#include "apps/deploy/profiles.hpp"
 
 #include <tinyxml2.h>
 
-#include "contract/config_error.hpp"
-#include "deploy/generated_file.hpp"
-#include "deploy/ports.hpp"
-#include "recording/file_io.hpp"
+#include "apps/deploy/generated_file.hpp"
+#include "apps/deploy/ports.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "deploy/inventory.hpp"
+#include "apps/deploy/inventory.hpp"
 
 namespace stillhand::deploy {
 

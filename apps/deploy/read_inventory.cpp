@@ -6,15 +6,15 @@
 #include <map>
 #include <utility>
 
-#include "contract/config_error.hpp"
-#include "deploy/inventory.hpp"
-#include "deploy/inventory_values.hpp"
-#include "deploy/ports.hpp"
+#include "apps/deploy/inventory.hpp"
+#include "apps/deploy/inventory_values.hpp"
+#include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
-#include "runtime/domain.hpp"
-#include "runtime/shipped.hpp"
-#include "settings/nearest.hpp"
-#include "settings/section.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/domain.hpp"
+#include "services/runtime/process/shipped.hpp"
+#include "services/settings/nearest.hpp"
+#include "services/settings/section.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -3,8 +3,8 @@
 // second: a process that hangs is started again, long after the interlock has opened.
 #include <fmt/format.h>
 
-#include "deploy/host_files.hpp"
-#include "runtime/real_time.hpp"
+#include "apps/deploy/host_files.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::deploy {
 namespace {

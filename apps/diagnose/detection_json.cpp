@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnose/detection_json.hpp"
+#include "apps/diagnose/detection_json.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "diagnosis/core/detection.hpp"
+#include "services/diagnosis/core/detection/detection.hpp"
 
 namespace stillhand::diagnose {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnose/diagnose_command.hpp"
+#include "apps/diagnose/diagnose_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,19 +7,19 @@
 #include <memory>
 #include <optional>
 
-#include "contract/config_error.hpp"
-#include "diagnose/diagnosis_json.hpp"
-#include "diagnose/diagnosis_report.hpp"
-#include "diagnose/on_all_cores.hpp"
-#include "diagnosis/core/diagnose.hpp"
-#include "diagnosis/model_file.hpp"
-#include "experiment/progress.hpp"
-#include "measurement/read.hpp"
-#include "report/draw.hpp"
-#include "report/result_files.hpp"
-#include "report/staged_folder.hpp"
-#include "runtime/stop.hpp"
-#include "settings/check_name.hpp"
+#include "apps/diagnose/diagnosis_json.hpp"
+#include "apps/diagnose/on_all_cores.hpp"
+#include "apps/diagnose/page/diagnosis_report.hpp"
+#include "apps/measurement/read.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/progress.hpp"
+#include "apps/report/result_files.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/model_file.hpp"
+#include "services/runtime/process/stop.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -69,7 +69,7 @@ int run(const Words& words) {
     folder.emplace(words.report, "--report");
   }
   const diagnosis::Measurement measurement = read_all(words);
-  experiment::ProgressLine progress;
+  report::ProgressLine progress;
   diagnosis::DiagnoseOptions options;
   options.inputs = words.inputs;
   options.output = words.output;

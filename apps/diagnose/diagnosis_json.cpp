@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnose/diagnosis_json.hpp"
+#include "apps/diagnose/diagnosis_json.hpp"
 
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "diagnose/detection_json.hpp"
-#include "diagnosis/core/effect_kind.hpp"
+#include "apps/diagnose/detection_json.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
 
 namespace stillhand::diagnose {
 

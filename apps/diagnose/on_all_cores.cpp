@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnose/on_all_cores.hpp"
+#include "apps/diagnose/on_all_cores.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identify/identify.hpp"
+#include "apps/identify/identify.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "contract/config_error.hpp"
-#include "identification/core/excitation_check.hpp"
-#include "identification/core/paper_preprocessing.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/excitation_check.hpp"
+#include "services/identification/core/paper_preprocessing.hpp"
 
 namespace stillhand::identify {
 namespace {

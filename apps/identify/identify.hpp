@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/measurement.hpp"
-#include "identification/core/frequency_response.hpp"
-#include "identification/core/identifier.hpp"
-#include "signal/spectrum.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/identification/core/frequency_response.hpp"
+#include "services/identification/core/identifier.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::identify {
 

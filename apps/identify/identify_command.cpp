@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identify/identify_command.hpp"
+#include "apps/identify/identify_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
-#include "contract/config_error.hpp"
-#include "identification/model_file.hpp"
-#include "identify/identify.hpp"
-#include "identify/identify_output.hpp"
-#include "measurement/read.hpp"
-#include "report/result_files.hpp"
-#include "settings/check_name.hpp"
+#include "apps/identify/identify.hpp"
+#include "apps/identify/identify_output.hpp"
+#include "apps/measurement/read.hpp"
+#include "apps/report/result_files.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/model_file.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::identify {
 namespace {

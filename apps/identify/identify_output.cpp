@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identify/identify_output.hpp"
+#include "apps/identify/identify_output.hpp"
 
 #include <cmath>
 #include <cstdarg>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "signal/difference_model.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "identify/identify.hpp"
+#include "apps/identify/identify.hpp"
 
 namespace stillhand::identify {
 

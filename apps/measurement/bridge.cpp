@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/bridge.hpp"
+#include "apps/measurement/bridge.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/grid.hpp"
+#include "apps/measurement/grid.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <span>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "measurement/bridge.hpp"
-#include "measurement/row_clock.hpp"
+#include "apps/measurement/bridge.hpp"
+#include "apps/measurement/row_clock.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

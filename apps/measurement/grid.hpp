@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "diagnosis/core/measurement.hpp"
-#include "recording/core/recording.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/recording/core/recording.hpp"
 
 namespace stillhand::measurement {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contract/config_error.hpp"
-#include "measurement/read.hpp"
+#include "apps/measurement/read.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/read.hpp"
+#include "apps/measurement/read.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string_view>
 
-#include "contract/config_error.hpp"
-#include "measurement/grid.hpp"
-#include "measurement/session.hpp"
-#include "recording/core/csv.hpp"
-#include "recording/file_io.hpp"
+#include "apps/measurement/grid.hpp"
+#include "apps/measurement/session.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/csv.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::measurement {
 namespace {

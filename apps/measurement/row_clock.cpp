@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/row_clock.hpp"
+#include "apps/measurement/row_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "measurement/row_count.hpp"
-#include "recording/core/recording.hpp"
+#include "apps/measurement/row_count.hpp"
+#include "services/recording/core/recording.hpp"
 
 namespace stillhand::measurement {
 

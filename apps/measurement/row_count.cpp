@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/row_count.hpp"
+#include "apps/measurement/row_count.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/session.hpp"
+#include "apps/measurement/session.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,15 @@
 #include <iterator>
 #include <optional>
 
-#include "contract/config_error.hpp"
-#include "contract/flag.hpp"
+#include "apps/measurement/session_trials.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "measurement/session_trials.hpp"
-#include "recording/core/mcap_loss.hpp"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/file_io.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/flag.hpp"
+#include "services/recording/core/mcap/mcap_loss.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::measurement {
 namespace {

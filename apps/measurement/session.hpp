@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/recording.hpp"
+#include "services/recording/core/recording.hpp"
 
 namespace stillhand::measurement {
 

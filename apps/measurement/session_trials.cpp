@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/session_trials.hpp"
+#include "apps/measurement/session_trials.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <map>
 
-#include "contract/config_error.hpp"
 #include "idl/cdr.hpp"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "recording/sample_clock.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/sample_clock.hpp"
 
 namespace stillhand::measurement {
 namespace {

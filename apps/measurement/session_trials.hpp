@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/trial.hpp"
-#include "recording/core/mcap_reader.hpp"
+#include "services/contract/trial.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
 
 namespace stillhand::measurement {
 

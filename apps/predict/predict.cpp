@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "predict/predict.hpp"
+#include "apps/predict/predict.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "contract/config_error.hpp"
-#include "diagnosis/core/effect_kind.hpp"
-#include "diagnosis/core/evaluation.hpp"
-#include "diagnosis/core/working_set.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/working_set.hpp"
 
 namespace stillhand::predict {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/measurement.hpp"
-#include "diagnosis/core/model.hpp"
-#include "recording/core/recording.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+#include "services/recording/core/recording.hpp"
 
 namespace stillhand::predict {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "predict/predict_command.hpp"
+#include "apps/predict/predict_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
-#include "diagnosis/model_file.hpp"
-#include "measurement/read.hpp"
-#include "predict/predict.hpp"
-#include "recording/core/csv.hpp"
-#include "recording/file_io.hpp"
-#include "report/result_files.hpp"
-#include "settings/check_name.hpp"
+#include "apps/measurement/read.hpp"
+#include "apps/predict/predict.hpp"
+#include "apps/report/result_files.hpp"
+#include "services/diagnosis/model_file.hpp"
+#include "services/recording/core/csv.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::predict {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "record/field_trigger.hpp"
+#include "apps/record/field_trigger.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "contract/config_error.hpp"
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::record {
 

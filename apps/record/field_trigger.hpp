@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/message_columns.hpp"
-#include "runtime/tap.hpp"
+#include "services/recording/core/messages/message_columns.hpp"
+#include "services/runtime/bus/tap.hpp"
 
 namespace stillhand::record {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "record/record.hpp"
+#include "apps/record/record.hpp"
 
 #include <unistd.h>
 
@@ -10,18 +10,18 @@
 #include <optional>
 #include <utility>
 
-#include "contract/config_error.hpp"
+#include "apps/record/field_trigger.hpp"
 #include "idl/cdr.hpp"
 #include "idl/recording.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "record/field_trigger.hpp"
-#include "recording/bus_recording.hpp"
-#include "recording/session_texts.hpp"
-#include "runtime/clock.hpp"
-#include "runtime/remote_control.hpp"
-#include "runtime/security.hpp"
-#include "runtime/tap.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/bus_recording.hpp"
+#include "services/recording/session_texts.hpp"
+#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/tap.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/remote_control.hpp"
 
 namespace stillhand::record {
 namespace {

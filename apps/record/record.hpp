@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/topic_filter.hpp"
-#include "recording/tape.hpp"
-#include "runtime/stop.hpp"
+#include "services/recording/core/topic_filter.hpp"
+#include "services/recording/tape.hpp"
+#include "services/runtime/process/stop.hpp"
 
 namespace stillhand::record {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "record/record_command.hpp"
+#include "apps/record/record_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 
-#include "contract/config_error.hpp"
-#include "record/record.hpp"
-#include "recording/keep_options.hpp"
-#include "recording/within.hpp"
-#include "runtime/clock.hpp"
-#include "runtime/real_time.hpp"
-#include "runtime/shipped.hpp"
-#include "settings/check_name.hpp"
+#include "apps/record/record.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/keep_options.hpp"
+#include "services/recording/within.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/shipped.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::record {
 namespace {

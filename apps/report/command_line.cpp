@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/command_line.hpp"
+#include "apps/report/command_line.hpp"
 
 #include <algorithm>
 #include <fstream>

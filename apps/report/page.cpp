@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page.hpp"
+#include "apps/report/page.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "contract/expects.hpp"
-#include "recording/file_io.hpp"
-#include "report/page_style.hpp"
-#include "report/svg.hpp"
-#include "report/text.hpp"
+#include "apps/report/page_style.hpp"
+#include "apps/report/plot/svg.hpp"
+#include "apps/report/text.hpp"
+#include "services/contract/expects.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::report {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/draw.hpp"
+#include "apps/report/plot/draw.hpp"
 
 namespace stillhand::report {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/result_files.hpp"
+#include "apps/report/result_files.hpp"
 
 #include <unistd.h>
 
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "contract/config_error.hpp"
-#include "contract/expects.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::report {
 namespace {

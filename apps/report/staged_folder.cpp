@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/staged_folder.hpp"
+#include "apps/report/staged_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "contract/config_error.hpp"
-#include "recording/file_io.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::report {
 namespace {

@@ -3,20 +3,21 @@
 #include <cstdio>
 #include <iostream>
 
-#include "closed_loop/closed_loop_command.hpp"
-#include "closed_loop/control_model_command.hpp"
-#include "contract/config_error.hpp"
-#include "dashboard/dashboard_command.hpp"
-#include "deploy/deploy_command.hpp"
-#include "diagnose/diagnose_command.hpp"
-#include "experiment/conductor.hpp"
-#include "experiment/lab_command.hpp"
-#include "identify/identify_command.hpp"
-#include "predict/predict_command.hpp"
-#include "record/record_command.hpp"
-#include "recorder/recorder_commands.hpp"
-#include "replayer/replay_command.hpp"
-#include "study/study_command.hpp"
+#include "apps/close_the_loop/closed_loop_command.hpp"
+#include "apps/close_the_loop/control_model_command.hpp"
+#include "apps/dashboard/dashboard_command.hpp"
+#include "apps/deploy/deploy_command.hpp"
+#include "apps/diagnose/diagnose_command.hpp"
+#include "apps/identify/identify_command.hpp"
+#include "apps/lab/conductor.hpp"
+#include "apps/lab/lab_command.hpp"
+#include "apps/predict/predict_command.hpp"
+#include "apps/record/record_command.hpp"
+#include "apps/recordings/recorder_commands.hpp"
+#include "apps/replay/replay_command.hpp"
+#include "apps/study/study_command.hpp"
+#include "services/contract/config_error.hpp"
+#include "version.hpp"
 
 namespace {
 
@@ -31,22 +32,22 @@ int told(int status) {
 int run(int argc, char** argv) {
   CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
   cli.name("stillhand");
-  cli.set_version_flag("--version", STILLHAND_VERSION);
+  cli.set_version_flag("--version", stillhand::kVersion);
   cli.require_subcommand(1);
   // A script's defaults come first, a user's words after them.
   cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int status = 0;
   try {
-    stillhand::experiment::add_lab_command(cli, status);
+    stillhand::lab::add_lab_command(cli, status);
     stillhand::study::add_study_command(cli, status);
     stillhand::identify::add_identify_command(cli, status);
     stillhand::diagnose::add_diagnose_command(cli, status);
-    stillhand::closed_loop::add_closed_loop_command(cli, status);
-    stillhand::closed_loop::add_control_model_command(cli, status);
+    stillhand::close_the_loop::add_closed_loop_command(cli, status);
+    stillhand::close_the_loop::add_control_model_command(cli, status);
     stillhand::predict::add_predict_command(cli, status);
-    stillhand::recorder::add_file_commands(cli, status);
+    stillhand::recordings::add_file_commands(cli, status);
     stillhand::record::add_record_command(cli, status);
-    stillhand::replayer::add_replay_command(cli, status);
+    stillhand::replay::add_replay_command(cli, status);
     stillhand::dashboard::add_dashboard_command(cli, status);
     stillhand::deploy::add_deploy_command(cli, status);
     cli.parse(argc, argv);
@@ -58,7 +59,7 @@ int run(int argc, char** argv) {
   } catch (const stillhand::ConfigError& error) {
     std::cerr << "stillhand: " << error.what() << '\n';
     return 2;
-  } catch (const stillhand::experiment::RefusedByProcess& error) {
+  } catch (const stillhand::lab::RefusedByProcess& error) {
     std::cerr << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/analysis.hpp"
+#include "apps/study/analysis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <iterator>
 #include <limits>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {
 
-using experiment::kMetrics;
+using session::kMetrics;
 
 constexpr const char* kPaperConditions = "ABC";
 constexpr Eigen::Index kThirds = 3;

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "experiment/paper_table.hpp"
-#include "statistics/descriptive.hpp"
-#include "statistics/manova.hpp"
-#include "statistics/t_test.hpp"
-#include "study/subject_session.hpp"
+#include "apps/session/paper_table.hpp"
+#include "apps/study/subject_session.hpp"
+#include "services/statistics/descriptive.hpp"
+#include "services/statistics/manova.hpp"
+#include "services/statistics/t_test.hpp"
 
 namespace stillhand::study {
 
-inline constexpr std::size_t kMetricCount = experiment::kMetrics.size();
+inline constexpr std::size_t kMetricCount = session::kMetrics.size();
 /// Millimetres in one unit of the paper's RMS error, which has none; README, "The paper's unit".
 inline constexpr double kPaperUnit_mm = 5.5;
 

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "study/output.hpp"
+#include "apps/study/output.hpp"
 
 namespace stillhand::study {
 namespace {

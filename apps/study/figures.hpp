@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "report/figure.hpp"
-#include "study/output.hpp"
+#include "apps/report/plot/figure.hpp"
+#include "apps/study/output.hpp"
 
 namespace stillhand::study {
 

@@ -4,7 +4,7 @@
 #include <complex>
 #include <numbers>
 
-#include "study/figures.hpp"
+#include "apps/study/figures.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <numbers>
 
-#include "experiment/protocol.hpp"
-#include "study/figures.hpp"
+#include "apps/session/protocol.hpp"
+#include "apps/study/figures.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -164,7 +164,7 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
   constexpr std::array<const char*, kMetricCount> kNames{"fig10_rms_error", "fig11_dwell_ratio",
                                                          "fig13_crossover"};
   constexpr std::array<const char*, kMetricCount> kNumbers{"Fig. 10", "Fig. 11", "Fig. 13"};
-  const experiment::Metric& what = experiment::kMetrics[metric];
+  const session::Metric& what = session::kMetrics[metric];
   const double unit = metric == 0 ? kPaperUnit_mm : 1.0;
   Panel panel;
   panel.y.label = what.title;
@@ -327,7 +327,7 @@ report::Colour colour_of(char condition) {
 
 std::string label_of(char condition) {
   return std::string(1, condition) + " " +
-         experiment::condition_name(static_cast<experiment::Condition>(condition));
+         session::condition_name(static_cast<session::Condition>(condition));
 }
 
 std::string conditions_run(const StudyRecord& record, const std::string& among) {

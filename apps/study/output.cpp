@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/output.hpp"
+#include "apps/study/output.hpp"
 
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "report/draw.hpp"
-#include "rig/sealed_file.hpp"
-#include "study/figures.hpp"
-#include "study/study_report.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/study/figures.hpp"
+#include "apps/study/study_report.hpp"
+#include "services/rig/sealed_file.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -44,7 +44,7 @@ void print_study(const StudyRecord& record) {
   for (const auto& entry : analysis.conditions) std::printf(" %9c", entry.first);
   std::printf("   %9s   %s\n", "restored", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const experiment::Metric& metric = experiment::kMetrics[k];
+    const session::Metric& metric = session::kMetrics[k];
     std::printf("%-22s", metric.title);
     for (const auto& [condition, metrics] : analysis.conditions) {
       std::printf(" %9.3f", metrics[k].mean);

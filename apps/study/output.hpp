@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "report/staged_folder.hpp"
-#include "study/analysis.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "apps/study/analysis.hpp"
 
 namespace stillhand::study {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/population.hpp"
+#include "apps/study/population.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "rig/core/body_response.hpp"
-#include "signal/random.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "human_operator/core/crossover_config.hpp"
-#include "rig/core/body_config.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/human_operator/core/crossover_config.hpp"
+#include "services/rig/core/body_config.hpp"
 
 namespace stillhand::study {
 

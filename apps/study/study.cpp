@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study.hpp"
+#include "apps/study/study.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -96,8 +96,7 @@ void check_wrong_models(const StudyOptions& options) {
     throw ConfigError("--wrong-models", "1 subject", "2 or more: there must be another one");
   }
   const auto& conditions = options.protocol.conditions;
-  for (const auto needed :
-       {experiment::Condition::kMoving, experiment::Condition::kMovingCancelled}) {
+  for (const auto needed : {session::Condition::kMoving, session::Condition::kMovingCancelled}) {
     if (std::find(conditions.begin(), conditions.end(), needed) == conditions.end()) {
       throw ConfigError("--wrong-models", std::string("no condition ") + static_cast<char>(needed),
                         "B and C, between which a model's gain lies");
@@ -113,7 +112,7 @@ std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgre
                       "1 to " + std::to_string(kMaxSubjects));
   }
   check_wrong_models(options);
-  experiment::plan(options.protocol);  // checks the lengths
+  session::plan(options.protocol);  // checks the lengths
   for (std::int64_t index = 0; index < options.subjects; ++index) check_subject(options, index);
   const std::int64_t count = options.subjects;
   const std::int64_t all = options.wrong_models ? 2 * count : count;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "study/subject_session.hpp"
+#include "apps/study/subject_session.hpp"
 
 namespace stillhand::study {
 

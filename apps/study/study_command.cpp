@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_command.hpp"
+#include "apps/study/study_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,16 +9,16 @@
 #include <iostream>
 #include <memory>
 
-#include "contract/config_error.hpp"
-#include "experiment/progress.hpp"
-#include "report/command_line.hpp"
-#include "report/draw.hpp"
-#include "rig/sealed_file.hpp"
-#include "runtime/stop.hpp"
-#include "settings/check_name.hpp"
-#include "settings/load.hpp"
-#include "study/output.hpp"
-#include "study/study.hpp"
+#include "apps/report/command_line.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/progress.hpp"
+#include "apps/study/output.hpp"
+#include "apps/study/study.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/sealed_file.hpp"
+#include "services/runtime/process/stop.hpp"
+#include "services/settings/check_name.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -37,7 +37,7 @@ int run(StudyRecord& record, const Words& words) {
     record.sealed = rig::sealed_text(sealed_effect(record.options).open(), rig::new_nonce());
     std::printf("undeclared effect sealed, sha256 %s\n", rig::sha256(record.sealed).c_str());
   }
-  experiment::ProgressLine progress;
+  report::ProgressLine progress;
   const auto start = std::chrono::steady_clock::now();
   record.results = run_study(record.options, [&](std::int64_t done, std::int64_t all) {
     progress.show("subjects", static_cast<double>(done) / static_cast<double>(all));
@@ -75,7 +75,7 @@ void add_study_command(CLI::App& cli, int& status) {
   study->add_option("--subjects", options.subjects, "how many; the paper's are 12")
       ->capture_default_str();
   study->add_option("--seed", options.seed, "seed of everything random")
-      ->check(experiment::check_seed)
+      ->check(session::check_seed)
       ->capture_default_str();
   study->add_option("--out", words->out, "folder of report, figures and numbers")->required();
   study
@@ -104,13 +104,13 @@ void add_study_command(CLI::App& cli, int& status) {
   study
       ->add_option("--undeclared-effect", options.undeclared_effect,
                    "seed of an effect that only the rigs know of, opened with the results; 0: none")
-      ->check(experiment::check_seed);
+      ->check(session::check_seed);
   study->add_option("--threads", options.threads, "0: one a core; the result is the same")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   study->callback([record, words, &status] {
     record->options.protocol.conditions =
-        experiment::parse_conditions(words->conditions, experiment::kStudyConditions);
+        session::parse_conditions(words->conditions, session::kStudyConditions);
     // The set of conditions makes the study, not the order in which they were named.
     std::sort(record->options.protocol.conditions.begin(),
               record->options.protocol.conditions.end());

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/study_report.hpp"
+#include "apps/study/study_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "report/text.hpp"
-#include "statistics/power.hpp"
-#include "study/figures.hpp"
+#include "apps/report/text.hpp"
+#include "apps/study/figures.hpp"
+#include "services/statistics/power.hpp"
+#include "version.hpp"
 
 namespace stillhand::study {
 namespace {
 
-using experiment::kMetrics;
 using report::Cell;
 using report::Emphasis;
 using report::number;
 using report::short_number;
+using session::kMetrics;
 
 // The paper's p-values, Tables I and II.
 constexpr std::array<double, kMetricCount> kPaperAToB{1.79e-9, 1.5e-12, 5.67e-7};
@@ -25,7 +26,7 @@ constexpr std::array<double, kMetricCount> kPaperBToC{4.05e-6, 4.07e-5, 0.0047};
 int decimals(std::size_t metric) { return metric == 0 ? 1 : 2; }
 
 double paper_value(std::size_t metric, char condition) {
-  const experiment::Metric& what = kMetrics[metric];
+  const session::Metric& what = kMetrics[metric];
   const double unit = metric == 0 ? kPaperUnit_mm : 1.0;
   return unit * (condition == 'A' ? what.paper_a : condition == 'B' ? what.paper_b : what.paper_c);
 }
@@ -348,7 +349,7 @@ void add_lead_facts(report::Page& page, const StudyRecord& record) {
               {"trial", short_number(options.protocol.trial_s) + " s"},
               {"pegged trial", short_number(options.protocol.identify_s) + " s"},
               {"computed in", number(record.wall_s, 1) + " s"},
-              {"version", STILLHAND_VERSION},
+              {"version", kVersion},
               {"command line", record.command_line}});
   if (options.subjects == 1) {
     page.warning("One subject: no deviation, no test and no box can be given.");

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "report/page.hpp"
-#include "study/output.hpp"
+#include "apps/report/page.hpp"
+#include "apps/study/output.hpp"
 
 namespace stillhand::study {
 

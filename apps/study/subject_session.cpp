@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/subject_session.hpp"
+#include "apps/study/subject_session.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 
-#include "contract/config_error.hpp"
-#include "contract/expects.hpp"
-#include "identification/core/identifier.hpp"
-#include "settings/describe.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/expects.hpp"
+#include "services/identification/core/identifier.hpp"
+#include "services/settings/describe.hpp"
 
 namespace stillhand::study {
 namespace {
 
-using experiment::PlannedTrial;
+using session::PlannedTrial;
 
 // The paper records at 100 Hz.
 constexpr Tick kKeepEvery = 10;
@@ -35,15 +35,15 @@ std::uint64_t subject_seed(std::uint64_t seed, std::int64_t index) {
 }
 
 std::vector<PlannedTrial> plan_of(const StudyOptions& options, std::int64_t index) {
-  experiment::ProtocolOptions protocol = options.protocol;
+  session::ProtocolOptions protocol = options.protocol;
   protocol.seed = subject_seed(options.seed, index);
-  return experiment::plan(protocol);
+  return session::plan(protocol);
 }
 
 // Settings of every core for this subject under a condition.
-experiment::CoreConfigs configs_of(const StudyOptions& options, const Subject& subject,
-                                   char condition) {
-  experiment::CoreConfigs configs;
+session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subject,
+                                char condition) {
+  session::CoreConfigs configs;
   configs.rig.body = subject.body;
   configs.human_operator = subject.who;
   if (condition == 'E') configs.rig.stick.viscous_damping_n_s_m += options.damped_stick_n_s_m;
@@ -82,7 +82,7 @@ Identification identified(const identification::Record& pegged) {
 }
 
 // A model that the canceller refuses would leave condition C without a motor, unseen.
-void use(experiment::InProcessLoop& loop, const signal::DifferenceModel& control) {
+void use(session::InProcessLoop& loop, const signal::DifferenceModel& control) {
   const cancellation::Refusal refusal = loop.use_model(at_control_rate(control));
   if (refusal != cancellation::Refusal::kNone) {
     throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
@@ -105,7 +105,7 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-TrackedTrial evaluated(const experiment::TrialSignals& signals, const PlannedTrial& planned) {
+TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial& planned) {
   TrackedTrial out;
   const auto& record = signals.tracking;
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
@@ -113,7 +113,7 @@ TrackedTrial evaluated(const experiment::TrialSignals& signals, const PlannedTri
   thin(out.metrics.moving_rms_mm, record.rate_hz);
   thin(out.metrics.moving_dwell, record.rate_hz);
   if (planned.cancellation) {
-    out.cancelled_share = experiment::cancelled_share(signals.feedthrough_n, signals.motor_n);
+    out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
   }
   out.feedthrough_rms_n = rms(signals.feedthrough_n);
   const std::size_t samples = record.target_m.size();
@@ -146,7 +146,7 @@ void check_subject(const StudyOptions& options, std::int64_t index) {
   try {
     for (const auto condition : options.protocol.conditions) {
       const auto configs = configs_of(options, subject, static_cast<char>(condition));
-      const experiment::InProcessLoop loop(configs, 0);
+      const session::InProcessLoop loop(configs, 0);
     }
   } catch (const ConfigError& error) {
     throw ConfigError("population",
@@ -160,8 +160,8 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   result.subject = draw_subject(options.population, options.seed, index);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const std::uint64_t seed = subject_seed(options.seed, index);
-  experiment::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery,
-                                 sealed_effect(options));
+  session::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery,
+                              sealed_effect(options));
   for (const PlannedTrial& planned : trials) {
     if (planned.trial.phase == TrialPhase::kPegged) {
       result.identification = identified(loop.run(planned).pegged);
@@ -170,8 +170,8 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
     }
     result.order += planned.label;
     if (own_rig(planned.label)) {
-      experiment::InProcessLoop other(configs_of(options, result.subject, planned.label), seed,
-                                      kKeepEvery, sealed_effect(options));
+      session::InProcessLoop other(configs_of(options, result.subject, planned.label), seed,
+                                   kKeepEvery, sealed_effect(options));
       result.trials[planned.label] = evaluated(other.run(planned), planned);
     } else {
       result.trials[planned.label] = evaluated(loop.run(planned), planned);
@@ -182,9 +182,9 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
 
 TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
                             std::int64_t index, const signal::DifferenceModel& control_model) {
-  experiment::InProcessLoop loop(configs_of(options, result.subject, 'C'),
-                                 subject_seed(options.seed, index), kKeepEvery,
-                                 sealed_effect(options));
+  session::InProcessLoop loop(configs_of(options, result.subject, 'C'),
+                              subject_seed(options.seed, index), kKeepEvery,
+                              sealed_effect(options));
   use(loop, control_model);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const auto planned = std::find_if(trials.begin(), trials.end(),

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "experiment/in_process.hpp"
-#include "identification/core/arx.hpp"
-#include "identification/core/output_error.hpp"
-#include "identification/core/rate_conversion.hpp"
-#include "identification/core/tracking_metrics.hpp"
-#include "signal/spectrum.hpp"
-#include "study/population.hpp"
+#include "apps/session/in_process.hpp"
+#include "apps/study/population.hpp"
+#include "services/identification/core/arx.hpp"
+#include "services/identification/core/output_error.hpp"
+#include "services/identification/core/rate_conversion.hpp"
+#include "services/identification/core/tracking_metrics.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::study {
 
@@ -20,7 +20,7 @@ namespace stillhand::study {
 struct StudyOptions {
   std::int64_t subjects = 12;
   std::uint64_t seed = 1;
-  experiment::ProtocolOptions protocol;  ///< conditions and lengths; its seed is the subject's
+  session::ProtocolOptions protocol;  ///< conditions and lengths; its seed is the subject's
   Population population;
   double damped_stick_n_s_m = 20.0;       ///< condition E, added to the stick's own
   double arm_rest_stiffness_n_m = 500.0;  ///< condition F

@@ -2,13 +2,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "study/output.hpp"
+#include "apps/study/output.hpp"
+#include "version.hpp"
 
 namespace stillhand::study {
 namespace {
 
-using experiment::kMetrics;
 using nlohmann::ordered_json;
+using session::kMetrics;
 
 // JSON has no NaN: what could not be computed is null.
 ordered_json number(double value) {
@@ -154,7 +155,7 @@ std::string summary_json(const StudyRecord& record) {
   summary["seed"] = options.seed;
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
-  summary["version"] = STILLHAND_VERSION;
+  summary["version"] = kVersion;
   return summary.dump(2) + "\n";
 }
 

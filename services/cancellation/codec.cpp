@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/codec.hpp"
+#include "services/cancellation/codec.hpp"
 
 namespace stillhand::cancellation {
 namespace {

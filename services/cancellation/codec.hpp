@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cancellation/core/canceller.hpp"
 #include "idl/control_loop.h"
 #include "idl/model.h"
+#include "services/cancellation/core/canceller.hpp"
 
 namespace stillhand::cancellation {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
-#include "cancellation/shell.hpp"
+#include "services/cancellation/shell.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

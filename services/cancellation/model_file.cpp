@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/model_file.hpp"
+#include "services/cancellation/model_file.hpp"
 
 #include <algorithm>
 
-#include "cancellation/core/model_filter.hpp"
-#include "cancellation/core/value_table.hpp"
-#include "contract/config_error.hpp"
-#include "settings/json_entry.hpp"
+#include "services/cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/value_table.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/settings/json_entry.hpp"
 
 namespace stillhand::cancellation {
 namespace {

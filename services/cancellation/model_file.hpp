@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "cancellation/core/canceller.hpp"
+#include "services/cancellation/core/canceller.hpp"
 
 namespace stillhand::cancellation {
 

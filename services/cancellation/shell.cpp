@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/shell.hpp"
+#include "services/cancellation/shell.hpp"
 
 #include <string>
 

@@ -3,12 +3,12 @@
 
 #include <optional>
 
-#include "cancellation/codec.hpp"
-#include "cancellation/core/canceller.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "runtime/interlock.hpp"
-#include "runtime/service.hpp"
+#include "services/cancellation/codec.hpp"
+#include "services/cancellation/core/canceller.hpp"
+#include "services/runtime/process/interlock.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::cancellation {
 

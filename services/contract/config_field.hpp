@@ -8,7 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand {
 

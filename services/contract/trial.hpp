@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/model_file.hpp"
+#include "services/diagnosis/model_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "contract/config_error.hpp"
-#include "diagnosis/core/effect_kind.hpp"
-#include "diagnosis/core/evaluation.hpp"
-#include "diagnosis/core/loop.hpp"
-#include "diagnosis/core/signals.hpp"
-#include "settings/json_entry.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/model/loop.hpp"
+#include "services/diagnosis/core/signals.hpp"
+#include "services/settings/json_entry.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

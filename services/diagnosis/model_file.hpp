@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "diagnosis/core/model.hpp"
+#include "services/diagnosis/core/model/model.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/codec.hpp"
+#include "services/display/codec.hpp"
 
 namespace stillhand::display {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "display/core/tracking_display.hpp"
 #include "idl/control_loop.h"
+#include "services/display/core/tracking_display.hpp"
 
 namespace stillhand::display {
 

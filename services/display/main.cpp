@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
-#include "display/screen_loop.hpp"
+#include "services/display/screen_loop.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/screen_loop.hpp"
+#include "services/display/screen_loop.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 
-#include "display/view_opencv.hpp"
-#include "display/view_output.hpp"
-#include "runtime/real_time.hpp"
+#include "services/display/view_opencv.hpp"
+#include "services/display/view_output.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::display {
 namespace {

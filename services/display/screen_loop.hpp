@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "display/shell.hpp"
+#include "services/display/shell.hpp"
 
 namespace stillhand::display {
 

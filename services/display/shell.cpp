@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/shell.hpp"
+#include "services/display/shell.hpp"
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::display {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "display/codec.hpp"
-#include "display/core/tracking_display.hpp"
-#include "runtime/handover.hpp"
-#include "runtime/latest_value.hpp"
-#include "runtime/service.hpp"
+#include "services/display/codec.hpp"
+#include "services/display/core/tracking_display.hpp"
+#include "services/runtime/process/handover.hpp"
+#include "services/runtime/process/latest_value.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::display {
 

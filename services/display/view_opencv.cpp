@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/view_opencv.hpp"
+#include "services/display/view_opencv.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 
-#include "display/core/projection.hpp"
-#include "display/core/screen_layout.hpp"
-#include "display/core/tracking_display.hpp"
+#include "services/display/core/projection.hpp"
+#include "services/display/core/screen_layout.hpp"
+#include "services/display/core/tracking_display.hpp"
 
 namespace stillhand::display {
 

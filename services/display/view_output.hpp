@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "display/core/projection.hpp"
+#include "services/display/core/projection.hpp"
 
 namespace stillhand::display {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/codec.hpp"
+#include "services/human_operator/codec.hpp"
 
 namespace stillhand::human_operator {
 

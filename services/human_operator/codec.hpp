@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "human_operator/core/crossover_operator.hpp"
 #include "idl/control_loop.h"
+#include "services/human_operator/core/crossover_operator.hpp"
 
 namespace stillhand::human_operator {
 

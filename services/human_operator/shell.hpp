@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <limits>
 
-#include "human_operator/codec.hpp"
-#include "human_operator/core/crossover_operator.hpp"
-#include "human_operator/core/pointer_operator.hpp"
-#include "runtime/service.hpp"
+#include "services/human_operator/codec.hpp"
+#include "services/human_operator/core/crossover_operator.hpp"
+#include "services/human_operator/core/pointer_operator.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::human_operator {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/codec.hpp"
+#include "services/identification/codec.hpp"
 
 namespace stillhand::identification {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "identification/core/identifier.hpp"
 #include "idl/model.h"
+#include "services/identification/core/identifier.hpp"
 
 namespace stillhand::identification {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/shell.hpp"
+#include "services/identification/shell.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

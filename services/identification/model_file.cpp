@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/model_file.hpp"
+#include "services/identification/model_file.hpp"
 
-#include "contract/config_error.hpp"
-#include "contract/tick.hpp"
-#include "settings/json_entry.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/settings/json_entry.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "identification/core/identifier.hpp"
+#include "services/identification/core/identifier.hpp"
 
 namespace stillhand::identification {
 

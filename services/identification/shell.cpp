@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/shell.hpp"
+#include "services/identification/shell.hpp"
 
-#include "contract/config_error.hpp"
-#include "identification/codec.hpp"
-#include "runtime/real_time.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/codec.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::identification {
 namespace {

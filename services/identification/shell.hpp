@@ -7,10 +7,10 @@
 #include <optional>
 #include <thread>
 
-#include "identification/core/identifier.hpp"
 #include "idl/control_loop.h"
 #include "idl/model.h"
-#include "runtime/service.hpp"
+#include "services/identification/core/identifier.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::identification {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/codec.hpp"
+#include "services/motion/codec.hpp"
 
 namespace stillhand::motion {
 

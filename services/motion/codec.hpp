@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/trial.hpp"
 #include "idl/control_loop.h"
 #include "idl/session.h"
-#include "motion/core/motion_profile.hpp"
-#include "motion/core/platform_command.hpp"
+#include "services/contract/trial.hpp"
+#include "services/motion/core/motion_profile.hpp"
+#include "services/motion/core/platform_command.hpp"
 
 namespace stillhand::motion {
 

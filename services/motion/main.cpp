@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
-#include "motion/shell.hpp"
-#include "settings/check_name.hpp"
+#include "services/motion/shell.hpp"
+#include "services/settings/check_name.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

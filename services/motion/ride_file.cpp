@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/ride_file.hpp"
+#include "services/motion/ride_file.hpp"
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
-#include "contract/tick.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/file_io.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::motion {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/shell.hpp"
+#include "services/motion/shell.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
-#include "contract/config_error.hpp"
-#include "motion/codec.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/motion/codec.hpp"
 
 namespace stillhand::motion {
 

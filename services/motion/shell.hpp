@@ -7,10 +7,10 @@
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
-#include "motion/core/motion_generator.hpp"
-#include "motion/ride_file.hpp"
-#include "runtime/handover.hpp"
-#include "runtime/service.hpp"
+#include "services/motion/core/motion_generator.hpp"
+#include "services/motion/ride_file.hpp"
+#include "services/runtime/process/handover.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::motion {
 

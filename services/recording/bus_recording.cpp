@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/bus_recording.hpp"
+#include "services/recording/bus_recording.hpp"
 
 #include <utility>
 
-#include "recording/session_texts.hpp"
+#include "services/recording/session_texts.hpp"
 
 namespace stillhand::recording {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "recording/tally.hpp"
-#include "recording/tape.hpp"
-#include "recording/trial_log.hpp"
-#include "runtime/found_writer.hpp"
+#include "services/recording/tally.hpp"
+#include "services/recording/tape.hpp"
+#include "services/recording/trial_log.hpp"
+#include "services/runtime/bus/found_writer.hpp"
 
 namespace stillhand::recording {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/file_io.hpp"
+#include "services/recording/file_io.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <system_error>
 
-#include "contract/config_error.hpp"
-#include "recording/core/csv.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/csv.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "recording/core/byte_stream.hpp"
-#include "recording/core/recording.hpp"
+#include "services/recording/core/mcap/byte_stream.hpp"
+#include "services/recording/core/recording.hpp"
 
 namespace stillhand::recording {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/keep_options.hpp"
+#include "services/recording/keep_options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "recording/within.hpp"
+#include "services/recording/within.hpp"
 
 namespace stillhand::recording {
 namespace {

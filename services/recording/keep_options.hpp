@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/compression.hpp"
-#include "recording/file_io.hpp"
-#include "recording/tape.hpp"
+#include "services/recording/core/mcap/compression.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/recording/tape.hpp"
 
 namespace CLI {
 class App;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/shell.hpp"
+#include "services/recording/shell.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/qos_texts.hpp"
+#include "services/recording/qos_texts.hpp"
 
 #include <array>
 #include <charconv>

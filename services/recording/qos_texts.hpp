@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "recording/core/mcap_format.hpp"
-#include "runtime/writer_qos.hpp"
+#include "services/recording/core/mcap/mcap_format.hpp"
+#include "services/runtime/bus/writer_qos.hpp"
 
 namespace stillhand::recording {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <span>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::recording {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/session_texts.hpp"
+#include "services/recording/session_texts.hpp"
 
 #include <unistd.h>
 
-#include "runtime/clock.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "version.hpp"
 
 namespace stillhand::recording {
 std::string clock_offset() {
@@ -15,7 +16,7 @@ TextMap session_texts(std::uint32_t domain, const std::string& recorded_by) {
   if (gethostname(host, sizeof(host) - 1) != 0) host[0] = '\0';
   return {{"host", host},
           {"domain", std::to_string(domain)},
-          {"stillhand", STILLHAND_VERSION},
+          {"stillhand", kVersion},
           {"git", STILLHAND_GIT},
           {"recorded_by", recorded_by},
           {"clock_offset_ns at start", clock_offset()}};

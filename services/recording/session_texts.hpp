@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "recording/core/mcap_format.hpp"
+#include "services/recording/core/mcap/mcap_format.hpp"
 
 namespace stillhand::recording {
 

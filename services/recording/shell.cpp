@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/shell.hpp"
+#include "services/recording/shell.hpp"
 
 #include <stdexcept>
 #include <string>
 
-#include "recording/sample_clock.hpp"
-#include "recording/session_texts.hpp"
+#include "services/recording/sample_clock.hpp"
+#include "services/recording/session_texts.hpp"
 
 namespace stillhand::recording {
 namespace {

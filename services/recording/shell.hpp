@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "recording/bus_recording.hpp"
-#include "recording/keep_options.hpp"
-#include "runtime/service.hpp"
+#include "services/recording/bus_recording.hpp"
+#include "services/recording/keep_options.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::recording {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/tally.hpp"
+#include "services/recording/tally.hpp"
 
 #include <algorithm>
 
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
-#include "recording/qos_texts.hpp"
-#include "recording/sample_clock.hpp"
+#include "services/recording/qos_texts.hpp"
+#include "services/recording/sample_clock.hpp"
 
 namespace stillhand::recording {
 

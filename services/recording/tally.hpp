@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/loss_count.hpp"
-#include "recording/core/mcap_format.hpp"
-#include "recording/tape.hpp"
-#include "runtime/found_writer.hpp"
+#include "services/recording/core/loss_count.hpp"
+#include "services/recording/core/mcap/mcap_format.hpp"
+#include "services/recording/tape.hpp"
+#include "services/runtime/bus/found_writer.hpp"
 
 namespace stillhand::recording {
 

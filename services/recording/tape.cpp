@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/tape.hpp"
+#include "services/recording/tape.hpp"
 
 #include <sys/statvfs.h>
 
@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <map>
 
-#include "contract/config_error.hpp"
-#include "recording/file_io.hpp"
-#include "runtime/clock.hpp"
-#include "runtime/real_time.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -12,11 +12,11 @@
 #include <thread>
 #include <vector>
 
-#include "recording/core/event_window.hpp"
-#include "recording/core/held_message.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/core/rotation.hpp"
-#include "recording/file_io.hpp"
+#include "services/recording/core/event_window.hpp"
+#include "services/recording/core/held_message.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/core/rotation.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::recording {
 

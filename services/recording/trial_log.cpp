@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/trial_log.hpp"
+#include "services/recording/trial_log.hpp"
 
 #include "idl/cdr.hpp"
 #include "idl/session.h"

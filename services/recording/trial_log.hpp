@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <mutex>
 
-#include "recording/core/mcap_format.hpp"
-#include "runtime/found_writer.hpp"
+#include "services/recording/core/mcap/mcap_format.hpp"
+#include "services/runtime/bus/found_writer.hpp"
 
 namespace stillhand::recording {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/codec.hpp"
+#include "services/rig/codec.hpp"
 
 namespace stillhand::rig {
 

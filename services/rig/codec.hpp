@@ -2,7 +2,7 @@
 #pragma once
 
 #include "idl/control_loop.h"
-#include "rig/core/rig.hpp"
+#include "services/rig/core/rig.hpp"
 
 namespace stillhand::rig {
 

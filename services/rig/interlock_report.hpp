@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::rig {
 

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <string_view>
 
-#include "contract/config_error.hpp"
-#include "rig/sealed_file.hpp"
-#include "rig/shell.hpp"
-#include "settings/load.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/sealed_file.hpp"
+#include "services/rig/shell.hpp"
+#include "services/settings/load.hpp"
 
 namespace {
 

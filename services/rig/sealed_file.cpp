@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/sealed_file.hpp"
+#include "services/rig/sealed_file.hpp"
 
 #include <openssl/evp.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "contract/config_error.hpp"
-#include "recording/file_io.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::rig {
 namespace {

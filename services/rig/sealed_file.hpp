@@ -6,7 +6,7 @@
 #include <iosfwd>
 #include <string>
 
-#include "rig/core/sealed_effect.hpp"
+#include "services/rig/core/undeclared/sealed_effect.hpp"
 
 namespace stillhand::rig {
 

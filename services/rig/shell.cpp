@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/shell.hpp"
+#include "services/rig/shell.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -6,12 +6,12 @@
 #include <boost/lockfree/spsc_queue.hpp>
 
 #include "idl/control_loop.h"
-#include "rig/codec.hpp"
-#include "rig/core/rig.hpp"
-#include "rig/interlock_report.hpp"
-#include "runtime/interlock.hpp"
-#include "runtime/latest_value.hpp"
-#include "runtime/service.hpp"
+#include "services/rig/codec.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/rig/interlock_report.hpp"
+#include "services/runtime/process/interlock.hpp"
+#include "services/runtime/process/latest_value.hpp"
+#include "services/runtime/service.hpp"
 
 namespace stillhand::rig {
 

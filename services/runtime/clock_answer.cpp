@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/clock_answer.hpp"
+#include "services/runtime/clock_answer.hpp"
 
 #include <filesystem>
 #include <fstream>

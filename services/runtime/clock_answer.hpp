@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/bus.hpp"
+#include "services/runtime/bus/bus.hpp"
 
 namespace stillhand::runtime {
 

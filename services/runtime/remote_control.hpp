@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "runtime/bus.hpp"
-#include "runtime/stop.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/stop.hpp"
 
 namespace stillhand::runtime {
 

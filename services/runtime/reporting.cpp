@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/reporting.hpp"
+#include "services/runtime/reporting.hpp"
 
 #include <sched.h>
 #include <systemd/sd-daemon.h>
@@ -13,7 +13,7 @@
 #include <string>
 #include <tuple>
 
-#include "runtime/real_time.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "runtime/cpu_share.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/cpu_share.hpp"
 
 namespace stillhand::runtime {
 

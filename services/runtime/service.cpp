@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/service.hpp"
+#include "services/runtime/service.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstring>
 #include <iostream>
 
-#include "contract/config_error.hpp"
 #include "idl/session_state.hpp"
-#include "runtime/clock_answer.hpp"
-#include "runtime/real_time.hpp"
-#include "runtime/reporting.hpp"
-#include "runtime/security.hpp"
-#include "runtime/trial_codec.hpp"
-#include "settings/check_name.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/security.hpp"
+#include "services/runtime/clock_answer.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/runtime/reporting.hpp"
+#include "services/runtime/trial_codec.hpp"
+#include "services/settings/check_name.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -8,11 +8,11 @@
 #include <memory>
 #include <string>
 
-#include "contract/trial.hpp"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "runtime/stop.hpp"
-#include "settings/load.hpp"
+#include "services/contract/trial.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/stop.hpp"
+#include "services/settings/load.hpp"
 
 namespace CLI {
 class App;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/trial.hpp"
 #include "idl/session.h"
+#include "services/contract/trial.hpp"
 
 namespace stillhand::runtime {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensing/codec.hpp"
+#include "services/sensing/codec.hpp"
 
 namespace stillhand::sensing {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "idl/control_loop.h"
-#include "sensing/core/conditioner.hpp"
+#include "services/sensing/core/conditioner.hpp"
 
 namespace stillhand::sensing {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/service.hpp"
-#include "sensing/codec.hpp"
+#include "services/runtime/service.hpp"
+#include "services/sensing/codec.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "contract/config_field.hpp"
+#include "services/contract/config_field.hpp"
 
 namespace stillhand::settings {
 

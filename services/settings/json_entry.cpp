@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "settings/json_entry.hpp"
+#include "services/settings/json_entry.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::settings {
 

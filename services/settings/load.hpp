@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "settings/section.hpp"
+#include "services/settings/section.hpp"
 
 namespace stillhand::settings {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "settings/nearest.hpp"
+#include "services/settings/nearest.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "settings/section.hpp"
+#include "services/settings/section.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -13,8 +13,8 @@
 #include <system_error>
 #include <utility>
 
-#include "contract/config_error.hpp"
-#include "settings/nearest.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/settings/nearest.hpp"
 
 namespace stillhand::settings {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "contract/config_field.hpp"
+#include "services/contract/config_field.hpp"
 
 namespace stillhand::settings {
 

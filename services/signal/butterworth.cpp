@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "signal/butterworth.hpp"
+#include "services/signal/butterworth.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <string>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::signal {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "signal/biquad.hpp"
+#include "services/signal/biquad.hpp"
 
 namespace stillhand::signal {
 

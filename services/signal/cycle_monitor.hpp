@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::signal {
 

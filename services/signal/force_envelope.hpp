@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::signal {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "signal/reference.hpp"
+#include "services/signal/reference.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {

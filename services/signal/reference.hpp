@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::signal {
 

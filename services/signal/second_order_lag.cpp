@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "signal/second_order_lag.hpp"
+#include "services/signal/second_order_lag.hpp"
 
 #include <cmath>
 
-#include "contract/expects.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::signal {
 

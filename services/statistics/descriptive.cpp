@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/descriptive.hpp"
+#include "services/statistics/descriptive.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "statistics/sample_check.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
 namespace {

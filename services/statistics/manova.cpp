@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/manova.hpp"
+#include "services/statistics/manova.hpp"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::statistics {
 namespace {

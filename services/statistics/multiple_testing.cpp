@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/multiple_testing.hpp"
+#include "services/statistics/multiple_testing.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <string>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::statistics {
 namespace {

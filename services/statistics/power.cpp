@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/power.hpp"
+#include "services/statistics/power.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -10,8 +10,8 @@
 #include <limits>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "statistics/sample_check.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/sample_check.hpp"
+#include "services/statistics/sample_check.hpp"
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::statistics {
 namespace {

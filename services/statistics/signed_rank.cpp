@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/signed_rank.hpp"
+#include "services/statistics/signed_rank.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
-#include "statistics/sample_check.hpp"
+#include "services/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
 namespace {

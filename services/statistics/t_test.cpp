@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/t_test.hpp"
+#include "services/statistics/t_test.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "statistics/descriptive.hpp"
-#include "statistics/sample_check.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/statistics/descriptive.hpp"
+#include "services/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
 namespace {

@@ -11,16 +11,17 @@
 #include <string>
 #include <thread>
 
-#include "contract/config_error.hpp"
 #include "idl/control_loop.h"
 #include "idl/idl_text.hpp"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/file_io.hpp"
-#include "recording/qos_texts.hpp"
-#include "runtime/bus.hpp"
-#include "runtime/real_time.hpp"
-#include "support/idl_fields.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/recording/qos_texts.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "tests/support/idl_fields.hpp"
 
 namespace {
 

@@ -12,11 +12,12 @@
 #include <thread>
 #include <vector>
 
-#include "contract/config_error.hpp"
 #include "idl/control_loop.h"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "runtime/real_time.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace {
 

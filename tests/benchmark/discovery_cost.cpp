@@ -24,16 +24,17 @@
 #include <thread>
 #include <vector>
 
-#include "deploy/checks.hpp"
-#include "deploy/generate.hpp"
-#include "deploy/ports.hpp"
+#include "apps/deploy/checks.hpp"
+#include "apps/deploy/generate.hpp"
+#include "apps/deploy/ports.hpp"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "runtime/real_time.hpp"
-#include "runtime/stop.hpp"
-#include "support/child.hpp"
-#include "support/wait.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/stop.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/wait.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace {
 

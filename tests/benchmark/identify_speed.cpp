@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "identification/core/arx.hpp"
-#include "identification/core/paper_preprocessing.hpp"
+#include "services/identification/core/arx.hpp"
+#include "services/identification/core/paper_preprocessing.hpp"
 
 namespace {
 

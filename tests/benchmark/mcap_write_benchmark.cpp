@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writing a recording to a file, beside a plain write() of the same messages, and reading it back:
-//   build/bin/mcap_write_benchmark            files in /tmp, or in TMPDIR
+//   build/tests/mcap_write_benchmark            files in /tmp, or in TMPDIR
 //
 // Messages are 92 bytes, the size of a Sensed sample in CDR, filled like one: a slow sine per
 // field.
@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/mcap_reader.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/file_io.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plants effects, seals the label, asks the engine, opens the label: confusion matrix, false alarms
 // and what is left over the noise.
-//   build/bin/planted_effects            504 recordings with one effect at 10 or 25 % of the force,
+//   build/tests/planted_effects            504 recordings with one effect at 10 or 25 % of the
+//   force,
 //                                        72 at 5 %, 200 with none, 40 with two
-//   build/bin/planted_effects --tenth    every tenth of them, and exit 1 where too many are wrong
-//   build/bin/planted_effects --only 1 7 the eighth recording of the first list, in detail
+//   build/tests/planted_effects --tenth    every tenth of them, and exit 1 where too many are wrong
+//   build/tests/planted_effects --only 1 7 the eighth recording of the first list, in detail
 // Recordings are those of tests/planted with the plan's seed; README there says what is drawn.
 #include <unistd.h>
 
@@ -18,9 +19,9 @@
 #include <thread>
 #include <vector>
 
-#include "diagnosis/core/diagnose.hpp"
-#include "planted/series.hpp"
-#include "planted/to_measurement.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "tests/planted/series.hpp"
+#include "tests/planted/to_measurement.hpp"
 
 namespace {
 

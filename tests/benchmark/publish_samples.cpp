@@ -7,9 +7,10 @@
 #include <cstring>
 
 #include "idl/control_loop.h"
-#include "runtime/bus.hpp"
-#include "runtime/clock.hpp"
-#include "runtime/stop.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/stop.hpp"
 
 int main(int argc, char** argv) {
   using namespace stillhand;

@@ -20,12 +20,13 @@
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "runtime/real_time.hpp"
-#include "runtime/stop.hpp"
-#include "support/child.hpp"
-#include "support/motion_and_rig.hpp"
-#include "support/security_folder.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/stop.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/motion_and_rig.hpp"
+#include "tests/support/security_folder.hpp"
 
 namespace {
 

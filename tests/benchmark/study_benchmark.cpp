@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How fast a study goes, and how it grows with the subjects.  Prints simulated seconds a second and
 // the largest resident memory so far:
-//   build/bin/study_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only
+//   build/tests/study_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
-#include "study/analysis.hpp"
-#include "study/study.hpp"
+#include "apps/study/analysis.hpp"
+#include "apps/study/study.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 void whole_study(benchmark::State& state) {
   StudyOptions options;
   options.subjects = state.range(0);
-  options.protocol.conditions = experiment::parse_conditions("A,B,C");
+  options.protocol.conditions = session::parse_conditions("A,B,C");
   options.protocol.identify_s = 120.0;
   for (auto _ : state) {
     const auto results = run_study(options, [](std::int64_t, std::int64_t) { return true; });

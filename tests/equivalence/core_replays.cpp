@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "equivalence/core_replays.hpp"
+#include "tests/equivalence/core_replays.hpp"
 
 #include <algorithm>
 
-#include "cancellation/codec.hpp"
-#include "display/codec.hpp"
-#include "equivalence/recorded_trial.hpp"
-#include "human_operator/codec.hpp"
-#include "human_operator/shell.hpp"
-#include "motion/codec.hpp"
-#include "motion/core/motion_generator.hpp"
-#include "rig/codec.hpp"
-#include "runtime/trial_codec.hpp"
-#include "sensing/codec.hpp"
+#include "services/cancellation/codec.hpp"
+#include "services/display/codec.hpp"
+#include "services/human_operator/codec.hpp"
+#include "services/human_operator/shell.hpp"
+#include "services/motion/codec.hpp"
+#include "services/motion/core/motion_generator.hpp"
+#include "services/rig/codec.hpp"
+#include "services/runtime/trial_codec.hpp"
+#include "services/sensing/codec.hpp"
+#include "tests/equivalence/recorded_trial.hpp"
 
 namespace stillhand::equivalence {
 namespace {

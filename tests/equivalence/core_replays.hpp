@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "equivalence/replay.hpp"
-#include "experiment/session_recording.hpp"
-#include "settings/load.hpp"
+#include "apps/session/session_recording.hpp"
+#include "services/settings/load.hpp"
+#include "tests/equivalence/replay.hpp"
 
 namespace stillhand::equivalence {
 
@@ -21,7 +21,7 @@ struct SessionSettings {
   }
 };
 
-using experiment::SessionRecording;
+using session::SessionRecording;
 
 // Each replays one core in this process: inputs, order of calls and settings as in the service's
 // shell, outputs compared with the recorded ones.

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <set>
 
-#include "contract/config_error.hpp"
-#include "equivalence/core_replays.hpp"
-#include "equivalence/recorded_trial.hpp"
-#include "identification/codec.hpp"
-#include "identification/shell.hpp"
-#include "runtime/trial_codec.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/codec.hpp"
+#include "services/identification/shell.hpp"
+#include "services/runtime/trial_codec.hpp"
+#include "tests/equivalence/core_replays.hpp"
+#include "tests/equivalence/recorded_trial.hpp"
 
 namespace stillhand::equivalence {
 namespace {

@@ -9,10 +9,11 @@
 #include <memory>
 #include <stdexcept>
 
-#include "contract/config_error.hpp"
-#include "equivalence/core_replays.hpp"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/file_io.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
+#include "tests/equivalence/core_replays.hpp"
 
 namespace stillhand::equivalence {
 namespace {
@@ -36,7 +37,7 @@ class LiveRecordingTest : public testing::Test {
     const char* path = std::getenv("STILLHAND_RECORDING");
     if (path == nullptr) return;
     settings_ = {STILLHAND_SOURCE "/deploy/config", seed_of(path)};
-    session_ = std::make_unique<SessionRecording>(experiment::read_session(path));
+    session_ = std::make_unique<SessionRecording>(session::read_session(path));
   }
   static void TearDownTestSuite() { session_.reset(); }
   void SetUp() override {

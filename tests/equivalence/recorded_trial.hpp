@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "equivalence/replay.hpp"
 #include "idl/session.h"
+#include "tests/equivalence/replay.hpp"
 
 namespace stillhand::equivalence {
 

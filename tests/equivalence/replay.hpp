@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "support/idl_fields.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "tests/support/idl_fields.hpp"
 
 namespace stillhand::equivalence {
 

@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "contract/flag.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/file_io.hpp"
-#include "recording/sample_clock.hpp"
+#include "services/contract/flag.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/recording/sample_clock.hpp"
 
 namespace {
 

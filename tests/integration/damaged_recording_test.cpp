@@ -9,10 +9,10 @@
 #include <cstring>
 #include <optional>
 
-#include "recording/core/crc32.hpp"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/core/memory_bytes.hpp"
-#include "recording/file_io.hpp"
+#include "services/recording/core/mcap/crc32.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::recording {
 namespace {

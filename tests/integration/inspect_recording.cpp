@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "experiment/session_recording.hpp"
+#include "apps/session/session_recording.hpp"
+#include "services/contract/config_error.hpp"
 
 // inspect_recording FILE LAST_TICKS [signals]: what the integration tests ask of a session's
 // recording, as one JSON object; of the rig's truth its last LAST_TICKS samples, and with `signals`
@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-json trials_of(const stillhand::experiment::SessionRecording& session) {
+json trials_of(const stillhand::session::SessionRecording& session) {
   json trials = json::array();
   for (const auto& control : session.trial_controls) {
     if (control.session() != stillhand_msgs::SESSION_RUNNING || control.trial() < 0) continue;
@@ -35,7 +35,7 @@ std::vector<Message> newest(const std::vector<Message>& stream, std::size_t coun
   return {stream.end() - static_cast<std::ptrdiff_t>(std::min(stream.size(), count)), stream.end()};
 }
 
-json signals_of(const stillhand::experiment::SessionRecording& session, std::size_t last_ticks) {
+json signals_of(const stillhand::session::SessionRecording& session, std::size_t last_ticks) {
   json signals{{"truth", json::array()},    {"command", json::array()}, {"sensed", json::array()},
                {"tracking", json::array()}, {"force", json::array()},   {"pointer", json::array()}};
   for (const auto& m : newest(session.rig_truths, last_ticks)) {
@@ -60,7 +60,7 @@ json signals_of(const stillhand::experiment::SessionRecording& session, std::siz
   return signals;
 }
 
-json notes_of(const stillhand::experiment::SessionRecording& session) {
+json notes_of(const stillhand::session::SessionRecording& session) {
   json notes = json::array();
   for (const auto& event : session.events) {
     if (event.kind() == stillhand_msgs::EVENT_NOTE) {
@@ -71,7 +71,7 @@ json notes_of(const stillhand::experiment::SessionRecording& session) {
 }
 
 // What was asked from outside, and that the interlock opened.
-json commands_of(const stillhand::experiment::SessionRecording& session) {
+json commands_of(const stillhand::session::SessionRecording& session) {
   json commands = json::array();
   for (const auto& event : session.events) {
     if (event.kind() == stillhand_msgs::EVENT_COMMAND ||
@@ -82,7 +82,7 @@ json commands_of(const stillhand::experiment::SessionRecording& session) {
   return commands;
 }
 
-json clock_events_of(const stillhand::experiment::SessionRecording& session) {
+json clock_events_of(const stillhand::session::SessionRecording& session) {
   json events = json::array();
   for (const auto& event : session.events) {
     if (event.kind() == stillhand_msgs::EVENT_CLOCK_STEPPED ||
@@ -93,7 +93,7 @@ json clock_events_of(const stillhand::experiment::SessionRecording& session) {
   return events;
 }
 
-json rig_of(const stillhand::experiment::SessionRecording& session, std::size_t last_ticks) {
+json rig_of(const stillhand::session::SessionRecording& session, std::size_t last_ticks) {
   json rig{{"tick", json::array()},
            {"stamp_ns", json::array()},
            {"motor_force_n", json::array()},
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const auto session = stillhand::experiment::read_session(argv[1]);
+    const auto session = stillhand::session::read_session(argv[1]);
     const std::size_t last_ticks = std::strtoul(argv[2], nullptr, 10);
     json found{{"messages", session.messages},
                {"lost_ticks", session.lost_ticks},

@@ -4,21 +4,20 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "experiment/in_process.hpp"
-#include "identification/core/arx.hpp"
-#include "identification/core/paper_preprocessing.hpp"
-#include "study/population.hpp"
+#include "apps/session/in_process.hpp"
+#include "apps/study/population.hpp"
+#include "services/identification/core/arx.hpp"
+#include "services/identification/core/paper_preprocessing.hpp"
 
 int main() {
   using namespace stillhand;
-  experiment::ProtocolOptions options;
-  options.conditions = experiment::parse_conditions("A");
+  session::ProtocolOptions options;
+  options.conditions = session::parse_conditions("A");
   options.identify_s = 120.0;
-  experiment::CoreConfigs configs;
+  session::CoreConfigs configs;
   configs.rig.body = study::draw_subject({}, 1, 0).body;
-  experiment::InProcessLoop loop(configs, options.seed);
-  const auto record =
-      identification::preprocessed(loop.run(experiment::plan(options).front()).pegged);
+  session::InProcessLoop loop(configs, options.seed);
+  const auto record = identification::preprocessed(loop.run(session::plan(options).front()).pegged);
   const auto fit = identification::fit_arx(record, 4);
   nlohmann::json response = nlohmann::json::array();
   for (double hz = 0.0; hz <= 25.0; hz += 0.25) {

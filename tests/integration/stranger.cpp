@@ -22,9 +22,10 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "runtime/participant.hpp"
-#include "runtime/stop.hpp"
-#include "runtime/type_tag.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/participant.hpp"
+#include "services/runtime/bus/type_tag.hpp"
+#include "services/runtime/process/stop.hpp"
 
 namespace {
 

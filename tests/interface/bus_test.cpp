@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real bus on loopback: profiles load, endpoints match, samples arrive, peers are named.
-#include "runtime/bus.hpp"
+#include "services/runtime/bus/bus.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,14 +9,15 @@
 #include <fstream>
 #include <set>
 
-#include "contract/config_error.hpp"
 #include "idl/clock.h"
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "idl/recording.h"
 #include "idl/session.h"
-#include "support/own_domain.hpp"
-#include "support/wait.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
 namespace {

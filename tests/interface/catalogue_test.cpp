@@ -9,6 +9,7 @@
 
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
+#include "places.hpp"
 
 namespace stillhand::topics {
 namespace {

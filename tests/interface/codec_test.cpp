@@ -3,19 +3,19 @@
 // out as the IDL lists it, so that a field added there and forgotten in a codec shows; rig and
 // stamp_ns are the publisher's and stay 0.  From the bus a core's struct is taken apart completely,
 // so that a field added there does not compile until it is looked at here.
-#include "cancellation/codec.hpp"
+#include "services/cancellation/codec.hpp"
 
 #include <gtest/gtest.h>
 
 #include <tuple>
 
-#include "display/codec.hpp"
-#include "human_operator/codec.hpp"
-#include "identification/codec.hpp"
-#include "motion/codec.hpp"
-#include "rig/codec.hpp"
-#include "sensing/codec.hpp"
-#include "support/idl_fields.hpp"
+#include "services/display/codec.hpp"
+#include "services/human_operator/codec.hpp"
+#include "services/identification/codec.hpp"
+#include "services/motion/codec.hpp"
+#include "services/rig/codec.hpp"
+#include "services/sensing/codec.hpp"
+#include "tests/support/idl_fields.hpp"
 
 namespace stillhand {
 namespace {

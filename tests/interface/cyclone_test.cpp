@@ -4,9 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/child.hpp"
-#include "support/motion_and_rig.hpp"
-#include "support/security_folder.hpp"
+#include "places.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/motion_and_rig.hpp"
+#include "tests/support/security_folder.hpp"
 
 namespace stillhand::runtime {
 namespace {

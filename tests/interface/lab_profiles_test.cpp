@@ -13,14 +13,15 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fstream>
 
-#include "deploy/checks.hpp"
-#include "deploy/generate.hpp"
-#include "deploy/ports.hpp"
+#include "apps/deploy/checks.hpp"
+#include "apps/deploy/generate.hpp"
+#include "apps/deploy/ports.hpp"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "support/own_domain.hpp"
-#include "support/wait.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {

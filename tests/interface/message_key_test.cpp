@@ -10,8 +10,8 @@
 #include "idl/clockPubSubTypes.h"
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/sessionPubSubTypes.h"
-#include "runtime/bus.hpp"
-#include "runtime/type_tag.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -7,12 +7,13 @@
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "runtime/playback.hpp"
-#include "runtime/tap.hpp"
-#include "support/idl_fields.hpp"
-#include "support/own_domain.hpp"
-#include "support/wait.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/playback.hpp"
+#include "services/runtime/bus/tap.hpp"
+#include "tests/support/idl_fields.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A secured bus on loopback, with the folders that deploy/security/make.sh makes: what is refused
 // before the bus opens, and what a service may do.  Strangers: strangers_test.cpp.
-#include "runtime/security.hpp"
+#include "services/runtime/bus/security.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -12,12 +12,13 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
-#include "contract/config_error.hpp"
 #include "idl/recording.h"
 #include "idl/session.h"
-#include "runtime/participant.hpp"
-#include "support/motion_and_rig.hpp"
-#include "support/security_folder.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/participant.hpp"
+#include "tests/support/motion_and_rig.hpp"
+#include "tests/support/security_folder.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -14,13 +14,14 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
-#include "contract/config_error.hpp"
-#include "runtime/participant.hpp"
-#include "runtime/playback.hpp"
-#include "runtime/security.hpp"
-#include "runtime/type_tag.hpp"
-#include "support/motion_and_rig.hpp"
-#include "support/security_folder.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/participant.hpp"
+#include "services/runtime/bus/playback.hpp"
+#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/type_tag.hpp"
+#include "tests/support/motion_and_rig.hpp"
+#include "tests/support/security_folder.hpp"
 
 namespace stillhand::runtime {
 namespace {

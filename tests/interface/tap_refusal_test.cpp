@@ -9,9 +9,10 @@
 #include <iterator>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "runtime/tap.hpp"
-#include "support/own_domain.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/tap.hpp"
+#include "tests/support/own_domain.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real bus on loopback: a tap that reads in batches hears what one hears that Fast DDS feeds.
-#include "runtime/tap.hpp"
+#include "services/runtime/bus/tap.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,10 @@
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
-#include "runtime/bus.hpp"
-#include "support/own_domain.hpp"
-#include "support/wait.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
 namespace {

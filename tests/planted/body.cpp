@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/body.hpp"
+#include "tests/planted/body.hpp"
 
 #include <algorithm>
 #include <array>

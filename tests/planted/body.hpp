@@ -4,8 +4,8 @@
 #include <complex>
 #include <string>
 
-#include "planted/draw.hpp"
-#include "planted/filters.hpp"
+#include "tests/planted/draw.hpp"
+#include "tests/planted/filters.hpp"
 
 namespace stillhand::planted {
 

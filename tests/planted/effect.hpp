@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "planted/body.hpp"
-#include "planted/kind.hpp"
-#include "planted/plant.hpp"
-#include "planted/scene.hpp"
+#include "tests/planted/body.hpp"
+#include "tests/planted/kind.hpp"
+#include "tests/planted/plant.hpp"
+#include "tests/planted/scene.hpp"
 
 namespace stillhand::planted {
 

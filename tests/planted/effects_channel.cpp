@@ -5,7 +5,7 @@
 #include <memory>
 #include <numbers>
 
-#include "planted/effect.hpp"
+#include "tests/planted/effect.hpp"
 
 namespace stillhand::planted {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "planted/effect.hpp"
+#include "tests/planted/effect.hpp"
 
 namespace stillhand::planted {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "planted/scene.hpp"
+#include "tests/planted/scene.hpp"
 
 namespace stillhand::planted {
 namespace {

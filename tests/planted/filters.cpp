@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/filters.hpp"
+#include "tests/planted/filters.hpp"
 
 #include <algorithm>
 #include <cmath>

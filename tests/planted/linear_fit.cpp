@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/linear_fit.hpp"
+#include "tests/planted/linear_fit.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "planted/filters.hpp"
+#include "tests/planted/filters.hpp"
 
 namespace stillhand::planted {
 

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "planted/series.hpp"
-#include "planted/write.hpp"
+#include "tests/planted/series.hpp"
+#include "tests/planted/write.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/noise.hpp"
+#include "tests/planted/noise.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "planted/draw.hpp"
-#include "planted/filters.hpp"
+#include "tests/planted/draw.hpp"
+#include "tests/planted/filters.hpp"
 
 namespace stillhand::planted {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/plant.hpp"
+#include "tests/planted/plant.hpp"
 
 namespace stillhand::planted {
 namespace {

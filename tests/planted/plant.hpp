@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "planted/body.hpp"
-#include "planted/scene.hpp"
+#include "tests/planted/body.hpp"
+#include "tests/planted/scene.hpp"
 
 namespace stillhand::planted {
 

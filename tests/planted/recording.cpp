@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/recording.hpp"
+#include "tests/planted/recording.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 
-#include "planted/stand.hpp"
+#include "tests/planted/stand.hpp"
 
 namespace stillhand::planted {
 namespace {

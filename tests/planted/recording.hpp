@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "planted/body.hpp"
-#include "planted/effect.hpp"
-#include "planted/noise.hpp"
-#include "planted/scene.hpp"
+#include "tests/planted/body.hpp"
+#include "tests/planted/effect.hpp"
+#include "tests/planted/noise.hpp"
+#include "tests/planted/scene.hpp"
 
 namespace stillhand::planted {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/scene.hpp"
+#include "tests/planted/scene.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/series.hpp"
+#include "tests/planted/series.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "planted/recording.hpp"
+#include "tests/planted/recording.hpp"
 
 namespace stillhand::planted {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/stand.hpp"
+#include "tests/planted/stand.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "planted/linear_fit.hpp"
-#include "planted/plant.hpp"
+#include "tests/planted/linear_fit.hpp"
+#include "tests/planted/plant.hpp"
 
 namespace stillhand::planted {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "planted/body.hpp"
-#include "planted/effect.hpp"
-#include "planted/scene.hpp"
+#include "tests/planted/body.hpp"
+#include "tests/planted/effect.hpp"
+#include "tests/planted/scene.hpp"
 
 namespace stillhand::planted {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/to_measurement.hpp"
+#include "tests/planted/to_measurement.hpp"
 
 #include <cmath>
 

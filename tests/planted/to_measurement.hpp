@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "diagnosis/core/measurement.hpp"
-#include "planted/recording.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "tests/planted/recording.hpp"
 
 namespace stillhand::planted {
 

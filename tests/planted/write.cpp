@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planted/write.hpp"
+#include "tests/planted/write.hpp"
 
 #include <array>
 #include <charconv>

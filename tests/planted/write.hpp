@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "planted/recording.hpp"
+#include "tests/planted/recording.hpp"
 
 namespace stillhand::planted {
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "identification/core/record.hpp"
-#include "signal/butterworth.hpp"
-#include "signal/difference_model.hpp"
-#include "signal/random.hpp"
+#include "services/identification/core/record.hpp"
+#include "services/signal/butterworth.hpp"
+#include "services/signal/difference_model.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::support {
 

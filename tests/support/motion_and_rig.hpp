@@ -7,9 +7,10 @@
 #include <string>
 
 #include "idl/control_loop.h"
-#include "runtime/bus.hpp"
-#include "support/own_domain.hpp"
-#include "support/wait.hpp"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::support {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "recording/core/mcap_reader.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/core/memory_bytes.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
 
 namespace stillhand::tests {
 

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "places.hpp"
+
 namespace stillhand::support {
 
 /// Two labs' folders as deploy/security/make.sh writes them, and room for what is made from them;

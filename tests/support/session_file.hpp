@@ -13,8 +13,8 @@
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/core/memory_bytes.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
 
 namespace stillhand::tests {
 

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <vector>
 
-#include "golden/statistics/expected.hpp"
+#include "tests/golden/statistics/expected.hpp"
 
 namespace stillhand::support {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/bus_health.hpp"
+#include "apps/dashboard/core/bus_health.hpp"
 
 #include <algorithm>
 #include <sstream>
 #include <utility>
 
-#include "contract/time_difference.hpp"
+#include "services/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "dashboard/core/alarm.hpp"
-#include "dashboard/core/chain_health.hpp"
-#include "dashboard/core/config.hpp"
-#include "dashboard/core/topic_health.hpp"
+#include "apps/dashboard/core/alarm.hpp"
+#include "apps/dashboard/core/chain_health.hpp"
+#include "apps/dashboard/core/config.hpp"
+#include "apps/dashboard/core/topic_health.hpp"
 
 namespace stillhand::dashboard {
 

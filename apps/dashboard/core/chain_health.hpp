@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "contract/tick.hpp"
-#include "contract/time_difference.hpp"
-#include "dashboard/core/log_histogram.hpp"
+#include "apps/dashboard/core/log_histogram.hpp"
+#include "services/contract/tick.hpp"
+#include "services/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/force_record.hpp"
+#include "apps/dashboard/core/force_record.hpp"
 
 #include <algorithm>
 #include <cmath>

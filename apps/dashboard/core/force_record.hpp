@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/residual_spectrum.hpp"
+#include "apps/dashboard/core/residual_spectrum.hpp"
 
 #include <cmath>
 
-#include "signal/spectrum.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::dashboard {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "dashboard/core/force_record.hpp"
+#include "apps/dashboard/core/force_record.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/timeline.hpp"
+#include "apps/dashboard/core/timeline.hpp"
 
 #include <algorithm>
 
-#include "contract/time_difference.hpp"
+#include "services/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

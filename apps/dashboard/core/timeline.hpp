@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "contract/tick.hpp"
-#include "contract/trial.hpp"
-#include "dashboard/core/alarm.hpp"
+#include "apps/dashboard/core/alarm.hpp"
+#include "services/contract/tick.hpp"
+#include "services/contract/trial.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/topic_health.hpp"
+#include "apps/dashboard/core/topic_health.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
 
-#include "contract/time_difference.hpp"
+#include "services/contract/time_difference.hpp"
 
 namespace stillhand::dashboard {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "contract/tick.hpp"
-#include "dashboard/core/log_histogram.hpp"
-#include "recording/core/loss_count.hpp"
+#include "apps/dashboard/core/log_histogram.hpp"
+#include "services/contract/tick.hpp"
+#include "services/recording/core/loss_count.hpp"
 
 namespace stillhand::dashboard {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::dashboard {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/core/adaptive_gain.hpp"
+#include "services/cancellation/core/adaptive_gain.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 namespace {

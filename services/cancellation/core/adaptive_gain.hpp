@@ -4,10 +4,10 @@
 #include <array>
 #include <optional>
 
-#include "cancellation/core/augmented_model.hpp"
-#include "signal/biquad.hpp"
-#include "signal/butterworth.hpp"
-#include "signal/second_order_lag.hpp"
+#include "services/cancellation/core/augmented_model.hpp"
+#include "services/signal/biquad.hpp"
+#include "services/signal/butterworth.hpp"
+#include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::cancellation {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "signal/difference_model.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::cancellation {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/core/canceller.hpp"
+#include "services/cancellation/core/canceller.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,13 +3,13 @@
 
 #include <cstdint>
 
-#include "cancellation/core/adaptive_gain.hpp"
-#include "cancellation/core/model_check.hpp"
-#include "cancellation/core/model_filter.hpp"
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "signal/force_envelope.hpp"
+#include "services/cancellation/core/adaptive_gain.hpp"
+#include "services/cancellation/core/model_check.hpp"
+#include "services/cancellation/core/model_filter.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/force_envelope.hpp"
 
 namespace stillhand::cancellation {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/core/command_filter.hpp"
+#include "services/cancellation/core/command_filter.hpp"
 
 #include <cmath>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "contract/tick.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "signal/second_order_lag.hpp"
+#include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::cancellation {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/core/model_check.hpp"
+#include "services/cancellation/core/model_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "cancellation/core/model_filter.hpp"
-#include "contract/tick.hpp"
+#include "services/cancellation/core/model_filter.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "cancellation/core/augmented_model.hpp"
-#include "signal/difference_model.hpp"
+#include "services/cancellation/core/augmented_model.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::cancellation {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/model_filter.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "cancellation/core/augmented_model.hpp"
-#include "cancellation/core/value_table.hpp"
-#include "contract/tick.hpp"
+#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/value_table.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 

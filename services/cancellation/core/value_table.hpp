@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/augmented_model.hpp"
 
 namespace stillhand::cancellation {
 

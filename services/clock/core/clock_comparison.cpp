@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clock/core/clock_comparison.hpp"
+#include "services/clock/core/clock_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "contract/time_difference.hpp"
+#include "services/contract/time_difference.hpp"
 
 namespace stillhand::clock {
 namespace {

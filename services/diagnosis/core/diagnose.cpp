@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <numeric>
 
-#include "contract/config_error.hpp"
-#include "diagnosis/core/working_set.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/working_set.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/detection.hpp"
-#include "diagnosis/core/noise_floor.hpp"
-#include "diagnosis/core/search.hpp"
+#include "services/diagnosis/core/detection/detection.hpp"
+#include "services/diagnosis/core/detection/noise_floor.hpp"
+#include "services/diagnosis/core/search.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/recordings_out.hpp"
+#include "services/diagnosis/core/recordings_out.hpp"
 
 #include <algorithm>
 #include <cmath>

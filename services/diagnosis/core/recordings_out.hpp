@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "diagnosis/core/fit.hpp"
+#include "services/diagnosis/core/fitting/fit.hpp"
 
 namespace stillhand::diagnosis {
 

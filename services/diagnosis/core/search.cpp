@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/search.hpp"
+#include "services/diagnosis/core/search.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "diagnosis/core/recordings_out.hpp"
-#include "diagnosis/core/screening.hpp"
-#include "diagnosis/core/shape_exchange.hpp"
+#include "services/diagnosis/core/fitting/screening.hpp"
+#include "services/diagnosis/core/fitting/shape_exchange.hpp"
+#include "services/diagnosis/core/recordings_out.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

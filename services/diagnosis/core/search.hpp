@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/baseline.hpp"
-#include "diagnosis/core/effect_kind.hpp"
-#include "diagnosis/core/fit.hpp"
-#include "diagnosis/core/selection.hpp"
+#include "services/diagnosis/core/fitting/baseline.hpp"
+#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/selection.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/selection.hpp"
+#include "services/diagnosis/core/selection.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "statistics/signed_rank.hpp"
+#include "services/statistics/signed_rank.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

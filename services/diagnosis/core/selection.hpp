@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/fit.hpp"
+#include "services/diagnosis/core/fitting/fit.hpp"
 
 /// Which of the models that were tried is taken, README "Selection".
 namespace stillhand::diagnosis {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/signals.hpp"
+#include "services/diagnosis/core/signals.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "contract/config_error.hpp"
-#include "signal/butterworth.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/butterworth.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/measurement.hpp"
 
 namespace stillhand::diagnosis {
 

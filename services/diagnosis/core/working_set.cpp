@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/working_set.hpp"
+#include "services/diagnosis/core/working_set.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "contract/config_error.hpp"
-#include "signal/butterworth.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/butterworth.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

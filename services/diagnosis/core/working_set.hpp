@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/measurement.hpp"
 
 namespace stillhand::diagnosis {
 

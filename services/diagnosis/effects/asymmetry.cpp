@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/asymmetry.hpp"
+#include "services/diagnosis/effects/asymmetry.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/bilinear.hpp"
+#include "services/diagnosis/effects/bilinear.hpp"
 
 #include <algorithm>
 
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/clock_drift.hpp"
+#include "services/diagnosis/effects/clock_drift.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/core/interpolation.hpp"
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/core/model/interpolation.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "diagnosis/core/effect_kind.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnosis {
 

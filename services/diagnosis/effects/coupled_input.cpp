@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/coupled_input.hpp"
+#include "services/diagnosis/effects/coupled_input.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

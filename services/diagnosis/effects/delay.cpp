@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/delay.hpp"
+#include "services/diagnosis/effects/delay.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "diagnosis/core/interpolation.hpp"
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/core/model/interpolation.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/drift.hpp"
+#include "services/diagnosis/effects/drift.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "diagnosis/core/evaluation.hpp"
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/hysteresis.hpp"
+#include "services/diagnosis/effects/hysteresis.hpp"
 
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

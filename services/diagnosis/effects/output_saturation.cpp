@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/output_saturation.hpp"
+#include "services/diagnosis/effects/output_saturation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

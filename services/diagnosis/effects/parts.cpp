@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <complex>
 #include <cstdio>
 
-#include "diagnosis/core/baseline.hpp"
-#include "diagnosis/core/evaluation.hpp"
-#include "diagnosis/core/loop.hpp"
-#include "signal/difference_model.hpp"
+#include "services/diagnosis/core/fitting/baseline.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/model/loop.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

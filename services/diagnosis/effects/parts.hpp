@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/effect_kind.hpp"
-#include "diagnosis/core/screening.hpp"
+#include "services/diagnosis/core/fitting/screening.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
 
 /// What several kinds propose alike.
 namespace stillhand::diagnosis {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/position_ripple.hpp"
+#include "services/diagnosis/effects/position_ripple.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/core/line_search.hpp"
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/core/fitting/line_search.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/resonance.hpp"
+#include "services/diagnosis/effects/resonance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/core/modes.hpp"
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/core/fitting/modes.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

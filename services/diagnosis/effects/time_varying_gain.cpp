@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/time_varying_gain.hpp"
+#include "services/diagnosis/effects/time_varying_gain.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/effects/tone.hpp"
+#include "services/diagnosis/effects/tone.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/core/line_search.hpp"
-#include "diagnosis/effects/parts.hpp"
+#include "services/diagnosis/core/fitting/line_search.hpp"
+#include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

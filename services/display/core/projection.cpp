@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/core/projection.hpp"
+#include "services/display/core/projection.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::display {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "display/core/screen_layout.hpp"
+#include "services/display/core/screen_layout.hpp"
 
 namespace stillhand::display {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "contract/config_field.hpp"
+#include "services/contract/config_field.hpp"
 
 namespace stillhand::display {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/core/tracking_display.hpp"
+#include "services/display/core/tracking_display.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::display {
 namespace {

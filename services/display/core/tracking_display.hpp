@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <optional>
 
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "contract/trial.hpp"
-#include "display/core/screen_layout.hpp"
-#include "signal/reference.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "services/contract/trial.hpp"
+#include "services/display/core/screen_layout.hpp"
+#include "services/signal/reference.hpp"
 
 namespace stillhand::display {
 

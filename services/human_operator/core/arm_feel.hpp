@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "signal/force_envelope.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/signal/force_envelope.hpp"
 
 namespace stillhand::human_operator {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "human_operator/core/arm_feel.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/human_operator/core/arm_feel.hpp"
 
 namespace stillhand::human_operator {
 

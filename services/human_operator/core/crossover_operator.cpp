@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/core/crossover_operator.hpp"
+#include "services/human_operator/core/crossover_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::human_operator {
 namespace {

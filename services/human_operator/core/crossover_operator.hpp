@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/trial.hpp"
-#include "human_operator/core/crossover_config.hpp"
-#include "human_operator/core/fast_error.hpp"
-#include "human_operator/core/operator_io.hpp"
-#include "human_operator/core/remnant.hpp"
-#include "signal/delay_line.hpp"
-#include "signal/force_envelope.hpp"
-#include "signal/second_order_lag.hpp"
+#include "services/contract/trial.hpp"
+#include "services/human_operator/core/crossover_config.hpp"
+#include "services/human_operator/core/fast_error.hpp"
+#include "services/human_operator/core/operator_io.hpp"
+#include "services/human_operator/core/remnant.hpp"
+#include "services/signal/delay_line.hpp"
+#include "services/signal/force_envelope.hpp"
+#include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::human_operator {
 

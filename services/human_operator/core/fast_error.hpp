@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/tick.hpp"
-#include "signal/butterworth.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/butterworth.hpp"
 
 namespace stillhand::human_operator {
 

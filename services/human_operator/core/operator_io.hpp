@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::human_operator {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/core/pointer_operator.hpp"
+#include "services/human_operator/core/pointer_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::human_operator {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/trial.hpp"
-#include "human_operator/core/arm_feel.hpp"
-#include "human_operator/core/operator_io.hpp"
-#include "signal/force_envelope.hpp"
-#include "signal/second_order_lag.hpp"
+#include "services/contract/trial.hpp"
+#include "services/human_operator/core/arm_feel.hpp"
+#include "services/human_operator/core/operator_io.hpp"
+#include "services/signal/force_envelope.hpp"
+#include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::human_operator {
 

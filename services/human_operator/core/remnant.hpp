@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "contract/tick.hpp"
-#include "signal/random.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::human_operator {
 

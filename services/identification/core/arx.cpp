@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/arx.hpp"
+#include "services/identification/core/arx.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
 #include <optional>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "identification/core/excitation_check.hpp"
-#include "identification/core/lagged_products.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/excitation_check.hpp"
+#include "services/identification/core/lagged_products.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/excitation_check.hpp"
+#include "services/identification/core/excitation_check.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <ranges>
 #include <sstream>
 
-#include "contract/config_error.hpp"
-#include "identification/core/arx.hpp"
-#include "identification/core/lagged_products.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/arx.hpp"
+#include "services/identification/core/lagged_products.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::identification {
 namespace {

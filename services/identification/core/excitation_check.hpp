@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "identification/core/record.hpp"
+#include "services/identification/core/record.hpp"
 
 namespace stillhand::identification {
 

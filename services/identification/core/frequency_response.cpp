@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/frequency_response.hpp"
+#include "services/identification/core/frequency_response.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "contract/expects.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::identification {
 

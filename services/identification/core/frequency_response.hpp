@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identification/core/record.hpp"
+#include "services/identification/core/record.hpp"
 
 namespace stillhand::identification {
 

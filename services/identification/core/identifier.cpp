@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/identifier.hpp"
+#include "services/identification/core/identifier.hpp"
 
-#include "contract/config_error.hpp"
-#include "identification/core/paper_preprocessing.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/paper_preprocessing.hpp"
 
 namespace stillhand::identification {
 

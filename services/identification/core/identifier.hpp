@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "contract/config_field.hpp"
-#include "identification/core/arx.hpp"
-#include "identification/core/output_error.hpp"
-#include "identification/core/rate_conversion.hpp"
-#include "identification/core/record.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/identification/core/arx.hpp"
+#include "services/identification/core/output_error.hpp"
+#include "services/identification/core/rate_conversion.hpp"
+#include "services/identification/core/record.hpp"
 
 namespace stillhand::identification {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/lagged_products.hpp"
+#include "services/identification/core/lagged_products.hpp"
 
-#include "contract/expects.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/output_error.hpp"
+#include "services/identification/core/output_error.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "identification/core/polynomial.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/polynomial.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "identification/core/record.hpp"
+#include "services/identification/core/record.hpp"
 
 namespace stillhand::identification {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/paper_preprocessing.hpp"
+#include "services/identification/core/paper_preprocessing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "signal/butterworth.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/butterworth.hpp"
 
 namespace stillhand::identification {
 namespace {

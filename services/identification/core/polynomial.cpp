@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/polynomial.hpp"
+#include "services/identification/core/polynomial.hpp"
 
 #include <Eigen/Dense>
 

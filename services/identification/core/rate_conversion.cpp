@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/rate_conversion.hpp"
+#include "services/identification/core/rate_conversion.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "contract/tick.hpp"
-#include "identification/core/polynomial.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/identification/core/polynomial.hpp"
 
 namespace stillhand::identification {
 namespace {

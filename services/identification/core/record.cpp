@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/record.hpp"
+#include "services/identification/core/record.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "contract/expects.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "signal/difference_model.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::identification {
 

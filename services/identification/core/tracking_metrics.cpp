@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/tracking_metrics.hpp"
+#include "services/identification/core/tracking_metrics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::identification {
 namespace {

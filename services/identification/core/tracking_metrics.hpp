@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "signal/reference.hpp"
+#include "services/signal/reference.hpp"
 
 namespace stillhand::identification {
 

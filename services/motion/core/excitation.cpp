@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/excitation.hpp"
+#include "services/motion/core/excitation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::motion {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/config_field.hpp"
-#include "motion/core/harmonic_motion.hpp"
-#include "motion/core/motion_profile.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
+#include "services/motion/core/motion_profile.hpp"
 
 namespace stillhand::motion {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/harmonic_motion.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/FFT>
 
-#include "contract/expects.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::motion {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "contract/tick.hpp"
-#include "signal/multisine.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/multisine.hpp"
 
 namespace stillhand::motion {
 

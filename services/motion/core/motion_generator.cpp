@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/motion_generator.hpp"
+#include "services/motion/core/motion_generator.hpp"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::motion {
 

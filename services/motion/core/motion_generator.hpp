@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/config_field.hpp"
-#include "contract/tick.hpp"
-#include "contract/trial.hpp"
-#include "motion/core/motion_trajectory.hpp"
-#include "motion/core/platform_command.hpp"
-#include "motion/core/platform_guard.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/tick.hpp"
+#include "services/contract/trial.hpp"
+#include "services/motion/core/motion_trajectory.hpp"
+#include "services/motion/core/platform_command.hpp"
+#include "services/motion/core/platform_guard.hpp"
 
 namespace stillhand::motion {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/motion_profile.hpp"
+#include "services/motion/core/motion_profile.hpp"
 
 #include <array>
 #include <cstddef>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::motion {
 namespace {

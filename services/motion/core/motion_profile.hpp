@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "contract/config_field.hpp"
-#include "contract/tick.hpp"
-#include "signal/multisine.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/multisine.hpp"
 
 namespace stillhand::motion {
 

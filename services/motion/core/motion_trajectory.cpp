@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/motion_trajectory.hpp"
+#include "services/motion/core/motion_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "motion/core/excitation.hpp"
-#include "motion/core/harmonic_motion.hpp"
-#include "motion/core/peak_limit.hpp"
-#include "motion/core/ride.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/motion/core/excitation.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
+#include "services/motion/core/peak_limit.hpp"
+#include "services/motion/core/ride.hpp"
 
 namespace stillhand::motion {
 namespace {

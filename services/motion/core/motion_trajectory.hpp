@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "motion/core/harmonic_motion.hpp"
-#include "motion/core/motion_profile.hpp"
-#include "motion/core/platform_command.hpp"
-#include "motion/core/platform_guard.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
+#include "services/motion/core/motion_profile.hpp"
+#include "services/motion/core/platform_command.hpp"
+#include "services/motion/core/platform_guard.hpp"
 
 namespace stillhand::motion {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "motion/core/harmonic_motion.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
 
 namespace stillhand::motion {
 

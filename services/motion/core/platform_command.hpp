@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/flag.hpp"
+#include "services/contract/flag.hpp"
 
 namespace stillhand::motion {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/platform_guard.hpp"
+#include "services/motion/core/platform_guard.hpp"
 
 #include <algorithm>
 #include <cmath>

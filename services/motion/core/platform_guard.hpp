@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/config_field.hpp"
-#include "contract/tick.hpp"
-#include "motion/core/platform_command.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/tick.hpp"
+#include "services/motion/core/platform_command.hpp"
 
 namespace stillhand::motion {
 

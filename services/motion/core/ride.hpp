@@ -4,8 +4,8 @@
 #include <complex>
 #include <vector>
 
-#include "motion/core/harmonic_motion.hpp"
-#include "motion/core/motion_profile.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
+#include "services/motion/core/motion_profile.hpp"
 
 namespace stillhand::motion {
 

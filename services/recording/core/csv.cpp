@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/csv.hpp"
+#include "services/recording/core/csv.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::recording {
 namespace {

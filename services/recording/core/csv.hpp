@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "recording/core/recording.hpp"
+#include "services/recording/core/recording.hpp"
 
 namespace stillhand::recording {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <deque>
 
-#include "recording/core/held_message.hpp"
+#include "services/recording/core/held_message.hpp"
 
 namespace stillhand::recording {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::recording {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/play_clock.hpp"
+#include "services/recording/core/play_clock.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/recording.hpp"
+#include "services/recording/core/recording.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contract/expects.hpp"
+#include "services/contract/expects.hpp"
 
 namespace stillhand::recording {
 

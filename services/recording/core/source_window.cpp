@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/source_window.hpp"
+#include "services/recording/core/source_window.hpp"
 
 #include <algorithm>
 

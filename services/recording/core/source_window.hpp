@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "recording/core/byte_stream.hpp"
+#include "services/recording/core/mcap/byte_stream.hpp"
 
 namespace stillhand::recording {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recording/core/mcap_format.hpp"
+#include "services/recording/core/mcap/mcap_format.hpp"
 
 namespace stillhand::recording {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/band_noise.hpp"
+#include "services/rig/core/band_noise.hpp"
 
 #include <cmath>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "rig/core/sensor_noise.hpp"
-#include "signal/butterworth.hpp"
+#include "services/rig/core/sensor_noise.hpp"
+#include "services/signal/butterworth.hpp"
 
 namespace stillhand::rig {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "rig/core/body_config.hpp"
-#include "rig/core/chain.hpp"
-#include "rig/core/chain_effect.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "services/rig/core/body_config.hpp"
+#include "services/rig/core/chain.hpp"
+#include "services/rig/core/undeclared/chain_effect.hpp"
 
 namespace stillhand::rig {
 

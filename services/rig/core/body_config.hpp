@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contract/config_field.hpp"
+#include "services/contract/config_field.hpp"
 
 namespace stillhand::rig {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/body_response.hpp"
+#include "services/rig/core/body_response.hpp"
 
 #include <numbers>
 
-#include "contract/expects.hpp"
-#include "rig/core/chain.hpp"
+#include "services/contract/expects.hpp"
+#include "services/rig/core/chain.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <complex>
 
-#include "rig/core/body_config.hpp"
+#include "services/rig/core/body_config.hpp"
 
 namespace stillhand::rig {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 
-#include "contract/tick.hpp"
-#include "rig/core/body_config.hpp"
+#include "services/contract/tick.hpp"
+#include "services/rig/core/body_config.hpp"
 
 namespace stillhand::rig {
 

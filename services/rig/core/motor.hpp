@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "signal/force_envelope.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/force_envelope.hpp"
 
 namespace stillhand::rig {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/platform.hpp"
+#include "services/rig/core/platform.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/rig.hpp"
+#include "services/rig/core/rig.hpp"
 
 #include <cmath>
 #include <utility>
 
-#include "contract/expects.hpp"
-#include "rig/core/undeclared_effect.hpp"
+#include "services/contract/expects.hpp"
+#include "services/rig/core/undeclared/undeclared_effect.hpp"
 
 namespace stillhand::rig {
 namespace {

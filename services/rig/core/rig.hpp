@@ -3,15 +3,15 @@
 
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "rig/core/body.hpp"
-#include "rig/core/motor.hpp"
-#include "rig/core/platform.hpp"
-#include "rig/core/sealed_effect.hpp"
-#include "rig/core/sensors.hpp"
-#include "signal/force_envelope.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "services/rig/core/body.hpp"
+#include "services/rig/core/motor.hpp"
+#include "services/rig/core/platform.hpp"
+#include "services/rig/core/sensors.hpp"
+#include "services/rig/core/undeclared/sealed_effect.hpp"
+#include "services/signal/force_envelope.hpp"
 
 namespace stillhand::rig {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/sensor_noise.hpp"
+#include "services/rig/core/sensor_noise.hpp"
 
 #include <cmath>
 

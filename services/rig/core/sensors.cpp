@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/sensors.hpp"
+#include "services/rig/core/sensors.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "contract/tick.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::rig {
 namespace {

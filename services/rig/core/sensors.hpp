@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "rig/core/sensor_noise.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/rig/core/sensor_noise.hpp"
 
 namespace stillhand::rig {
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include "contract/config_field.hpp"
-#include "contract/flag.hpp"
-#include "contract/tick.hpp"
-#include "signal/butterworth.hpp"
+#include "services/contract/config_field.hpp"
+#include "services/contract/flag.hpp"
+#include "services/contract/tick.hpp"
+#include "services/signal/butterworth.hpp"
 
 namespace stillhand::sensing {
 

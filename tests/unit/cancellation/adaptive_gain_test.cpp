@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gain and phase followed online, Eq. CC-10 to CC-13, on a hand that is a spring, a damper and a
 // mass.
-#include "cancellation/core/adaptive_gain.hpp"
+#include "services/cancellation/core/adaptive_gain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "signal/random.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/signal/random.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::cancellation {
 namespace {

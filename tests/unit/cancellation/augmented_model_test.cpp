@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "cancellation/core/canceller.hpp"
-#include "signal/random.hpp"
+#include "services/cancellation/core/canceller.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cancellation/core/canceller.hpp"
+#include "services/cancellation/core/canceller.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <limits>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "identification/core/rate_conversion.hpp"
-#include "signal/random.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/rate_conversion.hpp"
+#include "services/signal/random.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::cancellation {
 namespace {

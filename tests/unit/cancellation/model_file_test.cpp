@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A control model as a file: what was written is read back bit for bit, and what was tampered with
 // is refused by name.
-#include "cancellation/model_file.hpp"
+#include "services/cancellation/model_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::cancellation {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Another host's clock from two-way exchanges, Eq. CK-1 to CK-5: against clocks that are known.
-#include "clock/core/clock_comparison.hpp"
+#include "services/clock/core/clock_comparison.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "signal/random.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::clock {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 #include <gtest/gtest.h>
 

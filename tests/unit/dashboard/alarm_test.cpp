@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/alarm.hpp"
+#include "apps/dashboard/core/alarm.hpp"
 
 #include <gtest/gtest.h>
 

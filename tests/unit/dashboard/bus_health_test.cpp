@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/bus_health.hpp"
+#include "apps/dashboard/core/bus_health.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/edge_health.hpp"
+#include "apps/dashboard/core/edge_health.hpp"
 
 #include <gtest/gtest.h>
 

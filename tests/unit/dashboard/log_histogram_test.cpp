@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/log_histogram.hpp"
+#include "apps/dashboard/core/log_histogram.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/message_feed.hpp"
+#include "apps/dashboard/feed/message_feed.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "dashboard/snapshot_json.hpp"
+#include "apps/dashboard/view/snapshot_json.hpp"
 #include "idl/control_loop.h"
-#include "support/session_file.hpp"
+#include "tests/support/session_file.hpp"
 
 namespace stillhand::dashboard {
 namespace {

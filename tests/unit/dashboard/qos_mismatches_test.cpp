@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/qos_mismatches.hpp"
+#include "apps/dashboard/core/qos_mismatches.hpp"
 
 #include <gtest/gtest.h>
 

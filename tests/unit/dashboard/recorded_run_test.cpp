@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's counts of a bus are those of its recording, at its end and at any instant of it.
-#include "dashboard/recorded_run.hpp"
+#include "apps/dashboard/feed/recorded_run.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,12 +9,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "contract/config_error.hpp"
-#include "dashboard/snapshot_json.hpp"
-#include "dashboard/view_json.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/file_io.hpp"
-#include "support/session_file.hpp"
+#include "apps/dashboard/view/snapshot_json.hpp"
+#include "apps/dashboard/view/view_json.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/file_io.hpp"
+#include "tests/support/session_file.hpp"
 
 namespace stillhand::dashboard {
 namespace {

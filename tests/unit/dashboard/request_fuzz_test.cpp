@@ -11,8 +11,8 @@
 #include <random>
 #include <set>
 
-#include "contract/config_error.hpp"
-#include "dashboard/routes.hpp"
+#include "apps/dashboard/server/routes.hpp"
+#include "services/contract/config_error.hpp"
 
 // Requests that are right, spoilt by a seeded generator: each has an answer that this page may
 // give, none without the token, and no file but the page's own is in any.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/request_rate.hpp"
+#include "apps/dashboard/core/request_rate.hpp"
 
 #include <gtest/gtest.h>
 

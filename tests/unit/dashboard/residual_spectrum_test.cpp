@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/residual_spectrum.hpp"
+#include "apps/dashboard/core/residual_spectrum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/rigs.hpp"
+#include "apps/dashboard/feed/rigs.hpp"
 
 #include <gtest/gtest.h>
 
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "support/idl_fields.hpp"
+#include "tests/support/idl_fields.hpp"
 
 namespace stillhand::dashboard {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/timeline.hpp"
+#include "apps/dashboard/core/timeline.hpp"
 
 #include <gtest/gtest.h>
 

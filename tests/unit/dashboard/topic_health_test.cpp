@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/topic_health.hpp"
+#include "apps/dashboard/core/topic_health.hpp"
 
 #include <gtest/gtest.h>
 

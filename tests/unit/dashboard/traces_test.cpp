@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/core/traces.hpp"
+#include "apps/dashboard/core/traces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dashboard/view_json.hpp"
+#include "apps/dashboard/view/view_json.hpp"
 
 #include <gtest/gtest.h>
 
-#include "support/session_file.hpp"
+#include "tests/support/session_file.hpp"
 
 namespace stillhand::dashboard {
 namespace {

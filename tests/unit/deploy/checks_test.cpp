@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each check on machines that are good, wrong and silent.
-#include "deploy/checks.hpp"
+#include "apps/deploy/checks.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@
 #include <optional>
 #include <thread>
 
-#include "deploy/machine.hpp"
-#include "deploy/ports.hpp"
-#include "support/own_domain.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "apps/deploy/machine.hpp"
+#include "apps/deploy/ports.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {

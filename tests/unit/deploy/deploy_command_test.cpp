@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/deploy_command.hpp"
+#include "apps/deploy/deploy_command.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {

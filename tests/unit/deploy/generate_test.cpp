@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/generate.hpp"
+#include "apps/deploy/generate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,10 +13,11 @@
 #include <string>
 #include <thread>
 
-#include "contract/config_error.hpp"
-#include "deploy/host_files.hpp"
-#include "runtime/real_time.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "apps/deploy/host_files.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/inventory.hpp"
+#include "apps/deploy/inventory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the generated profiles say, read as XML; that Fast DDS takes them: interface.lab_profiles.
-#include "deploy/profiles.hpp"
+#include "apps/deploy/profiles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "deploy/ports.hpp"
-#include "unit/deploy/sample_inventory.hpp"
+#include "apps/deploy/ports.hpp"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "deploy/inventory.hpp"
+#include "apps/deploy/inventory.hpp"
 #include "idl/topics.hpp"
 
 namespace stillhand::deploy {

@@ -8,18 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "cancellation/core/canceller.hpp"
-#include "dashboard/core/config.hpp"
-#include "display/core/tracking_display.hpp"
-#include "human_operator/shell.hpp"
-#include "identification/core/identifier.hpp"
-#include "motion/core/motion_generator.hpp"
-#include "recording/file_io.hpp"
-#include "rig/core/rig.hpp"
-#include "sensing/core/conditioner.hpp"
-#include "settings/describe.hpp"
-#include "settings/load.hpp"
-#include "study/population.hpp"
+#include "apps/dashboard/core/config.hpp"
+#include "apps/study/population.hpp"
+#include "places.hpp"
+#include "services/cancellation/core/canceller.hpp"
+#include "services/display/core/tracking_display.hpp"
+#include "services/human_operator/shell.hpp"
+#include "services/identification/core/identifier.hpp"
+#include "services/motion/core/motion_generator.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/sensing/core/conditioner.hpp"
+#include "services/settings/describe.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand {
 namespace {

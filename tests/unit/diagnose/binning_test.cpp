@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnose/binning.hpp"
+#include "apps/diagnose/page/binning.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "signal/random.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::diagnose {
 namespace {

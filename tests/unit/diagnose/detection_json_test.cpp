@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnose/detection_json.hpp"
+#include "apps/diagnose/detection_json.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "diagnose/diagnosis_json.hpp"
+#include "apps/diagnose/diagnosis_json.hpp"
 
 namespace stillhand::diagnose {
 namespace {

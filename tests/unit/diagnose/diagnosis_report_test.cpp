@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a diagnosis, from recordings whose effects are known.
-#include "diagnose/diagnosis_report.hpp"
+#include "apps/diagnose/page/diagnosis_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@
 #include <numbers>
 #include <string>
 
-#include "diagnose/effect_numbers.hpp"
-#include "diagnose/evidence.hpp"
-#include "unit/diagnose/sample_recordings.hpp"
-#include "unit/report/sample_figures.hpp"
+#include "apps/diagnose/page/effect_numbers.hpp"
+#include "apps/diagnose/page/evidence.hpp"
+#include "tests/unit/diagnose/sample_recordings.hpp"
+#include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::diagnose {
 namespace {

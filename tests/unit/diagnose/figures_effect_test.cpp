@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "diagnose/evidence.hpp"
-#include "diagnose/figures.hpp"
-#include "unit/diagnose/sample_recordings.hpp"
+#include "apps/diagnose/page/evidence.hpp"
+#include "apps/diagnose/page/figures.hpp"
+#include "tests/unit/diagnose/sample_recordings.hpp"
 
 namespace stillhand::diagnose {
 namespace {

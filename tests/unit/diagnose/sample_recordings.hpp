@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/diagnose.hpp"
-#include "diagnosis/core/evaluation.hpp"
-#include "diagnosis/core/measurement.hpp"
-#include "signal/butterworth.hpp"
-#include "signal/random.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/signal/butterworth.hpp"
+#include "services/signal/random.hpp"
 
 /// Recordings whose truth is known.
 namespace stillhand::diagnose::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/detection_lines.hpp"
+#include "services/diagnosis/core/detection/detection_lines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "unit/diagnosis/made_multisine.hpp"
+#include "tests/unit/diagnosis/made_multisine.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

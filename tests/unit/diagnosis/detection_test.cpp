@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/detection.hpp"
+#include "services/diagnosis/core/detection/detection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "unit/diagnosis/made_multisine.hpp"
+#include "tests/unit/diagnosis/made_multisine.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

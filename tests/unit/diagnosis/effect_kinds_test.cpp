@@ -4,9 +4,9 @@
 
 #include <set>
 
-#include "contract/config_error.hpp"
-#include "diagnosis/core/effect_kind.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

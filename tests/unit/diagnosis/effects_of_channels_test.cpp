@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "unit/diagnosis/proposed.hpp"
+#include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects that hang on a channel besides the input.  Each on a recording of its own.
 namespace stillhand::diagnosis {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "unit/diagnosis/proposed.hpp"
+#include "tests/unit/diagnosis/proposed.hpp"
 
 // Nonlinearities inside the body, Eq. DG-4, simulated here sample by sample.
 namespace stillhand::diagnosis {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/evaluation.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "unit/diagnosis/made_measurement.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/fourier_lines.hpp"
+#include "services/diagnosis/core/detection/fourier_lines.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "unit/diagnosis/made_measurement.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/core/evaluation.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 // The free run against difference equations that are written out here, stage by stage of the model
 // (services/diagnosis/README.md); two stretches, so that nothing leaks from one into the other.

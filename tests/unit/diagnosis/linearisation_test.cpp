@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "diagnosis/core/effect_kind.hpp"
-#include "diagnosis/core/evaluation.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 // linearised() against central differences of free_run(), with every kind of stage in the model.
 namespace stillhand::diagnosis {

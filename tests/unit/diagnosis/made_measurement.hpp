@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/core/measurement.hpp"
-#include "diagnosis/core/model.hpp"
-#include "diagnosis/core/screening.hpp"
-#include "signal/butterworth.hpp"
-#include "signal/random.hpp"
+#include "services/diagnosis/core/fitting/screening.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+#include "services/signal/butterworth.hpp"
+#include "services/signal/random.hpp"
 
 /// Measurements whose making is known to the last number: difference equations written out, seeded
 /// noise.  Nothing here uses the engine's own simulation.

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "unit/diagnosis/made_measurement.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis::made {
 

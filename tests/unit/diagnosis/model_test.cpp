@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/model.hpp"
+#include "services/diagnosis/core/model/model.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <complex>
 #include <limits>
 
-#include "signal/difference_model.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/signal/difference_model.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

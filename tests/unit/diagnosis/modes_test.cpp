@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/modes.hpp"
+#include "services/diagnosis/core/fitting/modes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "diagnosis/core/evaluation.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/noise_floor.hpp"
+#include "services/diagnosis/core/detection/noise_floor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "unit/diagnosis/made_multisine.hpp"
+#include "tests/unit/diagnosis/made_multisine.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/periodic_excitation.hpp"
+#include "services/diagnosis/core/detection/periodic_excitation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "unit/diagnosis/made_measurement.hpp"
-#include "unit/diagnosis/made_multisine.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+#include "tests/unit/diagnosis/made_multisine.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "diagnosis/core/diagnose.hpp"
-#include "planted/recording.hpp"
-#include "planted/to_measurement.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "tests/planted/recording.hpp"
+#include "tests/planted/to_measurement.hpp"
 
 // Recordings of a simulator that shares nothing with the engine, a few that are beyond doubt: 40 s,
 // an effect of a quarter of the force, noise of a hundredth.  How often the engine is right is the

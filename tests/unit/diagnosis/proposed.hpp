@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/core/effect_kind.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 /// What a kind of effect is asked for: a measurement with one of its own planted in it.
 namespace stillhand::diagnosis::made {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/screening.hpp"
+#include "services/diagnosis/core/fitting/screening.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "unit/diagnosis/made_measurement.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/search.hpp"
+#include "services/diagnosis/core/search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "diagnosis/core/recordings_out.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/diagnosis/core/recordings_out.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "diagnosis/core/signals.hpp"
+#include "services/diagnosis/core/signals.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contract/config_error.hpp"
-#include "unit/diagnosis/made_measurement.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
 namespace {

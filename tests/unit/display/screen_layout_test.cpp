@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "display/core/screen_layout.hpp"
+#include "services/display/core/screen_layout.hpp"
 
 #include <gtest/gtest.h>
 
-#include "contract/config_error.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::display {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/core/crossover_operator.hpp"
+#include "services/human_operator/core/crossover_operator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
-#include "unit/human_operator/tracking_loop.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
+#include "tests/unit/human_operator/tracking_loop.hpp"
 
 namespace stillhand::human_operator {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "human_operator/core/remnant.hpp"
+#include "services/human_operator/core/remnant.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "contract/tick.hpp"
-#include "human_operator/core/crossover_operator.hpp"
-#include "signal/reference.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/tick.hpp"
+#include "services/human_operator/core/crossover_operator.hpp"
+#include "services/signal/reference.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::human_operator {
 

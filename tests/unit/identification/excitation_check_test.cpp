@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/excitation_check.hpp"
+#include "services/identification/core/excitation_check.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "support/feedthrough_records.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

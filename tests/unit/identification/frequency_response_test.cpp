@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/frequency_response.hpp"
+#include "services/identification/core/frequency_response.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "support/feedthrough_records.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

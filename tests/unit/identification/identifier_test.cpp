@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/identifier.hpp"
+#include "services/identification/core/identifier.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
-#include "contract/config_error.hpp"
-#include "rig/core/body.hpp"
-#include "rig/core/body_response.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/core/body.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/lagged_products.hpp"
+#include "services/identification/core/lagged_products.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "support/feedthrough_records.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

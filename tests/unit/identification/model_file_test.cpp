@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/model_file.hpp"
+#include "services/identification/model_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/output_error.hpp"
+#include "services/identification/core/output_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
-#include "identification/core/arx.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/core/arx.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/paper_preprocessing.hpp"
+#include "services/identification/core/paper_preprocessing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "contract/config_error.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

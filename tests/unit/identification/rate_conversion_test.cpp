@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/rate_conversion.hpp"
+#include "services/identification/core/rate_conversion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
-#include "contract/config_error.hpp"
-#include "contract/tick.hpp"
-#include "rig/core/body_response.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification/core/tracking_metrics.hpp"
+#include "services/identification/core/tracking_metrics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::identification {
 namespace {

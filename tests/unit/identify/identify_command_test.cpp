@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identify/identify_command.hpp"
+#include "apps/identify/identify_command.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "contract/config_error.hpp"
-#include "identification/model_file.hpp"
-#include "recording/file_io.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/identification/model_file.hpp"
+#include "services/recording/file_io.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identify/identify.hpp"
+#include "apps/identify/identify.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
-#include "rig/core/body.hpp"
-#include "rig/core/body_response.hpp"
-#include "support/feedthrough_records.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/core/body.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identify {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/bridge.hpp"
+#include "apps/measurement/bridge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "signal/random.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "contract/config_error.hpp"
-#include "measurement/read.hpp"
+#include "apps/measurement/read.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::measurement {
 namespace {

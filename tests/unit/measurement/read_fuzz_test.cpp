@@ -6,9 +6,9 @@
 #include <fstream>
 #include <random>
 
-#include "contract/config_error.hpp"
-#include "measurement/read.hpp"
-#include "support/session_file.hpp"
+#include "apps/measurement/read.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/session_file.hpp"
 
 // Valid files, spoilt by a seeded generator: each is read into a measurement that check() accepts,
 // or refused with a ConfigError of one line.

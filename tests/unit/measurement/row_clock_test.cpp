@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/row_clock.hpp"
+#include "apps/measurement/row_clock.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "measurement/session.hpp"
+#include "apps/measurement/session.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +7,11 @@
 #include <fstream>
 #include <limits>
 
-#include "contract/config_error.hpp"
-#include "contract/flag.hpp"
-#include "measurement/read.hpp"
-#include "support/recorded_file.hpp"
-#include "support/session_file.hpp"
+#include "apps/measurement/read.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/flag.hpp"
+#include "tests/support/recorded_file.hpp"
+#include "tests/support/session_file.hpp"
 
 namespace stillhand::measurement {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/excitation.hpp"
+#include "services/motion/core/excitation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "motion/core/peak_limit.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/motion/core/peak_limit.hpp"
 
 namespace stillhand::motion {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/harmonic_motion.hpp"
+#include "services/motion/core/harmonic_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "signal/multisine.hpp"
-#include "signal/random.hpp"
+#include "services/signal/multisine.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::motion {
 namespace {

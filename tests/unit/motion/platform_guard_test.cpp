@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/platform_guard.hpp"
+#include "services/motion/core/platform_guard.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "motion/core/motion_trajectory.hpp"
-#include "signal/random.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/motion/core/motion_trajectory.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::motion {
 namespace {

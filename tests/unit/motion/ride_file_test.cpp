@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/ride_file.hpp"
+#include "services/motion/ride_file.hpp"
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "recording/core/mcap_writer.hpp"
-#include "recording/core/memory_bytes.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
 
 namespace stillhand::motion {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "motion/core/ride.hpp"
+#include "services/motion/core/ride.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "motion/core/motion_trajectory.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/motion/core/motion_trajectory.hpp"
 
 namespace stillhand::motion {
 namespace {

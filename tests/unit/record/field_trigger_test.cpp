@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "record/field_trigger.hpp"
+#include "apps/record/field_trigger.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contract/config_error.hpp"
 #include "idl/control_loop.h"
-#include "support/idl_fields.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/idl_fields.hpp"
 
 namespace stillhand::record {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/compression.hpp"
+#include "services/recording/core/mcap/compression.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/crc32.hpp"
+#include "services/recording/core/mcap/crc32.hpp"
 
 #include <gtest/gtest.h>
 

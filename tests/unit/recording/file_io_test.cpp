@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/file_io.hpp"
+#include "services/recording/file_io.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <csignal>
 #include <filesystem>
 
-#include "contract/config_error.hpp"
-#include "support/recorded_file.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <random>
 
-#include "recording/core/mcap_reader.hpp"
-#include "recording/core/memory_bytes.hpp"
-#include "support/recorded_file.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/mcap_reader.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "recording/core/mcap_records.hpp"
-#include "recording/core/memory_bytes.hpp"
-#include "support/recorded_file.hpp"
+#include "services/recording/core/mcap/mcap_records.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording {
 namespace {

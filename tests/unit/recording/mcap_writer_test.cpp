@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/core/mcap_writer.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "recording/core/memory_bytes.hpp"
-#include "support/recorded_file.hpp"
+#include "services/recording/core/mcap/memory_bytes.hpp"
+#include "tests/support/recorded_file.hpp"
 
 namespace stillhand::recording {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Real files in a folder of the test's own.
-#include "recording/tape.hpp"
+#include "services/recording/tape.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "contract/config_error.hpp"
-#include "recording/core/mcap_reader.hpp"
-#include "recording/file_io.hpp"
-#include "recording/qos_texts.hpp"
-#include "support/wait.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/recording/qos_texts.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::recording {
 namespace {

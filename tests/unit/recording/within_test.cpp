@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recording/within.hpp"
+#include "services/recording/within.hpp"
 
 #include <gtest/gtest.h>
 

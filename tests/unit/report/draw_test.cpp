@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/draw.hpp"
+#include "apps/report/plot/draw.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "report/gnuplot_script.hpp"
-#include "unit/report/sample_figures.hpp"
+#include "apps/report/plot/gnuplot_script.hpp"
+#include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::report {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/gnuplot.hpp"
+#include "apps/report/plot/gnuplot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "contract/config_error.hpp"
-#include "unit/report/sample_figures.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::report {
 namespace {

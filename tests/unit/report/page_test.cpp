@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page.hpp"
+#include "apps/report/page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "unit/report/sample_figures.hpp"
+#include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::report {
 namespace {

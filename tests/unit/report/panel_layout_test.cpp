@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/panel_layout.hpp"
+#include "apps/report/plot/panel_layout.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "report/text.hpp"
+#include "apps/report/text.hpp"
 
 namespace stillhand::report {
 namespace {

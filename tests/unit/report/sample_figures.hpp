@@ -10,8 +10,8 @@
 #include <system_error>
 #include <vector>
 
-#include "report/figure.hpp"
-#include "report/palette.hpp"
+#include "apps/report/plot/figure.hpp"
+#include "apps/report/plot/palette.hpp"
 
 /// Figures with known content, and judges of what was drawn.
 namespace stillhand::report::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/thinning.hpp"
+#include "apps/report/plot/thinning.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

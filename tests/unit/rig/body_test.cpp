@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/body.hpp"
+#include "services/rig/core/body.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "rig/core/body_response.hpp"
+#include "services/rig/core/body_response.hpp"
 
 namespace stillhand::rig {
 namespace {

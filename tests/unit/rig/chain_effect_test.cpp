@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/chain_effect.hpp"
+#include "services/rig/core/undeclared/chain_effect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "rig/core/body.hpp"
+#include "services/rig/core/body.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/motor.hpp"
+#include "services/rig/core/motor.hpp"
 
 #include <gtest/gtest.h>
 

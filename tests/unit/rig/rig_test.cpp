@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/rig.hpp"
+#include "services/rig/core/rig.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/sensors.hpp"
+#include "services/rig/core/sensors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rig/core/undeclared_effect.hpp"
+#include "services/rig/core/undeclared/undeclared_effect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "rig/core/effect_draw.hpp"
-#include "rig/core/effect_sizing.hpp"
-#include "rig/core/rig.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/rig/core/undeclared/effect_draw.hpp"
+#include "services/rig/core/undeclared/effect_sizing.hpp"
 
 namespace stillhand::rig {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/batched_udp.hpp"
+#include "services/runtime/bus/batched_udp.hpp"
 
 #include <arpa/inet.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -11,7 +11,7 @@
 #include <atomic>
 #include <chrono>
 
-#include "support/wait.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/handover.hpp"
+#include "services/runtime/process/handover.hpp"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 
-#include "support/wait.hpp"
+#include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
 namespace {

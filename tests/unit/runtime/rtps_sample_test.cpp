@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/rtps_sample.hpp"
+#include "services/runtime/bus/rtps_sample.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensing/core/conditioner.hpp"
+#include "services/sensing/core/conditioner.hpp"
 
 #include <gtest/gtest.h>
 

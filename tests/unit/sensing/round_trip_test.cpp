@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "rig/core/body_response.hpp"
-#include "rig/core/rig.hpp"
-#include "sensing/core/conditioner.hpp"
-#include "signal/butterworth.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/sensing/core/conditioner.hpp"
+#include "services/signal/butterworth.hpp"
 
 namespace stillhand::sensing {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "signal/difference_model.hpp"
+#include "services/signal/difference_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "signal/reference.hpp"
+#include "services/signal/reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "contract/config_error.hpp"
-#include "signal/spectrum.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/spectrum.hpp"
 
 namespace stillhand::signal {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "signal/spectrum.hpp"
+#include "services/signal/spectrum.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {

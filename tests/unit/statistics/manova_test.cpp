@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/manova.hpp"
+#include "services/statistics/manova.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <limits>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "golden/statistics/exact_lambda.hpp"
-#include "support/statistics_golden.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/golden/statistics/exact_lambda.hpp"
+#include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {
 namespace {

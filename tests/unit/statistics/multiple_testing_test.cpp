@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/multiple_testing.hpp"
+#include "services/statistics/multiple_testing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "contract/config_error.hpp"
-#include "support/statistics_golden.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {
 namespace {

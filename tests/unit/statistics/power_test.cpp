@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/power.hpp"
+#include "services/statistics/power.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "signal/random.hpp"
-#include "statistics/t_test.hpp"
-#include "support/statistics_golden.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/signal/random.hpp"
+#include "services/statistics/t_test.hpp"
+#include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {
 namespace {

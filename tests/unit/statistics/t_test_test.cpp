@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "statistics/t_test.hpp"
+#include "services/statistics/t_test.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "contract/config_error.hpp"
-#include "support/statistics_golden.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/support/statistics_golden.hpp"
 
 namespace stillhand::statistics {
 namespace {

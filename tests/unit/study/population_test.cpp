@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Subjects of a study: Eq. SU-1 and SU-2.
-#include "study/population.hpp"
+#include "apps/study/population.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <cmath>
 #include <vector>
 
-#include "contract/config_error.hpp"
-#include "rig/core/rig.hpp"
-#include "settings/load.hpp"
-#include "statistics/descriptive.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/settings/load.hpp"
+#include "services/statistics/descriptive.hpp"
 
 namespace stillhand::study {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The study as a whole: the paper's tables, and that a seed is a study.
-#include "study/study.hpp"
+#include "apps/study/study.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "contract/config_error.hpp"
-#include "study/analysis.hpp"
+#include "apps/study/analysis.hpp"
+#include "services/contract/config_error.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -20,7 +20,7 @@ const OnProgress kNoProgress = [](std::int64_t, std::int64_t) { return true; };
 StudyOptions study_of(std::int64_t subjects, double trial_s, double identify_s) {
   StudyOptions options;
   options.subjects = subjects;
-  options.protocol.conditions = experiment::parse_conditions("A,B,C");
+  options.protocol.conditions = session::parse_conditions("A,B,C");
   options.protocol.trial_s = trial_s;
   options.protocol.identify_s = identify_s;
   return options;
@@ -47,7 +47,7 @@ Analysis* PaperStudyTest::analysis_ = nullptr;
 // the one that the reproduction claims.
 TEST_F(PaperStudyTest, ConditionsAAndBAreWithinTenPercentOfTableI) {
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const experiment::Metric& metric = experiment::kMetrics[k];
+    const session::Metric& metric = session::kMetrics[k];
     const double unit = k == 0 ? kPaperUnit_mm : 1.0;
     const double a = analysis_->conditions.at('A')[k].mean;
     const double b = analysis_->conditions.at('B')[k].mean;
@@ -144,7 +144,7 @@ TEST(StudyTest, TheOrderOfConditionsIsShuffledBySubject) {
 // Each mitigation changes what it says: D leaves the hand as it is, E and F the stick and the arm.
 TEST(StudyTest, EveryMitigationHelpsAgainstMotionAlone) {
   StudyOptions options = study_of(4, 60.0, 40.0);
-  options.protocol.conditions = experiment::parse_conditions("B,D,F", experiment::kStudyConditions);
+  options.protocol.conditions = session::parse_conditions("B,D,F", session::kStudyConditions);
   const Analysis analysis = analyse(run_study(options, kNoProgress));
   for (const char condition : {'D', 'F'}) {
     EXPECT_LT(analysis.conditions.at(condition)[0].mean, analysis.conditions.at('B')[0].mean);

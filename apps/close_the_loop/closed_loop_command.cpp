@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/closed_loop_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "apps/close_the_loop/live_session.hpp"
+#include "apps/close_the_loop/output.hpp"
+#include "apps/diagnose/on_all_cores.hpp"
+#include "apps/lab/lab.hpp"
+#include "apps/report/command_line.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/progress.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "services/cancellation/model_file.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/model_file.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/rig/sealed_file.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/stop.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+struct Words {
+  lab::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
+  bool live = false;
+};
+
+// Steps of one way through the loop, for the bar.
+constexpr double kUsualSteps = 14.0;
+
+DeclaredDrive declared_drive(const rig::RigConfig& rig) {
+  return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
+}
+
+// Everything but the session, for both ways.
+LoopRecord new_record(const Words& words) {
+  LoopRecord record;
+  record.command_line = report::command_line();
+  record.undeclared_effect = words.lab.undeclared_effect;
+  record.live = words.live;
+  record.options.protocol = words.lab.protocol;
+  record.options.declared = declared_drive(session::CoreConfigs{}.rig);
+  record.options.hand = average_hand();
+  record.options.for_each = diagnose::on_all_cores;
+  return record;
+}
+
+void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFolder& folder) {
+  folder.write("summary.json", summary_json(record));
+  folder.write("model.json", diagnosis::model_json(record.result.verdict().body.model));
+  folder.write(kControlModelFile,
+               cancellation::control_model_json(record.result.control_model, rig));
+  const auto drawings = report::render(loop_figures(record), folder.path());
+  loop_page(record, drawings).write(folder.path() / "report.html");
+}
+
+void run_in_process(const Words& words) {
+  runtime::Stop stop;
+  // A recording is not for us to take away, and isn't this run's.
+  if (std::filesystem::exists(words.lab.out / "session.mcap")) {
+    throw ConfigError("--out", words.lab.out.string() + ", which holds a session's recording",
+                      "a folder of its own");
+  }
+  report::StagedFolder folder(words.lab.out);
+  report::require_gnuplot();
+  LoopRecord record = new_record(words);
+  report::ProgressLine progress;
+  int steps = 0;
+  record.options.progress = [&](const std::string& step) {
+    progress.show(step, std::min(steps++ / kUsualSteps, 0.98));
+    return !stop.requested();
+  };
+  InProcessSession session({}, words.lab.protocol.seed, words.lab.undeclared_effect);
+  if (record.undeclared_effect != 0) {
+    std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
+    folder.write(rig::kCommitmentFile, session.commitment());
+  }
+  record.result = close_loop(session, record.options);
+  progress.finish();
+  folder.write(kVerdictFile, verdict_json(record.result));
+  if (record.undeclared_effect != 0) {
+    rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
+    record.truth = truth_of(session.open_effect());
+  }
+  write_files(record, words.lab.rig, folder);
+  folder.publish(every_name());
+  print_result(record);
+}
+
+void run_live(const Words& words) {
+  runtime::Stop stop;
+  report::require_gnuplot();
+  const std::filesystem::path& out = words.lab.out;
+  const std::filesystem::path recording = out / "session.mcap";
+  LoopRecord record = new_record(words);
+  record.options.progress = [&](const std::string& /*step*/) { return !stop.requested(); };
+  record.options.aside = [](const std::function<void()>& work) {
+    const runtime::OrdinaryWhile ordinary;
+    work();
+  };
+  lab::LiveSession live = lab::run_session(words.lab, stop, [&](lab::LiveTrials& trials) {
+    LiveTrialSession session(trials, recording);
+    record.result = close_loop(session, record.options);
+  });
+  if (record.result.rounds.empty()) throw diagnosis::Interrupted();
+  judge_cancellation(recording, live.outcomes, record.result);
+  // The verdict is in place before the truth is opened.
+  if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
+                                                           verdict_json(record.result));
+      !status.ok()) {
+    throw std::runtime_error(status.text);
+  }
+  if (!live.sealed.empty()) {
+    lab::open_undeclared_effect(words.lab, live.sealed, kVerdictFile);
+    record.truth = truth_of(recording::read_file((out / rig::kSealedFile).string()));
+  }
+  live.folder.reset();
+  report::StagedFolder folder(out);
+  write_files(record, words.lab.rig, folder);
+  folder.publish({});
+  print_result(record);
+}
+
+}  // namespace
+
+void add_closed_loop_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  lab::LabOptions& lab = words->lab;
+  lab::set_places(lab);
+  lab.headless = true;
+  lab.protocol.identify_s = 120.0;  // paper III-A
+  lab.protocol.conditions = session::parse_conditions("A,B,C");
+  CLI::App* verb =
+      cli.add_subcommand("close-the-loop",
+                         "What the model lacks goes back into the canceller: identifies with the "
+                         "stick pegged, runs A, "
+                         "B and C\n"
+                         "with the paper's model, diagnoses the recordings, augments the model, "
+                         "and runs C again (C+), "
+                         "until\n"
+                         "nothing new is found or nothing helps.\n"
+                         "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
+  verb->add_option(
+          "--undeclared-effect", lab.undeclared_effect,
+          "seed of an effect that only the rig knows of, opened after the verdict; 0: none")
+      ->check(session::check_seed)
+      ->capture_default_str();
+  verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
+      ->check(session::check_seed)
+      ->capture_default_str();
+  verb->add_option("--out", lab.out, "folder of report, figures and numbers")->required();
+  verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]")
+      ->capture_default_str();
+  verb->add_option("--identify-seconds", lab.protocol.identify_s,
+                   "length of the pegged trial [s]; the paper's is 120")
+      ->capture_default_str();
+  CLI::Option* live = verb->add_flag(
+      "--live", words->live, "over DDS, with every process, in real time; the recording is kept");
+  verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
+      ->needs(live)
+      ->capture_default_str();
+  verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
+      ->needs(live)
+      ->capture_default_str();
+  verb->callback([words, &status] {
+    words->live ? run_live(*words) : run_in_process(*words);
+    std::printf("report in %s\n", words->lab.out.string().c_str());
+    status = 0;
+  });
+}
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/control_model_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/drive.hpp"
+#include "apps/lab/lab.hpp"
+#include "apps/measurement/read.hpp"
+#include "apps/report/result_files.hpp"
+#include "services/cancellation/model_file.hpp"
+#include "services/diagnosis/core/working_set.hpp"
+#include "services/diagnosis/model_file.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/settings/check_name.hpp"
+#include "services/settings/load.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+struct Words {
+  std::filesystem::path model;
+  std::string recording;
+  measurement::ReadOptions read;
+  std::filesystem::path save;
+  std::filesystem::path config;
+  std::uint32_t rig = 1;
+  double lead_ms = 1e3 * DeclaredDrive{}.motor_delay_s;
+  bool as_it_is = false;
+};
+
+int run(const Words& words) {
+  report::ResultFiles files({{"--save", words.save}}, {words.model, words.recording});
+  const diagnosis::Model model =
+      diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
+  const diagnosis::Measurement whole = measurement::read_measurement(words.recording, words.read);
+  const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
+  const diagnosis::Signals signals(factor == 1 ? whole : diagnosis::decimated(whole, factor),
+                                   model.inputs, model.output);
+  ControlOptions options;
+  options.lead_s = 1e-3 * words.lead_ms;
+  ControlModel control = to_control_model(model, signals, options);
+  if (!words.as_it_is) control.model.adapts = average_hand();
+  cancellation::require_sound(
+      control.model,
+      settings::load<cancellation::Config>(words.config / "cancellation.yaml", "cancellation"),
+      words.model.string());
+  files.set("--save", cancellation::control_model_json(control.model, words.rig));
+  files.publish();
+  std::printf("%s at 1 kHz, off by at most %.2g %% in the band, in %s\n",
+              words.model.string().c_str(), 100.0 * control.conversion_error,
+              words.save.string().c_str());
+  for (const Treatment& each : control.treatments) {
+    std::printf("%s: %s: %s\n", each.kind.c_str(), each.cancelled ? "cancelled" : "left alone",
+                each.how.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_control_model_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  lab::LabOptions places;
+  lab::set_places(places);
+  words->config = places.config;
+  CLI::App* verb = cli.add_subcommand(
+      "control-model",
+      "Carries a model that `stillhand diagnose --save` wrote to the canceller's 1 kHz, for\n"
+      "`stillhand lab --model`, and says of each effect what the motor will do about it.\n"
+      "The recording is the one that was diagnosed: the ranges of the model's tables are its.\n"
+      "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
+      "control.json");
+  verb->add_option("MODEL", words->model, "model file")->required();
+  verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
+  verb->add_option("--trial", words->read.trial,
+                   "of a session's recording: number of the trial, or its condition's letter");
+  verb->add_option("--save", words->save, "file of the control model")
+      ->required()
+      ->check(settings::check_name);
+  verb->add_option("--rig", words->rig, "number of the rig that it is for")->capture_default_str();
+  verb->add_option("--lead-ms", words->lead_ms,
+                   "how late the motor is [ms]: the prediction comes sooner by as much")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb->add_flag("--as-it-is", words->as_it_is, "gain and phase aren't followed while it runs");
+  verb->add_option("--config", words->config,
+                   "folder with the settings of each service: the canceller's bounds")
+      ->capture_default_str();
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "services/diagnosis/core/diagnose.hpp"
+#include "services/recording/core/recording.hpp"
+#include "services/rig/core/body_config.hpp"
+#include "services/rig/core/motor.hpp"
+
+namespace stillhand::close_the_loop {
+
+/// What the lab knows of its own stick and motor, from their data sheets and the rig's settings.
+struct DeclaredDrive {
+  rig::StickConfig stick;
+  double motor_delay_s = 0.0025;  ///< [s] one tick on the bus and the current loop's lag
+};
+
+/// Delay between the force that was asked for and the one that was felt, README Eq. CL-5:
+///
+///   f(t) = m lever alpha(t - c) + b lever omega(t - c) + F sign(omega)(t - c) - k f_m(t - m - c)
+///
+/// f the load cell, f_m the motor command, c the cell's delay and m the motor's; the better of
+/// "only the motor is late" and "only the cell is late".
+struct Latency {
+  double motor_s = 0.0;      ///< [s] from command to force
+  double cell_s = 0.0;       ///< [s] from force to reading
+  double explained_n = 0.0;  ///< RMS that the delay explains beyond the declared one
+  double residual_n = 0.0;   ///< RMS left
+};
+
+/// @param trial  a tracking trial with the motor acting, 1 kHz: theta, f, f_motor
+/// @return nothing when the motor hardly acted
+std::optional<Latency> measure_latency(const recording::Recording& trial,
+                                       const DeclaredDrive& declared);
+
+/// The stick's own equation as a measurement: what the hand needs to move it beyond what is
+/// declared, f + f_m - declared friction, from alpha and omega; for `--model linear`.  100 Hz.
+diagnosis::Measurement drive_measurement(const recording::Recording& trial,
+                                         const DeclaredDrive& declared);
+
+/// Diagnoses it: friction and ripple that nobody declared.
+diagnosis::Diagnosis diagnose_drive(const recording::Recording& trial,
+                                    const DeclaredDrive& declared,
+                                    const diagnosis::DiagnoseOptions& options);
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/live_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "apps/measurement/session.hpp"
+#include "apps/session/results.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+// A lost tick repeats the one before, as in the session's own results.
+recording::Recording without_gaps(const recording::Recording& rows, const Trial& trial) {
+  recording::Recording out;
+  out.rate_hz = kControlRateHz;
+  for (const recording::Column& column : rows.columns) {
+    out.columns.push_back({column.name, column.unit, {}});
+  }
+  std::size_t row = 0;
+  const auto tick_of = [&](std::size_t i) {
+    return static_cast<Tick>(std::llround(rows.time_s[i] * kControlRateHz));
+  };
+  for (Tick tick = trial.start_tick; tick < trial.start_tick + trial.duration_ticks; ++tick) {
+    while (row + 1 < rows.row_count() && tick_of(row + 1) <= tick) ++row;
+    out.time_s.push_back(static_cast<double>(tick) / kControlRateHz);
+    for (std::size_t c = 0; c < rows.columns.size(); ++c) {
+      out.columns[c].values.push_back(rows.columns[c].values[row]);
+    }
+  }
+  return out;
+}
+
+// What the recorder has written of a trial; it may be a second behind.
+measurement::SessionRows recorded(const std::filesystem::path& file, const Trial& trial,
+                                  bool tracking) {
+  constexpr int kTries = 10;
+  constexpr std::int64_t kPatience_ns = 700'000'000;
+  constexpr double kMostMissing = 0.02;
+  const auto least =
+      static_cast<std::size_t>((1.0 - kMostMissing) * static_cast<double>(trial.duration_ticks));
+  const double end_s =
+      static_cast<double>(trial.start_tick + trial.duration_ticks - 1) / kControlRateHz;
+  const runtime::OrdinaryWhile ordinary;
+  std::string why = "the recorder has not written it";
+  for (int i = 0; i < kTries; ++i) {
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kPatience_ns);
+    try {
+      measurement::SessionRows session =
+          measurement::read_session_rows(file.string(), std::to_string(trial.number));
+      const recording::Recording& rows = session.rows;
+      const bool whole = rows.row_count() >= least && rows.time_s.back() >= end_s - 0.1 &&
+                         rows.find("f_motor") != nullptr &&
+                         (!tracking || rows.find("x_p") != nullptr);
+      if (whole) return session;
+      why = std::to_string(rows.row_count()) + " of " + std::to_string(trial.duration_ticks) +
+            " ticks recorded";
+    } catch (const ConfigError& error) {
+      why = error.what();  // not there yet
+    }
+  }
+  throw std::runtime_error("trial " + std::to_string(trial.number) + ": " + why);
+}
+
+}  // namespace
+
+TrialRun LiveTrialSession::run(const session::PlannedTrial& planned, const std::string& label) {
+  const session::TrialOutcome& outcome = trials_.run(planned);
+  if (!outcome.completed) {
+    throw std::runtime_error("trial " + std::to_string(outcome.planned.trial.number) + " (" +
+                             label + ") is marked: " + outcome.aborted);
+  }
+  TrialRun out;
+  out.label = label;
+  out.number = outcome.planned.trial.number;
+  const bool tracking = planned.trial.phase == TrialPhase::kTracking;
+  const Trial& trial = outcome.planned.trial;
+  const measurement::SessionRows session = recorded(recording_, trial, tracking);
+  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kWeightRate_hz);
+  for (std::size_t n = 0; n < session.weights.size(); n += kEvery) {
+    out.weights.push_back(session.weights[n]);
+  }
+  out.measured = without_gaps(session.rows, trial);
+  out.measured.source = "trial " + label;
+  if (tracking) out.metrics = metrics_of(out.measured, planned);
+  return out;
+}
+
+identification::FeedthroughModel LiveTrialSession::identify(const TrialRun& /*pegged*/) {
+  return trials_.model();  // the identification's process has given it to the canceller already
+}
+
+std::string LiveTrialSession::use(const cancellation::AugmentedModel& model) {
+  return trials_.use(model);
+}
+
+void judge_cancellation(const std::filesystem::path& recording,
+                        const std::vector<session::TrialOutcome>& outcomes, LoopResult& result) {
+  const session::SessionResult session = session::evaluate(recording.string(), outcomes);
+  const auto add = [&](TrialRun& run) {
+    const auto trial = std::ranges::find(session.trials, run.number, &session::TrialResult::number);
+    if (trial == session.trials.end()) return;
+    run.cancelled_share = trial->cancelled_share.value_or(0.0);
+    run.counterforce_delay_s = trial->counterforce_delay_s.value_or(0.0);
+  };
+  for (TrialRun& run : result.trials) add(run);
+  for (Round& round : result.rounds) add(round.trial);
+}
+
+}  // namespace stillhand::close_the_loop

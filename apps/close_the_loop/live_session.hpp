@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/close_the_loop/session.hpp"
+#include "apps/lab/lab.hpp"
+
+namespace stillhand::close_the_loop {
+
+/// The same over DDS: trials of the lab's processes, measured by what the session's recorder has
+/// written.
+class LiveTrialSession final : public Session {
+ public:
+  /// @param recording  the session's file, being written
+  LiveTrialSession(lab::LiveTrials& trials, std::filesystem::path recording)
+      : trials_(trials), recording_(std::move(recording)) {}
+
+  /// @throws std::runtime_error when the trial isn't completed, or the recording doesn't hold it
+  TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
+  identification::FeedthroughModel identify(const TrialRun& pegged) override;
+  std::string use(const cancellation::AugmentedModel& model) override;
+
+ private:
+  lab::LiveTrials& trials_;
+  std::filesystem::path recording_;
+};
+
+/// Shares of cancelled force and how late it was cancelled, which the rig's truth in the recording
+/// tells when the session has ended.
+void judge_cancellation(const std::filesystem::path& recording,
+                        const std::vector<session::TrialOutcome>& outcomes, LoopResult& result);
+
+}  // namespace stillhand::close_the_loop

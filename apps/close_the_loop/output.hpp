@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/report/page.hpp"
+#include "apps/report/staged_folder.hpp"
+
+namespace stillhand::close_the_loop {
+
+inline constexpr const char* kVerdictFile = "verdict.json";
+inline constexpr const char* kControlModelFile = "control_model.json";
+
+/// The truth, when it is opened at the end.
+struct Truth {
+  std::string kind;
+  std::string channel;
+  std::string place;
+  std::string numbers;  ///< as one line for people
+};
+/// Reads undeclared_effect.json.
+Truth truth_of(const std::string& sealed_text);
+
+/// What is written, besides the result.
+struct LoopRecord {
+  LoopOptions options;
+  std::uint64_t undeclared_effect = 0;
+  bool live = false;  ///< over DDS
+  std::string command_line;
+  LoopResult result;
+  std::optional<Truth> truth;  ///< empty: nothing was sealed
+
+  /// Verdict and truth name the same kind.
+  [[nodiscard]] bool right() const { return truth && truth->kind == result.verdict().kind(); }
+};
+
+/// (B - X) / (B - A) of a metric, X = C or C+ [-].
+double restoration(const LoopResult& result, const TrialRun& of, std::size_t metric);
+
+/// verdict.json: kind, channel and findings, written before the truth is opened.
+std::string verdict_json(const LoopResult& result);
+/// summary.json, README "Files".
+std::string summary_json(const LoopRecord& record);
+void print_result(const LoopRecord& record);
+
+/// report.html with its figures.
+report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings);
+std::vector<report::Figure> loop_figures(const LoopRecord& record);
+
+/// Every file that any run of the loop writes.
+std::vector<std::string> every_name();
+
+}  // namespace stillhand::close_the_loop

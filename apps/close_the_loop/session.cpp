@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/session.hpp"
+
+#include "services/contract/config_error.hpp"
+#include "services/rig/sealed_file.hpp"
+#include "services/signal/reference.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+constexpr Tick kKeepEvery = 10;  // the paper records at 100 Hz
+
+}  // namespace
+
+InProcessSession::InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
+                                   std::uint64_t undeclared_effect)
+    : sealed_(rig::sealed_text(rig::SealedEffect(undeclared_effect, configs.rig).open(),
+                               rig::new_nonce())),
+      commitment_(rig::digest_line(sealed_, rig::kSealedFile)),
+      loop_(configs, seed, kKeepEvery, rig::SealedEffect(undeclared_effect, configs.rig)) {
+  loop_.keep_measured();
+}
+
+TrialRun InProcessSession::run(const session::PlannedTrial& planned, const std::string& label) {
+  session::TrialSignals signals = loop_.run(planned);
+  TrialRun out;
+  out.label = label;
+  out.number = planned.trial.number;
+  out.measured = std::move(signals.measured);
+  out.measured.source = "trial " + label;
+  if (planned.trial.phase == TrialPhase::kTracking) {
+    out.metrics = metrics_of(out.measured, planned);
+    if (planned.moving) {
+      out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
+      out.counterforce_delay_s = session::counterforce_delay_s(
+          signals.feedthrough_n, signals.motor_n, kControlRateHz / kKeepEvery);
+    }
+  }
+  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kKeepEvery / kWeightRate_hz);
+  for (std::size_t n = 0; n < signals.weights.size(); n += kEvery) {
+    out.weights.push_back(signals.weights[n]);
+  }
+  return out;
+}
+
+identification::FeedthroughModel InProcessSession::identify(const TrialRun& pegged) {
+  identification::Record record;
+  record.rate_hz = kControlRateHz;
+  record.acceleration_m_s2 = pegged.measured.find("a_y")->values;
+  record.force_n = pegged.measured.find("f")->values;
+  const identification::FeedthroughModel model = identification::identify(record);
+  if (const auto refusal = loop_.use_model(model); refusal != cancellation::Refusal::kNone) {
+    throw ConfigError("identification", std::string(cancellation::describe(refusal)),
+                      "a model that the canceller takes; a longer --identify-seconds helps");
+  }
+  return model;
+}
+
+std::string InProcessSession::use(const cancellation::AugmentedModel& model) {
+  const auto refusal = loop_.use_model(model);
+  return refusal == cancellation::Refusal::kNone ? std::string()
+                                                 : std::string(cancellation::describe(refusal));
+}
+
+identification::TrackingMetrics metrics_of(const recording::Recording& measured,
+                                           const session::PlannedTrial& planned) {
+  identification::TrackingRecord record;
+  record.rate_hz = kControlRateHz;
+  record.target_m = measured.find("x_r")->values;
+  record.cursor_m = measured.find("x_p")->values;
+  const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
+  return identification::tracking_metrics(record, signal::reference_design(duration_s));
+}
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/session/in_process.hpp"
+#include "apps/session/protocol.hpp"
+#include "services/cancellation/core/canceller.hpp"
+#include "services/identification/core/identifier.hpp"
+
+namespace stillhand::close_the_loop {
+
+/// [Hz] What is followed takes seconds: ten values in each show its course.
+inline constexpr double kWeightRate_hz = 10.0;
+
+/// One trial as it was measured.
+struct TrialRun {
+  std::string label;        ///< "I", "A", "B", "C", "C+"
+  std::int64_t number = 0;  ///< of the trial in its session
+  recording::Recording measured;
+  identification::TrackingMetrics metrics;  ///< of a tracking trial
+  double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth
+  double counterforce_delay_s = 0.0;        ///< [s] of the motor's force behind it, the same
+  std::vector<cancellation::AdaptiveGain::Pair>
+      weights;  ///< w_0, w_1 as followed, at kWeightRate_hz
+};
+
+/// What the loop asks of a session, in one process or over DDS.
+class Session {
+ public:
+  Session() = default;
+  virtual ~Session() = default;
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Runs one trial.  @param label  what to call it  @throws ConfigError, std::runtime_error
+  virtual TrialRun run(const session::PlannedTrial& planned, const std::string& label) = 0;
+  /// The paper's model of a pegged trial, which the canceller uses from now on.
+  /// @throws ConfigError when no usable one comes out
+  virtual identification::FeedthroughModel identify(const TrialRun& pegged) = 0;
+  /// The model that the canceller uses from the next trial on.  @return why not, or empty
+  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
+};
+
+/// RMS error and the rest, from target and cursor as measured.
+identification::TrackingMetrics metrics_of(const recording::Recording& measured,
+                                           const session::PlannedTrial& planned);
+
+/// All in one process, as fast as the machine goes.
+class InProcessSession final : public Session {
+ public:
+  InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
+                   std::uint64_t undeclared_effect);
+
+  TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
+  identification::FeedthroughModel identify(const TrialRun& pegged) override;
+  std::string use(const cancellation::AugmentedModel& model) override;
+  /// undeclared_effect.json, once the verdict is out.
+  [[nodiscard]] const std::string& open_effect() const noexcept { return sealed_; }
+  /// Digest of what open_effect() will give.
+  [[nodiscard]] const std::string& commitment() const noexcept { return commitment_; }
+
+ private:
+  std::string sealed_;  ///< its text: nothing here looks into it
+  std::string commitment_;
+  session::InProcessLoop loop_;
+};
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/diagnose/page/wording.hpp"
+#include "apps/measurement/grid.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/diagnosis/core/working_set.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+// Less doesn't move a hand: a fifth of the held-out error, and of the drive more than its friction
+// is known to.
+constexpr double kWorthFall = 0.2;
+constexpr double kWorthDrive_n = 0.2;
+// Of the friction found: what is left of it keeps the stick from hunting.
+constexpr double kFrictionShare = 0.8;
+constexpr std::size_t kMostValues = 60'000'000;
+
+double explained(const diagnosis::FoundEffect& effect) {
+  const double before = effect.before.rmse;
+  const double after = effect.after.rmse;
+  return std::sqrt(std::max(before * before - after * after, 0.0));
+}
+
+// The force as it was before its sensor kept it back.
+recording::Recording advanced(const recording::Recording& trial, double seconds) {
+  recording::Recording out = trial;
+  const auto ticks = static_cast<std::size_t>(std::lround(seconds * kControlRateHz));
+  const std::size_t rows = trial.row_count() - ticks;
+  out.time_s.resize(rows);
+  for (recording::Column& column : out.columns) {
+    if (column.name == "f") {
+      column.values.erase(column.values.begin(),
+                          column.values.begin() + static_cast<std::ptrdiff_t>(ticks));
+    } else {
+      column.values.resize(rows);
+    }
+  }
+  return out;
+}
+
+std::string milliseconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f ms", 1e3 * seconds);
+  return text;
+}
+
+std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
+                                       const DeclaredDrive& declared) {
+  if (!latency) return std::nullopt;
+  const double motor_s = latency->motor_s - declared.motor_delay_s;
+  const bool of_cell = latency->cell_s > motor_s;
+  const double late_s = std::max(latency->cell_s, motor_s);
+  if (late_s < kWorthLatency_s) return std::nullopt;
+  const double before = std::hypot(latency->residual_n, latency->explained_n);
+  return Finding{"delay",
+                 "",
+                 of_cell ? "load cell" : "motor path",
+                 latency->explained_n,
+                 before,
+                 latency->residual_n,
+                 std::string(of_cell ? "the load cell tells a force " : "the motor acts ") +
+                     milliseconds(late_s) + (of_cell ? " late" : " later than declared") +
+                     ", by the stick's own equation"};
+}
+
+}  // namespace
+
+Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
+                     const diagnosis::DiagnoseOptions& options) {
+  Verdict out;
+  out.latency = measure_latency(*evidence.cancelled, declared);
+  const auto late = latency_finding(out.latency, declared);
+  if (late) out.findings.push_back(*late);
+  const bool cell_late = late && late->where == "load cell";
+
+  diagnosis::DiagnoseOptions own = options;
+  own.inputs = {"a_y"};
+  own.output = "f";
+  own.model = diagnosis::ModelClass::kArx;
+  own.search.first_least_fall = own.search.least_fall = kWorthFall;
+  const recording::Recording pegged =
+      advanced(*evidence.pegged, cell_late ? out.latency->cell_s : 0.0);
+  const diagnosis::Measurement measurement = measurement::on_grid(pegged, kMostValues);
+  out.body = diagnosis::diagnose(measurement, own);
+  for (const diagnosis::FoundEffect& effect : out.body.effects) {
+    out.findings.push_back({effect.effect.kind, effect.channel, "body", explained(effect),
+                            effect.before.rmse, effect.after.rmse,
+                            diagnose::shown_sentence(effect.evidence, "N")});
+  }
+  const diagnosis::Signals signals(diagnosis::working_set(measurement, own.inputs), own.inputs,
+                                   own.output);
+  ControlOptions control;
+  control.lead_s = out.latency ? out.latency->motor_s : declared.motor_delay_s;
+  try {
+    out.control = to_control_model(out.body.model, signals, control);
+  } catch (const ConfigError& error) {
+    out.not_carried = error.what();
+  }
+
+  out.drive = diagnose_drive(*evidence.moving, declared, options);
+  for (const diagnosis::FoundEffect& effect : out.drive.effects) {
+    // Whatever shape a late cell gives the stick's equation has been told already.
+    if (cell_late || explained(effect) < kWorthDrive_n) continue;
+    out.findings.push_back({effect.effect.kind, effect.channel, "drive", explained(effect),
+                            effect.before.rmse, effect.after.rmse,
+                            diagnose::shown_sentence(effect.evidence, "N")});
+    if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);
+  }
+  std::ranges::stable_sort(out.findings, std::ranges::greater{}, &Finding::explained_n);
+  return out;
+}
+
+}  // namespace stillhand::close_the_loop

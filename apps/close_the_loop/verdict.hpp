@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/close_the_loop/control_model.hpp"
+#include "apps/close_the_loop/drive.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "services/recording/core/recording.hpp"
+
+namespace stillhand::close_the_loop {
+
+/// [s] A shorter delay doesn't move a hand.
+inline constexpr double kWorthLatency_s = 0.005;
+
+/// The recordings that a verdict rests on; nothing else is known of the rig.
+struct Evidence {
+  const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
+  const recording::Recording* moving = nullptr;     ///< B: the stick's own equation
+  const recording::Recording* cancelled = nullptr;  ///< C, or the newest C+: the motor's too
+};
+
+/// One effect that the paper's model lacks.
+struct Finding {
+  std::string kind;
+  std::string channel;       ///< empty: none
+  std::string where;         ///< "body", "drive", "motor path" or "load cell"
+  double explained_n = 0.0;  ///< RMS force
+  double before_n = 0.0;     ///< held-out error before and after, where it was found
+  double after_n = 0.0;
+  std::string evidence;
+};
+
+/// What is missing, and what the canceller makes of it.
+struct Verdict {
+  diagnosis::Diagnosis body;   ///< of the pegged trial, load cell's delay taken off
+  diagnosis::Diagnosis drive;  ///< of the stick's own equation
+  std::optional<Latency> latency;
+  std::vector<Finding> findings;  ///< strongest first
+  ControlModel control;
+  std::string not_carried;  ///< why there is no control model, or empty
+
+  /// Kind of the strongest, or "none".
+  [[nodiscard]] std::string kind() const {
+    return findings.empty() ? std::string("none") : findings.front().kind;
+  }
+};
+
+/// Diagnoses body, drive and latency, and makes the canceller's model of them, README "The
+/// verdict".
+/// @param options  threads and progress; inputs, model and search are set here
+/// @throws ConfigError when a recording can't be diagnosed
+Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
+                     const diagnosis::DiagnoseOptions& options);
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "apps/dashboard/core/timeline.hpp"
+#include "apps/dashboard/feed/message_feed.hpp"
+
+namespace stillhand::dashboard {
+
+using Json = nlohmann::ordered_json;
+
+/// [ms] since 1970, as a browser counts; null for never.
+Json instant(std::int64_t at_ns);
+/// null where it is not finite.
+Json number(double value);
+
+/// The catalogue as a graph: who writes and reads each topic, each reader's own counts, and which
+/// endpoints cannot match.
+Json graph_json(const MessageFeed& feed);
+/// Eq. DB-6; null without a segment.
+Json spectrum_json(const ForceRecord& record);
+/// Trials and marks, in seconds from the beginning; `at_s` of a mark is an instant of /snapshot?at=
+/// that holds it.
+Json timeline_json(const Timeline& timeline);
+
+}  // namespace stillhand::dashboard

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/report/page.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "services/diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+
+namespace stillhand::diagnose {
+
+struct Evidence;
+
+/// The page: verdict in words, errors, figures, effects and their numbers, what was tried, what was
+/// asked, what is left.
+/// @param recordings  files that were diagnosed together, one at least
+/// @param drawings    of diagnosis_figures()
+report::Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& recordings,
+                            const std::vector<report::Drawing>& drawings);
+
+/// Runs the models again on what the engine worked on, draws, and publishes the folder:
+/// report.html, and every figure as SVG and PNG.
+/// @param measurement  what was diagnosed, as it was read  @param recordings  its files
+/// @throws ConfigError without gnuplot, std::runtime_error when a file can't be written
+void write_report(const diagnosis::Diagnosis& found, const diagnosis::Measurement& measurement,
+                  const std::vector<std::string>& recordings, report::StagedFolder& folder);
+
+}  // namespace stillhand::diagnose

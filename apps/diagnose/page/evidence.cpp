@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/diagnose/page/evidence.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/working_set.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+using diagnosis::Diagnosis;
+using diagnosis::Effect;
+using diagnosis::Model;
+using diagnosis::Stage;
+
+constexpr double kLongestCorrelation_s = 10.0;
+constexpr double kUncorrelated = 0.05;  // a correlation below it ends the sum
+
+std::vector<double> plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
+
+ModelRun run_of(const Model& model, const diagnosis::Signals& signals) {
+  ModelRun result;
+  result.residual = plain(diagnosis::residual_of(model, signals, result.run));
+  return result;
+}
+
+// 1 + 2 sum rho_k up to the first that is small: how many samples say as much as one would that is
+// independent of the others.
+double correlation_of(const std::vector<double>& residual, double rate_hz) {
+  const Eigen::Map<const Eigen::VectorXd> r(residual.data(),
+                                            static_cast<Eigen::Index>(residual.size()));
+  const double power = std::max(r.squaredNorm(), 1e-300);
+  const auto longest =
+      std::min(r.size() / 4, static_cast<Eigen::Index>(kLongestCorrelation_s * rate_hz));
+  double sum = 1.0;
+  for (Eigen::Index lag = 1; lag <= longest; ++lag) {
+    const double rho = r.head(r.size() - lag).dot(r.tail(r.size() - lag)) / power;
+    if (rho < kUncorrelated) break;
+    sum += 2.0 * rho;
+  }
+  return sum;
+}
+
+std::vector<double> errors_of(const diagnosis::Linearisation& line, double correlation) {
+  const Eigen::Index count = line.jacobian.cols();
+  std::vector<double> errors(static_cast<std::size_t>(count),
+                             std::numeric_limits<double>::quiet_NaN());
+  double weight = 0.0;
+  for (const double each : line.run.weight) weight += each;
+  const double left = weight - static_cast<double>(count);
+  if (!line.finite || left < 1.0) return errors;
+  const Eigen::VectorXd scale = line.jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd unit = line.jacobian * scale.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(unit.transpose() * unit);
+  constexpr double kDegenerate = 1e-10;  // of the largest pivot: the record doesn't tell
+  if (ldlt.vectorD().minCoeff() < kDegenerate * ldlt.vectorD().maxCoeff()) return errors;
+  const Eigen::MatrixXd inverse = ldlt.solve(Eigen::MatrixXd::Identity(count, count));
+  const double variance = line.residual.squaredNorm() / left * correlation;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    errors[static_cast<std::size_t>(i)] = scale[i] * std::sqrt(variance * inverse(i, i));
+  }
+  return errors;
+}
+
+bool in_loop(const Effect& effect) {
+  return diagnosis::effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
+}
+
+}  // namespace
+
+Evidence::Evidence(const Diagnosis& verdict, const diagnosis::Measurement& measurement)
+    : found(verdict),
+      working(diagnosis::working_set(measurement, found.options.inputs)),
+      signals(working, found.options.inputs, found.options.output),
+      before(run_of(found.baseline.model, signals)) {
+  diagnosis::Linearisation line = diagnosis::linearised(found.model, signals);
+  after.residual = plain(line.residual);
+  correlation_samples = correlation_of(after.residual, signals.rate_hz());
+  standard_errors = errors_of(line, correlation_samples);
+  const diagnosis::Blocks blocks = diagnosis::make_blocks(signals);
+  after_held_out = diagnosis::held_out_linearised(
+      diagnosis::grams_of(line.jacobian, line.residual, line.run.weight, blocks), blocks);
+  after.run = std::move(line.run);
+}
+
+EffectTrace trace_of(const Evidence& evidence, std::size_t which) {
+  Model model = evidence.found.model;
+  const Effect effect = model.effects.at(which);
+  model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(which));
+  EffectTrace trace;
+  if (in_loop(effect)) {
+    trace.refitted = true;
+    model.body = evidence.found.baseline.model.body;
+    diagnosis::fit(model, evidence.signals, diagnosis::make_blocks(evidence.signals));
+  }
+  const bool weighs = diagnosis::effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+  if (trace.refitted || weighs) {
+    ModelRun without = run_of(model, evidence.signals);
+    trace.run = std::move(without.run);
+    trace.without = std::move(without.residual);
+  } else {
+    trace.run = diagnosis::free_run(model, evidence.signals);
+    trace.without = evidence.after.residual;
+    for (std::size_t n = 0; n < trace.without.size(); ++n) {
+      trace.without[n] += evidence.after.run.weight[n] *
+                          (evidence.after.run.prediction[n] - trace.run.prediction[n]);
+    }
+  }
+  trace.contribution = trace.without;
+  for (std::size_t n = 0; n < trace.contribution.size(); ++n) {
+    trace.contribution[n] -= evidence.after.residual[n];
+  }
+  return trace;
+}
+
+}  // namespace stillhand::diagnose

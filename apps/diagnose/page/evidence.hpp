@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "services/diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/signals.hpp"
+
+namespace stillhand::diagnose {
+
+/// A model's free run over the record, and what it leaves.
+struct ModelRun {
+  diagnosis::FreeRun run;
+  std::vector<double> residual;  ///< weighted, initial states taken out; see residual_of()
+};
+
+/// What the page shows of a diagnosis, run once more on the samples that the engine worked on.
+struct Evidence {
+  /// @param verdict  must stay as long as this
+  /// @throws as diagnosis::Signals
+  Evidence(const diagnosis::Diagnosis& verdict, const diagnosis::Measurement& measurement);
+
+  const diagnosis::Diagnosis& found;
+  diagnosis::Measurement working;
+  diagnosis::Signals signals;
+  ModelRun before;                    ///< of the baseline
+  ModelRun after;                     ///< of the baseline with the effects
+  diagnosis::HeldOut after_held_out;  ///< of the latter, from one linearisation
+  /// Of the latter's numbers in packed()'s order; NaN where the record doesn't tell.  From the
+  /// linearised fit, with samples counted once a correlation length.
+  std::vector<double> standard_errors;
+  double correlation_samples = 1.0;  ///< [samples] of what is left: 1 + 2 sum of its correlations
+};
+
+/// What one effect of the final model does.
+struct EffectTrace {
+  diagnosis::FreeRun run;            ///< of the model without it
+  std::vector<double> without;       ///< residual of the model without it
+  std::vector<double> contribution;  ///< what it takes away: `without` less the final residual
+  /// The rest of the model was fitted anew without it, because it can't be taken out of a loop;
+  /// otherwise the other numbers are those of the joint fit.
+  bool refitted = false;
+};
+
+/// @param which  index in found.model.effects
+EffectTrace trace_of(const Evidence& evidence, std::size_t which);
+
+}  // namespace stillhand::diagnose

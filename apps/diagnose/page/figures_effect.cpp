@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "apps/diagnose/page/binning.hpp"
+#include "apps/diagnose/page/figures.hpp"
+#include "apps/diagnose/page/wording.hpp"
+#include "apps/report/text.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+using report::Kind;
+using report::Panel;
+using report::Series;
+
+constexpr std::size_t kBins = 24;
+
+std::string effect_figure_name(std::size_t which) { return "effect_" + std::to_string(which + 1); }
+
+struct Slope {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+// Of the residual without the effect on what the effect predicts.
+Slope slope_of(const Evidence& evidence, const EffectTrace& trace) {
+  double product = 0.0;
+  double square = 0.0;
+  double left = 0.0;
+  double weight = 0.0;
+  for (std::size_t n = 0; n < trace.without.size(); ++n) {
+    if (!(evidence.after.run.weight[n] > 0.0)) continue;
+    product += trace.without[n] * trace.contribution[n];
+    square += trace.contribution[n] * trace.contribution[n];
+    left += evidence.after.residual[n] * evidence.after.residual[n];
+    weight += 1.0;
+  }
+  if (!(square > 0.0)) return {};
+  return {product / square,
+          std::sqrt(left / std::max(weight, 1.0) * evidence.correlation_samples / square)};
+}
+
+// Samples passed over say nothing of those that count, beyond what the refit moves.
+bool predicts(const Evidence& evidence, std::size_t which, const EffectTrace& trace) {
+  const diagnosis::Effect& effect = evidence.found.effects.at(which).effect;
+  if (diagnosis::effect_kind(effect.kind).stage(effect) == diagnosis::Stage::kWeight) return false;
+  for (std::size_t n = 0; n < trace.contribution.size(); ++n) {
+    if (evidence.after.run.weight[n] > 0.0 && trace.contribution[n] != 0.0) return true;
+  }
+  return false;
+}
+
+// Everything an effect says in one variable: its own prediction.
+Panel against_prediction(const Evidence& evidence, const EffectTrace& trace) {
+  const std::vector<double>& weight = evidence.after.run.weight;
+  const std::string& unit = evidence.found.output_unit;
+  const BinAxis axis =
+      axis_over(trace.contribution, weight, bins_for(weight, evidence.correlation_samples, kBins));
+  const BinnedMeans means =
+      binned_means(axis, trace.contribution, trace.without, weight, evidence.correlation_samples);
+  Series bars{.label = "without it",
+              .kind = Kind::kErrorBars,
+              .colour = kBefore,
+              .x = means.centre,
+              .y = means.mean};
+  for (std::size_t b = 0; b < means.mean.size(); ++b) {
+    bars.y_low.push_back(means.mean[b] - means.standard_error[b]);
+    bars.y_high.push_back(means.mean[b] + means.standard_error[b]);
+  }
+  const Series one{.label = "slope 1",
+                   .kind = Kind::kDashedLine,
+                   .colour = report::Colour::kNeutral,
+                   .x = {axis.low, axis.high},
+                   .y = {axis.low, axis.high}};
+  const Slope slope = slope_of(evidence, trace);
+  Panel panel;
+  panel.x.label = axis_label("predicted by the effect", unit);
+  panel.y.label = axis_label("residual without it", unit);
+  panel.series = {one, bars};
+  panel.notes = {
+      {.text = "slope " + report::number(slope.value, 3) + " ± " + report::number(slope.error, 3),
+       .corner = report::Corner::kBottomRight}};
+  return panel;
+}
+
+}  // namespace
+
+report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
+  const EffectTrace trace = trace_of(evidence, which);
+  const Explanation explanation = explanation_of(evidence, which, trace);
+  report::Figure figure{.name = effect_figure_name(which),
+                        .caption = "Effect " + std::to_string(which + 1) + ", " +
+                                   effect_title(evidence.found.effects.at(which)) + ": " +
+                                   explanation.text + ".",
+                        .panels = {explanation.panel},
+                        .columns = 2,
+                        .width_px = 980,
+                        .height_px = 400};
+  if (!predicts(evidence, which, trace)) {
+    figure.columns = 1;
+    return figure;
+  }
+  figure.panels.push_back(against_prediction(evidence, trace));
+  figure.caption +=
+      std::string(" Right: the residual against what the effect predicts of it. ") +
+      (trace.refitted ? "The model without the effect was fitted anew."
+                      : "The model without the effect keeps the other numbers of the joint fit.") +
+      " Bars: one standard error, samples counted once a correlation length (" +
+      report::short_number(evidence.correlation_samples / evidence.signals.rate_hz()) + " s).";
+  return figure;
+}
+
+std::vector<report::Figure> diagnosis_figures(const Evidence& evidence) {
+  std::vector<report::Figure> figures{figure_prediction(evidence), figure_spectra(evidence)};
+  const std::size_t effects = std::min(evidence.found.effects.size(), kMostEffectFigures);
+  for (std::size_t e = 0; e < effects; ++e) figures.push_back(figure_effect(evidence, e));
+  figures.push_back(figure_over_time(evidence));
+  figures.push_back(figure_autocorrelation(evidence));
+  if (evidence.found.before.coherence.independent_averages > 0.0) {
+    figures.push_back(figure_coherence(evidence));
+  }
+  if (evidence.found.before.lines && !evidence.found.before.lines->excited.empty()) {
+    figures.push_back(figure_lines(evidence));
+  }
+  if (!evidence.found.before.detections.empty()) figures.push_back(figure_detections(evidence));
+  return figures;
+}
+
+std::vector<std::string> figure_names() {
+  std::vector<std::string> names{"prediction", "residual_spectra"};
+  for (std::size_t e = 0; e < kMostEffectFigures; ++e) names.push_back(effect_figure_name(e));
+  names.insert(names.end(), {"residual_over_time", "autocorrelation", "partial_coherence",
+                             "detection_lines", "detections"});
+  return names;
+}
+
+}  // namespace stillhand::diagnose

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "apps/diagnose/page/figures.hpp"
+#include "apps/diagnose/page/wording.hpp"
+#include "apps/report/text.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+using report::Colour;
+using report::Kind;
+using report::Panel;
+using report::Scale;
+using report::Series;
+
+void add_points(Panel& panel, const char* label, const diagnosis::LineGroup& group, Colour colour) {
+  if (group.empty()) return;
+  panel.series.push_back({.label = label,
+                          .kind = Kind::kPoints,
+                          .colour = colour,
+                          .x = group.frequency_hz,
+                          .y = group.residual,
+                          .point_size = 0.7});
+}
+
+void add_noise(Panel& panel, const diagnosis::LineGroup& group, bool in_legend) {
+  if (group.empty()) return;
+  panel.series.push_back({.label = "noise at the lines",
+                          .kind = Kind::kDottedLine,
+                          .colour = Colour::kNeutral,
+                          .x = group.frequency_hz,
+                          .y = group.noise,
+                          .line_width_px = 1.4,
+                          .show_in_legend = in_legend});
+}
+
+Panel panel_of(const diagnosis::DetectionLines& lines, const std::string& title,
+               const std::string& unit) {
+  Panel panel;
+  panel.title = title;
+  panel.x = {.label = "frequency [Hz]", .scale = Scale::kLogarithmic};
+  panel.y = {.label = axis_label("RMS of a line", unit), .scale = Scale::kLogarithmic};
+  const bool mixed = !lines.odd_or_even.empty();
+  add_noise(panel, mixed ? lines.odd_or_even : lines.odd, mixed || lines.even.empty());
+  add_noise(panel, lines.even, !mixed);
+  panel.series.push_back({.label = "output, excited",
+                          .kind = Kind::kPoints,
+                          .colour = Colour::kNeutral,
+                          .x = lines.excited.frequency_hz,
+                          .y = lines.excited.output,
+                          .point_size = 0.7});
+  add_points(panel, "residual, excited", lines.excited, Colour::kMeasured);
+  add_points(panel, "odd, not excited", lines.odd, Colour::kWarning);
+  add_points(panel, "even", lines.even, Colour::kAccent);
+  add_points(panel, "not excited", lines.odd_or_even, Colour::kWarning);
+  return panel;
+}
+
+std::string chances(const diagnosis::DetectionLines& lines) {
+  std::string text;
+  const auto add = [&text](const char* name, const diagnosis::LineGroup& group) {
+    if (group.empty()) return;
+    text += (text.empty() ? "" : "; ") + std::string(name) + " " + percent(group.share) +
+            " of its power above the noise, p " + p_value(group.p);
+  };
+  add("odd lines", lines.odd);
+  add("even lines", lines.even);
+  add("lines not excited", lines.odd_or_even);
+  return text.empty() ? "there is no line that isn't excited" : text;
+}
+
+}  // namespace
+
+report::Figure figure_lines(const Evidence& evidence) {
+  const diagnosis::Diagnosis& found = evidence.found;
+  const diagnosis::DetectionLines& before = *found.before.lines;
+  std::vector<Panel> panels{panel_of(before, "baseline's residual", found.output_unit)};
+  std::string told = "Before: " + chances(before) + ".";
+  if (!found.effects.empty() && found.after.lines) {
+    panels.push_back(panel_of(*found.after.lines, "residual with the effects", found.output_unit));
+    told += " After: " + chances(*found.after.lines) + ".";
+  }
+  const int columns = static_cast<int>(panels.size());
+  return {.name = "detection_lines",
+          .caption = "The excitation repeats every " +
+                     report::short_number(static_cast<double>(before.periodicity.period) /
+                                          found.sample_rate_hz) +
+                     " s, " + std::to_string(before.repeats.periods) + " periods: harmonics of " +
+                     report::short_number(before.fundamental_hz) +
+                     " Hz. A linear system answers at the excited ones alone; distortion of even "
+                     "order appears at even ones, of odd order at odd ones. Dotted: what noise "
+                     "would have there, from the lines between the harmonics. " +
+                     told + " p isn't corrected here; it is among the questions below.",
+          .panels = std::move(panels),
+          .columns = columns,
+          .width_px = 980,
+          .height_px = 400};
+}
+
+}  // namespace stillhand::diagnose

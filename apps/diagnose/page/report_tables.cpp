@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/diagnose/page/report_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "apps/diagnose/page/effect_numbers.hpp"
+#include "apps/diagnose/page/questions.hpp"
+#include "apps/diagnose/page/wording.hpp"
+#include "apps/report/text.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+using diagnosis::Diagnosis;
+using diagnosis::FoundEffect;
+using diagnosis::HeldOutError;
+using report::Align;
+using report::Cell;
+using report::Emphasis;
+using report::short_number;
+using report::Table;
+
+constexpr std::size_t kMostTried = 10;
+constexpr std::size_t kMostQuestions = 15;
+
+std::string interval(double low, double high) {
+  return short_number(low) + " to " + short_number(high);
+}
+
+std::vector<Cell> error_row(const std::string& name, const HeldOutError& error,
+                            const HeldOutError& before, double floor) {
+  const double change = error.rmse / before.rmse - 1.0;
+  return {name,
+          Cell(short_number(error.rmse), Emphasis::kStrong),
+          interval(error.low, error.high),
+          report::number(error.vaf_percent, 2),
+          &error == &before ? Cell("–") : Cell(percent(change)),
+          report::number(error.rmse / floor, 2)};
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "–" : text;
+}
+
+std::string spaced_kinds(const std::vector<std::string>& kinds) { return spaced(joined(kinds)); }
+
+void add_numbers(Table& table, const std::string& of, const std::vector<ModelNumber>& numbers) {
+  bool first = true;
+  for (const ModelNumber& number : numbers) {
+    table.rows.push_back({first ? of : "", number.name,
+                          Cell(short_number(number.value), Emphasis::kStrong),
+                          short_number(number.standard_error), number.unit, number.origin});
+    first = false;
+  }
+}
+
+// One step of the search.
+struct Step {
+  const diagnosis::HeldOut& before;
+  const std::vector<diagnosis::Trial>& tried;
+  std::size_t chosen;  // beyond the end: none
+  std::vector<std::string> ties;
+};
+
+Cell outcome_of(const Step& step, std::size_t i) {
+  if (i == step.chosen) return {"added", Emphasis::kGood};
+  const std::string& kind = step.tried[i].model.effects.back().kind;
+  if (std::ranges::find(step.ties, kind) != step.ties.end()) {
+    return {"as good (tie)", Emphasis::kStrong};
+  }
+  return {"rejected", Emphasis::kFaint};
+}
+
+void add_trial(Table& table, const Step& step, std::size_t i) {
+  const diagnosis::Trial& trial = step.tried[i];
+  const diagnosis::Effect& effect = trial.model.effects.back();
+  const bool finite = std::isfinite(trial.rmse) && trial.held_out.finite;
+  table.rows.push_back({spaced(effect.kind), effect.form, joined(effect.channels),
+                        std::to_string(diagnosis::complexity(trial.model)),
+                        short_number(trial.rmse),
+                        finite ? percent(trial.rmse / step.before.rmse() - 1.0) : "–",
+                        finite ? p_value(diagnosis::compared(step.before, trial.held_out).p) : "–",
+                        outcome_of(step, i)});
+}
+
+Table tried_table(const Diagnosis& found, const Step& step, const std::string& caption) {
+  Table table;
+  table.caption = caption;
+  table.header = {
+      "kind",   "form", "signals", "numbers", "RMSE [" + shown_unit(found.output_unit) + "]",
+      "change", "p",    "outcome"};
+  table.align = {Align::kLeft,  Align::kLeft,  Align::kLeft,  Align::kRight,
+                 Align::kRight, Align::kRight, Align::kRight, Align::kLeft};
+  const std::size_t shown_rows = std::min(step.tried.size(), kMostTried);
+  for (std::size_t i = 0; i < shown_rows; ++i) add_trial(table, step, i);
+  if (step.chosen >= shown_rows && step.chosen < step.tried.size()) {
+    add_trial(table, step, step.chosen);
+  }
+  return table;
+}
+
+std::string candidates_in_words(const std::vector<diagnosis::Trial>& tried) {
+  const std::string count = std::to_string(tried.size());
+  return tried.size() > kMostTried
+             ? std::to_string(kMostTried) + " best of " + count + " candidates"
+             : "all " + count + " candidates";
+}
+
+}  // namespace
+
+Table error_table(const Diagnosis& found) {
+  const std::string unit = shown_unit(found.output_unit);
+  Table table;
+  table.caption =
+      "RMS error of the free run on blocks of time that the fit has not seen, 95 % interval over "
+      "the blocks; variance accounted for; against the noise floor.";
+  table.header = {"model",  "RMSE [" + unit + "]", "95 % interval [" + unit + "]", "VAF [%]",
+                  "change", "over the floor"};
+  const double floor = found.noise_floor.rmse;
+  table.rows.push_back(error_row("baseline", found.baseline_error, found.baseline_error, floor));
+  const HeldOutError* before = &found.baseline_error;
+  for (const FoundEffect& effect : found.effects) {
+    table.rows.push_back(error_row("+ " + effect_title(effect), effect.after, *before, floor));
+    before = &effect.after;
+  }
+  if (found.effects.size() > 1) {
+    table.rows.push_back(
+        error_row("final, against the baseline", found.final_error, found.baseline_error, floor));
+  }
+  table.rows.push_back({"noise floor", Cell(short_number(floor), Emphasis::kStrong),
+                        interval(found.noise_floor.low, found.noise_floor.high)});
+  return table;
+}
+
+Table effect_table(const Diagnosis& found) {
+  Table table;
+  table.caption =
+      "Effects in the order in which they were added. p: of such an improvement by chance, signed "
+      "ranks of the blocks. Ties: other kinds that explain the record as well; the simplest was "
+      "taken.";
+  table.header = {"effect", "form", "what the data say", "p", "ties"};
+  table.align = {Align::kLeft, Align::kLeft, Align::kLeft, Align::kRight, Align::kLeft};
+  for (const FoundEffect& effect : found.effects) {
+    table.rows.push_back({Cell(effect_title(effect), Emphasis::kStrong), effect.effect.form,
+                          shown_sentence(effect.evidence, found.output_unit), p_value(effect.p),
+                          spaced_kinds(effect.ties)});
+  }
+  return table;
+}
+
+Table parameter_table(const Evidence& evidence) {
+  Table table;
+  table.caption =
+      "Numbers of the final model, baseline and effects fitted together to the whole record. "
+      "Standard errors from the linearised fit, samples counted once a correlation length; an en "
+      "dash where the number was not fitted or is no plain one. A coefficient multiplies the "
+      "effect's term; those of a path through the body or of a loop are in the model file.";
+  table.header = {"part", "number", "value", "standard error", "unit", "origin"};
+  table.align = {Align::kLeft,  Align::kLeft, Align::kRight,
+                 Align::kRight, Align::kLeft, Align::kLeft};
+  for (std::size_t e = 0; e < evidence.found.effects.size(); ++e) {
+    add_numbers(table, effect_title(evidence.found.effects[e]), effect_numbers(evidence, e));
+  }
+  add_numbers(table, "linear part", body_numbers(evidence));
+  return table;
+}
+
+std::vector<Table> tried_tables(const Evidence& evidence) {
+  const Diagnosis& found = evidence.found;
+  std::vector<Table> tables;
+  for (std::size_t s = 0; s < found.search.additions.size(); ++s) {
+    const diagnosis::Addition& addition = found.search.additions[s];
+    std::string caption = "Step " + std::to_string(s + 1) + ": " +
+                          candidates_in_words(addition.tried) +
+                          ". RMSE held out; numbers: fitted ones of the whole model.";
+    if (!addition.ties.empty()) {
+      caption += " As good as the one that was added: " + spaced_kinds(addition.ties) + ".";
+    }
+    tables.push_back(tried_table(
+        found, {addition.before, addition.tried, addition.chosen, addition.ties}, caption));
+  }
+  const auto& last = found.search.last_tried;
+  if (!last.empty()) {
+    const std::string caption =
+        (tables.empty() ? std::string("No effect was worth adding: ")
+                        : std::string("No further effect was worth adding: ")) +
+        candidates_in_words(last) + ". To be added, the error must fall by more than " +
+        percent(found.options.search.least_fall, 0) + " with p below " +
+        short_number(found.options.search.significance) +
+        " divided by the number of candidates, or undivided where it falls by more than " +
+        percent(found.options.search.large_fall, 0) + "; at most " +
+        std::to_string(found.options.search.most_effects) + " effects are added.";
+    tables.push_back(tried_table(found, {evidence.after_held_out, last, last.size(), {}}, caption));
+  }
+  return tables;
+}
+
+Table detection_table(const Diagnosis& found) {
+  Table table;
+  table.caption =
+      "Questions put to the residual, each beside the model, whose numbers may move: the "
+      "share of its power that the answer explains on held-out blocks, and the probability of that "
+      "by chance, corrected after Holm for all " +
+      std::to_string(found.before.detections.size()) + " questions.";
+  const bool both = !found.effects.empty();
+  table.header = {"question", "about", "share", "p", "found"};
+  table.align = {Align::kLeft, Align::kLeft, Align::kRight, Align::kRight, Align::kLeft};
+  if (both) {
+    table.header = {"question",     "about",       "share before", "p before",
+                    "found before", "share after", "p after",      "found after"};
+    table.align.insert(table.align.end(), {Align::kRight, Align::kRight, Align::kLeft});
+  }
+  const auto add_answer = [](std::vector<Cell>& row, const diagnosis::Detection& answer) {
+    row.emplace_back(percent(answer.share));
+    row.emplace_back(p_value(answer.p));
+    row.push_back(answer.found ? Cell("yes", Emphasis::kBad) : Cell("no", Emphasis::kFaint));
+  };
+  for (const Answers& each : strongest_answers(found, kMostQuestions)) {
+    const std::string& about = each.before.channel;
+    std::vector<Cell> row{each.before.question, about.empty() ? "–" : about};
+    add_answer(row, each.before);
+    if (both) add_answer(row, each.after);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+std::string never_proposed(const Diagnosis& found) {
+  std::set<std::string> proposed;
+  const auto note = [&proposed](const std::vector<diagnosis::Trial>& tried) {
+    for (const diagnosis::Trial& trial : tried) proposed.insert(trial.model.effects.back().kind);
+  };
+  for (const diagnosis::Addition& addition : found.search.additions) note(addition.tried);
+  note(found.search.last_tried);
+  std::string text;
+  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
+    if (proposed.contains(std::string(kind->name()))) continue;
+    text += (text.empty() ? "" : ", ") + spaced(kind->name());
+  }
+  return text;
+}
+
+}  // namespace stillhand::diagnose

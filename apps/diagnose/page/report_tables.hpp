@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "apps/diagnose/page/evidence.hpp"
+#include "apps/report/page.hpp"
+
+namespace stillhand::diagnose {
+
+/// Held-out error of the baseline, after each effect, at the end; and the noise floor.
+report::Table error_table(const diagnosis::Diagnosis& found);
+/// What was found: kind, channel, form, improvement, ties.
+report::Table effect_table(const diagnosis::Diagnosis& found);
+/// Numbers of the effects, then of the linear part, with units and standard errors.
+report::Table parameter_table(const Evidence& evidence);
+/// For each step of the search the ten best that were tried; the last one is where it ended.
+std::vector<report::Table> tried_tables(const Evidence& evidence);
+/// The fifteen questions with the largest shares, before and after.
+report::Table detection_table(const diagnosis::Diagnosis& found);
+
+/// Names of the kinds that nothing spoke for in any step, ready to read; empty: none.
+std::string never_proposed(const diagnosis::Diagnosis& found);
+
+}  // namespace stillhand::diagnose

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "services/diagnosis/core/diagnose.hpp"
+
+namespace stillhand::diagnose {
+
+/// A unit as people write it: "m/s²" for "m/s^2", "N·m" for "N*m", "°C" for "degC", "µs" for "us".
+std::string shown_unit(std::string_view unit);
+/// Number of three digits and unit; a number alone for "-" and for none.
+std::string shown(double value, std::string_view unit);
+/// "name [unit]"; the name alone where there is no unit.
+std::string axis_label(std::string_view name, std::string_view unit);
+/// "[unit]" of a ratio of units, for example "N/(m/s²)"; "-" where both are the same or none.
+std::string unit_ratio(std::string_view over, std::string_view under);
+/// "N²", "(m/s²)²": a power of a unit; "-" of none.  @param exponent  "²" or "³"
+std::string unit_power(std::string_view unit, std::string_view exponent);
+/// The engine's sentence with the output's unit put in and signs as people write them.
+std::string shown_sentence(std::string_view sentence, std::string_view output_unit);
+
+/// "coulomb friction" and, if it hangs on one, its channel: "coulomb friction (omega)".
+std::string effect_title(const diagnosis::FoundEffect& effect);
+std::string spaced(std::string_view kind);
+
+/// p as text; "< 10⁻³⁰⁰" where a double can't hold it.
+std::string p_value(double p);
+/// "12.3 %"; an en dash for what isn't finite.
+std::string percent(double share, int decimals = 1);
+
+/// The verdict in words, a few sentences.
+std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis);
+
+}  // namespace stillhand::diagnose

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/hosts.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <stdexcept>
+
+#include "apps/deploy/generated_file.hpp"
+#include "apps/deploy/machine.hpp"
+#include "apps/deploy/profiles.hpp"
+#include "apps/lab/keys.hpp"
+#include "apps/lab/lab.hpp"
+#include "idl/topics.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+// Where a host has the keys of its services, for its units as for a session.
+std::filesystem::path installed_keys(const deploy::Inventory& inventory) {
+  return std::filesystem::path(deploy::installed_folder(inventory)) / "security";
+}
+
+}  // namespace
+
+Hosts::Hosts(const LabOptions& options)
+    : domain_(options.domain),
+      rig_(options.rig),
+      local_{options.profiles, options.config, options.out, options.security},
+      video_(options.video),
+      attach_(options.attach) {
+  if (!options.inventory.empty()) {
+    inventory_ = deploy::read_inventory(options.inventory);
+    domain_ = inventory_->domain;
+    local_.security = inventory_->security;
+    check(options);
+  }
+  // Of services that run already each has looked at its own.
+  check_keys(local_.security, domain_,
+             attach_ ? std::vector<std::string>{"experiment"} : services_on(host_of("experiment")));
+}
+
+// What an inventory allows and a session over it cannot do.
+void Hosts::check(const LabOptions& options) const {
+  const std::string file = options.inventory.string();
+  if (std::ranges::find(inventory_->rigs, rig_, &deploy::Rig::number) == inventory_->rigs.end()) {
+    throw ConfigError("--rig", std::to_string(rig_), "the number of a rig of " + file);
+  }
+  const deploy::Host* here = host_of("experiment");
+  if (!here->start.empty()) {
+    throw ConfigError(here->place + ": host " + here->name,
+                      "experiment on a host that is reached from elsewhere",
+                      "experiment on the host without \"start\", where `stillhand lab` runs");
+  }
+  const auto own = deploy::own_addresses();
+  if (std::ranges::find(own, here->address) == own.end()) {
+    throw ConfigError(here->place + ": host " + here->name,
+                      here->address + ", which is on no interface of this machine",
+                      "the address of the machine where `stillhand lab` runs");
+  }
+  const auto want_here = [&](std::string_view service, const std::string& option,
+                             const std::string& why) {
+    const deploy::Host* host = host_of(service);
+    if (host == here) return;
+    throw ConfigError(option, std::string(service) + " on the host " + host->name,
+                      std::string(service) + " on this machine: " + why);
+  };
+  if (options.undeclared_effect != 0) {
+    want_here("rig", "--undeclared-effect", "what is sealed travels over no network");
+  }
+  if (!options.ride.empty()) want_here("motion", "--ride", "the file is here");
+  if (options.who == Operator::kMouse && host_of("display") != host_of("human_operator")) {
+    throw ConfigError("--operator", "mouse, with display and human_operator on two hosts",
+                      "both on the host with the mouse");
+  }
+}
+
+const deploy::Host* Hosts::host_of(std::string_view service) const {
+  return inventory_ ? &inventory_->host_of(service, rig_) : nullptr;
+}
+
+std::vector<std::string> Hosts::services_on(const deploy::Host* host) const {
+  std::vector<std::string> services;
+  for (const std::string_view service : topics::kServices) {
+    if (host_of(service) == host) services.emplace_back(service);
+  }
+  return services;
+}
+
+RemoteHost* Hosts::remote_of(std::string_view service) const {
+  const auto remote = remotes_.find(host_of(service));
+  return remote == remotes_.end() ? nullptr : remote->second.get();
+}
+
+void Hosts::open(const runtime::Stop& stop) {
+  if (!inventory_) return;
+  const deploy::LabProfiles profiles(local_.profiles);
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(local_.config)) {
+    if (entry.path().extension() != ".yaml") continue;
+    files["config/" + entry.path().filename().string()] =
+        recording::read_file(entry.path().string());
+  }
+  for (const deploy::Host& host : inventory_->hosts) {
+    const std::string own = profiles.of(*inventory_, host);
+    if (host.start.empty()) {
+      local_.profiles = local_.out / "logs" / "profiles.xml";
+      const auto status = recording::write_file_atomically(local_.profiles.string(), own);
+      if (!status.ok()) throw std::runtime_error(status.text);
+      continue;
+    }
+    if (attach_) continue;  // its services have theirs
+    auto remote =
+        std::make_unique<RemoteHost>(host, local_.out / "logs" / ("host_" + host.name + ".log"));
+    remote->open(stop);
+    files["profiles.xml"] = own;
+    remote->put(files);
+    if (!local_.security.empty()) {
+      const std::string authority =
+          recording::read_file((local_.security / "authority.pem").string());
+      const std::filesystem::path keys = installed_keys(*inventory_);
+      remote->check(keys_script(keys, authority, services_on(&host)),
+                    "the keys of its services in " + keys.string() + ", of this lab's authority");
+    }
+    remotes_[&host] = std::move(remote);
+  }
+}
+
+Place Hosts::of(std::string_view service) const {
+  const RemoteHost* remote = remote_of(service);
+  if (remote == nullptr) return local_;
+  const std::filesystem::path folder = remote->folder();
+  return {folder / "profiles.xml", folder / "config", folder,
+          local_.security.empty() ? "" : installed_keys(*inventory_)};
+}
+
+Launch Hosts::placed(const Launch& local) const {
+  const RemoteHost* remote = remote_of(local.name);
+  return remote == nullptr ? local : remote->on_it(local);
+}
+
+void Hosts::clear() noexcept {
+  for (const auto& [host, remote] : remotes_) {
+    try {
+      remote->close();
+    } catch (const std::exception&) {  // a folder in /tmp: the host itself clears it one day
+    }
+  }
+  remotes_.clear();
+}
+
+void Hosts::bring_back() noexcept {
+  const auto fetch = [&](std::string_view service, const std::string& file) {
+    if (RemoteHost* remote = remote_of(service)) remote->fetch(file, local_.out / file);
+  };
+  for (const auto& [host, remote] : remotes_) {
+    try {
+      if (host == host_of("recorder")) fetch("recorder", "session.mcap");
+      if (video_ && host == host_of("display")) fetch("display", "screen.avi");
+      remote->close();
+    } catch (const std::exception& error) {
+      std::cerr << "stillhand lab: host " << host->name << ": what was written in "
+                << remote->folder() << " stays there: " << error.what() << '\n';
+    }
+  }
+  remotes_.clear();
+}
+
+void Hosts::bring_recording(const std::filesystem::path& file) noexcept {
+  const std::filesystem::path to = local_.out / "session.mcap";
+  const deploy::Host* host = host_of("recorder");
+  try {
+    if (file.empty()) throw std::runtime_error("the recorder named no file");
+    if (host == nullptr || host->start.empty()) {
+      std::filesystem::copy_file(file, to);
+    } else {
+      RemoteHost(*host, local_.out / "logs" / ("host_" + host->name + ".log")).fetch(file, to);
+    }
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand lab: the recording stays "
+              << (host == nullptr ? "where it is" : "on host " + host->name) << ", " << file << ": "
+              << error.what() << '\n';
+  }
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/lab/processes.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::lab {
+
+/// Looks for a service whose life sign is gone for good: it hangs, or ended where nobody here is
+/// its parent.  One thread.
+class LostService {
+ public:
+  /// @param patience_s  between trials nothing asks for an unbroken life sign
+  /// @param only        the one that is looked for; empty: all
+  LostService(const runtime::Bus& bus, double patience_s, std::string only = "")
+      : bus_(bus),
+        patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)),
+        only_(std::move(only)) {}
+
+  std::optional<Ended> operator()() {
+    std::vector<std::string> lost = bus_.lost_peers();
+    std::erase_if(lost, [&](const std::string& name) { return !only_.empty() && name != only_; });
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (lost.empty()) since_ns_ = now_ns;
+    if (now_ns - since_ns_ < patience_ns_) return std::nullopt;
+    return Ended{lost.front(), 0, "its life sign is gone", -1, ""};
+  }
+
+ private:
+  const runtime::Bus& bus_;
+  std::int64_t patience_ns_;
+  std::string only_;
+  std::int64_t since_ns_ = runtime::monotonic_ns();
+};
+
+}  // namespace stillhand::lab

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/output_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+// Everything that a session writes, logs aside, and what the closed loop adds: a report of another
+// session beside a new recording would be believed.
+constexpr const char* kResults[]{"session.mcap",
+                                 "summary.json",
+                                 "model.json",
+                                 "screen.avi",
+                                 "undeclared_effect.json",
+                                 "undeclared_effect.sha256",
+                                 "control_model.json",
+                                 "verdict.json",
+                                 "report.html",
+                                 "tracking.svg",
+                                 "tracking.png",
+                                 "force.svg",
+                                 "force.png",
+                                 "adaptation.svg",
+                                 "adaptation.png",
+                                 "motion.svg",
+                                 "motion.png"};
+
+std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : kResults) files.push_back(folder / name);
+  for (const std::string_view service : topics::kServices) {
+    files.push_back(folder / "logs" / (std::string(service) + ".log"));
+  }
+  // Of a session over several machines: the profiles here, and what each host said.
+  files.push_back(folder / "logs" / "profiles.xml");
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "logs", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("host_") && name.ends_with(".log")) files.push_back(entry.path());
+  }
+  return files;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::filesystem::path& path,
+                           const std::vector<std::filesystem::path>& inputs)
+    : path_(path) {
+  make();
+  try {
+    prove_writable();
+    lock();
+    for (const std::filesystem::path& input : inputs) refuse_if_needed(input);
+    clear();
+    std::error_code error;
+    std::filesystem::create_directories(path_ / "logs", error);
+    if (error || !std::filesystem::is_directory(path_ / "logs")) {
+      throw ConfigError("--out", path_.string() + ", in which logs is no folder",
+                        "a folder whose logs can be written");
+    }
+    for (const std::filesystem::path& file : session_files(path_)) {
+      if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) {
+        throw ConfigError("--out", file.string() + ", which is in the way",
+                          "a folder of an earlier session, or an empty one");
+      }
+    }
+  } catch (...) {
+    close(descriptor_);
+    std::error_code error;
+    if (made_) std::filesystem::remove(path_, error);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() { close(descriptor_); }
+
+void OutputFolder::make() {
+  std::error_code error;
+  made_ = std::filesystem::create_directories(path_, error);
+  if (error || !std::filesystem::is_directory(path_, error)) {
+    throw ConfigError(
+        "--out", (path_.empty() ? "\"\"" : path_.string()) + (error ? ": " + error.message() : ""),
+        "a folder that can be made and written");
+  }
+}
+
+void OutputFolder::prove_writable() const {
+  const std::filesystem::path probe = path_ / ".stillhand-probe";
+  std::error_code error;
+  std::filesystem::remove(probe, error);  // a link of that name leads to somebody else's file
+  std::ofstream file(probe);
+  file << "probe";
+  file.close();  // a full disk shows here at the latest
+  const bool written = file.good();
+  std::filesystem::remove(probe, error);
+  if (!written) {
+    throw ConfigError("--out", path_.string() + ", which cannot be written",
+                      "a folder with write permission and room");
+  }
+}
+
+// A lock on the folder itself: nothing stays behind however the process ends.
+void OutputFolder::lock() {
+  descriptor_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    throw ConfigError("--out", path_.string() + ", where another lab writes",
+                      "a folder of its own for each lab");
+  }
+}
+
+void OutputFolder::refuse_if_needed(const std::filesystem::path& input) const {
+  if (input.empty()) return;
+  for (const std::filesystem::path& file : session_files(path_)) {
+    std::error_code error;
+    if (std::filesystem::equivalent(file, input, error)) {
+      throw ConfigError("--out",
+                        path_.string() + ", whose " + file.filename().string() +
+                            " is read by this session and would be replaced",
+                        "another folder");
+    }
+  }
+}
+
+void OutputFolder::discard() const {
+  clear();
+  std::error_code error;
+  if (made_) std::filesystem::remove(path_, error);
+}
+
+void OutputFolder::clear() const {
+  std::error_code error;
+  for (const std::filesystem::path& file : session_files(path_)) {
+    if (!std::filesystem::is_directory(file, error)) std::filesystem::remove(file, error);
+  }
+  const std::filesystem::path logs = path_ / "logs";
+  if (std::filesystem::is_directory(logs, error)) {
+    std::filesystem::remove(logs, error);  // unless it holds something else
+  }
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace stillhand::lab {
+
+/// The folder of a session's results: made if need be, proved writable, held against other labs,
+/// and cleared of what an earlier session left in it.  Only files that a session writes are ever
+/// taken away.
+class OutputFolder {
+ public:
+  /// @param inputs  files that the session reads; empty ones don't count
+  /// @throws ConfigError when the folder cannot be made or written, an input would be cleared away,
+  ///         or another lab uses it.
+  OutputFolder(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Takes away what a session writes, and the folder if it was made here.
+  void discard() const;
+
+ private:
+  void make();
+  void prove_writable() const;
+  void lock();
+  void refuse_if_needed(const std::filesystem::path& input) const;
+  void clear() const;
+
+  std::filesystem::path path_;
+  bool made_ = false;
+  int descriptor_ = -1;  ///< of the folder; carries the lock
+};
+
+}  // namespace stillhand::lab

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/rehearsal.hpp"
+
+#include <optional>
+#include <sstream>
+
+#include "services/contract/config_error.hpp"
+#include "services/display/core/tracking_display.hpp"
+#include "services/motion/core/motion_generator.hpp"
+#include "services/settings/load.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+motion::MotionProfile profile_of(const session::PlannedTrial& planned,
+                                 const session::ProtocolOptions& options,
+                                 const motion::RideRecord& ride) {
+  motion::MotionProfile profile = session::motion_profile(planned);
+  profile.road_class = options.road_class;
+  profile.road_speed_m_s = options.road_speed_m_s;
+  profile.ride_rate_hz = ride.rate_hz;
+  profile.ride_accel_m_s2 = ride.accel_m_s2;
+  return profile;
+}
+
+// What the user can change about a motion that the platform cannot follow.
+ConfigError refusal(const session::PlannedTrial& planned, const session::ProtocolOptions& options,
+                    const motion::RideRecord& ride, const std::string& why) {
+  std::ostringstream got;
+  switch (planned.motion) {
+    case session::Motion::kBandNoise:
+      got << "the noise of trial " << planned.trial.number << " (" << planned.label << ")";
+      return {"motion.yaml", got.str(), "limits that allow it (" + why + ")"};
+    case session::Motion::kRoad:
+      got << options.road_class << " at " << options.road_speed_m_s << " m/s";
+      return {"--road-class", got.str(),
+              "a better road or less speed, which the platform can follow (" + why + ")"};
+    case session::Motion::kRide:
+      break;
+  }
+  return {ride.source, "a ride that the platform cannot follow", "another (" + why + ")"};
+}
+
+}  // namespace
+
+AskedMotions rehearse(const session::ProtocolOptions& options, const motion::RideRecord& ride,
+                      const std::filesystem::path& config) {
+  const auto platform =
+      settings::load<motion::MotionGenerator::Config>(config / "motion.yaml", "motion");
+  const auto screen =
+      settings::load<display::TrackingDisplay::Config>(config / "display.yaml", "display");
+  AskedMotions asked;
+  std::optional<motion::MotionReport> followed_ride;
+  for (const session::PlannedTrial& planned : session::plan(options)) {
+    const Trial& trial = planned.trial;
+    if (trial.phase == TrialPhase::kTracking) {
+      display::reference_on_screen(screen, trial.duration_ticks, planned.reference_seed);
+    }
+    if (!planned.moving) continue;
+    // A ride has no seed: every trial gets the same one, and an hour of it takes seconds.
+    if (planned.motion == session::Motion::kRide && followed_ride) {
+      asked[trial.number] = *followed_ride;
+      continue;
+    }
+    try {
+      const motion::MotionTrajectory motion(profile_of(planned, options, ride), platform.limits);
+      asked[trial.number] = motion.report();
+      if (planned.motion == session::Motion::kRide) followed_ride = motion.report();
+    } catch (const ConfigError& error) {
+      throw refusal(planned, options, ride, error.what());
+    }
+  }
+  return asked;
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "apps/session/protocol.hpp"
+#include "services/motion/core/motion_trajectory.hpp"
+#include "services/motion/ride_file.hpp"
+
+namespace stillhand::lab {
+
+/// What is asked of the platform, by the number of the trial; of those that move.
+using AskedMotions = std::map<std::int64_t, motion::MotionReport>;
+
+/// Makes the motion and the target of every trial once, before any process starts, as motion and
+/// display will make them: what cannot be followed or shown is known before a subject sits there.
+/// @param ride    for Motion::kRide, otherwise empty
+/// @param config  folder of motion.yaml and display.yaml
+/// @throws ConfigError naming what the user asked for, with what the platform would have needed.
+AskedMotions rehearse(const session::ProtocolOptions& options, const motion::RideRecord& ride,
+                      const std::filesystem::path& config);
+
+}  // namespace stillhand::lab

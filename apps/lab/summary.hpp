@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "apps/lab/lab.hpp"
+#include "apps/session/trial_outcome.hpp"
+
+namespace stillhand::lab {
+
+/// Evaluates, prints the table beside the paper's, writes summary.json and model.json.
+/// @return exit status of the lab.
+int report_session(const LabOptions& options, const std::vector<session::TrialOutcome>& outcomes,
+                   bool interrupted);
+
+}  // namespace stillhand::lab

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/recordings/hdf5_tables.hpp"
+
+#include <hdf5.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "apps/recordings/column_names.hpp"
+#include "apps/recordings/pending_file.hpp"
+
+namespace stillhand::recordings {
+namespace {
+
+using recording::Cell;
+using recording::CellKind;
+
+constexpr hsize_t kBlockRows = 8192;  // 64 KiB of numbers: what is packed and read as one
+constexpr std::size_t kLongestName = 255;
+
+/// An identifier of the library, closed at its end.
+class Id {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Id(hid_t id, Close at_end, const std::string& path) : id_(id), close_(at_end) {
+    if (id < 0) throw std::runtime_error(path + ": cannot be written; is the disk full?");
+  }
+  Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Id& operator=(Id&&) = delete;
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const noexcept { return id_; }
+  /// Closes now, where failing matters.
+  herr_t close() { return close_(std::exchange(id_, -1)); }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+void check(herr_t outcome, const std::string& path) {
+  if (outcome < 0) throw std::runtime_error(path + ": cannot be written; is the disk full?");
+}
+
+Id text_type(const std::string& path) {
+  Id type(H5Tcopy(H5T_C_S1), H5Tclose, path);
+  check(H5Tset_size(type, H5T_VARIABLE), path);
+  check(H5Tset_cset(type, H5T_CSET_UTF8), path);
+  return type;
+}
+
+void put_attribute(hid_t object, const char* name, const std::string& text,
+                   const std::string& path) {
+  const Id type = text_type(path);
+  const Id space(H5Screate(H5S_SCALAR), H5Sclose, path);
+  const Id attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                     path);
+  const char* value = text.c_str();
+  check(H5Awrite(attribute, type, &value), path);
+}
+
+// One data set; rows gather here until a block is full.
+class Column {
+ public:
+  Column(hid_t group, const std::string& name, const std::string& unit, CellKind kind,
+         const std::string& path)
+      : path_(path), kind_(kind), type_(memory_type(kind, path)), set_(make(group, name)) {
+    if (!unit.empty()) put_attribute(set_, "unit", unit, path);
+  }
+
+  void take(const Cell& cell) {
+    switch (kind_) {
+      case CellKind::kInteger:
+        integers_.push_back(std::get<std::int64_t>(cell));
+        break;
+      case CellKind::kUnsigned:
+        unsigneds_.push_back(std::get<std::uint64_t>(cell));
+        break;
+      case CellKind::kReal:
+        reals_.push_back(real_of(cell));
+        break;
+      case CellKind::kText:
+        texts_.emplace_back(std::holds_alternative<std::string_view>(cell)
+                                ? std::get<std::string_view>(cell)
+                                : std::string_view());
+        break;
+    }
+    if (++held_ == kBlockRows) write();
+  }
+
+  void write() {
+    if (held_ == 0) return;
+    const hsize_t first = rows_;
+    rows_ += held_;
+    check(H5Dset_extent(set_, &rows_), path_);
+    const Id file_space(H5Dget_space(set_), H5Sclose, path_);
+    check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &first, nullptr, &held_, nullptr), path_);
+    const Id memory_space(H5Screate_simple(1, &held_, nullptr), H5Sclose, path_);
+    std::vector<const char*> pointers;
+    for (const std::string& text : texts_) pointers.push_back(text.c_str());
+    const void* values = kind_ == CellKind::kInteger    ? static_cast<const void*>(integers_.data())
+                         : kind_ == CellKind::kUnsigned ? unsigneds_.data()
+                         : kind_ == CellKind::kReal     ? static_cast<const void*>(reals_.data())
+                                                        : pointers.data();
+    check(H5Dwrite(set_, type_, memory_space, file_space, H5P_DEFAULT, values), path_);
+    integers_.clear();
+    unsigneds_.clear();
+    reals_.clear();
+    texts_.clear();
+    held_ = 0;
+  }
+
+ private:
+  static Id memory_type(CellKind kind, const std::string& path) {
+    if (kind == CellKind::kText) return text_type(path);
+    const hid_t type = kind == CellKind::kInteger    ? H5T_NATIVE_INT64
+                       : kind == CellKind::kUnsigned ? H5T_NATIVE_UINT64
+                                                     : H5T_NATIVE_DOUBLE;
+    return {H5Tcopy(type), H5Tclose, path};
+  }
+
+  Id make(hid_t group, const std::string& name) {
+    const hsize_t none = 0;
+    const hsize_t unlimited = H5S_UNLIMITED;
+    const Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose, path_);
+    const Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path_);
+    check(H5Pset_chunk(layout, 1, &kBlockRows), path_);
+    if (kind_ != CellKind::kText) check(H5Pset_shuffle(layout), path_);
+    check(H5Pset_deflate(layout, 1), path_);
+    return {H5Dcreate2(group, name.c_str(), type_, space, H5P_DEFAULT, layout, H5P_DEFAULT),
+            H5Dclose, path_};
+  }
+
+  const std::string& path_;
+  CellKind kind_;
+  Id type_;
+  Id set_;
+  hsize_t rows_ = 0;
+  hsize_t held_ = 0;
+  std::vector<std::int64_t> integers_;
+  std::vector<std::uint64_t> unsigneds_;
+  std::vector<double> reals_;
+  std::vector<std::string> texts_;
+};
+
+class Hdf5Sink : public TableSink {
+ public:
+  Hdf5Sink(hid_t file, const TopicTable& table, const std::string& path)
+      : group_(H5Gcreate2(file, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+               H5Gclose, path) {
+    put_attribute(group_, "topic", table.topic, path);
+    put_attribute(group_, "type", table.type, path);
+    std::set<std::string> taken;
+    columns_.reserve(table.columns.size() + 4);
+    const auto add = [&](const std::string& name, const std::string& unit, CellKind kind) {
+      columns_.emplace_back(group_, plain_name(name, kLongestName, taken), unit, kind, path);
+    };
+    add("t", "s", CellKind::kReal);
+    add("log_time", "ns", CellKind::kUnsigned);
+    add("publish_time", "ns", CellKind::kUnsigned);
+    add("sequence", "-", CellKind::kUnsigned);
+    for (const auto& column : table.columns) {
+      add(column.name, column.unit, kind_without_gaps(column));
+    }
+  }
+
+  void take(const TableRow& row) override {
+    auto column = columns_.begin();
+    const auto put = [&](const Cell& cell) { (column++)->take(cell); };
+    put(static_cast<double>(row.since_start_ns) * 1e-9);
+    put(row.log_time_ns);
+    put(row.publish_time_ns);
+    put(std::uint64_t{row.sequence});
+    for (const Cell& cell : row.cells) put(cell);
+  }
+
+  void finish() override {
+    for (Column& column : columns_) column.write();
+  }
+
+ private:
+  Id group_;
+  std::vector<Column> columns_;
+};
+
+class Hdf5File : public TableFile {
+ public:
+  explicit Hdf5File(const std::string& path)
+      : path_(path),
+        pending_(path),
+        file_(H5Fcreate(pending_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+              path_) {}
+
+  std::unique_ptr<TableSink> add(const TopicTable& table) override {
+    return std::make_unique<Hdf5Sink>(file_, table, path_);
+  }
+  void close() override {
+    check(H5Fflush(file_, H5F_SCOPE_GLOBAL), path_);
+    check(file_.close(), path_);
+  }
+  void publish() override { pending_.publish(); }
+
+ private:
+  std::string path_;
+  PendingFile pending_;
+  Id file_;
+};
+
+}  // namespace
+
+std::unique_ptr<TableFile> hdf5_tables(const std::string& path) {
+  // Failures are told by their outcome; the library would print its stack besides.
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  return std::make_unique<Hdf5File>(path);
+}
+
+}  // namespace stillhand::recordings

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/replay/remote.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "apps/replay/replay.hpp"
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::replay {
+namespace {
+
+using stillhand_msgs::ReplayAction;
+
+constexpr std::int64_t kAnswer_ns = 5 * runtime::kNsPerSecond;
+constexpr double kNs = 1e9;
+
+bool inside(double at_s, const Played& played) {
+  const double length_s = static_cast<double>(played.end_ns - played.start_ns) / kNs;
+  return std::isfinite(at_s) && at_s >= 0.0 && at_s <= length_s;
+}
+
+std::int64_t log_time(double at_s, const Played& played) {
+  return static_cast<std::int64_t>(played.start_ns) + std::llround(at_s * kNs);
+}
+
+/// @returns why not, or ""
+std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& player,
+                     const Played& played, bool& quit) {
+  switch (command.action()) {
+    case stillhand_msgs::REPLAY_PLAY:
+      player.set_paused(false);
+      return {};
+    case stillhand_msgs::REPLAY_PAUSE:
+      player.set_paused(true);
+      return {};
+    case stillhand_msgs::REPLAY_STEP:
+      player.set_paused(true);
+      player.step_once();
+      return {};
+    case stillhand_msgs::REPLAY_STOP:
+      quit = true;
+      return {};
+    case stillhand_msgs::REPLAY_LOOP_OFF:
+      player.loop_off();
+      return {};
+    case stillhand_msgs::REPLAY_SEEK:
+      if (!inside(command.from_s(), played)) return "not inside the recording";
+      player.seek(log_time(command.from_s(), played));
+      return {};
+    case stillhand_msgs::REPLAY_LOOP:
+      if (!inside(command.from_s(), played) || !inside(command.to_s(), played) ||
+          command.from_s() >= command.to_s()) {
+        return "not two instants of the recording, one after the other";
+      }
+      player.loop_between(log_time(command.from_s(), played), log_time(command.to_s(), played));
+      return {};
+    case stillhand_msgs::REPLAY_RATE: {
+      const double per_mille = command.rate() * 1000.0;
+      if (!(per_mille >= static_cast<double>(recording::PlayRate::kSlowest)) ||
+          per_mille > static_cast<double>(recording::PlayRate::kFastest)) {
+        return "not a rate of 0.1 to 100";
+      }
+      player.set_rate({std::llround(per_mille)});
+      return {};
+    }
+  }
+  return "no such action";
+}
+
+}  // namespace
+
+void obey(Remote& remote, Player& player, const Played& played, bool& quit) {
+  while (const auto command = remote.next()) {
+    remote.answer(*command, obey_one(*command, player, played, quit));
+    // Who asked hears of it at once.
+    tell_status(remote, player, played);
+  }
+}
+
+namespace {
+
+stillhand_msgs::ReplayStatus status_of(const Player& player, const Played& played) {
+  stillhand_msgs::ReplayStatus status;
+  status.paused(player.paused());
+  status.position_s(
+      static_cast<double>(player.position_ns() - static_cast<std::int64_t>(played.start_ns)) / kNs);
+  status.length_s(static_cast<double>(played.end_ns - played.start_ns) / kNs);
+  status.rate(static_cast<double>(player.rate().per_mille) / 1000.0);
+  status.looping(player.looping());
+  status.released(player.released());
+  constexpr std::size_t kFileRoom = 254;  // string<255> in idl/recording.idl
+  status.file(played.file.substr(0, kFileRoom));
+  return status;
+}
+
+}  // namespace
+
+void tell_status(Remote& remote, const Player& player, const Played& played) {
+  remote.tell(status_of(player, played));
+}
+
+void tell_last_status(Remote& remote, const Player& player, const Played& played) {
+  remote.tell_last(status_of(player, played));
+}
+
+stillhand_msgs::ReplayCommand parse_command(const std::string& text) {
+  struct Form {
+    ReplayAction action;
+    std::size_t numbers;
+  };
+  const std::map<std::string, Form> forms{{"play", {stillhand_msgs::REPLAY_PLAY, 0}},
+                                          {"pause", {stillhand_msgs::REPLAY_PAUSE, 0}},
+                                          {"step", {stillhand_msgs::REPLAY_STEP, 0}},
+                                          {"stop", {stillhand_msgs::REPLAY_STOP, 0}},
+                                          {"loop-off", {stillhand_msgs::REPLAY_LOOP_OFF, 0}},
+                                          {"seek", {stillhand_msgs::REPLAY_SEEK, 1}},
+                                          {"rate", {stillhand_msgs::REPLAY_RATE, 1}},
+                                          {"loop", {stillhand_msgs::REPLAY_LOOP, 2}}};
+  std::istringstream words(text);
+  std::string word;
+  words >> word;
+  const auto form = forms.find(word);
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  if (form == forms.end() || !words.eof() || numbers.size() != form->second.numbers) {
+    throw ConfigError("--remote", text,
+                      "play, pause, step, stop, loop-off, \"seek S\", \"rate R\" or \"loop S S\"");
+  }
+  stillhand_msgs::ReplayCommand command;
+  command.action(form->second.action);
+  if (form->second.action == stillhand_msgs::REPLAY_RATE) {
+    command.rate(numbers[0]);
+  } else if (!numbers.empty()) {
+    command.from_s(numbers[0]);
+    command.to_s(numbers.back());
+  }
+  return command;
+}
+
+int run_remote(const std::string& text, const ReplayOptions& options, runtime::Stop& stop) {
+  const auto status = runtime::ask<stillhand_msgs::ReplayCommand, stillhand_msgs::ReplayStatus>(
+      runtime::outsider("remote", options.domain, options.profiles, true), topics::kReplayCommand,
+      topics::kReplayStatus, parse_command(text), kAnswer_ns, stop);
+  if (!status) {
+    std::fprintf(stderr, "stillhand: no replay answers on domain %u\n", options.domain);
+    return 1;
+  }
+  if (!status->accepted()) {
+    std::fprintf(stderr, "stillhand: %s: %s\n", text.c_str(), status->answer().c_str());
+    return 1;
+  }
+  std::printf("%.3f of %.3f s, rate %g%s%s, %llu messages\n", status->position_s(),
+              status->length_s(), status->rate(), status->paused() ? ", paused" : "",
+              status->looping() ? ", looping" : "",
+              static_cast<unsigned long long>(status->released()));
+  return 0;
+}
+
+}  // namespace stillhand::replay

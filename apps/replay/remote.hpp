@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/replay/player.hpp"
+#include "idl/recording.h"
+#include "services/runtime/remote_control.hpp"
+
+namespace stillhand::replay {
+
+using Remote = runtime::RemoteControl<stillhand_msgs::ReplayCommand, stillhand_msgs::ReplayStatus>;
+
+/// What a replay's status tells besides the player.
+struct Played {
+  std::string file;
+  std::uint64_t start_ns;  ///< log time of the recording's first message
+  std::uint64_t end_ns;    ///< and of its last
+};
+
+/// Obeys every command that has come; `quit` becomes true when one said so.
+void obey(Remote& remote, Player& player, const Played& played, bool& quit);
+void tell_status(Remote& remote, const Player& player, const Played& played);
+/// The same for half a second, as the replay ends.
+void tell_last_status(Remote& remote, const Player& player, const Played& played);
+
+/// "seek 3.5" and the like as a command.  @throws ConfigError
+stillhand_msgs::ReplayCommand parse_command(const std::string& text);
+
+}  // namespace stillhand::replay

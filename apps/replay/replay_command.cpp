@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/replay/replay_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "apps/replay/replay.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/within.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/shipped.hpp"
+
+namespace stillhand::replay {
+namespace {
+
+constexpr double kMostSeconds = 1e7;
+
+struct Words {
+  ReplayOptions options;
+  bool ordinary = false;
+  std::string rate = "1", remote;
+  std::vector<std::string> remap;
+  double start_s = -1, end_s = -1, wait_s = 20;
+};
+
+std::int64_t ns_of(double seconds) {
+  return std::llround(seconds * static_cast<double>(runtime::kNsPerSecond));
+}
+
+int run(Words words) {
+  ReplayOptions& options = words.options;
+  const auto rate = recording::PlayRate::parse(words.rate);
+  if (!rate) throw ConfigError("--rate", words.rate, "0.1 to 100, at most three decimals");
+  options.rate = *rate;
+  for (const std::string& pair : words.remap) {
+    const std::size_t sign = pair.find('=');
+    if (sign == 0 || sign == std::string::npos || sign + 1 == pair.size()) {
+      throw ConfigError("--remap", pair, "RECORDED=WRITTEN, two names of topics");
+    }
+    options.remap[pair.substr(0, sign)] = pair.substr(sign + 1);
+  }
+  if (words.start_s >= 0) options.start_ns = ns_of(words.start_s);
+  if (words.end_s >= 0) options.end_ns = ns_of(words.end_s);
+  options.wait_limit_ns = ns_of(words.wait_s);
+  options.keyboard = true;
+  runtime::Stop stop;
+  if (!words.remote.empty()) return run_remote(words.remote, options, stop);
+  if (options.file.empty()) throw ConfigError("REC", "none", "the MCAP recording to play");
+  // Before the participant: Fast DDS's threads inherit it.  Where it is refused, it goes without.
+  if (!words.ordinary) runtime::become_real_time();
+  return run_replay(options, stop);
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  ReplayOptions& options = words->options;
+  options.profiles = runtime::shipped("qos/profiles.xml");
+  CLI::App* verb = cli.add_subcommand(
+      "replay",
+      "Plays a recording onto the bus, byte for byte, with the QoS it was recorded with. What it\n"
+      "writes is marked: processes of a session drop it, and no rig on the domain gives a motor\n"
+      "force while a replay is there. Processes started with --answer-replay take it.\n"
+      "Keys: space pause, arrows 5 s back and forth, s next message, + - rate, a b c loop from\n"
+      "here, to here, off, q end.\n"
+      "Example: stillhand replay run/session.mcap --domain 7 --topics stillhand/sensed --rate 0.5");
+  verb->add_option("REC", options.file, "MCAP recording");
+  verb->add_option("--rate", words->rate, "0.1 to 100 times as fast")->capture_default_str();
+  verb->add_option("--topics", options.topics.allow,
+                   "play topics that match (* any run, ? any one); may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--block", options.topics.block, "and none that match; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--remap", words->remap, "RECORDED=WRITTEN: another topic; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--start", words->start_s, "begin there [s] from the recording's start")
+      ->check(recording::within(0.0, kMostSeconds));
+  verb->add_option("--end", words->end_s, "end there [s] from the recording's start")
+      ->check(recording::within(0.0, kMostSeconds));
+  verb->add_flag("--loop", options.loop, "begin again at the end");
+  verb->add_flag("--paused", options.begin_paused, "begin paused");
+  verb->add_option("--wait-for", options.wait_for,
+                   "begin when this topic has a reader; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--wait-seconds", words->wait_s, "patience of --wait-for [s]")
+      ->check(recording::within(0.0, kMostSeconds))
+      ->capture_default_str();
+  verb->add_option("--remote", words->remote,
+                   "instead: tell the replay on this domain: play, pause, step, stop, \"seek S\", "
+                   "\"rate R\", \"loop S S\", loop-off");
+  verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
+  verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
+  verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::replay

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/session/in_process.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "services/signal/spectrum.hpp"
+
+namespace stillhand::session {
+namespace {
+
+constexpr std::uint64_t kSeedMask = 0xffffffffu;  // the cores' seeds are 32-bit numbers
+
+CoreConfigs seeded(CoreConfigs configs, std::uint64_t seed) {
+  configs.rig.seed = static_cast<std::int64_t>(seed & kSeedMask);
+  configs.human_operator.seed = configs.rig.seed;
+  return configs;
+}
+
+sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
+  return {tick,          raw.accel_x_v,   raw.accel_y_v,
+          raw.accel_z_v, raw.load_cell_v, raw.encoder_counts,
+          raw.roll_rad};
+}
+
+// design.md section 3.
+recording::Recording empty_table(TrialPhase phase) {
+  recording::Recording rows;
+  rows.rate_hz = kControlRateHz;
+  rows.columns = {{"a_x", "m/s^2", {}}, {"a_y", "m/s^2", {}}, {"a_z", "m/s^2", {}},
+                  {"roll", "rad", {}},  {"theta", "rad", {}}, {"omega", "rad/s", {}},
+                  {"f", "N", {}},       {"f_motor", "N", {}}};
+  if (phase == TrialPhase::kTracking) {
+    rows.columns.push_back({"x_r", "m", {}});
+    rows.columns.push_back({"x_p", "m", {}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+double cancelled_share(const std::vector<double>& feedthrough_n,
+                       const std::vector<double>& motor_n) {
+  double left = 0.0;
+  double all = 0.0;
+  for (std::size_t n = 0; n < feedthrough_n.size(); ++n) {
+    left += (feedthrough_n[n] + motor_n[n]) * (feedthrough_n[n] + motor_n[n]);
+    all += feedthrough_n[n] * feedthrough_n[n];
+  }
+  return 1.0 - std::sqrt(left / all);
+}
+
+double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vector<double> motor_n,
+                            double rate_hz) {
+  constexpr double kSegment_s = 4.0;
+  constexpr double kLow_hz = 0.5;
+  constexpr double kHigh_hz = 4.0;
+  for (double& force : motor_n) force = -force;
+  const auto segment = static_cast<std::size_t>(kSegment_s * rate_hz);
+  const auto spectra = signal::cross_spectra(feedthrough_n, motor_n, rate_hz, segment);
+  double moment = 0.0;
+  double square = 0.0;
+  for (std::size_t k = 0; k < spectra.frequency_hz.size(); ++k) {
+    const double f = spectra.frequency_hz[k];
+    if (f < kLow_hz || f > kHigh_hz) continue;
+    const double weight = std::abs(spectra.s_xy[k]);
+    moment -= weight * f * std::arg(spectra.s_xy[k]);
+    square += weight * f * f;
+  }
+  return moment / (2.0 * std::numbers::pi * square);
+}
+
+InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every,
+                             rig::SealedEffect effect)
+    : configs_(seeded(configs, seed)),
+      rig_(configs_.rig, std::move(effect)),
+      conditioner_(configs_.sensing),
+      motion_(configs_.motion),
+      canceller_(configs_.cancellation),
+      display_(configs_.display),
+      operator_(configs_.human_operator),
+      command_filter_(configs_.command_filter),
+      keep_every_(keep_every) {}
+
+cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
+  return canceller_.load_model(cancellation::augmented(model.control));
+}
+
+cancellation::Refusal InProcessLoop::use_model(const cancellation::AugmentedModel& model) {
+  return canceller_.load_model(model);
+}
+
+void InProcessLoop::arm(const PlannedTrial& planned) {
+  motion_.arm(motion::MotionTrajectory(motion_profile(planned), configs_.motion.limits),
+              planned.trial);
+  if (planned.trial.phase == TrialPhase::kTracking) {
+    display_.arm(planned.trial, planned.reference_seed);
+  } else {
+    display_.disarm();
+  }
+  operator_.arm(planned.trial);
+}
+
+TrialSignals InProcessLoop::run(PlannedTrial planned) {
+  planned.trial.start_tick = tick_ + planned.trial.ramp_ticks + 1;
+  arm(planned);
+  TrialSignals signals;
+  signals.pegged.rate_hz = kControlRateHz;
+  if (keeps_measured_) signals.measured = empty_table(planned.trial.phase);
+  signals.tracking.rate_hz = kControlRateHz / static_cast<double>(keep_every_);
+  while (tick_ <
+         planned.trial.start_tick + planned.trial.duration_ticks + planned.trial.ramp_ticks) {
+    tick_once(planned, signals);
+  }
+  return signals;
+}
+
+void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals) {
+  const Tick tick = ++tick_;
+  const bool covered = planned.trial.covers(tick);
+  const bool tracking = covered && planned.trial.phase == TrialPhase::kTracking;
+
+  const motion::PlatformCommand command = motion_.step(tick);
+  rig::RigInput input;
+  input.command_valid = true;
+  input.command_position_m = command.position_m;
+  input.command_velocity_m_s = command.velocity_m_s;
+  input.command_acceleration_m_s2 = command.acceleration_m_s2;
+  input.motor_valid = true;
+  input.motor_age_ticks = 1;
+  input.motor_force_n = motor_force_n_;
+  input.operator_valid = true;
+  input.operator_age_ticks = 1;
+  input.operator_force_n = operator_force_n_;
+  input.pegged = covered && planned.trial.phase == TrialPhase::kPegged;
+  input.motor_permitted = covered;
+  const rig::RigOutput rig_out = rig_.step(input);
+
+  const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
+  const bool enabled = planned.cancellation && tracking;
+  const cancellation::CancellerOutput cancelled =
+      canceller_.step({tick,
+                       {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
+                        sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
+                       sensed.flags,
+                       enabled,
+                       covered});
+  motor_force_n_ = cancelled.force_n;
+  const double command_rad =
+      planned.command_filter ? command_filter_.step(sensed.theta_rad, cancelled.predicted_force_n)
+                             : sensed.theta_rad;
+  const display::TrackingSample shown = display_.step({tick, command_rad});
+  operator_force_n_ = operator_.step({tick, shown.target_m, shown.cursor_m, tracking}).force_n;
+  if (planned.trial.measures(tick)) {
+    keep(planned, sensed, rig_out.truth, cancelled, shown, signals);
+  }
+}
+
+void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sensed,
+                         const rig::RigTruth& truth, const cancellation::CancellerOutput& cancelled,
+                         const display::TrackingSample& shown, TrialSignals& signals) const {
+  if (planned.trial.phase == TrialPhase::kPegged) {
+    signals.pegged.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
+    signals.pegged.force_n.push_back(sensed.force_n);
+  }
+  if (keeps_measured_) keep_row(sensed, shown, signals.measured);
+  if ((tick_ - planned.trial.start_tick) % keep_every_ != 0) return;
+  if (planned.trial.phase == TrialPhase::kTracking) {
+    signals.tracking.target_m.push_back(shown.target_m);
+    signals.tracking.cursor_m.push_back(shown.cursor_m);
+  }
+  signals.feedthrough_n.push_back(truth.feedthrough_force_n);
+  signals.motor_n.push_back(truth.motor_force_n);
+  signals.weights.push_back(cancelled.weights);
+}
+
+void InProcessLoop::keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,
+                             recording::Recording& rows) const {
+  const std::array<double, 10> row{sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
+                                   sensed.roll_rad,     sensed.theta_rad,    sensed.omega_rad_s,
+                                   sensed.force_n,      motor_force_n_,      shown.target_m,
+                                   shown.cursor_m};
+  rows.time_s.push_back(static_cast<double>(tick_) / kControlRateHz);
+  for (std::size_t i = 0; i < rows.columns.size(); ++i) rows.columns[i].values.push_back(row[i]);
+}
+
+}  // namespace stillhand::session

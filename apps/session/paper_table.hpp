@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "services/identification/core/tracking_metrics.hpp"
+
+namespace stillhand::session {
+
+/// One of the paper's three metrics, and what its Tables I and II give (means of 12 subjects).
+struct Metric {
+  const char* key;              ///< in summary.json
+  const char* restoration_key;  ///< in summary.json
+  const char* title;
+  double (*of)(const identification::TrackingMetrics&);
+  double paper_a, paper_b, paper_c;
+  double paper_restored_percent;  ///< (B - C) / (B - A)
+};
+
+inline constexpr std::array<Metric, 3> kMetrics{{
+    {"rms_error_mm", "rms_error", "RMS error [mm]",
+     [](const identification::TrackingMetrics& m) { return m.rms_error_mm; }, 4.04, 9.62, 7.01,
+     47.0},
+    {"dwell_ratio", "dwell_ratio", "dwell ratio [-]",
+     [](const identification::TrackingMetrics& m) { return m.dwell_ratio; }, 0.48, 0.23, 0.31,
+     32.0},
+    {"crossover_hz", "crossover", "crossover f_c [Hz]",
+     [](const identification::TrackingMetrics& m) { return m.crossover_hz; }, 0.25, 0.10, 0.14,
+     27.0},
+}};
+
+}  // namespace stillhand::session

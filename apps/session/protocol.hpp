@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "services/contract/trial.hpp"
+#include "services/motion/core/motion_profile.hpp"
+
+namespace stillhand::session {
+
+/// A to C are the conditions of the paper, section III-C; D to F, all with the motor off, are what
+/// its section V wants to compare the motor with.
+enum class Condition : char {
+  kStationary = 'A',       ///< platform still, motor off
+  kMoving = 'B',           ///< platform moves, motor off
+  kMovingCancelled = 'C',  ///< platform moves, motor cancels
+  kCommandFilter = 'D',    ///< platform moves, the prediction is taken off the command
+  kDampedStick = 'E',      ///< platform moves, more stick damping
+  kArmRest = 'F',          ///< platform moves, the forearm rests
+};
+
+/// Conditions of a session over the bus, and of a study.
+inline constexpr const char* kLabConditions = "ABC";
+inline constexpr const char* kStudyConditions = "ABCDEF";
+
+/// Kind of platform motion during B and C.
+enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide };
+
+/// The numbers of a session, from the command line; defaults are the paper's unless said otherwise.
+struct ProtocolOptions {
+  std::vector<Condition> conditions;
+  double trial_s = 180.0;    ///< [s] measured length of a tracking trial; paper III-C
+  double identify_s = 40.0;  ///< [s] pegged trial; the paper's is 120 s (III-A)
+  double ramp_s = 2.0;       ///< [s] motion and target fade in and out
+  std::uint64_t seed = 1;    ///< of everything random
+  Motion motion = Motion::kBandNoise;
+  std::string road_class = "B";  ///< Motion::kRoad: ISO 8608, A (very good) to H
+  double road_speed_m_s = 20.0;  ///< [m/s] Motion::kRoad: speed of the vehicle
+};
+
+/// One trial of the session: what everybody may know, and what stays blinded.
+struct PlannedTrial {
+  Trial trial;                   ///< start_tick is set when it runs
+  std::uint64_t reference_seed;  ///< phases of the target
+  char label;                    ///< 'I' identification, or the condition: blinded
+  bool moving;
+  Motion motion;
+  double band_low_hz, band_high_hz;  ///< [Hz]
+  int band_order;                    ///< roll-off of the noise at each edge; 0: abrupt
+  double rms_m_s2, peak_m_s2;        ///< [m/s^2]
+  std::uint64_t motion_seed;
+  bool cancellation;
+  bool command_filter;  ///< in process only
+};
+
+/// For CLI11: what is wrong with the word of a --seed, or nothing.  (CLI11 itself would take a
+/// larger number for the largest there is.)
+std::string check_seed(const std::string& word);
+
+/// In a few words, as reports say it.
+const char* condition_name(Condition condition);
+
+/// "A,B,C" to conditions.  @param allowed  their letters
+/// @throws ConfigError for an unknown, repeated or missing one.
+std::vector<Condition> parse_conditions(const std::string& text,
+                                        const std::string& allowed = kLabConditions);
+
+/// Identification first, then the conditions in an order shuffled by the seed; every seed of a
+/// trial follows from the session's.
+/// @throws ConfigError for durations out of range (5 s to 3600 s), and for a road that ISO 8608
+/// does
+///         not know or a speed out of range (0.5 to 70 m/s).
+std::vector<PlannedTrial> plan(const ProtocolOptions& options);
+
+/// What a planned trial asks of the platform; road and ride want their own data besides.
+motion::MotionProfile motion_profile(const PlannedTrial& planned);
+
+}  // namespace stillhand::session

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/session/results.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/session/clock_line.hpp"
+#include "apps/session/in_process.hpp"
+#include "services/identification/codec.hpp"
+#include "services/signal/reference.hpp"
+
+namespace stillhand::session {
+namespace {
+
+// A stream's samples within a trial's measured ticks, one a tick; a lost one repeats the one
+// before.
+template <typename Message, typename Value>
+std::vector<double> measured(const std::vector<Message>& stream, const Trial& trial, Value value,
+                             std::int64_t& missing) {
+  std::vector<double> samples;
+  samples.reserve(static_cast<std::size_t>(trial.duration_ticks));
+  double last = 0.0;
+  for (const Message& message : stream) {
+    if (!trial.measures(message.tick())) continue;
+    const auto place = static_cast<std::size_t>(message.tick() - trial.start_tick);
+    while (samples.size() < place) {
+      samples.push_back(last);
+      ++missing;
+    }
+    last = value(message);
+    if (samples.size() == place) samples.push_back(last);
+  }
+  while (samples.size() < static_cast<std::size_t>(trial.duration_ticks)) {
+    samples.push_back(last);
+    ++missing;
+  }
+  return samples;
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& session,
+                                                      const Trial& trial) {
+  const ClockLine commanding(session.clock_offsets, "cancellation");
+  const ClockLine acquiring(session.clock_offsets, "rig");
+  std::vector<double> late_us;
+  for (const stillhand_msgs::MotorCommand& command : session.motor_commands) {
+    if (!trial.measures(command.tick()) || command.acquired_ns() == 0) continue;
+    late_us.push_back(1e-3 *
+                      static_cast<double>(commanding.on_experiments_clock(command.stamp_ns()) -
+                                          acquiring.on_experiments_clock(command.acquired_ns())));
+  }
+  if (late_us.empty()) return std::nullopt;
+  std::ranges::sort(late_us);
+  const auto quantile = [&](double share) {
+    return late_us[static_cast<std::size_t>(share * static_cast<double>(late_us.size() - 1))];
+  };
+  return TrialResult::Latency{quantile(0.5), quantile(0.99), late_us.back(),
+                              1e-3 * (commanding.uncertainty_ns() + acquiring.uncertainty_ns())};
+}
+
+void judge_cancellation(const SessionRecording& session, const PlannedTrial& planned,
+                        TrialResult& result) {
+  const Trial& trial = planned.trial;
+  std::int64_t missing = 0;
+  const auto feedthrough = measured(
+      session.rig_truths, trial, [](const auto& truth) { return truth.feedthrough_force_n(); },
+      missing);
+  const auto motor = measured(
+      session.rig_truths, trial, [](const auto& truth) { return truth.motor_force_n(); }, missing);
+  result.cancelled_share = session::cancelled_share(feedthrough, motor);
+  if (!planned.cancellation) return;
+  result.counterforce_delay_s = counterforce_delay_s(feedthrough, motor, kControlRateHz);
+  result.sensor_to_command = sensor_to_command(session, trial);
+}
+
+TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
+  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}};
+  identification::TrackingRecord record;
+  record.rate_hz = kControlRateHz;
+  record.target_m = measured(
+      session.tracking_samples, planned.trial, [](const auto& s) { return s.target_m(); },
+      result.missing_ticks);
+  std::int64_t again = 0;
+  record.cursor_m = measured(
+      session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); }, again);
+  const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
+  result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
+  if (planned.moving) judge_cancellation(session, planned, result);
+  return result;
+}
+
+// What holding the 50 Hz model's output would have cost, on the acceleration as it was sensed.
+RateConversionCost conversion_cost(const SessionRecording& session,
+                                   const stillhand_msgs::FeedthroughModel& message,
+                                   const Trial& trial) {
+  const identification::FeedthroughModel model = identification::from_idl(message);
+  std::int64_t missing = 0;
+  const auto truth = measured(
+      session.rig_truths, trial, [](const auto& t) { return t.feedthrough_force_n(); }, missing);
+  const auto accel = measured(
+      session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing);
+  const auto every = static_cast<std::size_t>(kControlRateHz / model.fit.rate_hz);
+  std::vector<double> slow_accel;
+  for (std::size_t i = 0; i < accel.size(); i += every) slow_accel.push_back(accel[i]);
+  const auto fast = signal::simulated(model.control, accel);
+  const auto slow = signal::simulated(model.fit, slow_accel);
+  std::vector<double> fast_error;
+  std::vector<double> held_error;
+  std::vector<double> judged;
+  // The filters start from rest: their first two seconds are not judged.
+  for (auto i = static_cast<std::size_t>(2.0 * kControlRateHz); i < truth.size(); ++i) {
+    judged.push_back(truth[i]);
+    fast_error.push_back(truth[i] - fast[i]);
+    held_error.push_back(truth[i] - slow[i / every]);
+  }
+  return {rms(fast_error) / rms(judged), rms(held_error) / rms(judged)};
+}
+
+}  // namespace
+
+SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes) {
+  const SessionRecording session = read_session(recording);
+  SessionResult result;
+  result.lost_ticks = session.lost_ticks;
+  result.damage = session.damage;
+  for (const auto& offset : session.clock_offsets) {
+    result.clocks[offset.service().c_str()] = offset;
+  }
+  if (!session.models.empty()) result.model = session.models.back();
+  for (const TrialOutcome& outcome : outcomes) {
+    const PlannedTrial& planned = outcome.planned;
+    if (!outcome.completed || planned.trial.phase != TrialPhase::kTracking) continue;
+    result.trials.push_back(evaluate_trial(session, planned));
+    if (planned.moving && result.model && result.model->usable() && !result.conversion) {
+      result.conversion = conversion_cost(session, *result.model, planned.trial);
+    }
+  }
+  return result;
+}
+
+}  // namespace stillhand::session

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/session/session_recording.hpp"
+#include "apps/session/trial_outcome.hpp"
+#include "services/identification/core/tracking_metrics.hpp"
+
+namespace stillhand::session {
+
+/// One tracking trial, computed from the recording alone.
+struct TrialResult {
+  std::int64_t number;
+  char label;  ///< condition
+  identification::TrackingMetrics metrics;
+  std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
+  /// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f'), f' the
+  /// force the body would exert with the stick held, f_m the motor's; only where the platform
+  /// moves.
+  std::optional<double> cancelled_share;
+  /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
+  std::optional<double> counterforce_delay_s;
+  /// From a sample's acquisition to the command that answers it, by their stamps; the same.  Stamps
+  /// of other hosts are taken over to the experiment's clock.
+  struct Latency {
+    double p50_us = 0.0;
+    double p99_us = 0.0;
+    double max_us = 0.0;
+    double uncertainty_us = 0.0;  ///< of the clocks beside each other; 0: it is one clock
+  };
+  std::optional<Latency> sensor_to_command;
+};
+
+/// What the model predicts of the pegged trial's true feedthrough force, as residual share
+/// RMS(f' - f_hat) / RMS(f'), for the filter at 1 kHz and for the 50 Hz model behind a zero-order
+/// hold, over one tracking trial with motion.
+struct RateConversionCost {
+  double control_filter = 0.0;
+  double zero_order_hold = 0.0;
+};
+
+/// Everything a session's summary says that is computed from the recording.
+struct SessionResult {
+  std::vector<TrialResult> trials;
+  std::optional<stillhand_msgs::FeedthroughModel> model;
+  std::optional<RateConversionCost> conversion;
+  std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic
+  std::vector<std::string> damage;
+  std::map<std::string, stillhand_msgs::ClockOffset> clocks;  ///< by process, the last that came
+};
+
+/// Computes the completed trials' results from a recording.
+/// @throws ConfigError when the recording cannot be read.
+SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes);
+
+}  // namespace stillhand::session

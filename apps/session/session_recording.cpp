@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/session/session_recording.hpp"
+
+#include <functional>
+
+#include "idl/cdr.hpp"
+#include "idl/topics.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
+
+namespace stillhand::session {
+namespace {
+
+using Store = std::function<bool(std::span<const std::byte>)>;
+
+template <typename Message>
+Store into(std::vector<Message>& list) {
+  return [&list](std::span<const std::byte> bytes) {
+    Message message;
+    if (!from_cdr(bytes, message)) return false;
+    list.push_back(std::move(message));
+    return true;
+  };
+}
+
+// Counted, and looked whether it is of its type; nothing reads it.
+template <typename Message>
+Store counted() {
+  return [](std::span<const std::byte> bytes) {
+    Message message;
+    return from_cdr(bytes, message);
+  };
+}
+
+template <typename Message>
+std::int64_t gaps_in(const std::vector<Message>& stream) {
+  std::int64_t lost = 0;
+  for (std::size_t i = 1; i < stream.size(); ++i) {
+    lost += std::max<std::int64_t>(stream[i].tick() - stream[i - 1].tick() - 1, 0);
+  }
+  return lost;
+}
+
+}  // namespace
+
+SessionRecording read_session(const std::string& path) {
+  recording::FileSource file(path);
+  recording::McapReader reader(file);
+  if (!reader.status().ok()) {
+    throw ConfigError(path, reader.status().text, "an MCAP recording of a session");
+  }
+  SessionRecording session;
+  const std::map<std::string_view, Store> stores{
+      {topics::kPlatformCommand.name, into(session.platform_commands)},
+      {topics::kRawSample.name, into(session.raw_samples)},
+      {topics::kRigTruth.name, into(session.rig_truths)},
+      {topics::kSensed.name, into(session.sensed)},
+      {topics::kMotorCommand.name, into(session.motor_commands)},
+      {topics::kTrackingSample.name, into(session.tracking_samples)},
+      {topics::kOperatorForce.name, into(session.operator_forces)},
+      {topics::kPointer.name, into(session.pointers)},
+      {topics::kTrialControl.name, into(session.trial_controls)},
+      {topics::kTrialAssignment.name, into(session.trial_assignments)},
+      {topics::kFeedthroughModel.name, into(session.models)},
+      {topics::kAugmentedModel.name, into(session.augmented_models)},
+      {topics::kEvent.name, into(session.events)},
+      {topics::kServiceStatus.name, into(session.statuses)},
+      {topics::kClockQuestion.name, counted<stillhand_msgs::ClockQuestion>()},
+      {topics::kClockAnswer.name, counted<stillhand_msgs::ClockAnswer>()},
+      {topics::kClockOffset.name, into(session.clock_offsets)},
+      {topics::kHostStatus.name, counted<stillhand_msgs::HostStatus>()},
+      {topics::kSessionCommand.name, counted<stillhand_msgs::SessionCommand>()}};
+  const recording::Status status =
+      reader.for_each_message({}, [&](const recording::MessageView& message) {
+        const auto store = stores.find(message.channel.topic);
+        if (store == stores.end()) return true;
+        if (store->second(message.bytes)) {
+          ++session.messages[message.channel.topic];
+        } else {
+          session.damage.push_back("a message of " + message.channel.topic + " is not of its type");
+        }
+        return true;
+      });
+  if (!status.ok()) session.damage.push_back(status.text);
+  for (const recording::Damage& damage : reader.damage()) session.damage.push_back(damage.text);
+  const auto count = [&](const topics::Topic& topic, std::int64_t lost) {
+    session.lost_ticks[std::string(topic.name)] = lost;
+  };
+  count(topics::kPlatformCommand, gaps_in(session.platform_commands));
+  count(topics::kRawSample, gaps_in(session.raw_samples));
+  count(topics::kRigTruth, gaps_in(session.rig_truths));
+  count(topics::kSensed, gaps_in(session.sensed));
+  count(topics::kMotorCommand, gaps_in(session.motor_commands));
+  count(topics::kTrackingSample, gaps_in(session.tracking_samples));
+  count(topics::kOperatorForce, gaps_in(session.operator_forces));
+  return session;
+}
+
+}  // namespace stillhand::session

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/diagnosis/core/detection/detection.hpp"
+#include "services/diagnosis/core/fitting/screening.hpp"
+
+namespace stillhand::diagnosis {
+
+/// One way to tell noise from the rest.
+struct NoiseEstimate {
+  std::string name;   ///< "repeats", "final model", "high frequencies", "between blocks"
+  double rmse = 0.0;  ///< [unit of the output]
+};
+
+/// What noise amounts to, README "Noise floor".  No single estimate deserves trust: the one that is
+/// used, its interval, and all that there are.
+struct NoiseFloor {
+  double rmse = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+  std::string method;                    ///< which estimate it is, and what the others say
+  std::vector<NoiseEstimate> estimates;  ///< the first is the one used
+};
+
+/// Bounds that held-out errors give.
+struct ErrorBounds {
+  double low = 0.0;  ///< [unit of the output] of the final model's held-out error, 95 %
+  double high = 0.0;
+  double impulse_response = 0.0;  ///< what DG-13 leaves; 0: unknown
+};
+
+/// Eq. DG-19 and DG-42, DG-47, DG-48.  @param after  answers to the same residual
+NoiseFloor noise_floor_of(const DetectionResult& after, const Screening& screening,
+                          const ErrorBounds& bounds);
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/model/effect.hpp"
+
+#include <algorithm>
+
+namespace stillhand::diagnosis {
+
+Parameter constant(std::string name, std::string unit, double value) {
+  return {std::move(name), std::move(unit), value, value, value, false};
+}
+
+std::size_t complexity(const Effect& effect) noexcept {
+  const auto chosen = std::ranges::count_if(effect.parameters, [](const Parameter& parameter) {
+    return parameter.lower < parameter.upper;
+  });
+  return effect.coefficients.size() + static_cast<std::size_t>(chosen);
+}
+
+}  // namespace stillhand::diagnosis

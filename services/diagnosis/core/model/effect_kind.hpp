@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/diagnosis/core/model/effect.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/signals.hpp"
+
+namespace stillhand::diagnosis {
+
+class Screening;
+
+/// What a nonlinearity with memory remembers from one sample to the next.
+struct LoopMemory {
+  double state = 0.0;
+  double previous = 0.0;
+  bool started = false;
+};
+
+/// phi of a signal in units of its threshold, as a function that the loop calls once a sample.
+struct Nonlinearity {
+  double (*phi)(double z, LoopMemory& memory) = nullptr;
+  double threshold = 1.0;
+};
+
+/// An effect with values to start its fit from.
+struct Proposal {
+  Effect effect;
+  double gain = 0.0;         ///< [-] of the squared error, as screened; only its order counts
+  std::optional<Body> body;  ///< to start from instead of the model's own
+};
+
+/// A kind of effect, what it knows of itself.  Stateless; one object a kind, in effect_kinds().
+/// An effect acts at one stage(), and only that stage's function is called.
+class EffectKind {
+ public:
+  virtual ~EffectKind() = default;
+
+  /// As in the verdict, for example "coulomb_friction".
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Ready to be fitted, from a residual; empty when nothing speaks for it.
+  [[nodiscard]] virtual std::vector<Proposal> proposed(const Screening& screening) const = 0;
+  [[nodiscard]] virtual Stage stage(const Effect& effect) const = 0;
+  /// One sentence on what the data said, with numbers and units.
+  [[nodiscard]] virtual std::string evidence(const Effect& effect) const = 0;
+  /// True when an input alone can't tell it: predict() leaves it out.
+  [[nodiscard]] virtual bool time_only(const Effect& /*effect*/) const { return false; }
+
+  /// kInputTime: the body sees u(t - delay(t)) [s].
+  [[nodiscard]] virtual double input_delay_s(const Effect& effect, double time_s) const;
+  /// kInputValue, kOutputValue: the map and its slope.
+  [[nodiscard]] virtual double mapped(const Effect& effect, double value) const;
+  [[nodiscard]] virtual double slope(const Effect& effect, double value) const;
+  /// kFeedback: phi.
+  [[nodiscard]] virtual Nonlinearity feedback(const Effect& effect) const;
+  /// kGain: multiplies `gain`, one a sample.
+  virtual void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const;
+  /// kTerm: appends a column for every signal that is weighed; through_body() tells how.
+  virtual void terms(const Effect& effect, const Signals& signals,
+                     const std::vector<double>& body_output, Columns& columns) const;
+  /// kTerm: each column passes the body's poles with order + 1 coefficients, instead of one factor.
+  [[nodiscard]] virtual bool through_body(const Effect& effect) const;
+  /// kTerm: poles that it filters its columns with, as a denominator 1, m_1, .. whose free response
+  /// at a stretch's start is fitted as the body's is, Eq. DG-10; empty: none.
+  [[nodiscard]] virtual std::vector<double> own_poles(const Effect& effect,
+                                                      const Signals& signals) const;
+  /// kWeight: sets samples to 0 that aren't claimed.
+  virtual void weigh(const Effect& effect, const Signals& signals, std::span<double> weight) const;
+};
+
+/// Every kind there is.
+const std::vector<const EffectKind*>& effect_kinds();
+/// @throws stillhand::ConfigError for a name that isn't there.
+const EffectKind& effect_kind(std::string_view name);
+
+}  // namespace stillhand::diagnosis

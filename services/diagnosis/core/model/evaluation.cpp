@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/model/evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/interpolation.hpp"
+#include "services/diagnosis/core/model/loop.hpp"
+#include "services/diagnosis/core/model/model_run.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+std::vector<double> shaped_input(const Model& model, const Signals& signals, std::size_t k) {
+  std::vector<double> u = signals.inputs()[k].values;
+  for (const Effect& effect : model.effects) {
+    if (!acts_at(effect, Stage::kInputTime)) continue;
+    const EffectKind& kind = effect_kind(effect.kind);
+    u = delayed(u, signals, [&](double t_s) { return kind.input_delay_s(effect, t_s); });
+  }
+  for (const Effect& effect : model.effects) {
+    if (!acts_at(effect, Stage::kInputValue) || effect.channels.at(0) != model.inputs[k]) continue;
+    const EffectKind& kind = effect_kind(effect.kind);
+    for (double& value : u) value = kind.mapped(effect, value);
+  }
+  return u;
+}
+
+void add_scaled(const std::vector<double>& x, double factor, std::vector<double>& sum) {
+  for (std::size_t n = 0; n < x.size(); ++n) sum[n] += factor * x[n];
+}
+
+// sum_i c_i D^i x
+void add_differences(std::vector<double> x, std::span<const double> coefficients,
+                     const std::vector<Stretch>& stretches, std::vector<double>& sum) {
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    if (i > 0) x = differenced(x, stretches);
+    add_scaled(x, coefficients[i], sum);
+  }
+}
+
+void run_body(const Model& model, const Signals& signals, ModelRun& run) {
+  std::vector<const Effect*> feedback;
+  for (const Effect& effect : model.effects) {
+    if (acts_at(effect, Stage::kFeedback)) feedback.push_back(&effect);
+  }
+  if (!feedback.empty()) {
+    for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+      run.inputs.push_back(shaped_input(model, signals, k));
+    }
+    LoopRun loop;
+    run.free.finite = run_loop(model.body, feedback, run.inputs, signals, loop);
+    run.free.body = std::move(loop.output);
+    run.free.argument = std::move(loop.argument);
+    run.free.phi = std::move(loop.phi);
+    return;
+  }
+  run.free.body.assign(signals.size(), 0.0);
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    run.filtered_inputs.push_back(through_poles(shaped_input(model, signals, k),
+                                                model.body.denominator, signals.stretches()));
+    add_differences(run.filtered_inputs.back(), difference_basis(model.body.numerators[k]),
+                    signals.stretches(), run.free.body);
+  }
+}
+
+void add_terms(const Model& model, const Signals& signals, ModelRun& run) {
+  run.term_columns.resize(model.effects.size());
+  run.through_body.assign(signals.size(), 0.0);
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    const Effect& effect = model.effects[e];
+    const EffectKind& kind = effect_kind(effect.kind);
+    if (kind.stage(effect) != Stage::kTerm) continue;
+    Columns columns;
+    kind.terms(effect, signals, run.free.body, columns);
+    const bool through = kind.through_body(effect);
+    run.passes_terms = run.passes_terms || through;
+    std::size_t next = 0;
+    for (auto& column : columns) {
+      if (through) column = through_poles(column, model.body.denominator, signals.stretches());
+      const std::size_t taps = through ? model.body.order() + 1 : 1;
+      for (std::size_t i = 0; i < taps; ++i) {
+        if (i > 0) column = differenced(column, signals.stretches());
+        const double weight = effect.coefficients.at(next++);
+        add_scaled(column, weight, run.free.prediction);
+        if (through) add_scaled(column, weight, run.through_body);
+        run.term_columns[e].push_back(column);
+      }
+    }
+  }
+}
+
+void apply_gain(const Model& model, const Signals& signals, ModelRun& run) {
+  run.gain.assign(signals.size(), 1.0);
+  for (const Effect& effect : model.effects) {
+    if (acts_at(effect, Stage::kGain)) effect_kind(effect.kind).gain(effect, signals, run.gain);
+  }
+  run.free.prediction.resize(signals.size());
+  for (std::size_t n = 0; n < signals.size(); ++n) {
+    run.free.prediction[n] = model.body.offset + run.gain[n] * run.free.body[n];
+  }
+}
+
+void apply_output_maps(const Model& model, const Signals& signals, ModelRun& run) {
+  run.free.output_slope.assign(signals.size(), 1.0);
+  run.free.weight = signals.weight();
+  for (const Effect& effect : model.effects) {
+    const EffectKind& kind = effect_kind(effect.kind);
+    const Stage stage = kind.stage(effect);
+    if (stage == Stage::kWeight) kind.weigh(effect, signals, run.free.weight);
+    if (stage != Stage::kOutputValue) continue;
+    for (std::size_t n = 0; n < signals.size(); ++n) {
+      run.free.output_slope[n] *= kind.slope(effect, run.free.prediction[n]);
+      run.free.prediction[n] = kind.mapped(effect, run.free.prediction[n]);
+    }
+  }
+}
+
+}  // namespace
+
+double runaway_bound(const Signal& output) {
+  constexpr double kRunaway = 1e6;
+  constexpr double kOfNothing = 1e30;
+  const double size = output.deviation + std::abs(output.mean);
+  return size > 0.0 ? kRunaway * size : kOfNothing;
+}
+
+bool acts_at(const Effect& effect, Stage stage) {
+  return effect_kind(effect.kind).stage(effect) == stage;
+}
+
+void run_all(const Model& model, const Signals& signals, ModelRun& run) {
+  run_body(model, signals, run);
+  apply_gain(model, signals, run);
+  add_terms(model, signals, run);
+  apply_output_maps(model, signals, run);
+  const double bound = runaway_bound(signals.output());
+  run.free.finite =
+      run.free.finite && is_stable(model.body) &&
+      std::ranges::all_of(run.free.prediction, [&](double y) { return std::abs(y) < bound; });
+}
+
+Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals) {
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(signals.size()));
+  const auto& measured = signals.output().values;
+  for (std::size_t n = 0; n < signals.size(); ++n) {
+    residual[static_cast<Eigen::Index>(n)] = run.weight[n] * (measured[n] - run.prediction[n]);
+  }
+  return residual;
+}
+
+std::vector<double> through_poles(const std::vector<double>& x,
+                                  const std::vector<double>& denominator,
+                                  const std::vector<Stretch>& stretches) {
+  const std::size_t order = denominator.size() - 1;
+  if (order == 0) return x;
+  std::vector<double> y(x.size());
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      double sum = x[n];
+      const std::size_t past = std::min(order, n - stretch.first);
+      for (std::size_t j = 1; j <= past; ++j) sum -= denominator[j] * y[n - j];
+      y[n] = sum;
+    }
+  }
+  return y;
+}
+
+std::vector<double> differenced(const std::vector<double>& x,
+                                const std::vector<Stretch>& stretches) {
+  std::vector<double> result(x.size());
+  for (const Stretch& stretch : stretches) {
+    double before = 0.0;
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      result[n] = x[n] - before;
+      before = x[n];
+    }
+  }
+  return result;
+}
+
+FreeRun free_run(const Model& model, const Signals& signals, bool with_time_only) {
+  ModelRun run;
+  if (with_time_only) {
+    run_all(model, signals, run);
+    return std::move(run.free);
+  }
+  Model told = model;
+  std::erase_if(told.effects,
+                [](const Effect& effect) { return effect_kind(effect.kind).time_only(effect); });
+  run_all(told, signals, run);
+  return std::move(run.free);
+}
+
+bool without_effects(const Model& model, const Signals& signals,
+                     std::vector<std::vector<double>>& inputs, std::vector<double>& output) {
+  for (const Effect& effect : model.effects) {
+    if (acts_at(effect, Stage::kFeedback) || acts_at(effect, Stage::kOutputValue)) return false;
+  }
+  inputs.clear();
+  for (std::size_t k = 0; k < model.inputs.size(); ++k) {
+    inputs.push_back(shaped_input(model, signals, k));
+  }
+  ModelRun run;
+  run_all(model, signals, run);
+  constexpr double kSmallestGain = 0.05;
+  for (std::size_t n = 0; n < output.size(); ++n) {
+    const double gain = std::max(run.gain[n], kSmallestGain);
+    const double terms =
+        run.free.prediction[n] - model.body.offset - run.gain[n] * run.free.body[n];
+    output[n] = (output[n] - terms) / gain;
+  }
+  return true;
+}
+
+Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun& run) {
+  run = free_run(model, signals);
+  Eigen::VectorXd residual = weighted_error(run, signals);
+  if (!run.finite) return residual;
+  const InitialStates initial(model, signals, run.weight);
+  Eigen::Ref<Eigen::MatrixXd> view(residual);
+  initial.remove_from(view);
+  return residual;
+}
+
+}  // namespace stillhand::diagnosis

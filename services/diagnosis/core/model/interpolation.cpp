@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/model/interpolation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr int kPoints = 6;
+using Weights = std::array<double, kPoints>;
+
+// Lagrange weights for a point `fraction` behind the third of six samples.
+Weights lagrange(double fraction) {
+  Weights weights{};
+  for (int i = 0; i < kPoints; ++i) {
+    double weight = 1.0;
+    for (int j = 0; j < kPoints; ++j) {
+      if (j != i) weight *= (fraction + 2.0 - j) / static_cast<double>(i - j);
+    }
+    weights[static_cast<std::size_t>(i)] = weight;
+  }
+  return weights;
+}
+
+}  // namespace
+
+std::vector<double> delayed(const std::vector<double>& x, const Signals& signals,
+                            const std::function<double(double)>& delay_s) {
+  std::vector<double> result(x.size());
+  double last_fraction = -1.0;
+  Weights weights{};
+  for (const Stretch& stretch : signals.stretches()) {
+    const auto first = static_cast<std::ptrdiff_t>(stretch.first);
+    const auto last = static_cast<std::ptrdiff_t>(stretch.end) - 1;
+    for (std::ptrdiff_t n = first; n <= last; ++n) {
+      const auto index = static_cast<std::size_t>(n);
+      const double position =
+          static_cast<double>(n) - delay_s(signals.time_s()[index]) * signals.rate_hz();
+      const double whole = std::floor(position);
+      const double fraction = position - whole;
+      if (fraction != last_fraction) {
+        weights = lagrange(fraction);
+        last_fraction = fraction;
+      }
+      double sum = 0.0;
+      for (int i = 0; i < kPoints; ++i) {
+        const auto at = static_cast<std::ptrdiff_t>(
+            std::clamp(whole + i - 2.0, static_cast<double>(first), static_cast<double>(last)));
+        sum += weights[static_cast<std::size_t>(i)] * x[static_cast<std::size_t>(at)];
+      }
+      result[index] = sum;
+    }
+  }
+  return result;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/model/loop.hpp"
+#include "services/diagnosis/core/model/model_run.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+// Where a model's nonlinearity is: inside the body, nothing that the numerators B and E of Eq. DG-4
+// say comes back to its argument, and their columns are exact.
+enum class Loop { kNone, kOfOutput, kInside };
+
+Loop loop_of(const Model& model) {
+  Loop loop = Loop::kNone;
+  for (const Effect& effect : model.effects) {
+    if (!acts_at(effect, Stage::kFeedback)) continue;
+    const bool inside = loop == Loop::kNone && !loop_path(effect, model.body.order()).of_output();
+    loop = inside ? Loop::kInside : Loop::kOfOutput;
+  }
+  return loop;
+}
+
+// The numbers whose columns come from forward differences: those of nonlinear parameters, and with
+// feedback those that its argument depends on.
+std::vector<bool> by_differences(const Model& model, Loop loop) {
+  std::vector<bool> which{false};
+  std::size_t numerators = 0;
+  for (const auto& numerator : model.body.numerators) numerators += numerator.size();
+  which.insert(which.end(), numerators, loop == Loop::kOfOutput);
+  which.insert(which.end(), model.body.order(), loop != Loop::kNone);
+  for (const Effect& effect : model.effects) {
+    const bool feedback = acts_at(effect, Stage::kFeedback);
+    const std::size_t exact = feedback && loop == Loop::kInside ? model.body.order() + 1 : 0;
+    which.insert(which.end(), exact, false);
+    which.insert(which.end(), effect.coefficients.size() - exact, feedback);
+    for (const Parameter& parameter : effect.parameters) {
+      if (parameter.fitted) which.push_back(true);
+    }
+  }
+  return which;
+}
+
+// Fills columns one after the other, multiplied by slope and weight.
+class ColumnWriter {
+ public:
+  ColumnWriter(Eigen::MatrixXd& jacobian, const FreeRun& run) : jacobian_(jacobian), run_(run) {}
+  void write(const std::vector<double>& x, double factor, const std::vector<double>* gain) {
+    double* column = jacobian_.col(next_++).data();
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      const double scale = factor * run_.output_slope[n] * run_.weight[n];
+      column[n] = scale * x[n] * (gain == nullptr ? 1.0 : (*gain)[n]);
+    }
+  }
+  void skip(std::size_t count) { next_ += static_cast<Eigen::Index>(count); }
+
+ private:
+  Eigen::MatrixXd& jacobian_;
+  const FreeRun& run_;
+  Eigen::Index next_ = 0;
+};
+
+// q^-1 x / A
+std::vector<double> late_through_poles(const std::vector<double>& x, const Model& model,
+                                       const std::vector<Stretch>& stretches) {
+  std::vector<double> late = through_poles(x, model.body.denominator, stretches);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.end; n-- > stretch.first + 1;) late[n] = late[n - 1];
+    late[stretch.first] = 0.0;
+  }
+  return late;
+}
+
+// x, D x, .. D^p x behind the gain.
+void write_differences(std::vector<double> x, const Model& model, const Signals& signals,
+                       const ModelRun& run, ColumnWriter& writer) {
+  for (std::size_t i = 0; i <= model.body.order(); ++i) {
+    if (i > 0) x = differenced(x, signals.stretches());
+    writer.write(x, 1.0, &run.gain);
+  }
+}
+
+void write_body_columns(const Model& model, const Signals& signals, const ModelRun& run,
+                        ColumnWriter& writer) {
+  const auto& stretches = signals.stretches();
+  for (const auto& filtered : run.filtered_inputs) {
+    write_differences(filtered, model, signals, run, writer);
+  }
+  // d/dg_i of B u / A with A = 1 + q^-1 sum g_i D^i: -q^-1 D^i y / A, behind which comes the gain;
+  // terms that pass the body do so without it.
+  std::vector<double> late = late_through_poles(run.free.body, model, stretches);
+  std::vector<double> terms;
+  if (run.passes_terms) terms = late_through_poles(run.through_body, model, stretches);
+  for (std::size_t i = 0; i < model.body.order(); ++i) {
+    if (i > 0) late = differenced(late, stretches);
+    if (i > 0 && run.passes_terms) terms = differenced(terms, stretches);
+    std::vector<double> both(late.size());
+    for (std::size_t n = 0; n < both.size(); ++n) {
+      both[n] = run.gain[n] * late[n] + (run.passes_terms ? terms[n] : 0.0);
+    }
+    writer.write(both, -1.0, nullptr);
+  }
+}
+
+void write_loop_columns(const Model& model, const Signals& signals, const ModelRun& run, Loop loop,
+                        ColumnWriter& writer) {
+  for (const auto& input : run.inputs) {
+    if (loop == Loop::kOfOutput) {
+      writer.skip(model.body.order() + 1);
+    } else {
+      write_differences(through_poles(input, model.body.denominator, signals.stretches()), model,
+                        signals, run, writer);
+    }
+  }
+  writer.skip(model.body.order());
+}
+
+void write_exact_columns(const Model& model, const Signals& signals, const ModelRun& run, Loop loop,
+                         Eigen::MatrixXd& jacobian) {
+  ColumnWriter writer(jacobian, run.free);
+  writer.write(std::vector<double>(signals.size(), 1.0), 1.0, nullptr);
+  if (loop == Loop::kNone) {
+    write_body_columns(model, signals, run, writer);
+  } else {
+    write_loop_columns(model, signals, run, loop, writer);
+  }
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    const Effect& effect = model.effects[e];
+    if (loop == Loop::kInside && acts_at(effect, Stage::kFeedback)) {
+      write_differences(through_poles(run.free.phi, model.body.denominator, signals.stretches()),
+                        model, signals, run, writer);
+      writer.skip(effect.coefficients.size() - model.body.order() - 1);
+    } else if (run.term_columns[e].empty()) {
+      writer.skip(effect.coefficients.size());
+    } else {
+      for (const auto& column : run.term_columns[e]) writer.write(column, 1.0, nullptr);
+    }
+    for (const Parameter& parameter : effect.parameters) writer.skip(parameter.fitted ? 1 : 0);
+  }
+}
+
+// Forward differences; the step is a millionth of the number, or of its neighbours' size.
+void write_difference_columns(const Model& model, const Signals& signals, const ModelRun& run,
+                              const std::vector<bool>& which, Eigen::MatrixXd& jacobian) {
+  const Eigen::VectorXd numbers = packed(model);
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    if (!which[static_cast<std::size_t>(i)]) continue;
+    double size = std::abs(numbers[i]);
+    for (Eigen::Index j = std::max<Eigen::Index>(i - 1, 0);
+         j <= std::min(i + 1, numbers.size() - 1); ++j) {
+      size = std::max(size, 1e-3 * std::abs(numbers[j]));
+    }
+    const double step = 1e-6 * (size > 0.0 ? size : 1.0);
+    Model moved = model;
+    double change = 0.0;
+    // A parameter at its upper bound can only go down.
+    for (const double direction : {step, -step}) {
+      Eigen::VectorXd changed = numbers;
+      changed[i] += direction;
+      unpack(changed, moved);
+      change = packed(moved)[i] - numbers[i];
+      if (std::abs(change) > 0.5 * step) break;
+    }
+    if (change == 0.0) continue;  // pinned: the column stays 0
+    ModelRun other;
+    run_all(moved, signals, other);
+    const double inverse = 1.0 / change;
+    double* column = jacobian.col(i).data();
+    for (std::size_t n = 0; n < signals.size(); ++n) {
+      column[n] =
+          run.free.weight[n] * (other.free.prediction[n] - run.free.prediction[n]) * inverse;
+    }
+  }
+}
+
+}  // namespace
+
+Linearisation linearised(const Model& model, const Signals& signals) {
+  Linearisation result;
+  ModelRun run;
+  run_all(model, signals, run);
+  result.residual = weighted_error(run.free, signals);
+  result.finite = run.free.finite;
+  if (result.finite) {
+    const Loop loop = loop_of(model);
+    const std::vector<bool> which = by_differences(model, loop);
+    result.jacobian.setZero(static_cast<Eigen::Index>(signals.size()),
+                            static_cast<Eigen::Index>(which.size()));
+    write_exact_columns(model, signals, run, loop, result.jacobian);
+    write_difference_columns(model, signals, run, which, result.jacobian);
+    const InitialStates initial(model, signals, run.free.weight);
+    initial.remove_from(result.jacobian);
+    Eigen::Ref<Eigen::MatrixXd> view(result.residual);
+    initial.remove_from(view);
+  }
+  result.run = std::move(run.free);
+  return result;
+}
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "services/diagnosis/core/model/effect.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/signals.hpp"
+
+namespace stillhand::diagnosis {
+
+/// How a nonlinearity phi sits in the body of order p, README Eq. DG-4; e, n, m are its
+/// coefficients in the difference basis D = 1 - q^-1:
+///
+///   A y_b = B u + E phi(z)
+///   "of the output":  z = y_b,                      E = q^-1 sum_{i<p} e_i D^i          (p
+///   numbers) "inside":         A z = N u + M phi(z),         E = sum_{i<=p} e_i D^i, N alike,
+///                                                   M = q^-1 sum_{i<p} m_i D^i       (3p + 2)
+///
+/// M without a term of its own sample: no algebraic loop.
+struct LoopPath {
+  std::vector<double> e;  ///< by powers of q^-1, p + 1
+  std::vector<double> n;  ///< p + 1, empty: z = y_b
+  std::vector<double> m;  ///< p + 1, the first 0
+
+  [[nodiscard]] bool of_output() const noexcept { return n.empty(); }
+};
+
+/// Signals in the loop, each as long as the measurement.
+struct LoopRun {
+  std::vector<double> output;    ///< y_b
+  std::vector<double> argument;  ///< z of the first nonlinearity
+  std::vector<double> phi;       ///< its phi(z)
+};
+
+/// Coefficients that a feedback effect has for a body of this order.
+std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
+LoopPath loop_path(const Effect& effect, std::size_t order);
+
+/// Runs the body with its nonlinearities, every stretch from rest.
+/// @param inputs  what reaches the body, [inputs][samples]
+/// @return false when it ran away
+bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
+              const std::vector<std::vector<double>>& inputs, const Signals& signals, LoopRun& run);
+
+}  // namespace stillhand::diagnosis

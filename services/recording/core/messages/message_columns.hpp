@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "services/recording/core/messages/cdr_reader.hpp"
+#include "services/recording/core/messages/omgidl.hpp"
+
+namespace stillhand::recording {
+
+/// What a column holds.
+enum class CellKind : std::uint8_t { kInteger, kUnsigned, kReal, kText };
+
+/// One value of a message, flat.
+struct MessageColumn {
+  std::string name;  ///< "a", of a struct "a.b", of a list "a.0", "a.1"; "a.count"; of an enum
+                     ///< "a" and "a.name"
+  std::string unit;  ///< empty: none stated
+  CellKind kind = CellKind::kReal;
+  bool in_list = false;  ///< empty where a list is shorter
+};
+
+/// Nothing (behind the end of a list), or a value of the column's kind.  Texts point into the
+/// message or the schema.
+using Cell = std::variant<std::monostate, std::int64_t, std::uint64_t, double, std::string_view>;
+
+/// The messages of one type as rows of a table.  Lists of free length become as many columns as the
+/// longest one seen: learn() every message first, then settle(), then read().
+///
+/// The schema outlives it.  Thread-compatible.
+class MessageColumns {
+ public:
+  /// @param type  struct of `schema`
+  MessageColumns(const IdlSchema& schema, const IdlStruct& type);
+
+  /// Why these messages cannot be decoded, or become too many columns; empty: they can.
+  [[nodiscard]] const std::string& trouble() const noexcept { return trouble_; }
+  /// False where every message has the same columns: nothing to learn.
+  [[nodiscard]] bool has_lists() const noexcept { return has_lists_; }
+  /// Takes note of the lengths of lists.  @returns false when it is no message of this type.
+  bool learn(std::span<const std::byte> message);
+  /// Numbers the columns.
+  void settle();
+  [[nodiscard]] const std::vector<MessageColumn>& columns() const noexcept { return columns_; }
+  /// Fills `row`, one cell a column.  @returns false when it is no message of this type, or a list
+  /// is longer than learned.
+  bool read(std::span<const std::byte> message, std::vector<Cell>& row) const;
+
+ private:
+  struct Node {  // a value, and what it consists of
+    IdlType type;
+    std::string path;
+    std::string unit;
+    std::size_t depth = 0;
+    std::size_t column = 0;
+    std::vector<Node> parts = {};  // members, or elements
+  };
+
+  void build(Node& node);
+  void add_part(Node& node, std::uint32_t type, std::string path, std::string unit);
+  void add_element(Node& list);
+  bool grow(Node& node, CdrReader& in);
+  void number(Node& node, bool in_list);
+  bool fill(const Node& node, CdrReader& in, std::vector<Cell>& row) const;
+  bool skip_head(const Node& list, CdrReader& in) const;
+  void refuse(const std::string& why);
+
+  const IdlSchema& schema_;
+  Node root_;
+  std::string trouble_;
+  bool has_lists_ = false;
+  std::size_t nodes_ = 0;
+  std::vector<MessageColumn> columns_;
+};
+
+}  // namespace stillhand::recording

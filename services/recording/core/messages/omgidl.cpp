@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recording/core/messages/omgidl.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <optional>
+
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/messages/omgidl_cursor.hpp"
+
+namespace stillhand::recording {
+namespace {
+
+constexpr std::int64_t kMaxLength = UINT32_MAX;
+// Nested sequences and modules: more is no schema but an attack on the stack.
+constexpr int kMaxDepth = 64;
+
+struct Primitive {
+  std::string_view words;
+  IdlKind kind;
+};
+constexpr std::array<Primitive, 22> kPrimitives{
+    {{"boolean", IdlKind::kBoolean},   {"octet", IdlKind::kOctet},
+     {"uint8", IdlKind::kOctet},       {"int8", IdlKind::kInt8},
+     {"char", IdlKind::kChar},         {"short", IdlKind::kInt16},
+     {"int16", IdlKind::kInt16},       {"unsigned short", IdlKind::kUint16},
+     {"uint16", IdlKind::kUint16},     {"long", IdlKind::kInt32},
+     {"int32", IdlKind::kInt32},       {"unsigned long", IdlKind::kUint32},
+     {"uint32", IdlKind::kUint32},     {"long long", IdlKind::kInt64},
+     {"int64", IdlKind::kInt64},       {"unsigned long long", IdlKind::kUint64},
+     {"uint64", IdlKind::kUint64},     {"float", IdlKind::kFloat32},
+     {"double", IdlKind::kFloat64},    {"long double", IdlKind::kUnsupported},
+     {"wchar", IdlKind::kUnsupported}, {"any", IdlKind::kUnsupported}}};
+
+// What annotations in front of a definition say.
+struct Marks {
+  bool key = false;
+  bool optional = false;
+  bool is_mutable = false;
+  std::optional<std::int64_t> value = {};
+  std::string unit = {};
+};
+
+// Recursive descent over the tokens; one method a rule of the grammar.
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& source) : in_(text, source) {}
+
+  IdlSchema parse() {
+    while (!in_.peek().empty()) definition(0);
+    return std::move(schema_);
+  }
+
+ private:
+  // Names
+  [[nodiscard]] std::string scoped(const std::string& name) const {
+    return scope_.empty() ? name : scope_ + "::" + name;
+  }
+  template <typename Value>
+  const Value* look_up(const std::map<std::string, Value>& values, const std::string& name) const {
+    for (std::string scope = scope_;;) {
+      const auto found = values.find(scope.empty() ? name : scope + "::" + name);
+      if (found != values.end()) return &found->second;
+      if (scope.empty()) return nullptr;
+      const std::size_t cut = scope.rfind("::");
+      scope = cut == std::string::npos ? "" : scope.substr(0, cut);
+    }
+  }
+  std::uint32_t add(IdlType type) {
+    schema_.types.push_back(std::move(type));
+    return static_cast<std::uint32_t>(schema_.types.size() - 1);
+  }
+
+  // Numbers: sums of products of literals, constants and brackets
+  std::int64_t sum(int depth) {
+    std::int64_t value = product(depth);
+    for (;;) {
+      if (in_.accept("+")) {
+        value = bounded(value + product(depth));
+      } else if (in_.accept("-")) {
+        value = bounded(value - product(depth));
+      } else {
+        return value;
+      }
+    }
+  }
+  std::int64_t product(int depth) {
+    std::int64_t value = factor(depth);
+    while (in_.accept("*")) value = bounded(value * factor(depth));
+    return value;
+  }
+  std::int64_t factor(int depth) {
+    if (depth > kMaxDepth) in_.refuse("fewer brackets in each other");
+    if (in_.accept("-")) return -factor(depth + 1);
+    if (in_.accept("(")) {
+      const std::int64_t value = sum(depth + 1);
+      in_.expect(")");
+      return value;
+    }
+    const std::string_view text = in_.peek();
+    if (text.empty() || text[0] < '0' || text[0] > '9') {
+      const std::size_t start = in_.place();
+      const std::int64_t* value = look_up(constants_, in_.scoped_name());
+      if (value == nullptr) {
+        in_.go_to(start);
+        in_.refuse("a whole number or a constant that is known");
+      }
+      return *value;
+    }
+    const bool hex = text.size() > 2 && (text[1] | 0x20) == 'x';
+    const char* begin = text.data() + (hex ? 2 : 0);
+    const char* end = text.data() + text.size();
+    std::int64_t value = 0;
+    const int base = hex ? 16 : text[0] == '0' && text.size() > 1 ? 8 : 10;
+    const auto read = std::from_chars(begin, end, value, base);
+    if (read.ec != std::errc() || read.ptr != end) in_.refuse("a whole number");
+    in_.take();
+    return bounded(value);
+  }
+  // Keeps products of two of them inside 64 bits.
+  std::int64_t bounded(std::int64_t value) const {
+    if (value > kMaxLength || value < -kMaxLength) in_.refuse("a number of at most 32 bits");
+    return value;
+  }
+  std::uint32_t length() {
+    const std::int64_t value = sum(0);
+    if (value <= 0) in_.refuse("a length of at least 1");
+    return static_cast<std::uint32_t>(value);
+  }
+
+  // Types
+  std::uint32_t type(int depth) {
+    if (depth > kMaxDepth) in_.refuse("fewer types in each other");
+    if (in_.accept("string") || in_.accept("wstring")) {
+      const bool wide = in_.peek(-1) == "wstring";
+      if (in_.accept("<")) {
+        (void)length();
+        in_.expect(">");
+      }
+      return add(wide ? IdlType{IdlKind::kUnsupported, 0, 0, "wstring"}
+                      : IdlType{IdlKind::kString});
+    }
+    if (in_.accept("sequence")) {
+      in_.expect("<");
+      const std::uint32_t element = type(depth + 1);
+      if (in_.accept(",")) (void)length();
+      in_.expect(">");
+      return add({IdlKind::kSequence, element});
+    }
+    if (in_.accept("map")) {
+      while (!in_.accept(">")) {
+        if (in_.take().empty()) in_.refuse(">");
+      }
+      return add({IdlKind::kUnsupported, 0, 0, "map"});
+    }
+    return primitive_or_name();
+  }
+  std::uint32_t primitive_or_name() {
+    // The longest run of words that is a primitive: "unsigned long long".
+    std::string words;
+    const Primitive* best = nullptr;
+    std::size_t end = in_.place();
+    for (std::size_t ahead = 0; ahead < 3; ++ahead) {
+      const std::string_view word = in_.peek(static_cast<std::ptrdiff_t>(ahead));
+      words += (words.empty() ? "" : " ") + std::string(word);
+      const auto found = std::ranges::find(kPrimitives, words, &Primitive::words);
+      if (found == kPrimitives.end()) continue;
+      best = found;
+      end = in_.place() + ahead + 1;
+    }
+    if (best != nullptr) {
+      in_.go_to(end);
+      return add({best->kind, 0, 0, std::string(best->words)});
+    }
+    const std::size_t start = in_.place();
+    const std::uint32_t* named = look_up(named_, in_.scoped_name());
+    if (named == nullptr) {
+      in_.go_to(start);
+      in_.refuse("a type that is defined before");
+    }
+    return *named;
+  }
+  // `name` and its array brackets, over a type
+  std::pair<std::string, std::uint32_t> declarator(std::uint32_t type) {
+    std::string declared = in_.name();
+    std::vector<std::uint32_t> lengths;
+    while (in_.accept("[")) {
+      lengths.push_back(length());
+      in_.expect("]");
+    }
+    for (auto length = lengths.rbegin(); length != lengths.rend(); ++length) {
+      type = add({IdlKind::kArray, type, *length});
+    }
+    return {std::move(declared), type};
+  }
+
+  // Definitions
+  Marks marks() {
+    Marks marks;
+    while (in_.accept("@")) {
+      const std::string name = in_.scoped_name();
+      const std::size_t open = in_.place();
+      if (in_.peek() == "(") in_.skip_balanced();
+      const std::string_view argument = in_.place() > open + 2 ? in_.peek(-2) : "";
+      if (name == "key") marks.key = argument != "FALSE" && argument != "false";
+      if (name == "optional") marks.optional = argument != "FALSE" && argument != "false";
+      if (name == "mutable" || (name == "extensibility" && argument == "MUTABLE")) {
+        marks.is_mutable = true;
+      }
+      if (name == "unit" && argument.size() > 2) {
+        marks.unit = argument.substr(1, argument.size() - 2);
+      }
+      if (name == "value" && in_.place() > open) {
+        const std::size_t behind = in_.place();
+        in_.go_to(open + 1);
+        marks.value = sum(0);
+        in_.go_to(behind);
+      }
+    }
+    return marks;
+  }
+  void definition(int depth) {
+    if (depth > kMaxDepth) in_.refuse("fewer modules in each other");
+    if (in_.accept(";")) return;
+    if (in_.peek() == "@" && in_.peek(1) == "annotation") {
+      in_.go_to(in_.place() + 2);
+      in_.skip_definition();
+      return;
+    }
+    const Marks in_front = marks();
+    if (in_.accept("module")) {
+      module(depth);
+    } else if (in_.accept("struct")) {
+      structure(in_front);
+    } else if (in_.accept("enum")) {
+      enumeration();
+    } else if (in_.accept("typedef")) {
+      const std::uint32_t aliased = type(0);
+      do {
+        auto [declared, of] = declarator(aliased);
+        named_[scoped(declared)] = of;
+      } while (in_.accept(","));
+      in_.expect(";");
+    } else if (in_.accept("const")) {
+      constant();
+    } else {
+      beyond();
+    }
+  }
+  void module(int depth) {
+    const std::string outside = scope_;
+    scope_ = scoped(in_.name());
+    in_.expect("{");
+    while (!in_.accept("}")) {
+      if (in_.peek().empty()) in_.refuse("}");
+      definition(depth + 1);
+    }
+    in_.accept(";");
+    scope_ = outside;
+  }
+  void constant() {
+    while (in_.peek(1) != "=") {
+      if (in_.take().empty()) in_.refuse("=");
+    }
+    const std::string constant = scoped(in_.name());
+    in_.expect("=");
+    const std::size_t start = in_.place();
+    try {
+      const std::int64_t value = sum(0);
+      if (in_.peek() == ";") constants_[constant] = value;
+    } catch (const ConfigError&) {
+      in_.go_to(start);  // a text or a fraction: no length needs it
+    }
+    in_.skip_definition();
+  }
+  void enumeration() {
+    IdlEnum found{scoped(in_.name()), {}};
+    in_.expect("{");
+    std::int64_t next = 0;
+    while (!in_.accept("}")) {
+      const Marks in_front = marks();
+      next = in_front.value.value_or(next);
+      std::string value = in_.name();
+      constants_[scoped(value)] = next;
+      found.values.emplace_back(next++, std::move(value));
+      if (!in_.accept(",") && in_.peek() != "}") in_.refuse(", or }");
+    }
+    in_.expect(";");
+    named_[found.name] = add({IdlKind::kEnum, static_cast<std::uint32_t>(schema_.enums.size())});
+    schema_.enums.push_back(std::move(found));
+  }
+  void structure(const Marks& in_front) {
+    IdlStruct found{scoped(in_.name()), {}, in_front.is_mutable};
+    if (in_.accept(";")) return;  // a promise only
+    if (in_.accept(":")) {
+      const std::size_t start = in_.place();
+      const std::uint32_t* base = look_up(named_, in_.scoped_name());
+      if (base == nullptr || schema_.types[*base].kind != IdlKind::kStruct) {
+        in_.go_to(start);
+        in_.refuse("a struct that is defined before");
+      }
+      found.members = schema_.structs[schema_.types[*base].of].members;
+    }
+    in_.expect("{");
+    while (!in_.accept("}")) members(found);
+    in_.expect(";");
+    named_[found.name] =
+        add({IdlKind::kStruct, static_cast<std::uint32_t>(schema_.structs.size())});
+    schema_.structs.push_back(std::move(found));
+  }
+  void members(IdlStruct& into) {
+    const Marks in_front = marks();
+    const std::uint32_t of = type(0);
+    const std::size_t first = into.members.size();
+    do {
+      auto [declared, type] = declarator(of);
+      into.members.push_back({std::move(declared), type, {}, in_front.key, in_front.optional});
+    } while (in_.accept(","));
+    const std::string unit = in_front.unit.empty() ? unit_in(in_.comment_here()) : in_front.unit;
+    in_.expect(";");
+    for (std::size_t i = first; i < into.members.size(); ++i) into.members[i].unit = unit;
+  }
+  // Kinds of definition that no message here has: their names are kept, to say so.
+  void beyond() {
+    constexpr std::array<std::string_view, 8> kKinds{
+        "union", "bitmask", "bitset", "interface", "native", "exception", "valuetype", "abstract"};
+    const std::string kind(in_.peek());
+    if (std::ranges::find(kKinds, kind) == kKinds.end()) {
+      in_.refuse("module, struct, enum, typedef or const");
+    }
+    in_.take();
+    const std::string declared = scoped(in_.name());
+    named_[declared] = add({IdlKind::kUnsupported, 0, 0, kind + " " + declared});
+    in_.skip_definition();
+  }
+
+  IdlCursor in_;
+  std::string scope_;
+  IdlSchema schema_;
+  std::map<std::string, std::uint32_t> named_;
+  std::map<std::string, std::int64_t> constants_;
+};
+
+}  // namespace
+
+const IdlStruct* IdlSchema::find(std::string_view name) const {
+  std::string wanted;
+  for (const char c : name) wanted += c == '/' ? std::string("::") : std::string(1, c);
+  const auto found = std::ranges::find(structs, wanted, &IdlStruct::name);
+  return found == structs.end() ? nullptr : &*found;
+}
+
+IdlSchema parse_idl(std::string_view text, const std::string& source) {
+  return Parser(text, source).parse();
+}
+
+}  // namespace stillhand::recording

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "services/rig/core/chain.hpp"
+#include "services/signal/second_order_lag.hpp"
+
+namespace stillhand::rig {
+
+/// Where the chain is, relative to the platform.
+struct ChainPlace {
+  double trunk_m, trunk_m_s;
+  double arm_m, arm_m_s;
+  double stick_m, stick_m_s;
+};
+
+/// Forces besides those of Eq. RG-3 and RG-4, + right.
+struct ChainForces {
+  double trunk_n = 0.0;
+  double arm_n = 0.0;
+  double hand_n = 0.0;   ///< on the hand, above the load cell
+  double stick_n = 0.0;  ///< on the stick, below it
+};
+
+/// What the chain Eq. RG-3 lacks, as a difference force, README Eq. RG-12 to RG-20.  d = x_a - x_t
+/// is the stretch of the shoulder, s = x_a - x_j that of the grip, p the muscles' present
+/// parameters.  Plain numbers; which of them count goes with `spring`.
+/// Pure: no clock, no I/O; never allocates or throws.
+struct ChainEffect {
+  enum class Spring : std::uint8_t {
+    kNone,
+    kSofteningShoulder,  ///< RG-14
+    kHardeningGrip,      ///< RG-15
+    kOneWayShoulder,     ///< RG-16
+    kSlackHarness,       ///< RG-17
+    kBumpStop,           ///< RG-17
+    kTighteningArm,      ///< RG-18
+    kArmRest,            ///< RG-19
+    kCogging,            ///< RG-20
+  };
+
+  Spring spring = Spring::kNone;
+  double threshold_m = 1.0;   ///< RG-14, 15, 17
+  double factor = 0.0;        ///< RG-14 to RG-18 [-]
+  double time_s = 1.0;        ///< RG-18
+  double rest_mass_kg = 1.0;  ///< RG-19
+  double rest_frequency_hz = 1.0;
+  double rest_damping = 0.1;  ///< damping ratio [-]
+  double pad_stiffness_n_m = 0.0;
+  double ripple_n = 0.0;         ///< RG-20
+  double ripple_period_m = 1.0;  ///< at the hand
+  double ripple_phase_rad = 0.0;
+  double friction_n = 0.0;  ///< besides F_c of Eq. RG-4
+};
+
+/// A further mass beside the arm, Eq. RG-19: its own motion, driven by arm and platform.
+class RestMode {
+ public:
+  RestMode(const ChainEffect& effect, double period_s);
+  [[nodiscard]] double position_m() const noexcept { return position_m_; }
+  /// One tick; arm and acceleration as their means over it.
+  void step(double arm_m, double acceleration_m_s2) noexcept;
+
+ private:
+  signal::SecondOrderLag lag_;
+  double stiffness_n_m_;
+  double pad_n_m_;
+  double mass_kg_;
+  double position_m_ = 0.0;
+};
+
+/// The effect on one chain (that of the stick as it moves, or that of a stick held at 0).
+class EffectOnChain {
+ public:
+  EffectOnChain(const ChainEffect& effect, double period_s);
+
+  [[nodiscard]] bool acts() const noexcept { return effect_.spring != ChainEffect::Spring::kNone; }
+  /// Time goes on by a tick: Eq. RG-18.
+  void age() noexcept { slack_left_ *= keep_; }
+  /// Forces with the chain at `at`.
+  [[nodiscard]] ChainForces forces(const ChainPlace& at, const ChainParameters& p) const noexcept;
+  /// What moves with the effect, Eq. RG-19, over the tick from `from` to `to`.
+  void move(const ChainPlace& from, const ChainPlace& to, double mean_acceleration_m_s2) noexcept;
+
+ private:
+  ChainEffect effect_;
+  RestMode rest_;
+  double keep_;              ///< exp(-dt / time_s)
+  double slack_left_ = 1.0;  ///< exp(-t / time_s)
+};
+
+}  // namespace stillhand::rig

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/rig/core/undeclared/effect_sizing.hpp"
+
+#include <cmath>
+#include <complex>
+
+#include "services/rig/core/band_noise.hpp"
+#include "services/rig/core/body.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "services/rig/core/sensors.hpp"
+
+namespace stillhand::rig {
+namespace {
+
+constexpr std::size_t kSettle = 1000;
+constexpr std::size_t kTicks = 40000;
+// Any will do: every effect is sized against the same motion.
+constexpr std::uint64_t kMotionSeed = 1;
+constexpr std::uint64_t kMotionStream = 0x66610003;
+constexpr double kIdentification_m_s2 = 0.75 * kGravity_m_s2 / 3.8;
+constexpr double kTracking_m_s2 = 1.6;
+
+double rms(const std::vector<double>& x) {
+  double sum = 0.0;
+  for (const double each : x) sum += each * each;
+  return std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+}  // namespace
+
+PeggedTrial::PeggedTrial(const BodyConfig& body, const StickConfig& stick)
+    : body_(body), stick_(stick) {
+  BandNoise noise(kMotionSeed, kMotionStream, {0.7, 4.0, kIdentification_m_s2});
+  motion_m_s2_.reserve(kTicks);
+  for (std::size_t n = 0; n < kTicks; ++n) motion_m_s2_.push_back(noise.step());
+  plain_n_ = force_n({});
+  plain_rms_n_ = rms(plain_n_);
+}
+
+std::vector<double> PeggedTrial::force_n(const ChainEffect& effect) const {
+  Body chain(body_, stick_, kControlPeriod_s, effect);
+  std::vector<double> force;
+  force.reserve(kTicks);
+  for (std::size_t n = 0; n < kTicks; ++n) {
+    const double each_n = chain.step({motion_m_s2_[n], 0.0, 0.0, true}).hand_force_n;
+    if (n >= kSettle) force.push_back(each_n);
+  }
+  return force;
+}
+
+double PeggedTrial::share(const std::vector<double>& with_n) const {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < with_n.size(); ++n) {
+    sum += (with_n[n] - plain_n_[n]) * (with_n[n] - plain_n_[n]);
+  }
+  return std::sqrt(sum / static_cast<double>(with_n.size())) / plain_rms_n_;
+}
+
+double sized(double low, double high, double wanted, const std::function<double(double)>& share) {
+  double at_low = share(low);
+  double at_high = share(high);
+  const bool rising = at_high > at_low;
+  if (rising ? wanted <= at_low : wanted >= at_low) return low;
+  if (rising ? wanted >= at_high : wanted <= at_high) return high;
+  while (high / low > 1.001) {
+    const double middle = std::sqrt(low * high);
+    (((share(middle) < wanted) == rising) ? low : high) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
+double tracking_force_rms(const BodyConfig& body, const StickConfig& stick) {
+  constexpr int kLines = 27;  // 0.05 Hz apart
+  double sum = 0.0;
+  for (int k = 0; k < kLines; ++k) {
+    sum += std::norm(feedthrough_response(body, stick, false, 0.7 + 0.05 * k));
+  }
+  return kTracking_m_s2 * std::sqrt(sum / kLines);
+}
+
+}  // namespace stillhand::rig

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "services/rig/core/body_config.hpp"
+#include "services/rig/core/undeclared/chain_effect.hpp"
+
+namespace stillhand::rig {
+
+/// A pegged identification trial in small, against which an effect is sized: README Eq. RG-12.
+/// Noise of 0.7 to 4 Hz (order 4 at each edge), 0.75 g / 3.8 RMS as the identification of paper
+/// III-A, 40 s, always the same.  Pure.
+class PeggedTrial {
+ public:
+  /// @throws ConfigError when a field is out of range.
+  PeggedTrial(const BodyConfig& body, const StickConfig& stick);
+
+  /// Load-cell force with the effect [N], 1 kHz, without the first second.
+  [[nodiscard]] std::vector<double> force_n(const ChainEffect& effect) const;
+  /// The same without one.
+  [[nodiscard]] const std::vector<double>& plain_n() const noexcept { return plain_n_; }
+  [[nodiscard]] double plain_rms_n() const noexcept { return plain_rms_n_; }
+  /// Eq. RG-12: RMS(f_with - f_without) / RMS(f_without).
+  [[nodiscard]] double share(const std::vector<double>& with_n) const;
+  [[nodiscard]] double share(const ChainEffect& effect) const { return share(force_n(effect)); }
+
+ private:
+  BodyConfig body_;
+  StickConfig stick_;
+  std::vector<double> motion_m_s2_;
+  std::vector<double> plain_n_;
+  double plain_rms_n_;
+};
+
+/// The value between `low` and `high` (positive) at which share(value), monotonic, is `wanted`; the
+/// nearer end where it isn't reached.  Bisection of the logarithm to 1 part in 1000.
+double sized(double low, double high, double wanted, const std::function<double(double)>& share);
+
+/// RMS of the feedthrough force while tracking (paper III-C: 0.7 to 2 Hz, 1.6 m/s^2 RMS) [N].
+double tracking_force_rms(const BodyConfig& body, const StickConfig& stick);
+
+}  // namespace stillhand::rig

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/rig/core/undeclared/sealed_effect.hpp"
+
+#include "services/rig/core/rig.hpp"
+#include "services/rig/core/undeclared/effect_draw.hpp"
+#include "services/rig/core/undeclared/undeclared_effect.hpp"
+
+namespace stillhand::rig {
+
+SealedEffect::SealedEffect() noexcept = default;
+SealedEffect::~SealedEffect() = default;
+SealedEffect::SealedEffect(SealedEffect&&) noexcept = default;
+SealedEffect& SealedEffect::operator=(SealedEffect&&) noexcept = default;
+
+SealedEffect::SealedEffect(std::uint64_t seed, const RigConfig& sized_for) {
+  if (seed == 0) return;
+  effect_ = std::make_unique<UndeclaredEffect>(draw_effect(seed, sized_for));
+}
+
+OpenedEffect SealedEffect::open() && {
+  if (!effect_) return {};
+  OpenedEffect facts = effect_->facts();
+  effect_.reset();
+  return facts;
+}
+
+}  // namespace stillhand::rig

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/bus.hpp"
+
+#include <algorithm>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include "services/contract/config_error.hpp"
+#include "services/contract/time_difference.hpp"
+#include "services/runtime/bus/endpoint.hpp"
+#include "services/runtime/bus/found_writers.hpp"
+#include "services/runtime/bus/participant.hpp"
+#include "services/runtime/bus/replay_mark.hpp"
+#include "services/runtime/bus/serialized_type.hpp"
+#include "services/runtime/bus/type_tag.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::types::ReturnCode_t;
+namespace edds = eprosima::fastdds::dds;
+
+struct Bus::Impl {
+  explicit Impl(const Bus::Options& options)
+      : peers(options.service, options.rig, options.answers_replay,
+              options.serialized ? &writers : nullptr, !options.security.empty()) {}
+  ~Impl() {
+    if (participant == nullptr) return;
+    participant->delete_contained_entities();
+    edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+
+  /// What carries a type on this participant: the type itself, or its bytes.
+  static edds::TypeSupport carrier(const Bus::Options& options, const edds::TypeSupport& real) {
+    return options.serialized ? edds::TypeSupport(new SerializedType(real)) : real;
+  }
+  void open_reader(const Bus::Options& options, const topics::Topic& topic,
+                   const edds::TypeSupport& type, const std::string& profile,
+                   std::shared_ptr<void> sample, detail::Deliver deliver);
+
+  // Readers and writers hand callbacks into `endpoints` until the participant is gone, and the
+  // participant into `peers`, which tell `writers`: order of members matters.
+  FoundWriters writers;
+  Peers peers;
+  std::atomic<bool> supervising{false};
+  std::vector<std::unique_ptr<detail::Endpoint>> endpoints;
+  std::mutex clock_mutex;
+  std::map<std::string, std::int64_t> clock_offsets_ns;  ///< by service, against the experiment's
+  std::map<std::string, edds::Topic*> topics;
+  edds::DomainParticipant* participant = nullptr;
+  edds::Publisher* publisher = nullptr;
+  edds::Subscriber* subscriber = nullptr;
+};
+
+Bus::Bus(Options options) : options_(std::move(options)) {
+  impl_ = std::make_unique<Impl>(options_);
+  impl_->participant = create_participant(
+      options_.profiles, options_.domain, Peers::participant_name(options_.rig, options_.service),
+      options_.answers_replay, Identity::of(options_.security, options_.service), &impl_->peers);
+  // Endpoints wait for start(): a callback must not run before its owner is complete.
+  edds::PublisherQos publisher_qos;
+  publisher_qos.entity_factory().autoenable_created_entities = false;
+  impl_->publisher = impl_->participant->create_publisher(publisher_qos);
+  edds::SubscriberQos subscriber_qos;
+  subscriber_qos.entity_factory().autoenable_created_entities = false;
+  impl_->subscriber = impl_->participant->create_subscriber(subscriber_qos);
+  if (impl_->publisher == nullptr || impl_->subscriber == nullptr) {
+    throw BusError("Fast DDS gave no publisher or subscriber");
+  }
+  if (options_.serialized) {
+    impl_->writers.learn_depths(*impl_->publisher, options_.profiles);
+    // Nobody tells a participant of itself.
+    impl_->writers.note_participant(impl_->participant->guid().guidPrefix,
+                                    Peers::participant_name(options_.rig, options_.service));
+  }
+}
+
+Bus::~Bus() = default;
+
+namespace {
+
+edds::Topic* topic_of(edds::DomainParticipant& participant,
+                      std::map<std::string, edds::Topic*>& known, const topics::Topic& row,
+                      const edds::TypeSupport& type) {
+  const std::string name(row.name);
+  if (known.count(name) == 0) {
+    type.register_type(&participant);
+    known[name] = participant.create_topic(name, std::string(row.type), edds::TOPIC_QOS_DEFAULT);
+  }
+  if (known[name] == nullptr) throw BusError("Fast DDS refused the topic " + name);
+  return known[name];
+}
+
+}  // namespace
+
+detail::Endpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& type) {
+  const std::string profile(topics::profile_of(topic.pattern));
+  edds::DataWriterQos qos;
+  if (impl_->publisher->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(options_.profiles, "data_writer", profile);
+  }
+  if (options_.answers_replay) qos.user_data().data_vec(replay_mark());
+  edds::Topic* dds_topic =
+      topic_of(*impl_->participant, impl_->topics, topic, impl_->carrier(options_, type.support));
+  auto endpoint =
+      std::make_unique<detail::WriterEndpoint>(topic, impl_->peers, options_, impl_->supervising);
+  if (options_.serialized) endpoint->serializer = &type;
+  endpoint->writer = impl_->publisher->create_datawriter(dds_topic, qos, endpoint.get());
+  if (endpoint->writer == nullptr) {
+    throw BusError("Fast DDS refused the writer of " + std::string(topic.name));
+  }
+  impl_->endpoints.push_back(std::move(endpoint));
+  return impl_->endpoints.back().get();
+}
+
+void Bus::add_reader(const topics::Topic& topic, const TypeTag& type, std::shared_ptr<void> sample,
+                     detail::Deliver deliver) {
+  if (options_.serialized) {
+    // Bytes come in; the typed callback gets a message made from them.
+    deliver = [real = type.support, message = std::move(sample), call = std::move(deliver)](
+                  const void* bytes, const Arrival& arrival) -> detail::SampleClock {
+      if (!from_bytes(real, *static_cast<const SerializedSample*>(bytes), message.get())) return {};
+      return call(message.get(), arrival);
+    };
+    sample = std::make_shared<SerializedSample>();
+  }
+  impl_->open_reader(options_, topic, impl_->carrier(options_, type.support),
+                     std::string(topics::profile_of(topic.pattern)), std::move(sample),
+                     std::move(deliver));
+}
+
+void Bus::subscribe_serialized(
+    const topics::Topic& topic,
+    std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample) {
+  const TypeTag* real = find_type(topic.type);
+  if (real == nullptr || !options_.serialized) {
+    throw BusError("no bytes of " + std::string(topic.type) + " to be had");
+  }
+  const bool stream = topic.pattern == topics::Pattern::kStream1khz ||
+                      topic.pattern == topics::Pattern::kStreamSlow ||
+                      topic.pattern == topics::Pattern::kExchange;
+  impl_->open_reader(options_, topic, impl_->carrier(options_, real->support),
+                     std::string(stream ? "record_stream" : topics::profile_of(topic.pattern)),
+                     std::make_shared<SerializedSample>(),
+                     [call = std::move(on_sample)](const void* sample, const Arrival& arrival) {
+                       return call(*static_cast<const SerializedSample*>(sample), arrival);
+                     });
+}
+
+void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& topic,
+                            const edds::TypeSupport& type, const std::string& profile,
+                            std::shared_ptr<void> sample, detail::Deliver deliver) {
+  edds::DataReaderQos qos;
+  if (subscriber->get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(options.profiles, "data_reader", profile);
+  }
+  edds::Topic* dds_topic = topic_of(*participant, topics, topic, type);
+  auto endpoint = std::make_unique<detail::ReaderEndpoint>(topic, peers, options, supervising,
+                                                           std::move(sample), std::move(deliver),
+                                                           options.serialized ? &writers : nullptr);
+  endpoint->reader = subscriber->create_datareader(dds_topic, qos, endpoint.get());
+  if (endpoint->reader == nullptr) {
+    throw BusError("Fast DDS refused the reader of " + std::string(topic.name));
+  }
+  endpoints.push_back(std::move(endpoint));
+}
+
+void Bus::start() {
+  for (const auto& endpoint : impl_->endpoints) {
+    if (endpoint->enable()) continue;
+    const std::string name(endpoint->topic().name);
+    throw BusError("Fast DDS does not let " + options_.service +
+                   (endpoint->writes() ? " write " : " read ") + name +
+                   (options_.security.empty() ? "" : ": do its permissions allow it?"));
+  }
+}
+
+void Bus::stop_receiving() {
+  for (const auto& endpoint : impl_->endpoints) endpoint->close_reader(*impl_->subscriber);
+}
+
+std::set<std::string> Bus::matched_peers(const topics::Topic& topic) const {
+  std::set<std::string> peers;
+  for (const auto& endpoint : impl_->endpoints) {
+    if (&endpoint->topic() == &topic) peers.merge(endpoint->matched_services());
+  }
+  return peers;
+}
+
+std::vector<std::string> Bus::missing_peers() const {
+  std::vector<std::string> missing;
+  for (const auto& endpoint : impl_->endpoints) {
+    const topics::Topic& row = endpoint->topic();
+    const std::set<std::string> matched = endpoint->matched_services();
+    for (const std::string_view wanted : endpoint->writes() ? row.readers : row.writers) {
+      if (wanted == options_.service || wanted == topics::kDashboard) continue;
+      if (matched.count(std::string(wanted)) != 0) continue;
+      missing.push_back(std::string(wanted) + " (" + std::string(row.name) + ")");
+    }
+  }
+  return missing;
+}
+
+std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.duplicates(); }
+bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
+bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
+std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
+void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
+  // Whoever writes on the bus may name whom he likes; kept are offsets of a session's own.
+  if (std::ranges::find(topics::kServices, service) == topics::kServices.end()) return;
+  const std::lock_guard lock(impl_->clock_mutex);
+  impl_->clock_offsets_ns[service] = offset_ns;
+  const auto own = impl_->clock_offsets_ns.find(options_.service);
+  const std::int64_t own_ns = own == impl_->clock_offsets_ns.end() ? 0 : own->second;
+  for (const auto& endpoint : impl_->endpoints) {
+    const auto& writers = endpoint->topic().writers;
+    if (endpoint->writes() || writers.size() != 1) continue;
+    const auto writer = impl_->clock_offsets_ns.find(std::string(writers.front()));
+    if (writer != impl_->clock_offsets_ns.end()) {
+      endpoint->set_clock_ahead(difference_ns(writer->second, own_ns));
+    }
+  }
+}
+
+void Bus::supervise(bool on) noexcept { impl_->supervising.store(on, std::memory_order_relaxed); }
+
+std::vector<EndpointReport> Bus::report() const {
+  std::vector<EndpointReport> reports;
+  for (const auto& endpoint : impl_->endpoints) reports.push_back(endpoint->report());
+  return reports;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "services/contract/tick.hpp"
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::runtime {
+
+/// Trouble on the bus that no setting mends: exit status 1.
+class BusError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The DDS side of one message type; defined for every struct of idl/ in message_types.cpp.
+struct TypeTag;
+template <typename Message>
+const TypeTag& type_tag();
+
+struct FoundWriter;
+
+/// When a sample came, and of whom.
+struct Arrival {
+  std::int64_t received_ns;  ///< [ns] CLOCK_MONOTONIC of this process
+  std::int64_t source_ns;    ///< [ns] system clock of the writer's host, as DDS stamped it
+  std::int64_t logged_ns;    ///< [ns] system clock of this host
+  std::int64_t sequence;     ///< [-] RTPS sequence number of its writer
+  /// With Options::serialized: the writer, valid during the call, and its number in the order of
+  /// finding.  nullptr without, and for a writer that DDS never announced.
+  const FoundWriter* writer = nullptr;
+  std::size_t writer_number = 0;
+};
+
+/// What happened at an endpoint, told from DDS's own threads.  Plain, so that it can leave a
+/// receiving thread without lock or allocation.
+struct BusIncident {
+  enum class Kind : std::uint8_t {
+    kDeadlineMissed,
+    kCycleMissed,
+    kTicksLost,
+    kLivelinessLost,
+    kLivelinessRecovered,
+    kIncompatibleQos
+  };
+  Kind kind;
+  const topics::Topic* topic;  ///< never null
+  char peer[32];               ///< service concerned, where known; zero-terminated
+  double by_us;                ///< [us] how much too late; [ticks] for kTicksLost
+  const char* policy;          ///< QoS policy of kIncompatibleQos; a literal, never null
+};
+
+/// Counters of one endpoint, for the status topic.
+struct EndpointReport {
+  const topics::Topic* topic;
+  bool written;
+  std::uint32_t matched;
+  std::uint64_t samples, lost_ticks, cycle_misses, deadline_misses;
+  double worst_interval_us, latency_p50_us, latency_p99_us, latency_max_us;
+};
+
+namespace detail {
+class Endpoint;
+void write(Endpoint& endpoint, void* message);
+
+/// What the supervision needs to know of a delivered sample.
+struct SampleClock {
+  bool ours = false;  ///< false: another rig's
+  Tick tick = -1;     ///< -1: the type has none
+  std::int64_t stamp_ns = 0;
+};
+using Deliver = std::function<SampleClock(const void*, const Arrival&)>;
+}  // namespace detail
+
+/// One topic to write.  Fills in rig number and stamp.  Valid as long as its Bus.
+template <typename Message>
+class Publisher {
+ public:
+  Publisher() = default;
+  Publisher(detail::Endpoint* endpoint, std::uint32_t rig) : endpoint_(endpoint), rig_(rig) {}
+
+  /// Does not block on best-effort topics.  `message` keeps its own fields otherwise.
+  void write(Message& message) {
+    message.rig(rig_);
+    message.stamp_ns(monotonic_ns());
+    detail::write(*endpoint_, &message);
+  }
+
+ private:
+  detail::Endpoint* endpoint_ = nullptr;
+  std::uint32_t rig_ = 0;
+};
+
+/// One process's place on the bus: a DDS participant, its endpoints, and who is matched with them.
+/// Every endpoint takes the QoS profile of its topic's pattern from the profile file; none is set
+/// in code.  Callbacks of subscriptions run one at a time in the thread that receives user data;
+/// incidents come from DDS's event and discovery threads.
+class Bus {
+ public:
+  struct Options {
+    std::string service;             ///< own name, one of topics::kServices
+    std::uint32_t rig = 1;           ///< key of the rig this process belongs to
+    std::uint32_t domain = 0;        ///< DDS domain, 0 to 232
+    std::filesystem::path profiles;  ///< qos/profiles.xml
+    /// Every topic is carried as bytes: the recorder reads what it also writes, and one participant
+    /// can hold a type name once.  subscribe_serialized() needs it.
+    bool serialized = false;
+    /// This process takes what a replay writes, and carries the replay's mark itself, so that no
+    /// rig takes what it answers.  Others drop every sample of a marked writer.
+    bool answers_replay = false;
+    /// A folder that deploy/security/make.sh wrote: only who holds a certificate of its authority
+    /// is heard and hears, each with its own topics.  Empty: no security.
+    std::filesystem::path security;
+    std::function<void(const BusIncident&)> on_incident;
+  };
+
+  /// @throws ConfigError for a bad domain, profile file or security folder; BusError when DDS
+  /// refuses.
+  explicit Bus(Options options);
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// @throws ConfigError when the profile of the topic's pattern is missing.
+  template <typename Message>
+  Publisher<Message> publisher(const topics::Topic& topic) {
+    return {add_writer(topic, type_tag<Message>()), options_.rig};
+  }
+
+  /// Calls `on_sample(const Message&, const Arrival&)` for every sample of this rig.
+  template <typename Message>
+  void subscribe(const topics::Topic& topic,
+                 std::function<void(const Message&, const Arrival&)> on_sample) {
+    add_reader(topic, type_tag<Message>(), std::make_shared<Message>(),
+               [call = std::move(on_sample), rig = options_.rig](
+                   const void* sample, const Arrival& arrival) -> detail::SampleClock {
+                 const auto& message = *static_cast<const Message*>(sample);
+                 if (message.rig() != rig) return {};
+                 call(message, arrival);
+                 if constexpr (requires { message.tick(); }) {
+                   return {true, message.tick(), message.stamp_ns()};
+                 } else {
+                   return {true, -1, message.stamp_ns()};
+                 }
+               });
+  }
+
+  /// For the recorder: every sample as it came; the callback tells its tick, CDR with its
+  /// encapsulation header, any rig. Takes the profile "record_stream" on best-effort topics.  Only
+  /// with Options::serialized.  Arrival tells the writer.
+  void subscribe_serialized(
+      const topics::Topic& topic,
+      std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample);
+
+  /// Endpoints start to receive; call once, after every publisher() and subscribe().  @throws
+  /// BusError for a topic that this service may not write or read (Options::security).
+  void start();
+  /// No callback of a subscription runs after this returns.  Publishers stay usable.
+  void stop_receiving();
+
+  /// Names of who is matched with this process's endpoints of a topic: processes of this rig, none
+  /// of them a Tap.
+  [[nodiscard]] std::set<std::string> matched_peers(const topics::Topic& topic) const;
+  /// Catalogue peers that are not matched yet, as "service (topic)", empty when complete.
+  [[nodiscard]] std::vector<std::string> missing_peers() const;
+  /// Services that are on the bus more than once under this rig number.
+  [[nodiscard]] std::vector<std::string> duplicate_peers() const;
+  /// True when each service of the catalogue but this one has a live status writer and nobody on
+  /// the domain plays a recording.  With Options::answers_replay: while somebody does.
+  [[nodiscard]] bool peers_alive() const noexcept;
+  /// A participant that carries the replay's mark is on the domain.
+  [[nodiscard]] bool replay_present() const noexcept;
+  /// Names of services whose status writer was alive once and is not now.
+  [[nodiscard]] std::vector<std::string> lost_peers() const;
+
+  /// By how much a service's monotonic clock is ahead of the experiment's; latencies of what it
+  /// writes are told with it taken off.  Any thread.
+  void set_clock_offset(const std::string& service, std::int64_t offset_ns);
+
+  /// Counts of misses start and stop here: outside a running session an absent sample is no fault.
+  void supervise(bool on) noexcept;
+  [[nodiscard]] std::vector<EndpointReport> report() const;
+  [[nodiscard]] const Options& options() const noexcept { return options_; }
+
+ private:
+  detail::Endpoint* add_writer(const topics::Topic& topic, const TypeTag& type);
+  void add_reader(const topics::Topic& topic, const TypeTag& type, std::shared_ptr<void> sample,
+                  detail::Deliver deliver);
+
+  Options options_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace stillhand::runtime

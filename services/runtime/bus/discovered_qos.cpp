@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/discovered_qos.hpp"
+
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::runtime {
+
+namespace edds = eprosima::fastdds::dds;
+using eprosima::fastrtps::c_TimeInfinite;
+using eprosima::fastrtps::Duration_t;
+
+namespace {
+
+std::int64_t ns_of(const Duration_t& duration) {
+  if (duration == c_TimeInfinite) return kForever_ns;
+  return duration.seconds * kNsPerSecond + duration.nanosec;
+}
+
+Duration_t duration_of(std::int64_t ns) {
+  if (ns == kForever_ns) return c_TimeInfinite;
+  return {static_cast<std::int32_t>(ns / kNsPerSecond),
+          static_cast<std::uint32_t>(ns % kNsPerSecond)};
+}
+
+// A writer that keeps less than a burst of its own loses what a reliable reader asks for again.
+constexpr std::int32_t kUnknownDepth = 100;
+
+}  // namespace
+
+WriterQos discovered_qos(const edds::WriterQos& told) {
+  WriterQos qos;
+  qos.reliable = told.m_reliability.kind == edds::RELIABLE_RELIABILITY_QOS;
+  qos.durability = static_cast<Durability>(told.m_durability.kind);
+  qos.liveliness = static_cast<Liveliness>(told.m_liveliness.kind);
+  qos.exclusive = told.m_ownership.kind == edds::EXCLUSIVE_OWNERSHIP_QOS;
+  qos.deadline_ns = ns_of(told.m_deadline.period);
+  qos.lifespan_ns = ns_of(told.m_lifespan.duration);
+  qos.lease_ns = ns_of(told.m_liveliness.lease_duration);
+  return qos;
+}
+
+std::optional<WriterQos> profile_qos(const edds::Publisher& publisher, const std::string& name) {
+  edds::DataWriterQos profile;
+  if (publisher.get_datawriter_qos_from_profile(name, profile) !=
+      eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    return std::nullopt;
+  }
+  WriterQos qos = discovered_qos(profile.get_writerqos({}, {}));
+  qos.depth = profile.history().kind == edds::KEEP_ALL_HISTORY_QOS ? -1 : profile.history().depth;
+  return qos;
+}
+
+edds::DataWriterQos offered_qos(const WriterQos& wanted) {
+  edds::DataWriterQos qos;
+  qos.reliability().kind =
+      wanted.reliable ? edds::RELIABLE_RELIABILITY_QOS : edds::BEST_EFFORT_RELIABILITY_QOS;
+  // Kept in this process's memory only: what was persistent is offered as transient local.
+  qos.durability().kind = wanted.durability == Durability::kVolatile
+                              ? edds::VOLATILE_DURABILITY_QOS
+                              : edds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  qos.liveliness().kind = static_cast<edds::LivelinessQosPolicyKind>(wanted.liveliness);
+  qos.liveliness().lease_duration = duration_of(wanted.lease_ns);
+  if (wanted.lease_ns != kForever_ns) {
+    qos.liveliness().announcement_period = duration_of(wanted.lease_ns * 3 / 10);
+  }
+  qos.ownership().kind =
+      wanted.exclusive ? edds::EXCLUSIVE_OWNERSHIP_QOS : edds::SHARED_OWNERSHIP_QOS;
+  qos.deadline().period = duration_of(wanted.deadline_ns);
+  qos.lifespan().duration = duration_of(wanted.lifespan_ns);
+  const std::int32_t depth = wanted.depth > 0 ? wanted.depth : kUnknownDepth;
+  if (wanted.depth < 0) {
+    qos.history().kind = edds::KEEP_ALL_HISTORY_QOS;
+  } else {
+    qos.history().kind = edds::KEEP_LAST_HISTORY_QOS;
+    qos.history().depth = depth;
+    // A recording may hold several rigs and services, each a key of its own.
+    constexpr std::int32_t kInstances = 64;
+    qos.resource_limits().max_instances = kInstances;
+    qos.resource_limits().max_samples_per_instance = depth;
+    qos.resource_limits().max_samples = depth * kInstances;
+  }
+  qos.data_sharing().off();
+  qos.endpoint().history_memory_policy =
+      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.reliable_writer_qos().times.heartbeatPeriod = duration_of(kNsPerSecond / 10);
+  return qos;
+}
+
+}  // namespace stillhand::runtime

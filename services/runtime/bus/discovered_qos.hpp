@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/publisher/qos/WriterQos.hpp>
+#include <optional>
+#include <string>
+
+#include "services/runtime/bus/writer_qos.hpp"
+
+namespace stillhand::runtime {
+
+/// What discovery tells of a writer's QoS.
+WriterQos discovered_qos(const eprosima::fastdds::dds::WriterQos& told);
+
+/// A writer that offers the same; resource limits as for KEEP_LAST of its depth.
+eprosima::fastdds::dds::DataWriterQos offered_qos(const WriterQos& wanted);
+
+/// What a profile of the loaded file offers; nothing when it is missing.
+std::optional<WriterQos> profile_qos(const eprosima::fastdds::dds::Publisher& publisher,
+                                     const std::string& name);
+
+}  // namespace stillhand::runtime

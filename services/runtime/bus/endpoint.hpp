@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/found_writers.hpp"
+#include "services/runtime/bus/peers.hpp"
+#include "services/runtime/process/latest_value.hpp"
+#include "services/signal/cycle_monitor.hpp"
+
+namespace stillhand::runtime::detail {
+
+/// What both ends of a topic have in common: the catalogue row and who is matched.
+class Endpoint {
+ public:
+  Endpoint(const topics::Topic& row, Peers& peers, const Bus::Options& options,
+           const std::atomic<bool>& supervising)
+      : topic_(row), peers_(peers), options_(options), supervising_(supervising) {}
+  virtual ~Endpoint() = default;
+  Endpoint(const Endpoint&) = delete;
+  Endpoint& operator=(const Endpoint&) = delete;
+
+  virtual bool write(void* /*message*/) { return false; }
+  /// @returns false when DDS refuses, as for a topic that is not this service's on a secured bus.
+  [[nodiscard]] virtual bool enable() = 0;
+  /// Deletes a reader, once its running callback has returned; nothing for a writer.
+  virtual void close_reader(eprosima::fastdds::dds::Subscriber& /*owner*/) {}
+  /// By how much the writer's monotonic clock is ahead of this process's [ns].
+  virtual void set_clock_ahead(std::int64_t /*ahead_ns*/) noexcept {}
+  virtual EndpointReport report() = 0;
+  /// Services matched now.
+  [[nodiscard]] std::set<std::string> matched_services() const;
+  [[nodiscard]] const topics::Topic& topic() const noexcept { return topic_; }
+  [[nodiscard]] virtual bool writes() const noexcept = 0;
+
+ protected:
+  void note_match(const eprosima::fastrtps::rtps::InstanceHandle_t& peer, int change);
+  void note_incompatible(std::uint32_t policy);
+  void tell(BusIncident::Kind kind, const std::string& peer, double by_us,
+            const char* policy = "") const;
+  [[nodiscard]] std::uint32_t matched_count() const;
+
+  const topics::Topic& topic_;
+  Peers& peers_;
+  const Bus::Options& options_;
+  const std::atomic<bool>& supervising_;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<eprosima::fastrtps::rtps::InstanceHandle_t> matched_;
+};
+
+class WriterEndpoint final : public Endpoint, public eprosima::fastdds::dds::DataWriterListener {
+ public:
+  using Endpoint::Endpoint;
+
+  bool write(void* message) override;
+  bool enable() override {
+    return writer->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+  }
+  EndpointReport report() override;
+  [[nodiscard]] bool writes() const noexcept override { return true; }
+
+  // Set once, before enable().
+  eprosima::fastdds::dds::DataWriter* writer = nullptr;
+  const TypeTag* serializer = nullptr;  // real type of a topic carried as bytes
+
+ private:
+  void on_publication_matched(
+      eprosima::fastdds::dds::DataWriter*,
+      const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+  // Fast DDS 2.9.1 crashes on a missed offered deadline when the writer has no listener of its own.
+  void on_offered_deadline_missed(
+      eprosima::fastdds::dds::DataWriter*,
+      const eprosima::fastrtps::OfferedDeadlineMissedStatus& status) override;
+  void on_offered_incompatible_qos(
+      eprosima::fastdds::dds::DataWriter*,
+      const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override;
+
+  std::atomic<std::uint64_t> samples_{0};
+  std::atomic<std::uint64_t> deadline_misses_{0};
+};
+
+class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::DataReaderListener {
+ public:
+  /// @param sample  storage that each sample is taken into  @param deliver  called with it
+  /// @param writers  where `deliver` hears of the writer, or nullptr
+  ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus::Options& options,
+                 const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
+                 Deliver deliver, const FoundWriters* writers);
+
+  bool enable() override {
+    return reader->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+  }
+  void close_reader(eprosima::fastdds::dds::Subscriber& owner) override;
+  EndpointReport report() override;
+  [[nodiscard]] bool writes() const noexcept override { return false; }
+  void set_clock_ahead(std::int64_t ahead_ns) noexcept override {
+    clock_ahead_ns_.store(ahead_ns, std::memory_order_relaxed);
+  }
+
+  eprosima::fastdds::dds::DataReader* reader = nullptr;  // set once, before enable()
+
+ private:
+  void on_data_available(eprosima::fastdds::dds::DataReader*) override;
+  void on_subscription_matched(
+      eprosima::fastdds::dds::DataReader*,
+      const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
+  void on_requested_deadline_missed(
+      eprosima::fastdds::dds::DataReader*,
+      const eprosima::fastrtps::RequestedDeadlineMissedStatus& status) override;
+  void on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
+                             const eprosima::fastrtps::LivelinessChangedStatus& status) override;
+  void on_requested_incompatible_qos(
+      eprosima::fastdds::dds::DataReader*,
+      const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
+  void supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns);
+
+  std::shared_ptr<void> sample_;
+  Deliver deliver_;
+  std::optional<SampleWriters> writer_of_;  // receiving thread only
+  std::atomic<std::uint64_t> samples_{0};
+  std::atomic<std::uint64_t> deadline_misses_{0};
+  std::atomic<std::int64_t> last_arrival_ns_{0};
+  std::atomic<int> alive_writers_{0};
+  std::atomic<std::int64_t> clock_ahead_ns_{0};
+  // Receiving thread only; snapshots leave through the triple buffer.
+  signal::CycleMonitor monitor_;
+  LatestValue<EndpointReport> snapshot_;
+  std::mutex report_mutex_;
+};
+
+}  // namespace stillhand::runtime::detail

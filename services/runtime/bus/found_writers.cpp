@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/found_writers.hpp"
+
+#include <sstream>
+
+#include "idl/topics.hpp"
+#include "services/runtime/bus/discovered_qos.hpp"
+#include "services/runtime/bus/participant.hpp"
+#include "services/runtime/bus/replay_mark.hpp"
+#include "services/runtime/bus/type_tag.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::rtps::GuidPrefix_t;
+using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
+
+void FoundWriters::learn_depths(const eprosima::fastdds::dds::Publisher& publisher,
+                                const std::filesystem::path& profiles) {
+  const std::lock_guard lock(mutex_);
+  for (const topics::Topic* row : topics::kCatalogue) {
+    const std::string name(topics::profile_of(row->pattern));
+    const std::optional<WriterQos> qos = profile_qos(publisher, name);
+    if (!qos) throw missing_profile(profiles, "data_writer", name);
+    depth_of_[name] = qos->depth;
+  }
+}
+
+void FoundWriters::note_participant(const GuidPrefix_t& prefix, const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  participants_[prefix] = name;
+  for (const auto& [handle, number] : by_handle_) {
+    if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix == prefix) {
+      writers_[number].participant = name;
+    }
+  }
+}
+
+void FoundWriters::note_participant(const ParticipantDiscoveryInfo& info) {
+  const GuidPrefix_t prefix = info.info.m_guid.guidPrefix;
+  if (info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
+      info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
+    return note_participant(prefix, info.info.m_participantName.to_string());
+  }
+  const std::lock_guard lock(mutex_);
+  for (const auto& [handle, number] : by_handle_) {
+    if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix == prefix) {
+      writers_[number].present = false;
+    }
+  }
+}
+
+std::optional<std::size_t> FoundWriters::note_writer(const WriterDiscoveryInfo& info, bool wanted) {
+  const auto& data = info.info;
+  const Handle handle(data.guid());
+  const std::lock_guard lock(mutex_);
+  const auto known = by_handle_.find(handle);
+  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
+    if (known != by_handle_.end()) writers_[known->second].present = false;
+    return std::nullopt;
+  }
+  if (known != by_handle_.end()) return std::nullopt;
+  FoundWriter writer;
+  writer.topic = data.topicName().to_string();
+  writer.type = data.typeName().to_string();
+  std::ostringstream id;
+  id << data.guid();
+  writer.id = id.str();
+  const auto name = participants_.find(data.guid().guidPrefix);
+  if (name != participants_.end()) writer.participant = name->second;
+  writer.qos = discovered_qos(data.m_qos);
+  writer.replayed = is_replay_mark(data.m_qos.m_userData.data_vec());
+  writer.type_known = find_type(writer.type) != nullptr;
+  writer.wanted = wanted;
+  if (const topics::Topic* row = topics::find(writer.topic); row != nullptr) {
+    writer.profile = std::string(topics::profile_of(row->pattern));
+  }
+  by_handle_.emplace(handle, writers_.size());
+  writers_.push_back(std::move(writer));
+  return writers_.size() - 1;
+}
+
+std::optional<std::size_t> FoundWriters::find(const Handle& writer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = by_handle_.find(writer);
+  if (found == by_handle_.end()) return std::nullopt;
+  return found->second;
+}
+
+FoundWriter FoundWriters::complete(FoundWriter writer) const {
+  const auto depth = depth_of_.find(writer.profile);
+  if (depth != depth_of_.end()) writer.qos.depth = depth->second;
+  return writer;
+}
+
+FoundWriter FoundWriters::at(std::size_t number) const {
+  const std::lock_guard lock(mutex_);
+  return complete(writers_.at(number));
+}
+
+std::vector<FoundWriter> FoundWriters::all() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<FoundWriter> all;
+  for (const FoundWriter& writer : writers_) all.push_back(complete(writer));
+  return all;
+}
+
+const SampleWriters::Entry* SampleWriters::of(const FoundWriters::Handle& writer) {
+  if (entry_ != nullptr && writer == newest_) return entry_;
+  auto known = known_.find(writer);
+  if (known == known_.end()) {
+    const std::optional<std::size_t> number = all_.find(writer);
+    if (!number) return nullptr;
+    known = known_.emplace(writer, Entry{*number, all_.at(*number)}).first;
+  }
+  newest_ = writer;
+  entry_ = &known->second;
+  return entry_;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/participant.hpp"
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <mutex>
+#include <set>
+
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/replay_mark.hpp"
+#include "services/runtime/process/domain.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::types::ReturnCode_t;
+namespace edds = eprosima::fastdds::dds;
+
+namespace {
+
+void read_in_batches(edds::DomainParticipantQos& qos, const TakeDatagram& take) {
+  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+  for (auto& transport : qos.transport().user_transports) {
+    if (auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport)) {
+      transport = std::make_shared<BatchedUdpDescriptor>(std::move(udp), take);
+    }
+  }
+}
+
+}  // namespace
+
+// The factory keeps profiles for the whole process and refuses a file it has already read.
+void load_profiles(const std::filesystem::path& file) {
+  static std::mutex mutex;
+  static std::set<std::string> loaded;
+  const std::lock_guard lock(mutex);
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError("QoS profiles", "no file " + file.string(), "the path of qos/profiles.xml");
+  }
+  const std::string path = std::filesystem::canonical(file).string();
+  if (loaded.count(path) != 0) return;
+  if (edds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(path) !=
+      ReturnCode_t::RETCODE_OK) {
+    throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
+                      "XML as in qos/profiles.xml");
+  }
+  loaded.insert(path);
+}
+
+ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,
+                            std::string_view name) {
+  return {profiles.string(), "no " + std::string(kind) + " profile",
+          "one named \"" + std::string(name) + "\""};
+}
+
+edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
+                                            std::uint32_t domain, const std::string& name,
+                                            bool marked, const Identity& identity,
+                                            edds::DomainParticipantListener* listener,
+                                            const TakeDatagram& take) {
+  if (domain > kMaxDomain) {
+    throw ConfigError("domain", std::to_string(domain), "0 to " + std::to_string(kMaxDomain));
+  }
+  if (!identity.none()) check_identity(identity, domain);
+  edds::Log::SetVerbosity(edds::Log::Kind::Error);
+  load_profiles(profiles);
+  auto* factory = edds::DomainParticipantFactory::get_instance();
+  edds::DomainParticipantQos qos;
+  if (factory->get_participant_qos_from_profile("stillhand_participant", qos) !=
+      ReturnCode_t::RETCODE_OK) {
+    throw missing_profile(profiles, "participant", "stillhand_participant");
+  }
+  qos.name(name);
+  if (marked) qos.user_data().data_vec(replay_mark());
+  if (!identity.none()) {
+    secure(qos, identity);
+  } else if (take) {
+    read_in_batches(qos, take);
+  }
+  auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
+  if (participant == nullptr) {
+    throw BusError("Fast DDS opened no participant on domain " + std::to_string(domain) +
+                   ": are its UDP ports free and the addresses in " + profiles.string() +
+                   " those of this machine?");
+  }
+  if (!identity.none() && !is_secured(*participant, identity)) {
+    factory->delete_participant(participant);
+    throw BusError("Fast DDS opened a participant without the security of " +
+                   identity.folder.string());
+  }
+  return participant;
+}
+
+}  // namespace stillhand::runtime

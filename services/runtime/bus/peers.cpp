@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/peers.hpp"
+
+#include <algorithm>
+
+#include "idl/topics.hpp"
+#include "services/runtime/bus/replay_mark.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::rtps::GuidPrefix_t;
+using eprosima::fastrtps::rtps::InstanceHandle_t;
+using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
+using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
+
+Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWriters* writers,
+             bool secured)
+    : self_(std::move(self)),
+      prefix_(participant_name(rig, "")),
+      answers_replay_(answers_replay),
+      writers_(writers),
+      secured_(secured) {}
+
+std::string Peers::participant_name(std::uint32_t rig, const std::string& service) {
+  return "stillhand/" + std::to_string(rig) + "/" + service;
+}
+
+void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                     ParticipantDiscoveryInfo&& info) {
+  if (writers_ != nullptr) writers_->note_participant(info);
+  const std::string name = info.info.m_participantName.to_string();
+  const std::lock_guard lock(mutex_);
+  if (info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
+      info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
+    if (name.starts_with(prefix_)) {
+      services_[info.info.m_guid.guidPrefix] = name.substr(prefix_.size());
+    }
+    if (is_replay_mark(info.info.m_userData.data_vec())) mark(info.info.m_guid.guidPrefix);
+  } else {
+    services_.erase(info.info.m_guid.guidPrefix);
+    marked_now_.erase(info.info.m_guid.guidPrefix);
+    authenticated_.erase(info.info.m_guid.guidPrefix);
+    refresh_replay();
+  }
+}
+
+void Peers::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                        ParticipantAuthenticationInfo&& info) {
+  if (info.status != ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) return;
+  const std::lock_guard lock(mutex_);
+  authenticated_.insert(info.guid.guidPrefix);
+  refresh_replay();
+}
+
+bool Peers::counts(const GuidPrefix_t& participant) const {
+  return !secured_ || authenticated_.count(participant) != 0;
+}
+
+// Comes before the writer is matched, unlike the discovery of its participant, which Fast DDS tells
+// after it has begun to match (PDPListener::onNewCacheChangeAdded).
+void Peers::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                   WriterDiscoveryInfo&& info) {
+  if (writers_ != nullptr) writers_->note_writer(info);
+  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) return;
+  if (!is_replay_mark(info.info.m_qos.m_userData.data_vec())) return;
+  const std::lock_guard lock(mutex_);
+  mark(info.info.guid().guidPrefix);
+}
+
+void Peers::mark(const GuidPrefix_t& participant) {
+  marked_now_.insert(participant);
+  ever_marked_.insert(participant);
+  replay_seen_.store(true, std::memory_order_release);
+  refresh_replay();
+}
+
+void Peers::refresh_replay() {
+  const bool present =
+      std::any_of(marked_now_.begin(), marked_now_.end(),
+                  [this](const GuidPrefix_t& participant) { return counts(participant); });
+  replay_present_.store(present, std::memory_order_release);
+}
+
+bool Peers::refuses(const InstanceHandle_t& writer) const {
+  if (answers_replay_ || !replay_seen()) return false;
+  const auto guid = eprosima::fastrtps::rtps::iHandle2GUID(writer);
+  const std::lock_guard lock(mutex_);
+  return ever_marked_.count(guid.guidPrefix) != 0;
+}
+
+std::string Peers::service_of(const InstanceHandle_t& endpoint) const {
+  const auto guid = eprosima::fastrtps::rtps::iHandle2GUID(endpoint);
+  const std::lock_guard lock(mutex_);
+  const auto found = services_.find(guid.guidPrefix);
+  return found == services_.end() ? "" : found->second;
+}
+
+bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
+  const std::string service = service_of(writer);
+  const std::lock_guard lock(mutex_);
+  bool changed = false;
+  if (alive && !service.empty()) {
+    changed = alive_writers_.emplace(writer, service).second;
+    ever_alive_.insert(service);
+  } else if (!alive) {
+    changed = alive_writers_.erase(writer) > 0;
+  }
+  refresh();
+  return changed;
+}
+
+void Peers::refresh() {
+  const bool all = std::all_of(
+      topics::kServices.begin(), topics::kServices.end(), [this](std::string_view service) {
+        return service == self_ ||
+               std::any_of(alive_writers_.begin(), alive_writers_.end(),
+                           [&](const auto& writer) { return writer.second == service; });
+      });
+  all_alive_.store(all, std::memory_order_release);
+}
+
+std::vector<std::string> Peers::lost() const {
+  const std::lock_guard lock(mutex_);
+  std::set<std::string> gone = ever_alive_;
+  for (const auto& [writer, service] : alive_writers_) gone.erase(service);
+  return {gone.begin(), gone.end()};
+}
+
+std::vector<std::string> Peers::duplicates() const {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, int> count{{self_, 1}};
+  for (const auto& [prefix, service] : services_) {
+    if (counts(prefix)) ++count[service];
+  }
+  std::vector<std::string> twice;
+  for (const auto& [service, times] : count) {
+    if (times > 1) twice.push_back(service);
+  }
+  return twice;
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/rtps/common/InstanceHandle.h>
+
+#include <atomic>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "services/runtime/bus/found_writers.hpp"
+
+namespace stillhand::runtime {
+
+/// Who is on the bus: names of participants by GUID, which services show a life sign, and who plays
+/// a recording.  A participant of Stillhand is named "stillhand/<rig>/<service>"; a replay, and
+/// whoever answers one, carries kReplayMark in the user data of its participant and of each of its
+/// writers.  DDS tells a writer's user data before it matches the writer, so a reader knows the
+/// mark before the first sample.  Called from DDS's threads and the owner's; every call locks, none
+/// is made in the control path except alive(), replay_seen() and replay_present().
+class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  /// @param answers_replay  this process takes what a replay writes, and is marked itself
+  /// @param writers  to be told of every writer, or nullptr
+  /// @param secured  anybody may announce any name; only who has shown a certificate counts
+  Peers(std::string self, std::uint32_t rig, bool answers_replay = false,
+        FoundWriters* writers = nullptr, bool secured = false);
+
+  static std::string participant_name(std::uint32_t rig, const std::string& service);
+
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+
+  void onParticipantAuthentication(
+      eprosima::fastdds::dds::DomainParticipant* participant,
+      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+
+  /// Service of this rig that owns an endpoint, or "" for a stranger or another rig's.
+  [[nodiscard]] std::string service_of(
+      const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint) const;
+  /// A status writer came alive or stopped being so.  @return true when that changed anything.
+  bool set_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
+
+  /// Each service of the catalogue but this one has a live status writer, and no replay is on the
+  /// bus; for a process that answers a replay: one is.  Wait-free.
+  [[nodiscard]] bool alive() const noexcept {
+    if (answers_replay_) return replay_present();
+    return all_alive_.load(std::memory_order_acquire) && !replay_present();
+  }
+  /// A marked participant is on the bus now.  Wait-free.
+  [[nodiscard]] bool replay_present() const noexcept {
+    return replay_present_.load(std::memory_order_acquire);
+  }
+  /// A marked writer was found since the start: refuses() may be true.  Wait-free.
+  [[nodiscard]] bool replay_seen() const noexcept {
+    return replay_seen_.load(std::memory_order_acquire);
+  }
+  /// The writer of a sample is marked, and this process does not answer replays.
+  [[nodiscard]] bool refuses(const eprosima::fastrtps::rtps::InstanceHandle_t& writer) const;
+  [[nodiscard]] std::vector<std::string> lost() const;
+  [[nodiscard]] std::vector<std::string> duplicates() const;
+
+ private:
+  void refresh();
+  void refresh_replay();
+  [[nodiscard]] bool counts(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;
+  void mark(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);
+
+  std::string self_;
+  std::string prefix_;
+  mutable std::mutex mutex_;
+  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> services_;  // by participant
+  std::map<eprosima::fastrtps::rtps::InstanceHandle_t, std::string> alive_writers_;
+  std::set<std::string> ever_alive_;
+  bool answers_replay_;
+  FoundWriters* writers_;
+  bool secured_;
+  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> authenticated_;
+  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> marked_now_;
+  // Never forgotten: a sample may outlive its writer in a reader's history.
+  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> ever_marked_;
+  std::atomic<bool> all_alive_{false};
+  std::atomic<bool> replay_present_{false};
+  std::atomic<bool> replay_seen_{false};
+};
+
+}  // namespace stillhand::runtime

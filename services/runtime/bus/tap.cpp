@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/tap.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "idl/topics.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/found_writers.hpp"
+#include "services/runtime/bus/participant.hpp"
+#include "services/runtime/bus/rtps_sample.hpp"
+#include "services/runtime/bus/serialized_type.hpp"
+#include "services/runtime/bus/type_tag.hpp"
+
+namespace stillhand::runtime {
+
+using eprosima::fastrtps::rtps::GuidPrefix_t;
+using eprosima::fastrtps::rtps::octet;
+using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
+using eprosima::fastrtps::types::ReturnCode_t;
+namespace edds = eprosima::fastdds::dds;
+
+namespace {
+
+/// What a reader asks for; a writer belongs to the reader of its own class.
+enum class ReaderClass : std::uint8_t { kBestEffort, kReliable, kReliableLatched };
+
+ReaderClass class_of(const WriterQos& qos) {
+  if (!qos.reliable) return ReaderClass::kBestEffort;
+  return qos.durability == Durability::kVolatile ? ReaderClass::kReliable
+                                                 : ReaderClass::kReliableLatched;
+}
+
+const char* profile_of(ReaderClass reader_class) {
+  switch (reader_class) {
+    case ReaderClass::kBestEffort:
+      return "record_stream";
+    case ReaderClass::kReliable:
+      return "record_reliable";
+    case ReaderClass::kReliableLatched:
+      return "event";
+  }
+  return "";
+}
+
+}  // namespace
+
+struct Tap::Impl final : edds::DomainParticipantListener {
+  using ReaderKey = std::pair<std::string, ReaderClass>;
+  struct Reader;
+
+  explicit Impl(Options given) : options(std::move(given)) {}
+  // Also when the constructor of Tap throws: the participant calls this as long as it is there.
+  ~Impl() override {
+    if (participant == nullptr) return;
+    participant->delete_contained_entities();
+    edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void on_participant_discovery(edds::DomainParticipant* participant,
+                                ParticipantDiscoveryInfo&& info) override;
+  void on_publisher_discovery(edds::DomainParticipant* participant,
+                              WriterDiscoveryInfo&& info) override;
+  bool take_datagram(std::span<const std::byte> datagram, std::int64_t arrived_ns);
+  void open_readers(const std::stop_token& stop);
+  void open_reader(const ReaderKey& key, const std::string& type);
+  void tell(std::string line);
+
+  Options options;
+  FoundWriters writers;
+  mutable std::mutex mutex;
+  std::condition_variable_any wake;
+  std::set<ReaderKey> asked_for;
+  std::deque<std::pair<ReaderKey, std::string>> waiting;
+  std::vector<std::string> trouble;
+  std::atomic<std::uint64_t> unattributed{0}, past_dds{0};
+
+  // Of the opening thread alone.
+  std::map<std::string, edds::Topic*> topics;
+  std::vector<std::unique_ptr<Reader>> readers;
+  edds::DomainParticipant* participant = nullptr;
+  edds::Subscriber* subscriber = nullptr;
+  std::jthread opening;
+
+  // Of the batched transport's thread, and of stop().
+  struct Heard {
+    const SampleWriters::Entry* writer = nullptr;
+    std::int64_t newest = 0;  // sequence number
+  };
+  std::mutex taking;
+  bool listening = false;
+  SampleWriters writer_of{writers};
+  std::map<FoundWriters::Handle, Heard> heard;
+};
+
+struct Tap::Impl::Reader final : edds::DataReaderListener {
+  Reader(Impl& owner_, ReaderKey key_)
+      : owner(owner_), key(std::move(key_)), writer_of(owner.writers) {}
+
+  void on_data_available(edds::DataReader* source) override {
+    edds::SampleInfo info;
+    while (source->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      const SampleWriters::Entry* entry = writer_of.of(info.publication_handle);
+      if (entry == nullptr) owner.unattributed.fetch_add(1, std::memory_order_relaxed);
+      if (entry == nullptr || class_of(entry->writer.qos) != key.second) continue;
+      owner.options.on_sample(
+          entry->writer,
+          {entry->number,
+           static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long()),
+           info.source_timestamp.to_ns(), system_ns(), sample});
+    }
+  }
+
+  void on_requested_incompatible_qos(edds::DataReader* /*reader*/,
+                                     const edds::RequestedIncompatibleQosStatus& status) override {
+    // A writer of another class is another reader's.
+    if (status.last_policy_id == edds::RELIABILITY_QOS_POLICY_ID ||
+        status.last_policy_id == edds::DURABILITY_QOS_POLICY_ID) {
+      return;
+    }
+    owner.tell(key.first + ": a writer offers what no reader here asks for (QoS policy " +
+               std::to_string(status.last_policy_id) + ")");
+  }
+
+  Impl& owner;
+  ReaderKey key;
+  edds::DataReader* reader = nullptr;
+  SerializedSample sample;
+  SampleWriters writer_of;
+};
+
+void Tap::Impl::on_participant_discovery(edds::DomainParticipant* /*participant*/,
+                                         ParticipantDiscoveryInfo&& info) {
+  writers.note_participant(info);
+}
+
+void Tap::Impl::on_publisher_discovery(edds::DomainParticipant* /*participant*/,
+                                       WriterDiscoveryInfo&& info) {
+  const auto number = writers.note_writer(info, options.wanted(info.info.topicName().to_string()));
+  if (!number) return;
+  const FoundWriter writer = writers.at(*number);
+  if (!writer.wanted) return;
+  const auto& partitions = info.info.m_qos.m_partition.names();
+  const ReaderKey key{writer.topic, class_of(writer.qos)};
+  const std::lock_guard lock(mutex);
+  if (!partitions.empty()) {
+    trouble.push_back(writer.topic + ": a writer in the partition \"" + partitions.front() +
+                      "\" is not heard");
+  }
+  if (writer.type_known && asked_for.insert(key).second) {
+    waiting.emplace_back(key, writer.type);
+    wake.notify_all();
+  }
+}
+
+// DDS holds locks of its own while it tells of a writer, so readers are made in this thread.
+void Tap::Impl::open_readers(const std::stop_token& stop) {
+  for (;;) {
+    std::pair<ReaderKey, std::string> next;
+    {
+      std::unique_lock lock(mutex);
+      if (!wake.wait(lock, stop, [this] { return !waiting.empty(); })) return;
+      next = std::move(waiting.front());
+      waiting.pop_front();
+    }
+    open_reader(next.first, next.second);
+  }
+}
+
+void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
+  const std::string& name = key.first;
+  if (topics.count(name) == 0) {
+    const edds::TypeSupport carrier(new SerializedType(find_type(type)->support));
+    carrier.register_type(participant);
+    topics[name] = participant->create_topic(name, type, edds::TOPIC_QOS_DEFAULT);
+  }
+  if (topics[name] == nullptr || topics[name]->get_type_name() != type) {
+    return tell(name + ": there with two types, " + type + " is not recorded");
+  }
+  edds::DataReaderQos qos;
+  if (subscriber->get_datareader_qos_from_profile(profile_of(key.second), qos) !=
+      ReturnCode_t::RETCODE_OK) {
+    return tell(name + ": no data_reader profile \"" + profile_of(key.second) + "\" in " +
+                options.profiles.string());
+  }
+  auto reader = std::make_unique<Reader>(*this, key);
+  reader->reader = subscriber->create_datareader(topics[name], qos, reader.get());
+  if (reader->reader == nullptr) return tell(name + ": Fast DDS refused a reader");
+  readers.push_back(std::move(reader));
+}
+
+// What DDS would do with a best-effort sample, without what it keeps for those who read later.
+bool Tap::Impl::take_datagram(std::span<const std::byte> datagram, std::int64_t arrived_ns) {
+  const auto sample = only_sample(datagram);
+  if (!sample) return false;
+  const std::lock_guard lock(taking);
+  if (!listening) return false;
+  const GuidPrefix_t& own = participant->guid().guidPrefix;
+  const auto* meant = reinterpret_cast<const octet*>(sample->destination.data());
+  if (std::memcmp(meant, own.value, GuidPrefix_t::size) != 0 &&
+      sample->destination != RtpsSample{}.destination) {
+    return false;
+  }
+  FoundWriters::Handle handle;
+  std::memcpy(static_cast<octet*>(handle.value), sample->writer.data(), sample->writer.size());
+  const auto known = heard.find(handle);
+  if (known == heard.end()) {
+    // Also the samples of discovery itself, which nobody ever announced.
+    const SampleWriters::Entry* writer = writer_of.of(handle);
+    if (writer == nullptr) return false;
+    const bool ours = writer->writer.wanted && writer->writer.type_known &&
+                      class_of(writer->writer.qos) == ReaderClass::kBestEffort;
+    if (!ours) return false;
+  }
+  Heard& mine = known == heard.end() ? heard[handle] : known->second;
+  if (mine.writer == nullptr) mine.writer = writer_of.of(handle);
+  // The same once more by another address, or overtaken.
+  if (sample->sequence <= mine.newest) return true;
+  mine.newest = sample->sequence;
+  past_dds.fetch_add(1, std::memory_order_relaxed);
+  eprosima::fastrtps::rtps::Time_t sent;
+  sent.seconds(sample->sent_s);
+  sent.fraction(sample->sent_fraction);
+  options.on_sample(mine.writer->writer, {mine.writer->number, sample->sequence, sent.to_ns(),
+                                          arrived_ns, sample->bytes});
+  return true;
+}
+
+void Tap::Impl::tell(std::string line) {
+  const std::lock_guard lock(mutex);
+  if (std::find(trouble.begin(), trouble.end(), line) == trouble.end()) {
+    trouble.push_back(std::move(line));
+  }
+}
+
+Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
+  // Checked before the run: the readers themselves come when their writers do.
+  impl_->participant = create_participant(
+      impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
+      {impl_->options.security, std::string(topics::kTap)}, impl_.get(),
+      impl_->options.batched ? TakeDatagram([impl = impl_.get()](auto datagram, auto arrived_ns) {
+        return impl->take_datagram(datagram, arrived_ns);
+      })
+                             : TakeDatagram());
+  impl_->subscriber = impl_->participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
+  edds::Publisher* profiles = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
+  if (impl_->subscriber == nullptr || profiles == nullptr) {
+    throw BusError("Fast DDS gave no subscriber");
+  }
+  impl_->writers.learn_depths(*profiles, impl_->options.profiles);
+  for (const auto each :
+       {ReaderClass::kBestEffort, ReaderClass::kReliable, ReaderClass::kReliableLatched}) {
+    edds::DataReaderQos qos;
+    if (impl_->subscriber->get_datareader_qos_from_profile(profile_of(each), qos) !=
+        ReturnCode_t::RETCODE_OK) {
+      throw missing_profile(impl_->options.profiles, "data_reader", profile_of(each));
+    }
+  }
+}
+
+void Tap::start() {
+  {
+    const std::lock_guard lock(impl_->taking);
+    impl_->listening = true;
+  }
+  impl_->opening =
+      std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->open_readers(stop); });
+}
+
+Tap::~Tap() { stop(); }
+
+void Tap::stop() {
+  {
+    const std::lock_guard lock(impl_->taking);
+    impl_->listening = false;
+  }
+  if (impl_->opening.joinable()) {
+    impl_->opening.request_stop();
+    impl_->opening.join();
+  }
+  for (const auto& reader : impl_->readers) {
+    if (reader->reader != nullptr) impl_->subscriber->delete_datareader(reader->reader);
+    reader->reader = nullptr;
+  }
+}
+
+std::vector<FoundWriter> Tap::writers() const { return impl_->writers.all(); }
+
+std::vector<std::string> Tap::trouble() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->trouble;
+}
+
+std::uint64_t Tap::past_dds() const { return impl_->past_dds.load(std::memory_order_relaxed); }
+
+std::uint64_t Tap::unattributed() const {
+  return impl_->unattributed.load(std::memory_order_relaxed);
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/process/stop.hpp"
+
+#include <pthread.h>
+
+#include <csignal>
+#include <thread>
+
+namespace stillhand::runtime {
+namespace {
+
+// Wakes the watcher at destruction; never sent from outside.
+constexpr int kWakeSignal = SIGUSR2;
+
+sigset_t watched_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  // The terminal was closed; who was started by nohup is to go on.
+  struct sigaction hangup {};
+  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) {
+    sigaddset(&set, SIGHUP);
+  }
+  sigaddset(&set, kWakeSignal);
+  return set;
+}
+
+}  // namespace
+
+struct Stop::Watcher {
+  std::thread thread;
+};
+
+Stop::Stop() : watcher_(std::make_unique<Watcher>()) {
+  const sigset_t set = watched_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  // A pipe whose reader left shows as a failed write, not as a signal.
+  std::signal(SIGPIPE, SIG_IGN);
+  watcher_->thread = std::thread([this, set] {
+    for (;;) {
+      int signal = 0;
+      if (sigwait(&set, &signal) != 0 || signal == kWakeSignal) return;
+      request();
+    }
+  });
+}
+
+Stop::~Stop() {
+  pthread_kill(watcher_->thread.native_handle(), kWakeSignal);
+  watcher_->thread.join();
+}
+
+void Stop::request() noexcept {
+  requested_.store(true);
+  requested_.notify_all();
+}
+
+}  // namespace stillhand::runtime

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// A diagnosed model at the canceller's rate, Eq. CL-1 to CL-4: the same force from the same motion.
+#include "apps/close_the_loop/control_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "services/cancellation/core/model_check.hpp"
+#include "services/cancellation/core/model_filter.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "tests/support/feedthrough_records.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+using diagnosis::Effect;
+
+constexpr std::size_t kSlow = 10;  // control ticks a sample of the diagnosed model
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// Motion at 1 kHz, and every tenth of it as a measurement.
+struct Motion {
+  std::vector<double> a_y = support::band_noise(60'000, 1000.0, 0.7, 2.0, 1.6, 3);
+  std::vector<double> a_x = support::band_noise(60'000, 1000.0, 0.7, 2.0, 1.0, 4);
+
+  [[nodiscard]] diagnosis::Signals signals() const {
+    diagnosis::Measurement out;
+    out.rate_hz = 100.0;
+    out.channels = {{"a_y", "m/s^2", {}}, {"a_x", "m/s^2", {}}, {"f", "N", {}}};
+    for (std::size_t n = 0; n < a_y.size(); n += kSlow) {
+      out.channels[0].values.push_back(a_y[n]);
+      out.channels[1].values.push_back(a_x[n]);
+      out.channels[2].values.push_back(5.0 * std::sin(1e-3 * static_cast<double>(n)));
+    }
+    const std::size_t samples = out.channels[0].values.size();
+    out.weight.assign(samples, 1.0);
+    out.stretches = {{0, samples, 0.0}};
+    return {out, {"a_y"}, "f"};
+  }
+};
+
+// Poles of two modes, 2.6 Hz and 8 Hz, at 100 Hz.
+diagnosis::Model two_modes() {
+  const auto mode = [](double hz, double damping) {
+    const double radius = std::exp(-kTwoPi * hz * damping / 100.0);
+    return std::array{
+        -2.0 * radius * std::cos(kTwoPi * hz * std::sqrt(1.0 - damping * damping) / 100.0),
+        radius * radius};
+  };
+  const auto low = mode(2.6, 0.25);
+  const auto high = mode(8.0, 0.2);
+  diagnosis::Model model;
+  model.rate_hz = 100.0;
+  model.inputs = {"a_y"};
+  model.output = "f";
+  model.output_unit = "N";
+  model.body.denominator = {1.0, low[0] + high[0], low[1] + high[1] + low[0] * high[0],
+                            low[0] * high[1] + low[1] * high[0], low[1] * high[1]};
+  model.body.numerators = {{-0.02, -0.01, 0.01, 0.015, -0.02}};
+  return model;
+}
+
+// RMS difference of the filter at 1 kHz from the model at 100 Hz, over the model's RMS.
+double difference(const diagnosis::Model& model, const cancellation::AugmentedModel& control,
+                  const Motion& motion, double late_s = 0.0) {
+  const std::vector<double> expected = diagnosis::free_run(model, motion.signals()).prediction;
+  cancellation::ModelFilter filter(control, 1);
+  const auto shift = static_cast<std::size_t>(std::lround(late_s * 1000.0));
+  double square = 0.0;
+  double all = 0.0;
+  std::vector<double> got;
+  for (std::size_t n = 0; n < motion.a_y.size(); ++n) {
+    cancellation::ChannelSample sample{};
+    sample[static_cast<std::size_t>(cancellation::Channel::kAccelX)] = motion.a_x[n];
+    sample[static_cast<std::size_t>(cancellation::Channel::kAccelY)] = motion.a_y[n];
+    const auto force = filter.step(sample, static_cast<Tick>(n));
+    got.push_back(force.feedthrough_n + force.beside_n);
+  }
+  for (std::size_t n = 500; n + 10 < expected.size(); ++n) {
+    const double error = got[n * kSlow - shift] - expected[n];
+    square += error * error;
+    all += expected[n] * expected[n];
+  }
+  return std::sqrt(square / all);
+}
+
+TEST(ControlModelTest, ALinearBodyGivesTheSameForce) {
+  const Motion motion;
+  const diagnosis::Model model = two_modes();
+  const ControlModel control = to_control_model(model, motion.signals());
+  EXPECT_LT(difference(model, control.model, motion), 0.005);
+  EXPECT_LT(control.conversion_error, 0.005);
+  EXPECT_EQ(cancellation::check_model(control.model, {60.0, 25.0}).refusal,
+            cancellation::Refusal::kNone);
+}
+
+TEST(ControlModelTest, WithALeadItComesSooner) {
+  const Motion motion;
+  const diagnosis::Model model = two_modes();
+  ControlOptions options;
+  options.lead_s = 0.02;
+  const ControlModel control = to_control_model(model, motion.signals(), options);
+  EXPECT_LT(difference(model, control.model, motion, 0.02), 0.03);
+  EXPECT_GT(difference(model, control.model, motion), 0.1);
+}
+
+TEST(ControlModelTest, ASpringInsideTheBodyGivesTheSameForce) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  const std::size_t p = model.body.order();
+  Effect spring{"dead_zone", "play inside the body", {}, {}, std::vector<double>(3 * p + 2, 0.0)};
+  // z: the body's response in units of its threshold; phi takes some of the force off again.
+  const std::vector<double> n = diagnosis::difference_basis({-0.02, -0.01, 0.01, 0.015, -0.02});
+  const std::vector<double> e = diagnosis::difference_basis({0.0, -0.05, 0.02, 0.01, 0.0});
+  for (std::size_t i = 0; i <= p; ++i) {
+    spring.coefficients[i] = e[i];
+    spring.coefficients[p + 1 + i] = n[i];
+  }
+  spring.coefficients[2 * p + 2] = -0.02;
+  const diagnosis::Model linear = model;
+  model.effects.push_back(spring);
+  const ControlModel control = to_control_model(model, motion.signals());
+  ASSERT_TRUE(control.model.loop);
+  EXPECT_LT(difference(model, control.model, motion), 0.02);
+  EXPECT_GT(difference(linear, control.model, motion), 0.05);
+}
+
+TEST(ControlModelTest, EffectsBesideTheBodyGiveTheSameForce) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.effects.push_back(
+      {"coupled_input", "lagged", {"a_x"}, {{"lag", "s", 0.05, 0.0, 1.0}}, {1.2}});
+  model.effects.push_back(
+      {"tone", "beside the body", {}, {{"frequency", "Hz", 9.3, 9.0, 9.6}}, {0.4, 0.7}});
+  const ControlModel control = to_control_model(model, motion.signals());
+  // The lag of 50 ms at 100 Hz is half a sample later than at 1 kHz.
+  EXPECT_LT(difference(model, control.model, motion), 0.02);
+  EXPECT_EQ(control.treatments.size(), 2u);
+  EXPECT_TRUE(control.treatments[0].cancelled);
+}
+
+TEST(ControlModelTest, AGainIsThatOfTheBodyAtTheRecordsEndAndNotOfTheModesBesideIt) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.effects.push_back(
+      {"time_varying_gain", "linear", {}, {{"change", "-", -0.5, -3.0, 3.0}}, {}});
+  model.effects.push_back(
+      {"resonance",
+       "beside the body",
+       {"a_y"},
+       {{"frequency", "Hz", 3.2, 0.5, 45.0}, {"damping_ratio", "-", 0.3, 0.0, 1.0}},
+       {-0.06, 0.05}});
+  const ControlModel control = to_control_model(model, motion.signals());
+  // What the gain is on average over the last tenth of the record.
+  diagnosis::Model at_the_end = model;
+  at_the_end.effects.erase(at_the_end.effects.begin());
+  for (double& b : at_the_end.body.numerators.front()) b *= 1.0 - 0.5 * 0.9;
+  EXPECT_LT(difference(at_the_end, control.model, motion), 0.01);
+  for (double& c : at_the_end.effects.front().coefficients) c *= 1.0 - 0.5 * 0.9;
+  EXPECT_GT(difference(at_the_end, control.model, motion), 0.05);
+}
+
+TEST(ControlModelTest, WhatCantBeCancelledIsSaid) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.effects.push_back(
+      {"hysteresis", "smooth, of a channel", {"a_x"}, {{"yield", "m/s^2", 0.5, 0.0, 1.0}}, {0.5}});
+  const ControlModel control = to_control_model(model, motion.signals());
+  ASSERT_EQ(control.treatments.size(), 1u);
+  EXPECT_FALSE(control.treatments[0].cancelled);
+  EXPECT_LT(difference(two_modes(), control.model, motion), 0.005);
+}
+
+TEST(ControlModelTest, AModelOfAnotherChannelIsRefused) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.inputs = {"temperature"};
+  EXPECT_THROW(to_control_model(model, motion.signals()), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::close_the_loop

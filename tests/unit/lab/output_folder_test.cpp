@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/output_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+using Path = std::filesystem::path;
+
+class OutputFolderTest : public testing::Test {
+ protected:
+  OutputFolderTest()
+      : folder(Path(testing::TempDir()) /
+               testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::remove_all(folder);
+  }
+  ~OutputFolderTest() override { std::filesystem::remove_all(folder); }
+
+  void write(const Path& name) const {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << "x";
+  }
+  // Names below the folder.
+  [[nodiscard]] std::set<std::string> content() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      names.insert(entry.path().lexically_relative(folder).string());
+    }
+    return names;
+  }
+  [[nodiscard]] std::string refusal(const Path& ride = {}) const {
+    try {
+      const OutputFolder sut(folder, {ride});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  Path folder;
+};
+
+TEST_F(OutputFolderTest, IsMadeAndGoesAgainWithASessionThatNeverWas) {
+  {
+    const OutputFolder sut(folder, {});
+    EXPECT_THAT(content(), ElementsAre("logs"));
+    write("logs/rig.log");
+    sut.discard();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+TEST_F(OutputFolderTest, AnEarlierSessionsResultsAreTakenAwayAndNothingElse) {
+  for (const char* name : {"session.mcap", "summary.json", "model.json", "screen.avi", "notes.txt",
+                           "logs/rig.log", "logs/mine.log"}) {
+    write(name);
+  }
+  const OutputFolder sut(folder, {});
+  EXPECT_THAT(content(), ElementsAre("logs", "logs/mine.log", "notes.txt"));
+  sut.discard();
+  EXPECT_THAT(content(), ElementsAre("logs", "logs/mine.log", "notes.txt"));
+}
+
+TEST_F(OutputFolderTest, TheRideOfThisSessionIsNotReplaced) {
+  write("session.mcap");
+  EXPECT_THAT(refusal(folder / "session.mcap"),
+              AllOf(StartsWith("--out: got "), HasSubstr("session.mcap is read by this session")));
+  // By another name too.
+  std::filesystem::create_symlink(folder / "session.mcap", folder / "ride.mcap");
+  EXPECT_THAT(refusal(folder / "ride.mcap"), HasSubstr("session.mcap is read by this session"));
+  EXPECT_THAT(content(), ElementsAre("ride.mcap", "session.mcap"));
+}
+
+TEST_F(OutputFolderTest, ARideBesideTheResultsIsKept) {
+  write("ride.csv");
+  EXPECT_EQ(refusal(folder / "ride.csv"), "no error");
+  EXPECT_TRUE(std::filesystem::exists(folder / "ride.csv"));
+}
+
+TEST_F(OutputFolderTest, ASecondLabIsRefusedAndTheFirstKeepsItsFiles) {
+  const OutputFolder first(folder, {});
+  write("session.mcap");
+  EXPECT_THAT(refusal(), HasSubstr("where another lab writes"));
+  EXPECT_THAT(content(), ElementsAre("logs", "session.mcap"));
+}
+
+TEST_F(OutputFolderTest, IsFreeAgainAfterwards) {
+  EXPECT_EQ(refusal(), "no error");
+  EXPECT_EQ(refusal(), "no error");
+}
+
+TEST_F(OutputFolderTest, WhatIsInTheWayIsNamed) {
+  write("session.mcap/kept");
+  EXPECT_THAT(refusal(), HasSubstr("session.mcap, which is in the way"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "session.mcap" / "kept"));
+  std::filesystem::remove_all(folder);
+  write("logs");
+  EXPECT_THAT(refusal(), HasSubstr("logs is no folder"));
+}
+
+}  // namespace
+}  // namespace stillhand::lab

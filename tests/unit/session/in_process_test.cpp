@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The closed loop in one process: the paper's three conditions, and that a seed is a whole session.
+#include "apps/session/in_process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "services/signal/reference.hpp"
+
+namespace stillhand::session {
+namespace {
+
+constexpr double kTrial_s = 60.0;
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+struct Session {
+  std::map<char, identification::TrackingMetrics> metrics;
+  std::map<char, TrialSignals> signals;
+  identification::FeedthroughModel model;
+};
+
+Session run_session(std::uint64_t seed) {
+  ProtocolOptions options;
+  options.conditions = parse_conditions("A,B,C");
+  options.trial_s = kTrial_s;
+  options.seed = seed;
+  Session session;
+  InProcessLoop loop({}, seed);
+  for (const PlannedTrial& planned : plan(options)) {
+    TrialSignals signals = loop.run(planned);
+    if (planned.trial.phase == TrialPhase::kPegged) {
+      session.model = identification::identify(signals.pegged);
+      EXPECT_EQ(loop.use_model(session.model), cancellation::Refusal::kNone);
+    } else {
+      session.metrics[planned.label] =
+          identification::tracking_metrics(signals.tracking, signal::reference_design(kTrial_s));
+    }
+    session.signals[planned.label] = std::move(signals);
+  }
+  return session;
+}
+
+TEST(CounterforceDelayTest, IsThatOfTheMotorsForceBehindTheOneItOpposes) {
+  constexpr double kRate_hz = 1000.0;
+  std::vector<double> feedthrough(60'000);
+  for (const double f : {0.7, 1.3, 2.1, 3.2}) {
+    for (std::size_t n = 0; n < feedthrough.size(); ++n) {
+      feedthrough[n] +=
+          std::sin(2.0 * std::numbers::pi * f * static_cast<double>(n) / kRate_hz + 3.0 * f);
+    }
+  }
+  // Opposed in full 12 ms late, and by less 12 ms ahead: the size has no say.
+  const std::vector<double> all(feedthrough.begin() + 100, feedthrough.end() - 100);
+  std::vector<double> late;
+  std::vector<double> ahead;
+  for (std::size_t n = 100; n + 100 < feedthrough.size(); ++n) {
+    late.push_back(-feedthrough[n - 12]);
+    ahead.push_back(-0.4 * feedthrough[n + 12]);
+  }
+  EXPECT_NEAR(counterforce_delay_s(all, late, kRate_hz), 0.012, 1e-4);
+  EXPECT_NEAR(counterforce_delay_s(all, ahead, kRate_hz), -0.012, 1e-4);
+  EXPECT_TRUE(
+      std::isnan(counterforce_delay_s(all, std::vector<double>(all.size(), 0.0), kRate_hz)));
+}
+
+class InProcessLoopTest : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(InProcessLoopTest, MotionDisturbsAndCancellationRestoresInAllThreeMetrics) {
+  const auto m = run_session(GetParam()).metrics;
+  EXPECT_GT(m.at('B').rms_error_mm, m.at('A').rms_error_mm);
+  EXPECT_LT(m.at('C').rms_error_mm, m.at('B').rms_error_mm);
+  EXPECT_LT(m.at('B').dwell_ratio, m.at('A').dwell_ratio);
+  EXPECT_GT(m.at('C').dwell_ratio, m.at('B').dwell_ratio);
+  EXPECT_LT(m.at('B').crossover_hz, m.at('A').crossover_hz);
+  EXPECT_GT(m.at('C').crossover_hz, m.at('B').crossover_hz);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, InProcessLoopTest, testing::Values(1, 2, 3, 4, 5));
+
+TEST(InProcessLoopTest, TheSameSeedGivesTheSameBits) {
+  const Session first = run_session(3);
+  const Session again = run_session(3);
+  EXPECT_EQ(first.signals.at('C').tracking.cursor_m, again.signals.at('C').tracking.cursor_m);
+  EXPECT_EQ(first.model.control.numerator, again.model.control.numerator);
+  EXPECT_NE(first.signals.at('C').tracking.cursor_m,
+            run_session(4).signals.at('C').tracking.cursor_m);
+}
+
+TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
+  const Session session = run_session(1);
+  EXPECT_EQ(rms(session.signals.at('I').motor_n), 0.0);
+  EXPECT_EQ(rms(session.signals.at('A').motor_n), 0.0);
+  EXPECT_EQ(rms(session.signals.at('B').motor_n), 0.0);
+  EXPECT_GT(rms(session.signals.at('C').motor_n), 1.0);
+}
+
+// The arm that tracks is stiffer than the idle one that was identified: 15 % of the force cannot be
+// known to the model (services/rig/README.md), and the loop's delay of two ticks and the motor's
+// lag add less than 3 %.  More than 0.95 cancelled would mean that something knows too much.
+TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
+  const TrialSignals signals = run_session(1).signals.at('C');
+  const double cancelled = cancelled_share(signals.feedthrough_n, signals.motor_n);
+  EXPECT_GT(cancelled, 0.80);
+  EXPECT_LT(cancelled, 0.95);
+}
+
+}  // namespace
+}  // namespace stillhand::session
