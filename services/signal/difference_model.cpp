@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/signal/decompositions.hpp"
+
 namespace stillhand::signal {
 
 bool well_formed(const DifferenceModel& model) noexcept {
@@ -42,7 +44,7 @@ std::vector<std::complex<double>> poles(const DifferenceModel& model) {
     companion(0, i) = -model.denominator[static_cast<std::size_t>(i) + 1];
     if (i > 0) companion(i, i - 1) = 1.0;
   }
-  const Eigen::VectorXcd values = companion.eigenvalues();
+  const Eigen::VectorXcd values = eigenvalues(companion);
   return {values.begin(), values.end()};
 }
 

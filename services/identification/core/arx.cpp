@@ -9,6 +9,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/excitation_check.hpp"
 #include "services/identification/core/lagged_products.hpp"
+#include "services/signal/decompositions.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -59,7 +60,7 @@ LeastSquares solve(Eigen::MatrixXd matrix, const Eigen::VectorXd& b, Eigen::Inde
   const Eigen::VectorXd parameters = (qr.solve(b).array() / norms.transpose().array()).matrix();
   const Eigen::MatrixXd r =
       qr.matrixR().topRows(matrix.cols()).triangularView<Eigen::Upper>().toDenseMatrix();
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(r).singularValues();
+  const Eigen::VectorXd singular = signal::singular_values(r);
   return {model_of(parameters, order, rate_hz), singular(0) / singular(singular.size() - 1)};
 }
 
@@ -93,8 +94,7 @@ std::optional<LeastSquares> solve_by_products(const Record& record, const Eigen:
 
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   normal = scale.asDiagonal() * normal * scale.asDiagonal();
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd eigenvalues = signal::symmetric_eigenvalues(normal);
   const double condition = std::sqrt(eigenvalues(count - 1) / eigenvalues(0));
   if (!(eigenvalues(0) > 0.0) || !(condition < kMostCondition)) return std::nullopt;
   const Eigen::LLT<Eigen::MatrixXd> cholesky(normal);
@@ -153,9 +153,7 @@ ArxFactor factor_arx(const Record& record, int order) {
   with_force.leftCols(columns - 1) = data_matrix(record, order, end);
   with_force.col(columns - 1) =
       Eigen::Map<const Eigen::VectorXd>(record.force_n.data() + order, with_force.rows());
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(with_force);
-  const RowMajor triangle =
-      qr.matrixQR().topRows(columns - 1).triangularView<Eigen::Upper>().toDenseMatrix();
+  const RowMajor triangle = signal::upper_factor(with_force).topRows(columns - 1);
   return {order, record.rate_hz,
           std::vector<double>(triangle.data(), triangle.data() + triangle.size())};
 }

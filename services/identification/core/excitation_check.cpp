@@ -10,6 +10,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/arx.hpp"
 #include "services/identification/core/lagged_products.hpp"
+#include "services/signal/decompositions.hpp"
 #include "services/signal/spectrum.hpp"
 
 namespace stillhand::identification {
@@ -41,12 +42,9 @@ int persistent_order(const std::vector<double>& a) {
   for (int lag = 0; lag < kMostLags; ++lag) {
     lagged.col(lag) = Eigen::Map<const Eigen::VectorXd>(a.data() + kMostLags - 1 - lag, rows);
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(lagged);
-  const Eigen::MatrixXd r =
-      qr.matrixQR().topRows(kMostLags).triangularView<Eigen::Upper>().toDenseMatrix();
+  const Eigen::MatrixXd r = signal::upper_factor(lagged);
   const auto independent = [&](int n) {
-    const Eigen::VectorXd singular =
-        Eigen::JacobiSVD<Eigen::MatrixXd>(r.topLeftCorner(n, n)).singularValues();
+    const Eigen::VectorXd singular = signal::singular_values(r.topLeftCorner(n, n));
     return singular(n - 1) > kLeastSingularRatio * singular(0);
   };
   const auto lags = std::views::iota(1, kMostLags + 1);
@@ -58,8 +56,7 @@ int persistent_order(const std::vector<double>& a) {
 bool plainly_persistent(const std::vector<double>& a, int count) {
   const auto end = static_cast<Eigen::Index>(a.size());
   const Eigen::MatrixXd gram = lagged_gram({&a}, count - 1, kMostLags - 1, end);
-  const Eigen::VectorXd squares =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd squares = signal::symmetric_eigenvalues(gram);
   return squares(0) > kPlainRatio * kPlainRatio * squares(count - 1);
 }
 

@@ -8,6 +8,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/polynomial.hpp"
+#include "services/signal/decompositions.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -111,7 +112,7 @@ Minimum minimised(const Record& record, const DifferenceModel& start) {
     bool improved = false;
     while (!improved && damping < kLargestDamping) {
       damped.bottomRows(columns).diagonal().setConstant(std::sqrt(damping));
-      const Eigen::VectorXd step = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(damped).solve(right);
+      const Eigen::VectorXd step = signal::least_squares(damped, right);
       const DifferenceModel next =
           with(now.model,
                parameters_of(now.model) + (step.array() / norms.transpose().array()).matrix());

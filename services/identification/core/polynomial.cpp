@@ -3,6 +3,8 @@
 
 #include <Eigen/Dense>
 
+#include "services/signal/decompositions.hpp"
+
 namespace stillhand::identification {
 
 std::vector<std::complex<double>> roots(Polynomial polynomial) {
@@ -14,7 +16,7 @@ std::vector<std::complex<double>> roots(Polynomial polynomial) {
     companion(i, degree - 1) = -polynomial[static_cast<std::size_t>(i)] / polynomial.back();
     if (i > 0) companion(i, i - 1) = 1.0;
   }
-  const Eigen::VectorXcd values = companion.eigenvalues();
+  const Eigen::VectorXcd values = signal::eigenvalues(companion);
   return {values.begin(), values.end()};
 }
 

@@ -11,6 +11,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/identification/core/polynomial.hpp"
+#include "services/signal/decompositions.hpp"
 
 namespace stillhand::identification {
 namespace {
@@ -67,7 +68,7 @@ Eigen::VectorXd solve_real(const Eigen::MatrixXcd& matrix, const Eigen::VectorXc
   b << right.real(), right.imag();
   const Eigen::RowVectorXd norms = stacked.colwise().norm();
   stacked.array().rowwise() /= norms.array();
-  const Eigen::VectorXd x = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(stacked).solve(b);
+  const Eigen::VectorXd x = signal::least_squares(stacked, b);
   return (x.array() / norms.transpose().array()).matrix();
 }
 

@@ -9,6 +9,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/fitting/modes.hpp"
+#include "services/signal/decompositions.hpp"
 #include "services/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
@@ -22,7 +23,7 @@ Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& ri
   const Eigen::VectorXd scale =
       columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   columns *= scale.asDiagonal();
-  return scale.asDiagonal() * columns.colPivHouseholderQr().solve(right).eval();
+  return scale.asDiagonal() * signal::least_squares(columns, right);
 }
 
 // A mode rings for a twenty-fourth of the record at most, what the input doesn't excite is
@@ -142,7 +143,8 @@ Rated rated(const Body& start, const std::vector<std::vector<double>>& inputs,
       scale.asDiagonal() * (matrix.transpose() * matrix).eval() * scale.asDiagonal();
   normal.diagonal().array() += 1e-13;
   const Eigen::VectorXd solution =
-      scale.asDiagonal() * normal.ldlt().solve(scale.asDiagonal() * (matrix.transpose() * right));
+      scale.asDiagonal() *
+      signal::solve_symmetric(normal, scale.asDiagonal() * (matrix.transpose() * right));
   result.rmse = std::sqrt((right - matrix * solution).squaredNorm() / static_cast<double>(rows));
   result.body.offset = solution[0];
   for (std::size_t k = 0; k < inputs.size(); ++k) {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "services/contract/config_error.hpp"
+#include "services/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -273,7 +274,7 @@ HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
     normal.diagonal().array() += kDeviationRidge;
     const Eigen::VectorXd step =
         scale.asDiagonal() *
-        normal.ldlt().solve(scale.asDiagonal() * training.col(count).head(count));
+        signal::solve_symmetric(normal, scale.asDiagonal() * training.col(count).head(count));
     for (std::size_t b = 0; b < grams.blocks.size(); ++b) {
       if (blocks.fold_of(b) != fold) continue;
       const Eigen::MatrixXd& gram = grams.blocks[b];

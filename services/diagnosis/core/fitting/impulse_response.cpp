@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "services/signal/decompositions.hpp"
+
 namespace stillhand::diagnosis {
 namespace {
 
@@ -100,7 +102,7 @@ ImpulseResponse fit_impulse_response(const Signals& signals) {
   if (long_enough.empty()) return result;
   // Ridge on the diagonal's size: an input that excites a narrow band leaves the rest open.
   for (Eigen::Index i = 1; i < size; ++i) normal(i, i) *= 1.0 + kRidge;
-  const Eigen::VectorXd h = normal.ldlt().solve(right);
+  const Eigen::VectorXd h = signal::solve_symmetric(normal, right);
   double square = 0.0;
   double rows = 0.0;
   for (const Stretch& stretch : long_enough) {

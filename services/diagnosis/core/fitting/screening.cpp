@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/signal/decompositions.hpp"
 #include "services/statistics/signed_rank.hpp"
 
 namespace stillhand::diagnosis {
@@ -70,7 +71,8 @@ ScreenedGain Screening::gain(const Columns& columns) const {
       scale.asDiagonal() * total.topLeftCorner(size, size) * scale.asDiagonal();
   normal.diagonal().array() += 1e-9;
   const Eigen::VectorXd step =
-      scale.asDiagonal() * normal.ldlt().solve(scale.asDiagonal() * total.col(size).head(size));
+      scale.asDiagonal() *
+      signal::solve_symmetric(normal, scale.asDiagonal() * total.col(size).head(size));
   result.coefficients.assign(step.data() + own, step.data() + size);
   if (!std::isfinite(result.share)) result.share = -1.0;
   return result;
