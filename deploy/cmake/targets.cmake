@@ -12,9 +12,13 @@ function(stillhand_precompiled kind)
   add_library(stillhand_precompiled_${kind} OBJECT ${empty})
   target_link_libraries(stillhand_precompiled_${kind} PRIVATE stillhand_options ${arg_LINK})
   target_precompile_headers(stillhand_precompiled_${kind} PRIVATE ${arg_HEADERS})
+  # Their definitions are part of the compiled header: each target that uses it needs them.
+  set_property(GLOBAL PROPERTY stillhand_precompiled_${kind}_link ${arg_LINK})
 endfunction()
 function(stillhand_use_precompiled target kind)
   target_precompile_headers(${target} REUSE_FROM stillhand_precompiled_${kind})
+  get_property(link GLOBAL PROPERTY stillhand_precompiled_${kind}_link)
+  target_link_libraries(${target} PRIVATE ${link})
 endfunction()
 
 # stillhand_library(<target> <folder> [FILES <file>...] [EXCEPT <folder>] [PCH <kind>] [LINK ...] [PRIVATE ...]):

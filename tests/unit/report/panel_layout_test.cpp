@@ -124,8 +124,9 @@ TEST(PanelLayoutTest, AUnitIsAsLongOnXAsOnYWhereAsked) {
 
 TEST(PanelLayoutTest, CategoriesThatDoNotFitSideBySideAreSlantedAndHaveRoomBelow) {
   Figure asked = figure(2, 2);
+  const std::string name = "nonlinear_stiffness";
   for (int i = 0; i < 6; ++i) {
-    asked.panels[0].x.ticks.push_back({0.2 * i, std::string("nonlinear_stiffness")});
+    asked.panels[0].x.ticks.push_back({0.2 * i, name});
   }
   const auto sut = lay_out(asked);
   EXPECT_TRUE(sut[0].slanted_x_labels);
