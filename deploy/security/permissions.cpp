@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a lab's DDS Security documents, unsigned, from the catalogue; deploy/security/make.sh
+// Writes a lab's DDS Security documents from the catalogue, unsigned; deploy/security/make.sh
 // signs them. stillhand-permissions FOLDER LAB NOT_BEFORE NOT_AFTER DOMAIN_FROM DOMAIN_TO
-// governance.xml and permissions_<identity>.xml into FOLDER, and each identity on a line of its
-// own.
+// writes governance.xml and permissions_<identity>.xml into FOLDER, and prints one identity per
+// line.
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -21,7 +21,7 @@ struct Lab {
   std::string folder, name, not_before, not_after, domains;
 };
 
-/// Who may write and read what.
+/// The topics that an identity may write and read.
 struct Rights {
   std::string identity;
   std::set<std::string> publishes, subscribes;
@@ -40,7 +40,7 @@ Rights rights_of(std::string_view service) {
   return rights;
 }
 
-/// What listens from outside of a session, `stillhand record`: reads everything, and writes only
+/// `stillhand record`, which listens from outside a session: it reads everything, and writes only
 /// its own remote control, which no process of a session reads.
 Rights rights_of_tap() {
   Rights rights{std::string(topics::kTap), {}, {}};
@@ -52,7 +52,7 @@ Rights rights_of_tap() {
   return rights;
 }
 
-/// Listens like a tap, and asks something of sessions and recorders.
+/// Reads like a tap, and writes requests to sessions and recorders.
 Rights rights_of_dashboard() {
   Rights rights = rights_of_tap();
   rights.identity = topics::kDashboard;
@@ -68,7 +68,7 @@ std::string topic_list(const char* verb, const std::set<std::string>& names) {
   return text + "          </topics>\n        </" + verb + ">\n";
 }
 
-// The order of elements is that of the schema; Fast DDS refuses any other.
+// Elements are in the order of the schema; Fast DDS refuses any other order.
 std::string permissions(const Lab& lab, const Rights& rights) {
   return R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
@@ -110,7 +110,7 @@ std::string topic_rule(std::string_view name, const char* metadata) {
 )";
 }
 
-// Why each kind is what it is: README.md, "What is protected".
+// README.md, "What is protected, and why", gives the reason for each kind of protection.
 std::string governance(const Lab& lab) {
   std::string text =
       R"(<?xml version="1.0" encoding="UTF-8"?>
@@ -149,7 +149,8 @@ void write(const std::string& file, const std::string& text) {
 int main(int argc, char** argv) {
   constexpr const char* kArguments = "FOLDER LAB NOT_BEFORE NOT_AFTER DOMAIN_FROM DOMAIN_TO\n";
   if (argc == 2 && argv[1] == std::string_view("--help")) {
-    std::cout << "A lab's DDS Security documents, unsigned: deploy/security/make.sh signs them.\n"
+    std::cout << "Writes a lab's DDS Security documents. deploy/security/make.sh calls it and signs "
+                 "them.\n"
               << "Usage: stillhand-permissions " << kArguments;
     return 0;
   }
