@@ -52,7 +52,7 @@ struct Population {
     spread("body_mass_cv", self.body_mass_cv);
     visit("seat_frequency_hz", self.seat_frequency_hz, Range{1.2, 8.0},
           "[Hz] first lateral mode of the trunk on seat and harness; 1.5 to 4 Hz, Fairley and "
-          "Griffin (1990); calibrated within");
+          "Griffin (1990); calibrated in this range");
     spread("seat_frequency_cv", self.seat_frequency_cv);
     visit("seat_damping_ratio", self.seat_damping_ratio, Range{0.1, 1.0},
           "[-] of that mode; 0.2 to 0.45, Fairley and Griffin (1990)");
@@ -86,7 +86,7 @@ struct Population {
     spread("muscle_cv", self.muscle_cv);
     visit("remnant_ratio", self.remnant_ratio, Range{0.0, 0.05},
           "[-] noise-to-signal ratio of what is seen; 0.01 to 0.03, Levison, Kleinman and Baron "
-          "(1969); calibrated within");
+          "(1969); calibrated in this range");
     spread("remnant_cv", self.remnant_cv);
     visit("regression_error_m", self.regression_error_m, Range{0.005, 1.0},
           "[m] RMS of fast error that halves the crossover; calibrated, README");
