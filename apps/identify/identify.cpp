@@ -27,9 +27,9 @@ constexpr int kResponsePoints = 120;
 constexpr int kNotchPoints = 2000;
 constexpr double kNotchLowestHz = 0.5;
 constexpr double kNotchHighestHz = 10.0;  // the preprocessing filter's edge
-// Less is a ripple that the random error of a fit makes too.
+// A smaller rise can be a ripple from the random error of the fit.
 constexpr double kNotchDepth_db = 1.0;
-// At 50 Hz 5 s: lines of 0.2 Hz resolve the excited band's lower edge.
+// 5 s at 50 Hz: lines of 0.2 Hz resolve the excited band's lower edge.
 constexpr std::size_t kSegmentSamples = 256;
 
 const Channel& channel_of(const Measurement& measurement, const std::string& option,
@@ -68,7 +68,7 @@ double rms_about_mean(const std::vector<double>& values) {
   return std::sqrt(squares);
 }
 
-// What divides the input before the fit.
+// The divisor of the input before the fit.
 double scale_of(const Channel& input, const std::vector<double>& values) {
   if (input.unit == "m/s^2") return 1.0;
   const double rms = rms_about_mean(values);
@@ -94,7 +94,7 @@ identification::Record record_of(const Measurement& measurement, const Channel& 
   return {measurement.rate_hz, cut(input, stretch), cut(output, stretch)};
 }
 
-// Seen before the filters: their start would make a step of it.
+// Checked before the filters, whose transient would turn a constant into a step.
 void check_moves(const Channel& channel, const std::vector<double>& values,
                  const std::string& source) {
   const auto [low, high] = std::ranges::minmax(values);
@@ -102,17 +102,17 @@ void check_moves(const Channel& channel, const std::vector<double>& values,
   char value[32];
   std::snprintf(value, sizeof(value), "%g ", low);
   throw ConfigError(source + ", channel " + channel.name, value + channel.unit + " throughout",
-                    "a channel that moves");
+                    "a channel that varies");
 }
 
-// The chain's own messages don't know the file.
+// Adds the file and the channels, which the chain's own messages do not name.
 void check_excitation(const identification::Record& fitted, const IdentifyOptions& options,
                       const std::string& source) {
   const auto excitation =
       identification::check_excitation(fitted, static_cast<int>(options.config.order));
   if (!excitation.sufficient) {
     throw ConfigError(source + ", " + options.input + " to " + options.output, excitation.verdict,
-                      "a recording that excites what is to be identified");
+                      "a recording that excites the system to be identified");
   }
 }
 
@@ -130,7 +130,7 @@ std::optional<Notch> notch_of(const signal::DifferenceModel& model) {
   return {};
 }
 
-// The chain, and what is left of it where no filter for the canceller comes out.
+// Runs the chain.  Keeps the fit if no filter for the canceller results.
 void fit(const identification::Record& recorded, const identification::Record& fitted,
          const identification::Config& config, IdentifyResult& out) {
   const auto paper = identification::fit_arx(fitted, static_cast<int>(config.order));
@@ -140,14 +140,14 @@ void fit(const identification::Record& recorded, const identification::Record& f
     out.model.control = steps.control.model;
     out.model.conversion_error = steps.control.max_error;
     out.model.refined = steps.refined_used;
-    out.why_refined = steps.refined_used && config.refine  ? "as asked for"
+    out.why_refined = steps.refined_used && config.refine  ? "as requested"
                       : steps.paper_unusable == "unstable" ? "the paper's fit is unstable"
                                                            : steps.paper_unusable;
   } catch (const ConfigError& error) {
     out.unusable = error.what();
     out.model.refined = config.refine || !paper.stable;
     if (out.model.refined)
-      out.why_refined = config.refine ? "as asked for" : "the paper's fit is unstable";
+      out.why_refined = config.refine ? "as requested" : "the paper's fit is unstable";
   }
   if (out.model.refined) {
     const auto refined = identification::refine_output_error(fitted, paper.model);
@@ -159,7 +159,7 @@ void fit(const identification::Record& recorded, const identification::Record& f
   }
 }
 
-// Eq. ID-1 has no constant.
+// The model, Eq. ID-1, has no constant term.
 void note_offset(const Channel& channel, const std::vector<double>& values,
                  std::vector<std::string>& notes) {
   const double mean = mean_of(values);
@@ -167,7 +167,8 @@ void note_offset(const Channel& channel, const std::vector<double>& values,
   char text[160];
   std::snprintf(text, sizeof(text), " has a mean of %.4g ", mean);
   notes.push_back(channel.name + text + channel.unit +
-                  ", more than it moves; the paper's model has no offset and bends to it.");
+                  ", larger than its variation; the paper's model has no offset, so the mean "
+                  "distorts the fit.");
 }
 
 void note_what_was_used(const Measurement& measurement, const Stretch& used,
@@ -185,8 +186,8 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   const Channel& input = channel_of(measurement, "--input", options.input);
   const Channel& output = channel_of(measurement, "--output", options.output);
   if (&input == &output) {
-    throw ConfigError("--output", "'" + output.name + "', the input",
-                      "another channel than --input");
+    throw ConfigError("--output", "'" + output.name + "', which is the input",
+                      "a channel other than --input");
   }
   const Stretch& used = longest(measurement.stretches);
   identification::Record recorded = record_of(measurement, input, output, used);
@@ -212,7 +213,7 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   if (same) {
     throw ConfigError(measurement.source,
                       "'" + output.name + "' with the values of '" + input.name + "'",
-                      "a measured answer to the input");
+                      "a measured response to the input");
   }
   fit(recorded, fitted, options.config, out);
   divide(out.model.fit.numerator, scale);

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// JSON has no infinity: the logarithm of an exact zero is null.
+// JSON has no infinity: the logarithm of an exact zero becomes null.
 ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
@@ -38,7 +38,7 @@ ordered_json response_json(const IdentifyResult& result) {
 ordered_json measured_json(const IdentifyResult& result) {
   ordered_json points = ordered_json::array();
   const auto& measured = result.measured;
-  // The first line is 0 Hz, of which the mean was taken off; the last is half the rate.
+  // Leaves out the first line, 0 Hz, whose mean was removed, and the last, half the rate.
   for (std::size_t k = 1; k + 1 < measured.frequency_hz.size(); ++k) {
     const auto h = measured.response[k];
     points.push_back({{"frequency_hz", measured.frequency_hz[k]},
@@ -124,7 +124,7 @@ std::string result_json(const IdentifyResult& result) {
       {"notes", result.notes}};
   json["frequency_response"] = response_json(result);
   json["measured_response"] = measured_json(result);
-  // A file's name may be of any bytes.
+  // A file's name may contain bytes that are no UTF-8.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
