@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/identify/identify.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/excitation_check.hpp"
@@ -16,7 +17,7 @@ using diagnosis::Channel;
 using diagnosis::Measurement;
 using diagnosis::Stretch;
 
-std::string count(std::size_t samples) { return std::to_string(samples) + " samples"; }
+std::string count(std::size_t samples) { return fmt::format("{} samples", samples); }
 
 // Frequencies of the model's response: from a seventh of the excited band's lower edge to twice the
 // preprocessing filter's.
@@ -82,9 +83,8 @@ void divide(std::vector<double>& values, double scale) {
 identification::Record record_of(const Measurement& measurement, const Channel& input,
                                  const Channel& output, const Stretch& stretch) {
   if (measurement.rate_hz < identification::kRecordingRateHz * (1.0 - 1e-6)) {
-    char rate[32];
-    std::snprintf(rate, sizeof(rate), "%.6g Hz", measurement.rate_hz);
-    throw ConfigError(measurement.source, rate, "100 Hz or more, the paper's recording rate");
+    throw ConfigError(measurement.source, fmt::format("{:.6g} Hz", measurement.rate_hz),
+                      "100 Hz or more, the paper's recording rate");
   }
   const std::size_t samples = stretch.end - stretch.first;
   if (static_cast<double>(samples) < measurement.rate_hz) {
@@ -99,10 +99,8 @@ void check_moves(const Channel& channel, const std::vector<double>& values,
                  const std::string& source) {
   const auto [low, high] = std::ranges::minmax(values);
   if (low < high) return;
-  char value[32];
-  std::snprintf(value, sizeof(value), "%g ", low);
-  throw ConfigError(source + ", channel " + channel.name, value + channel.unit + " throughout",
-                    "a channel that varies");
+  throw ConfigError(source + ", channel " + channel.name,
+                    fmt::format("{:g} {} throughout", low, channel.unit), "a channel that varies");
 }
 
 // Adds the file and the channels, which the chain's own messages do not name.
@@ -164,19 +162,18 @@ void note_offset(const Channel& channel, const std::vector<double>& values,
                  std::vector<std::string>& notes) {
   const double mean = mean_of(values);
   if (std::abs(mean) <= rms_about_mean(values)) return;
-  char text[160];
-  std::snprintf(text, sizeof(text), " has a mean of %.4g ", mean);
-  notes.push_back(channel.name + text + channel.unit +
-                  ", larger than its variation; the paper's model has no offset, so the mean "
-                  "distorts the fit.");
+  notes.push_back(
+      fmt::format("{} has a mean of {:.4g} {}, larger than its variation; the paper's model has no "
+                  "offset, so the mean distorts the fit.",
+                  channel.name, mean, channel.unit));
 }
 
 void note_what_was_used(const Measurement& measurement, const Stretch& used,
                         std::vector<std::string>& notes) {
   if (measurement.stretches.size() > 1) {
-    notes.push_back("The longest of " + std::to_string(measurement.stretches.size()) +
-                    " stretches is used, " + count(used.end - used.first) + " of " +
-                    count(measurement.size()) + ".");
+    notes.push_back(fmt::format("The longest of {} stretches is used, {} of {}.",
+                                measurement.stretches.size(), count(used.end - used.first),
+                                count(measurement.size())));
   }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/measurement/grid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <span>
 #include <string>
 
@@ -22,19 +23,13 @@ constexpr double kLeastRate_hz = 5.0;
 
 // "1 row", "2 rows"
 std::string counted(double count, const std::string& what) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.15g ", count);
-  return text + what + (count == 1.0 ? "" : "s");
+  return fmt::format("{:.15g} {}{}", count, what, count == 1.0 ? "" : "s");
 }
 std::string counted(std::size_t count, const std::string& what) {
   return counted(static_cast<double>(count), what);
 }
 
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
+std::string figure(double value) { return fmt::format("{:.4g}", value); }
 
 // A stretch of less than 20 samples holds no information.  One of less than a second adds hardly
 // any to a longer one.
@@ -54,8 +49,8 @@ void leave_out_short(RowPlaces& places, std::vector<std::string>& notes) {
     return is_short;
   });
   if (rows > 0) {
-    notes.push_back(counted(rows, "row") + " left out, in stretches shorter than " +
-                    figure(least / places.rate_hz) + " s.");
+    notes.push_back(fmt::format("{} left out, in stretches shorter than {} s.",
+                                counted(rows, "row"), figure(least / places.rate_hz)));
   }
 }
 
@@ -87,19 +82,20 @@ void note_what_happened(const RowPlaces& places, std::size_t long_gaps, std::siz
   const std::string bridge_ms =
       figure(1e3 * static_cast<double>(longest_bridge(places.rate_hz)) / places.rate_hz);
   if (places.as_stamped) {
-    notes.push_back("The time stamps differ from an even grid by " +
-                    figure(100.0 * places.jitter_periods) +
-                    " % of a period (median): resampled to " + figure(places.rate_hz) +
-                    " Hz by cubic interpolation.");
+    notes.push_back(fmt::format(
+        "The time stamps differ from an even grid by {} % of a period (median): resampled to {} Hz "
+        "by cubic interpolation.",
+        figure(100.0 * places.jitter_periods), figure(places.rate_hz)));
   }
   if (filled > 0) {
-    notes.push_back(counted(filled, "row") + " missing in gaps of at most " + bridge_ms +
-                    " ms: filled in by cubic interpolation, with weight 0.");
+    notes.push_back(fmt::format(
+        "{} missing in gaps of at most {} ms: filled in by cubic interpolation, with weight 0.",
+        counted(filled, "row"), bridge_ms));
   }
   if (long_gaps > 0) {
-    notes.push_back(counted(places.lost_between, "row") + " missing in " +
-                    counted(long_gaps, "gap") + " longer than " + bridge_ms +
-                    " ms: a new stretch begins after each.");
+    notes.push_back(
+        fmt::format("{} missing in {} longer than {} ms: a new stretch begins after each.",
+                    counted(places.lost_between, "row"), counted(long_gaps, "gap"), bridge_ms));
   }
 }
 

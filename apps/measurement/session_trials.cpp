@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/measurement/session_trials.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -131,11 +132,8 @@ bool less_wanted(const SessionTrial& a, const SessionTrial& b) {
 }  // namespace
 
 std::string SessionTrial::name() const {
-  char text[64];
   const double length_s = static_cast<double>(end_tick - trial.start_tick) * kControlPeriod_s;
-  std::snprintf(text, sizeof(text), "%lld (%c, %.4g s)", static_cast<long long>(trial.number),
-                letter, length_s);
-  return text;
+  return fmt::format("{} ({}, {:.4g} s)", trial.number, letter, length_s);
 }
 
 SessionTrials find_trials(recording::McapReader& reader, const std::string& path) {
@@ -186,9 +184,9 @@ std::vector<std::string> notes_of(const SessionTrials& trials, const SessionTria
     notes.push_back("Trial " + chosen.name() + " of the session" +
                     (others.empty() ? "." : "; there are also " + others + "."));
     if (chosen.end_tick < chosen.trial.start_tick + chosen.trial.duration_ticks) {
-      notes.push_back("The trial was ended early, after " +
-                      std::to_string(chosen.end_tick - chosen.trial.start_tick) + " of " +
-                      std::to_string(chosen.trial.duration_ticks) + " ticks.");
+      notes.push_back(fmt::format("The trial was ended early, after {} of {} ticks.",
+                                  chosen.end_tick - chosen.trial.start_tick,
+                                  chosen.trial.duration_ticks));
     }
   }
   if (trials.other_rigs) {
