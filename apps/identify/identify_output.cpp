@@ -14,11 +14,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// JSON has no infinity: the logarithm of an exact zero becomes null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json model_json(const signal::DifferenceModel& model) {
   return {{"numerator", model.numerator},
           {"denominator", model.denominator},
@@ -29,8 +24,8 @@ ordered_json response_json(const IdentifyResult& result) {
   ordered_json points = ordered_json::array();
   for (const auto& point : result.response) {
     points.push_back({{"frequency_hz", point.frequency_hz},
-                      {"magnitude_db", number(point.magnitude_db)},
-                      {"phase_deg", number(point.phase_deg)}});
+                      {"magnitude_db", point.magnitude_db},
+                      {"phase_deg", point.phase_deg}});
   }
   return points;
 }
@@ -42,10 +37,10 @@ ordered_json measured_json(const IdentifyResult& result) {
   for (std::size_t k = 1; k + 1 < measured.frequency_hz.size(); ++k) {
     const auto h = measured.response[k];
     points.push_back({{"frequency_hz", measured.frequency_hz[k]},
-                      {"magnitude_db", number(20.0 * std::log10(std::abs(h)))},
-                      {"phase_deg", number(std::arg(h) * 180.0 / std::numbers::pi)},
-                      {"coherence", number(measured.coherence[k])},
-                      {"magnitude_ci95", number(measured.magnitude_ci95[k])}});
+                      {"magnitude_db", 20.0 * std::log10(std::abs(h))},
+                      {"phase_deg", std::arg(h) * 180.0 / std::numbers::pi},
+                      {"coherence", measured.coherence[k]},
+                      {"magnitude_ci95", measured.magnitude_ci95[k]}});
   }
   return points;
 }
@@ -98,24 +93,25 @@ std::string result_json(const IdentifyResult& result) {
       {"order", result.model.fit.order()},
       {"model", model_json(result.model.fit)},
       {"heldout",
-       {{"free_run_vaf_percent", number(heldout.free_run_vaf_percent)},
-        {"free_run_rmse", number(heldout.free_run_rms_n)},
-        {"one_step_vaf_percent", number(heldout.one_step_vaf_percent)},
+       {{"free_run_vaf_percent", heldout.free_run_vaf_percent},
+        {"free_run_rmse", heldout.free_run_rms_n},
+        {"one_step_vaf_percent", heldout.one_step_vaf_percent},
         {"samples", heldout.samples}}},
       {"stable", signal::is_stable(result.model.fit)},
       {"refined", result.model.refined},
       {"why_refined", result.why_refined},
-      {"condition_number", number(result.model.condition_number)},
-      {"dc_gain_db", number(result.dc_gain_db)},
+      {"condition_number", result.model.condition_number},
+      {"dc_gain_db", result.dc_gain_db},
       {"notch_hz", result.notch ? ordered_json(result.notch->frequency_hz) : nullptr},
       {"usable", usable},
       {"text", result.unusable},
       {"control_model", usable ? model_json(result.model.control) : ordered_json(nullptr)},
-      {"conversion_error", usable ? number(result.model.conversion_error) : nullptr},
+      {"conversion_error", usable ? ordered_json(result.model.conversion_error) : nullptr},
       {"notes", result.notes}};
   json["frequency_response"] = response_json(result);
   json["measured_response"] = measured_json(result);
-  // A file's name may contain bytes that are no UTF-8.
+  // A file's name may contain bytes that are no UTF-8.  JSON has no infinity: dump() writes a number
+  // that is not finite, such as the logarithm of an exact zero, as null.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

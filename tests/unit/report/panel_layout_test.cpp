@@ -125,7 +125,8 @@ TEST(PanelLayoutTest, AUnitIsAsLongOnXAsOnYWhereAsked) {
 TEST(PanelLayoutTest, CategoriesThatDoNotFitSideBySideAreSlantedAndHaveRoomBelow) {
   Figure asked = figure(2, 2);
   for (int i = 0; i < 6; ++i) {
-    asked.panels[0].x.ticks.push_back({0.2 * i, "nonlinear_stiffness"});
+    const AxisTick tick{0.2 * i, "nonlinear_stiffness"};
+    asked.panels[0].x.ticks.push_back(tick);
   }
   const auto sut = lay_out(asked);
   EXPECT_TRUE(sut[0].slanted_x_labels);
