@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Configures and builds into build/. Usage: deploy/build.sh [preset], preset release by default.
+# Configures and builds into build/. Usage: deploy/build.sh [preset]; the default preset is release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# From a fresh clone to a finished session: set-up, build, the laboratory with every process over DDS, and then, in one
-# process, what the paper's model lacks when the rig holds something that nobody declared, put back into the canceller.
+# From a fresh clone to a finished session. Installs packages, builds, and runs a session with every process over DDS.
+# Then runs the closed loop in one process: the rig holds an undeclared effect, the diagnosis looks for it, and the
+# canceller gets the improved model.
 # Usage: deploy/demo.sh [output folder] [further options of `stillhand lab`]
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian packages of deploy/packages.txt that are missing. Safe to run again; as root, or as a user
-# with sudo. Usage: deploy/setup.sh
+# Installs the missing Debian packages of deploy/packages.txt, as root or as a user with sudo. It is safe to run again.
+# Usage: deploy/setup.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# What is installed, by name and by what it provides: Node.js from its own makers brings npm along and conflicts with
-# Debian's package of that name.
+# Installed packages, with the names that they provide: Node.js from its own makers contains npm and conflicts with
+# Debian's package npm.
 installed=$(dpkg-query -W -f='${db:Status-Status}, ${Package}, ${Provides}\n' | sed -n 's/^installed, //p' |
             tr ',' '\n' | sed -e 's/(.*//' -e 's/[[:space:]]//g')
 missing=()
@@ -22,7 +22,7 @@ fi
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
   if ! command -v sudo >/dev/null; then
-    echo "set-up: packages are missing (${missing[*]}); run this as root, or install sudo" >&2
+    echo "set-up: got no right to install (missing: ${missing[*]}), want root or sudo" >&2
     exit 2
   fi
   as_root=(sudo)

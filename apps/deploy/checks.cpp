@@ -34,7 +34,7 @@ std::optional<Number> number_at(std::string_view text, int base = 10) {
   return value;
 }
 
-/// Ports of "32768 60999" or of "8080,9148-9160".
+/// First and last port of one item of "8080,9148-9160".
 using PortRange = std::pair<std::uint32_t, std::uint32_t>;
 
 std::vector<PortRange> reserved_ranges(std::string_view text) {
@@ -57,8 +57,8 @@ bool covers(const std::vector<PortRange>& ranges, std::uint32_t port) {
       ranges, [&](const PortRange& each) { return each.first <= port && port <= each.second; });
 }
 
-/// Whether a local address takes what is sent to one of IPv4: of IPv6 [::] and ::ffff:0:0/96, as
-/// four words in this machine's order of bytes.
+/// Whether a local address receives IPv4 datagrams.  Of the IPv6 addresses, [::] and ::ffff:0:0/96
+/// do; they are written as four words in this machine's byte order.
 bool hears_ipv4(std::string_view address) {
   constexpr std::size_t kIpv4Digits = 8;
   const bool mapped = std::endian::native == std::endian::little
@@ -77,20 +77,21 @@ Finding check_address(const Host& host, const std::vector<std::string>& own) {
   return wrong("address",
                fmt::format("{} is on no interface of this machine (it has {})", host.address,
                            fmt::join(own, ", ")),
-               fmt::format("give the interface that address (ip addr add {}/24 dev NAME), or write "
-                           "one of its own into the inventory",
+               fmt::format("give an interface that address (ip addr add {}/24 dev NAME), or write "
+                           "one of this machine's addresses into the inventory",
                            host.address));
 }
 
 Finding check_clock(const std::optional<ClockState>& clock) {
-  if (!clock) return not_checked("clock", "the kernel tells nothing of its clock");
+  if (!clock) return not_checked("clock", "the kernel gives no state of its clock");
   if (!clock->unsynchronised) {
     return good("clock",
-                fmt::format("synchronised, at most {:.1f} ms off", clock->worst_error_s * 1e3));
+                fmt::format("synchronised, error at most {:.1f} ms", clock->worst_error_s * 1e3));
   }
-  return wrong("clock", "not synchronised with any other",
-               "sudo apt install chrony; with a server of the lab: \"server ADDRESS iburst\" in "
-               "/etc/chrony/conf.d/lab.conf, then sudo systemctl restart chrony; chronyc tracking");
+  return wrong(
+      "clock", "not synchronised with another clock",
+      "sudo apt install chrony; if the lab has a server, write \"server ADDRESS iburst\" into "
+      "/etc/chrony/conf.d/lab.conf; sudo systemctl restart chrony; chronyc tracking");
 }
 
 Finding check_real_time(const Rights& rights) {
@@ -99,7 +100,7 @@ Finding check_real_time(const Rights& rights) {
     return good("real-time", "SCHED_FIFO is granted");
   }
   return wrong("real-time",
-               fmt::format("the largest real-time priority granted is {}, {} is asked for",
+               fmt::format("the largest real-time priority granted is {}, {} is needed",
                            rights.real_time_priority, kWanted),
                fmt::format("echo '@stillhand - rtprio {}' | sudo tee -a "
                            "/etc/security/limits.d/stillhand.conf; sudo groupadd -f stillhand; "
@@ -112,7 +113,7 @@ Finding check_memory_lock(const Rights& rights) {
     return good("memory-lock", "large enough");
   }
   return wrong("memory-lock",
-               fmt::format("{} kB may be locked, want no limit", rights.locked_memory / 1024),
+               fmt::format("{} kB may be locked, no limit is needed", rights.locked_memory / 1024),
                "echo '@stillhand - memlock unlimited' | sudo tee -a "
                "/etc/security/limits.d/stillhand.conf; log in again");
 }
@@ -120,7 +121,7 @@ Finding check_memory_lock(const Rights& rights) {
 Finding check_buffers(std::string_view rmem_max, std::string_view wmem_max, const Buffers& wanted) {
   const auto receive = number_at<std::uint64_t>(rmem_max);
   const auto send = number_at<std::uint64_t>(wmem_max);
-  if (!receive || !send) return not_checked("buffers", "the kernel tells no limits of them");
+  if (!receive || !send) return not_checked("buffers", "the kernel gives no limits of them");
   if (*receive >= wanted.receive && *send >= wanted.send) {
     return good("buffers", fmt::format("{} bytes to receive, {} to send", *receive, *send));
   }
@@ -128,7 +129,7 @@ Finding check_buffers(std::string_view rmem_max, std::string_view wmem_max, cons
       "buffers",
       fmt::format("net.core.rmem_max is {}, wmem_max {}; profiles.xml asks for {} and {}", *receive,
                   *send, wanted.receive, wanted.send),
-      "sudo cp HOST/sysctl.conf /etc/sysctl.d/60-stillhand.conf (deploy generate makes it); sudo "
+      "sudo cp HOST/sysctl.conf /etc/sysctl.d/60-stillhand.conf (deploy generate writes it); sudo "
       "sysctl --system");
 }
 
@@ -164,12 +165,12 @@ Finding check_ports(const std::vector<TakenPort>& taken) {
     }
     if (each.program.empty()) unknown = true;
     others.insert(
-        fmt::format("{} ({})", each.port, each.program.empty() ? "of another user" : each.program));
+        fmt::format("{} ({})", each.port, each.program.empty() ? "another user's" : each.program));
   }
-  if (others.empty()) return good("ports", "none of the domain's is taken by another program");
+  if (others.empty()) return good("ports", "no other program uses a port of the domain");
   const std::string list = fmt::format("taken: UDP {}", fmt::join(others, ", "));
-  if (unknown) return not_checked("ports", list, "only root sees whose: sudo ss -ulnp");
-  return wrong("ports", list, "end that program, or give the lab another domain");
+  if (unknown) return not_checked("ports", list, "only root sees the program: sudo ss -ulnp");
+  return wrong("ports", list, "stop that program, or give the lab another domain");
 }
 
 Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
@@ -178,23 +179,24 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
   const auto gap = range.find_first_of(" \t");
   const auto to = gap == std::string_view::npos ? std::nullopt
                                                 : number_at<std::uint32_t>(range.substr(gap + 1));
-  if (!from || !to) return not_checked("any-port", "the kernel tells no range of such ports");
+  if (!from || !to) return not_checked("any-port", "the kernel gives no range of such ports");
   const std::vector<PortRange> kept = reserved_ranges(reserved);
   for (std::uint32_t port = std::max(first, *from); port <= std::min(last, *to); ++port) {
     if (covers(kept, port)) continue;
-    return wrong("any-port",
-                 fmt::format("programs that ask for any port may get {}, one of the domain's {} to "
-                             "{}",
-                             port, first, last),
-                 fmt::format("sudo sysctl -w net.ipv4.ip_local_reserved_ports={}-{} (HOST/"
-                             "sysctl.conf has it), or a domain below 100",
-                             first, last));
+    return wrong(
+        "any-port",
+        fmt::format("programs that ask for any port may get {}, which is one of the domain's ports "
+                    "{} to {}",
+                    port, first, last),
+        fmt::format("sudo sysctl -w net.ipv4.ip_local_reserved_ports={}-{} (HOST/"
+                    "sysctl.conf contains it), or use a domain below 100",
+                    first, last));
   }
-  return good("any-port", "nobody is given one of the domain's by chance");
+  return good("any-port", "no program can get one of the domain's ports by chance");
 }
 
 Finding check_governor(const std::vector<std::string>& governors) {
-  if (governors.empty()) return not_checked("governor", "the processors tell none");
+  if (governors.empty()) return not_checked("governor", "the processors have none");
   std::set<std::string> others;
   std::size_t count = 0;
   for (const std::string& each : governors) {
@@ -205,8 +207,8 @@ Finding check_governor(const std::vector<std::string>& governors) {
   }
   if (others.empty()) return good("governor", "performance");
   return wrong("governor",
-               fmt::format("{} on {} of {} processors, want performance: else the clock speed "
-                           "follows the load, or stays low",
+               fmt::format("{} on {} of {} processors, performance is needed: otherwise the clock "
+                           "speed follows the load, or stays low",
                            fmt::join(others, ", "), count, governors.size()),
                "sudo apt install linux-cpupower; sudo cpupower frequency-set -g performance, "
                "again after each restart");
@@ -218,16 +220,16 @@ Finding check_keys(const std::vector<std::string>& refused,
       "copy the new folder of deploy/security/make.sh to every host of the lab";
   if (!refused.empty()) return wrong("keys", fmt::format("{}", fmt::join(refused, "; ")), mend);
   if (!expiring.empty()) return wrong("keys", fmt::format("{}", fmt::join(expiring, "; ")), mend);
-  return good("keys", "good for every service of this host, for 30 days at least");
+  return good("keys", "valid for every service of this host, for at least 30 days");
 }
 
-Finding tell_reachability(const Inventory& inventory, const Host& host) {
+Finding reachability_commands(const Inventory& inventory, const Host& host) {
   std::vector<std::string> others;
   for (const Host& each : inventory.hosts) {
     if (each.name != host.name) others.push_back("ping -c 1 " + each.address);
   }
-  if (others.empty()) return good("others", "there are none");
-  return not_checked("others", "whether they can be reached",
+  if (others.empty()) return good("others", "the inventory has no other host");
+  return not_checked("others", "a ping needs rights; type the commands",
                      fmt::format("{}", fmt::join(others, "; ")));
 }
 

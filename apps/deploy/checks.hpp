@@ -17,26 +17,26 @@ enum class State : std::uint8_t { kGood, kWrong, kNotChecked };
 struct Finding {
   std::string check;  ///< one word
   State state;
-  std::string what;  ///< what is there
-  std::string mend;  ///< how to mend it; empty when there is nothing to mend
+  std::string what;  ///< what the check found
+  std::string mend;  ///< how to repair it; empty if nothing is wrong
 };
 
-/// The checks of a machine.  Each judges what it is given; machine.hpp reads it.  None blames what
-/// it could not read: that is kNotChecked.
+/// The checks of a machine.  Each is a function of its arguments, which machine.hpp reads.  An
+/// argument that could not be read gives kNotChecked.
 
 /// @param own  IPv4 addresses of this machine's interfaces
 Finding check_address(const Host& host, const std::vector<std::string>& own);
 
-/// What the kernel's clock discipline says (adjtimex).
+/// State of the kernel's clock discipline (adjtimex).
 struct ClockState {
   bool unsynchronised;   ///< STA_UNSYNC
   double worst_error_s;  ///< [s] maxerror
 };
 Finding check_clock(const std::optional<ClockState>& clock);
 
-/// What a process of this user may ask for.
+/// Limits of a process of this user.
 struct Rights {
-  std::uint64_t real_time_priority;  ///< RLIMIT_RTPRIO, soft: it is what the kernel goes by
+  std::uint64_t real_time_priority;  ///< RLIMIT_RTPRIO, soft: the limit that the kernel applies
   std::uint64_t locked_memory;       ///< RLIMIT_MEMLOCK, soft [bytes]; ~0: no limit
   bool all;                          ///< CAP_SYS_NICE and CAP_IPC_LOCK, such as root's
 };
@@ -50,12 +50,12 @@ Finding check_buffers(std::string_view rmem_max, std::string_view wmem_max, cons
 struct TakenPort {
   std::uint32_t port;
   std::uint64_t inode;
-  std::string program;  ///< its owner's name; empty: unknown
+  std::string program;  ///< name of the program that holds it; empty: unknown
 };
-/// Sockets of /proc/net/udp and udp6 that IPv4 reaches, with a local port from `first` to `last`.
+/// Sockets of /proc/net/udp and udp6 that receive IPv4, with a local port from `first` to `last`.
 std::vector<TakenPort> taken_ports(std::string_view proc_net_udp, std::uint32_t first,
                                    std::uint32_t last);
-/// Other programs than stillhand's on them.
+/// Wrong if a program other than stillhand's holds one of these ports.
 Finding check_ports(const std::vector<TakenPort>& taken);
 
 /// @param range, reserved  text of /proc/sys/net/ipv4/ip_local_port_range, ip_local_reserved_ports
@@ -65,12 +65,12 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
 /// @param governors  text of each /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor
 Finding check_governor(const std::vector<std::string>& governors);
 
-/// @param refused   what runtime::check_identity() said of each service's keys that it refuses
+/// @param refused   message of runtime::check_identity() for each service whose keys it refuses
 /// @param expiring  runtime::expiry_warning() of the others
 Finding check_keys(const std::vector<std::string>& refused,
                    const std::vector<std::string>& expiring);
 
-/// A ping needs rights, and a closed port tells nothing: only what to type.
-Finding tell_reachability(const Inventory& inventory, const Host& host);
+/// Never wrong: a ping needs rights, and a closed port proves nothing.  Gives the commands to type.
+Finding reachability_commands(const Inventory& inventory, const Host& host);
 
 }  // namespace stillhand::deploy

@@ -36,13 +36,13 @@ int run_generate(const Words& words) {
     fmt::print("{}: {}\n", (std::filesystem::path(words.out) / host.name).string(), host.address);
   }
   for (const auto& folder : left_over) {
-    fmt::print("{}: of an earlier run, no host of lab {} any more\n", folder.string(),
+    fmt::print("{}: from an earlier run; lab {} has no such host now\n", folder.string(),
                inventory.lab);
   }
   return 0;
 }
 
-// Without a name: the host whose address this machine has.
+// Without a name, the host whose address this machine has.
 const Host& this_host(const Inventory& inventory, const std::string& name) {
   std::vector<std::string> names;
   for (const Host& host : inventory.hosts) names.push_back(host.name);
@@ -55,7 +55,7 @@ const Host& this_host(const Inventory& inventory, const std::string& name) {
     if (std::ranges::find(own, host.address) != own.end()) return host;
   }
   throw ConfigError("--host",
-                    fmt::format("none, and this machine ({}) has no address of the "
+                    fmt::format("none, and no address of this machine ({}) is in the "
                                 "inventory",
                                 fmt::join(own, ", ")),
                     fmt::format("the name of this machine: {}", fmt::join(names, ", ")));
@@ -112,21 +112,22 @@ void add_deploy_command(CLI::App& cli, int& status) {
   words->profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "deploy",
-      "A lab of several machines from one inventory (deploy/inventory.example.yaml).\n"
+      "Sets up a lab of several machines from one inventory (deploy/inventory.example.yaml).\n"
       "Example: stillhand deploy generate lab.yaml --out generated\n"
       "         stillhand deploy check lab.yaml          (on each machine)");
   verb->require_subcommand(1);
   const auto common = [&](CLI::App* sub) {
-    sub->add_option("inventory", words->inventory, "YAML file that says which service runs where")
+    sub->add_option("inventory", words->inventory, "YAML file with the services of each machine")
         ->required();
-    sub->add_option("--profiles", words->profiles, "QoS profiles that the lab's are made from")
+    sub->add_option("--profiles", words->profiles,
+                    "QoS profiles from which the lab's profiles are made")
         ->capture_default_str();
   };
   CLI::App* make = verb->add_subcommand(
       "generate",
       "Writes DIR/HOST for every machine: profiles.xml (its transport and discovery), systemd\n"
-      "units, stillhand.target, firewall.nft, sysctl.conf. All or nothing; the same inventory\n"
-      "gives the same files. deploy/README.md tells where each belongs.");
+      "units, stillhand.target, firewall.nft, sysctl.conf. It writes all files or none, and the\n"
+      "same inventory gives the same files. deploy/README.md says where each file belongs.");
   common(make);
   make->add_option("--out", words->out, "folder for the machines' folders")
       ->required()
@@ -134,13 +135,13 @@ void add_deploy_command(CLI::App& cli, int& status) {
   make->callback([words, &status] { status = run_generate(*words); });
   CLI::App* check = verb->add_subcommand(
       "check",
-      "What is wrong with this machine as a host of the lab, and how to mend it, a line each:\n"
-      "address, clock, rights, buffers, ports, processors, certificates. Exit status 0 when\n"
-      "nothing is, 1 when something is, 2 when the inventory is refused.");
+      "Checks this machine as a host of the lab: address, clock, rights, buffers, ports,\n"
+      "processors, certificates. Each check prints one line, with the remedy if something is\n"
+      "wrong. Exit status: 0 nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
   common(check);
   check->add_option("--host", words->host,
-                    "which host this machine is; else the one whose address it has");
-  check->add_option("--json", words->json, "write the findings to this file, too")
+                    "this machine's host; by default the one whose address it has");
+  check->add_option("--json", words->json, "also write the results to this file")
       ->check(settings::check_name);
   check->callback([words, &status] { status = run_check(*words); });
 }

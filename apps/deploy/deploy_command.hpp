@@ -7,8 +7,8 @@ class App;
 
 namespace stillhand::deploy {
 
-/// Adds the verb `deploy` with its own verbs `generate` and `check`; `status` is its exit status
-/// after parsing.
+/// Adds the verb `deploy` with its own verbs `generate` and `check`.
+/// @param status  exit status of the program, set when the verb ran
 void add_deploy_command(CLI::App& cli, int& status);
 
 }  // namespace stillhand::deploy

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// By the mark in its first lines.  What cannot be read is somebody else's.
+// True if the mark is in the first bytes.  A file that cannot be read counts as not generated.
 bool is_generated(const fs::path& file) {
   constexpr std::streamsize kHead = 4096;
   std::string head(static_cast<std::size_t>(kHead), '\0');
@@ -22,7 +22,7 @@ bool is_generated(const fs::path& file) {
   return head.find(kGeneratedMark) != std::string::npos;
 }
 
-// Files of a folder that an earlier run made.
+// Files of a folder that an earlier run generated.
 std::vector<std::string> made_before(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code unreadable;
@@ -33,7 +33,7 @@ std::vector<std::string> made_before(const fs::path& folder) {
   return names;
 }
 
-std::vector<fs::path> folders_of_nobody(const Inventory& inventory, const fs::path& out) {
+std::vector<fs::path> folders_without_host(const Inventory& inventory, const fs::path& out) {
   std::vector<fs::path> found;
   std::error_code unreadable;
   for (const fs::directory_entry& entry : fs::directory_iterator(out, unreadable)) {
@@ -63,7 +63,7 @@ std::vector<GeneratedFile> files_of(const Inventory& inventory, const Host& host
 std::vector<fs::path> generate(const Inventory& inventory, const LabProfiles& profiles,
                                const fs::path& wanted) {
   const fs::path out = fs::weakly_canonical(wanted);
-  // The outer one holds the lock, and takes back a folder that it made.
+  // The outer folder holds the lock, and is removed again if this run made it and fails.
   report::StagedFolder whole(out);
   std::list<report::StagedFolder> folders;
   for (const Host& host : inventory.hosts) {
@@ -76,7 +76,7 @@ std::vector<fs::path> generate(const Inventory& inventory, const LabProfiles& pr
   auto host = inventory.hosts.begin();
   for (report::StagedFolder& folder : folders) folder.publish(made_before(out / (host++)->name));
   whole.publish({});
-  return folders_of_nobody(inventory, out);
+  return folders_without_host(inventory, out);
 }
 
 }  // namespace stillhand::deploy

@@ -6,7 +6,7 @@ namespace stillhand::deploy {
 std::string generated_note(const Inventory& inventory, const Host& host) {
   std::string source = inventory.file.filename().string();
   for (char& c : source) {
-    // It must not end a line or an XML comment.
+    // The name must not end a line or an XML comment.
     if (static_cast<unsigned char>(c) < ' ' || c == '>') c = '_';
   }
   return std::string(kGeneratedMark) + " from " + source + " for host " + host.name + " of lab " +

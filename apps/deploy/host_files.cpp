@@ -15,15 +15,15 @@ GeneratedFile firewall_of(const Inventory& inventory, const Host& host) {
     if (!each.address.starts_with("127.")) addresses += ", " + each.address;
   }
   std::string table = "stillhand_" + inventory.lab;
-  std::ranges::replace(table, '-', '_');  // which nft takes for a minus
+  std::ranges::replace(table, '-', '_');  // nft reads '-' as a minus
   const DomainPorts ports(inventory.domain);
   const std::string range =
       fmt::format("{}-{}", ports.first, ports.last(participants_sought(inventory)));
   return {"firewall.nft",
           fmt::format(R"(#!/usr/sbin/nft -f
 # {0}
-# The ports of DDS domain {1} are the lab's own: whatever else comes to them is dropped. Where other rules drop by
-# default, they need besides:
+# The ports of DDS domain {1} are for the lab's hosts: packets from other hosts are dropped. If other rules drop by
+# default, they also need:
 #   udp dport {2} ip saddr {{ {3} }} accept
 table inet {4}
 delete table inet {4}
@@ -41,10 +41,10 @@ table inet {4} {{
 GeneratedFile sysctl_of(const Inventory& inventory, const Host& host, const Buffers& buffers) {
   const DomainPorts ports(inventory.domain);
   return {"sysctl.conf", fmt::format(R"(# {}
-# Without them the kernel cuts the buffers that profiles.xml asks for, and a burst is lost.
+# Without these limits the kernel cuts the buffers that profiles.xml asks for, and bursts are lost.
 net.core.rmem_max = {}
 net.core.wmem_max = {}
-# Programs that ask for any port get none of the domain's.
+# Programs that ask for any port get no port of the domain.
 net.ipv4.ip_local_reserved_ports = {}-{}
 )",
                                      generated_note(inventory, host), buffers.receive, buffers.send,

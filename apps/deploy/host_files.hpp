@@ -8,14 +8,14 @@
 
 namespace stillhand::deploy {
 
-/// systemd units of a host: one for each service but the experiment, which a person starts, one for
-/// the discovery server where it runs, and stillhand.target, which wants them all.
+/// systemd units of a host: one for each service but the experiment, which a person starts; one for
+/// the discovery server on its host; and stillhand.target, which wants them all.
 std::vector<GeneratedFile> units_of(const Inventory& inventory, const Host& host);
 
-/// nftables rules that keep the domain's ports for the lab's hosts.
+/// nftables rules that reserve the domain's ports for the lab's hosts.
 GeneratedFile firewall_of(const Inventory& inventory, const Host& host);
 
-/// Kernel settings: room for the buffers that the profiles ask for, and the domain's ports
+/// Kernel settings: limits for the buffers that the profiles ask for, and the domain's ports
 /// reserved.
 GeneratedFile sysctl_of(const Inventory& inventory, const Host& host, const Buffers& buffers);
 

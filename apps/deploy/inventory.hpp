@@ -31,17 +31,18 @@ struct Placement {
 };
 
 struct Host {
-  std::string name;                ///< letters, digits and '-'
-  std::string address;             ///< IPv4, dotted
-  std::vector<std::string> start;  ///< words before a command that is to run there; empty: here
-  std::filesystem::path prefix;    ///< absolute; where stillhand is installed there
+  std::string name;     ///< letters, digits and '-'
+  std::string address;  ///< IPv4, dotted
+  std::vector<std::string>
+      start;  ///< words before a command that is to run there; empty: this machine
+  std::filesystem::path prefix;  ///< absolute; where stillhand is installed on the host
   std::vector<Placement> services;
-  std::string place = {};  ///< "file:line:column" of it
+  std::string place = {};  ///< "file:line:column" of the host in the inventory
 };
 
-/// A lab of one or several machines, as its inventory file says (README, "The inventory").
-/// One that read_inventory() gave is consistent: names, addresses and rig numbers are unique, and
-/// every service runs on exactly one host for each rig.
+/// A lab of one or several machines, as in its inventory file (README, "The inventory").
+/// read_inventory() guarantees that names, addresses and rig numbers are unique, and that every
+/// service runs on exactly one host for each rig.
 struct Inventory {
   std::filesystem::path file;
   std::string lab;           ///< letters, digits and '-'
@@ -53,13 +54,13 @@ struct Inventory {
 
   /// The host of that name, or nullptr.
   [[nodiscard]] const Host* find_host(std::string_view name) const;
-  /// Where a service of a rig runs.  @param rig  number of one of `rigs`
+  /// The host that runs a service of a rig.  @param rig  number of one of `rigs`
   [[nodiscard]] const Host& host_of(std::string_view service, std::uint32_t rig) const;
   /// The rig of that number.
   [[nodiscard]] const Rig& rig(std::uint32_t number) const;
 };
 
-/// @throws ConfigError "file:line:column: key: got ..., want ..." for the first thing that is wrong
+/// @throws ConfigError "file:line:column: key: got ..., want ..." for the first error
 Inventory read_inventory(const std::filesystem::path& file);
 
 }  // namespace stillhand::deploy

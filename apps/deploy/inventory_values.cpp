@@ -20,7 +20,7 @@ void refuse(const Entry& entry, const std::string& path, const std::string& want
 void refuse_second(const Entry& entry, const std::string& path, const Entry& first,
                    const std::string& want) {
   throw ConfigError(entry.place + ": " + path, settings::got_of(entry) + " a second time",
-                    want + "; the first stands at " + first.place);
+                    want + "; the first is at " + first.place);
 }
 
 std::string item_path(const std::string& list, std::size_t index) {
@@ -64,7 +64,7 @@ std::string name_in(const Entry& entry, const std::string& path) {
 
 std::string address_in(const Entry& entry, const std::string& path) {
   const std::string want =
-      "the IPv4 address of one interface of that host, such as 192.168.7.1 (Fast DDS takes no "
+      "the IPv4 address of one interface of that host, such as 192.168.7.1 (Fast DDS accepts no "
       "names)";
   std::string address = text_of(entry, path, want);
   in_addr binary{};

@@ -20,10 +20,11 @@ namespace stillhand::deploy {
 
 std::string item_path(const std::string& list, std::size_t index);
 
-/// Refuses every other key, before one that is missing: it may be that one, misspelt.
+/// Refuses every other key.  Call it before required(): an unknown key may be a missing one,
+/// misspelt.
 void allow_only(settings::SectionReader& reader, std::initializer_list<std::string_view> keys);
 
-/// The entry of that key.  @param section  what `reader` reads
+/// The entry of that key.  @param section  the entry that `reader` reads
 const settings::Entry& required(settings::SectionReader& reader, const settings::Entry& section,
                                 const std::string& path, std::string_view key,
                                 const std::string& want);

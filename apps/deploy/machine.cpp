@@ -26,14 +26,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Empty where there is none, or no right to read it.
+// Empty if the file does not exist or cannot be read.
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 std::optional<ClockState> clock_state() {
-  timex state{};  // no modes: it only tells
+  timex state{};  // no modes: only reads
   if (adjtimex(&state) < 0) return std::nullopt;
   return ClockState{(state.status & STA_UNSYNC) != 0, static_cast<double>(state.maxerror) * 1e-6};
 }
@@ -54,7 +54,7 @@ Rights rights() {
   return {priority.rlim_cur, memory.rlim_cur, has_all_rights()};
 }
 
-// Programs by the inode of a socket that they hold; of other users' root alone sees them.
+// Programs by the inode of a socket that they hold.  Only root sees those of other users.
 std::map<std::uint64_t, std::string> owners_of_sockets() {
   std::map<std::uint64_t, std::string> owners;
   std::error_code ignored;
@@ -114,7 +114,8 @@ std::vector<std::string> own_addresses() {
 Finding check_keys_of(const Inventory& inventory, const Host& host) {
   std::set<std::string> names;
   for (const Placement& placement : host.services) names.insert(placement.service);
-  // Its tools' where they are: a host needs none of a tool that does not run there.
+  // A tool's keys are checked only if they are present: a host needs none of a tool that it does
+  // not run.
   const std::array<std::string, 2> tools{std::string(topics::kTap),
                                          std::string(topics::kDashboard)};
   for (const std::string& tool : tools) {
@@ -122,7 +123,7 @@ Finding check_keys_of(const Inventory& inventory, const Host& host) {
     if (fs::exists(inventory.security / tool, unseen)) names.insert(tool);
   }
   if (names.empty()) names.insert(tools.begin(), tools.end());
-  std::set<std::string> refused;  // of a domain that no key is for each says the same
+  std::set<std::string> refused;  // a set: for a wrong domain every key gives the same message
   std::vector<std::string> expiring;
   for (const std::string& name : names) {
     const auto identity = runtime::Identity::of(inventory.security, name);
@@ -153,7 +154,7 @@ std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
       check_ephemeral_ports(text_of(net / "ipv4/ip_local_port_range"),
                             text_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
       check_governor(governors()),
-      tell_reachability(inventory, host)};
+      reachability_commands(inventory, host)};
   if (!inventory.security.empty()) findings.push_back(check_keys_of(inventory, host));
   return findings;
 }

@@ -11,11 +11,11 @@ namespace stillhand::deploy {
 /// IPv4 addresses of this machine's interfaces, in the system's order.
 std::vector<std::string> own_addresses();
 
-/// The keys of each service that runs on the host, and of the tools' (tap, dashboard) those that
-/// are there; without any of both, the tools'.
+/// The keys of each service that runs on the host, and those of the tools (tap, dashboard) that are
+/// present.  On a host with neither, the keys of both tools.
 Finding check_keys_of(const Inventory& inventory, const Host& host);
 
-/// Every check, of this machine as that host.  Reads /proc, /sys and the folder of keys.
+/// Runs every check on this machine as that host.  Reads /proc, /sys and the folder of keys.
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
                                    const Buffers& buffers);
 

@@ -15,11 +15,11 @@ using tinyxml2::XMLDocument;
 using tinyxml2::XMLElement;
 using tinyxml2::XMLNode;
 
-// Of the only server of a lab; its clients must name the same.
+// GUID prefix of a lab's only server; its clients must use the same.
 constexpr const char* kServerPrefix = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
 constexpr const char* kTransport = "lab_udp";
 
-/// What is replaced in the document.
+/// Elements of the document that are replaced.
 struct Parts {
   XMLElement* transport;
   XMLElement* used_transport;
@@ -51,7 +51,7 @@ Parts parts_of(XMLDocument& document, const std::filesystem::path& file) {
   return parts;
 }
 
-// The child of that name with that text, a new one at the end where there is none.
+// Sets the text of the child of that name; adds the child at the end if there is none.
 void set(XMLElement* parent, const char* name, const std::string& text) {
   XMLElement* child = parent->FirstChildElement(name);
   if (child == nullptr) child = parent->InsertNewChildElement(name);
@@ -68,7 +68,7 @@ void set_transport(const Parts& parts, const Inventory& inventory, const Host& h
   set(parts.transport, "transport_id", kTransport);
   parts.used_transport->SetText(kTransport);
   set(parts.transport, "maxInitialPeersRange", std::to_string(participants_sought(inventory)));
-  // What stands around the old list speaks of one machine.
+  // The comments around the old list describe a single machine.
   for (XMLNode* child = parts.transport->FirstChild(); child != nullptr;) {
     XMLNode* next = child->NextSibling();
     if (child->ToComment() != nullptr) parts.transport->DeleteChild(child);
@@ -77,19 +77,19 @@ void set_transport(const Parts& parts, const Inventory& inventory, const Host& h
   XMLElement* list = parts.transport->FirstChildElement("interfaceWhiteList");
   if (list == nullptr) list = parts.transport->InsertNewChildElement("interfaceWhiteList");
   list->DeleteChildren();
-  // One address: each has a socket to send by and a thread to receive, so with 127.0.0.1 besides
-  // all that stays on the host is sent twice, and callbacks of one bus run at the same time.
+  // Only one address: each has a socket that sends and a thread that receives.  With 127.0.0.1 in
+  // addition, local datagrams are sent twice and callbacks of one bus run at the same time.
   list->InsertNewChildElement("address")->SetText(host.address.c_str());
 }
 
-// With a unicast locator of their own, even an empty one (the standard port), participants open no
-// multicast one.
+// A participant with a unicast locator, even an empty one (the standard port), opens no multicast
+// locator.
 void add_unicast_only(XMLElement* builtin) {
   add_locator(builtin->InsertNewChildElement("metatrafficUnicastLocatorList"), "", 0);
 }
 
-// No ports: Fast DDS fills in those of the domain's first maxInitialPeersRange participants, so
-// that the file serves every domain.
+// No ports: Fast DDS fills in the ports of the domain's first maxInitialPeersRange participants, so
+// the file serves every domain.
 void add_peers(XMLElement* builtin, const Inventory& inventory) {
   XMLElement* list = builtin->InsertNewChildElement("initialPeersList");
   for (const Host& host : inventory.hosts) add_locator(list, host.address, 0);
@@ -115,7 +115,7 @@ std::string printed(const XMLDocument& document) {
 void add_note(XMLDocument& document, const Inventory& inventory, const Host& host) {
   XMLElement* dds = document.RootElement();
   std::string note = " " + generated_note(inventory, host) + " ";
-  // Nothing that looks like a comment's end; a name may hold it.
+  // "--" would end the XML comment; a name may contain it.
   for (std::size_t at = 0; (at = note.find("--")) != std::string::npos;) note.replace(at, 2, "- -");
   document.InsertAfterChild(dds->PreviousSibling(), document.NewComment(note.c_str()));
 }

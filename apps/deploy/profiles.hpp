@@ -15,16 +15,17 @@ struct Buffers {
   std::uint64_t receive = 0;
 };
 
-/// Fast DDS profiles of one lab, made from qos/profiles.xml: the patterns as they are there, with a
-/// transport on the host's own address and the lab's discovery.
+/// Fast DDS profiles of one lab, made from qos/profiles.xml.  The patterns stay unchanged; the
+/// transport uses the host's own address, and the discovery is the lab's.
 class LabProfiles {
  public:
-  /// @param base  qos/profiles.xml  @throws ConfigError when it isn't as this program knows it
+  /// @param base  qos/profiles.xml
+  /// @throws ConfigError when it lacks an element that this class replaces
   explicit LabProfiles(const std::filesystem::path& base);
 
   /// profiles.xml of a host, for every process there.
   [[nodiscard]] std::string of(const Inventory& inventory, const Host& host) const;
-  /// Of the discovery server, Discovery::kServer only: `fast-discovery-server -x`.
+  /// Profiles of the discovery server (`fast-discovery-server -x`), Discovery::kServer only.
   [[nodiscard]] std::string of_server(const Inventory& inventory) const;
   [[nodiscard]] const Buffers& buffers() const noexcept { return buffers_; }
 

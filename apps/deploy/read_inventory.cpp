@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inventory's file: what each key may hold, and what must fit together.
+// Reads the inventory: the values of each key, and the consistency of the whole.
 #include <algorithm>
 #include <cctype>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "apps/deploy/inventory.hpp"
 #include "apps/deploy/inventory_values.hpp"
-#include "apps/deploy/ports.hpp"
-#include "idl/topics.hpp"
+#include "apps/deploy/placements.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/process/domain.hpp"
 #include "services/runtime/process/shipped.hpp"
-#include "services/settings/nearest.hpp"
 #include "services/settings/section.hpp"
 
 namespace stillhand::deploy {
@@ -52,7 +49,7 @@ class Reader {
     }
     const Entry& hosts = required(reader, top_, "inventory", "hosts", "hosts: a list of machines");
     read_hosts(hosts);
-    refuse_absent_services(hosts);
+    placements_.refuse_absent(hosts);
     return std::move(inventory_);
   }
 
@@ -71,7 +68,7 @@ class Reader {
   void read_security(SectionReader& reader) {
     const Entry* entry = reader.find("security");
     if (entry == nullptr) return;
-    const std::string want = "a folder with the lab's keys, as seen from the inventory";
+    const std::string want = "a folder with the lab's keys, relative to the inventory";
     inventory_.security =
         inventory_.file.parent_path() / text_of(*entry, "inventory.security", want);
     std::error_code ignored;
@@ -82,14 +79,15 @@ class Reader {
     // Measured: a stranger exchanged every sample with a secured service through a plain server.
     if (inventory_.discovery == Discovery::kServer) {
       throw ConfigError(entry->place + ": inventory.security",
-                        "keys together with a discovery server, through which strangers get in",
+                        "keys together with a discovery server, which admits strangers",
                         "discovery: peers");
     }
     // Measured: half of the starts of ten secured processes were never complete.
     if (inventory_.discovery == Discovery::kMulticast) {
-      throw ConfigError(entry->place + ": inventory.security",
-                        "keys together with multicast, by which some never authenticate",
-                        "discovery: peers");
+      throw ConfigError(
+          entry->place + ": inventory.security",
+          "keys together with multicast, with which some processes never authenticate",
+          "discovery: peers");
     }
   }
 
@@ -102,19 +100,19 @@ class Reader {
       const std::string path = item_path("rigs", i);
       SectionReader reader(items[i], path);
       allow_only(reader, {"name", "number"});
-      const Entry& name = required(reader, items[i], path, "name", "name: what people call it");
+      const Entry& name = required(reader, items[i], path, "name", "name: the rig's name");
       const Entry& number =
-          required(reader, items[i], path, "number", "number: its key on the bus");
+          required(reader, items[i], path, "number", "number: the rig's key on the bus");
       std::int64_t value = 0;
       reader("number", value, Range{1, std::numeric_limits<std::uint32_t>::max()}, "key");
       inventory_.rigs.push_back({name_in(name, path + ".name"), static_cast<std::uint32_t>(value)});
       for (std::size_t k = 0; k < i; ++k) {
         if (inventory_.rigs[k].name == inventory_.rigs[i].name) {
-          refuse_second(name, path + ".name", *seen[k].first, "each rig by a name of its own");
+          refuse_second(name, path + ".name", *seen[k].first, "a different name for each rig");
         }
         if (inventory_.rigs[k].number == inventory_.rigs[i].number) {
           refuse_second(number, path + ".number", *seen[k].second,
-                        "each rig by a number of its own");
+                        "a different number for each rig");
         }
       }
       seen.emplace_back(&name, &number);
@@ -132,18 +130,18 @@ class Reader {
     SectionReader reader(item, path);
     allow_only(reader, {"name", "address", "start", "prefix", "services"});
     Host host;
-    const Entry& name = required(reader, item, path, "name", "name: what people call the machine");
+    const Entry& name = required(reader, item, path, "name", "name: the machine's name");
     const Entry& address = required(reader, item, path, "address", "address: its IPv4 address");
     host.place = item.place;
     host.name = name_in(name, path + ".name");
     host.address = address_in(address, path + ".address");
     for (const SeenHost& seen : seen_) {
       if (seen.name.text == host.name) {
-        refuse_second(name, path + ".name", seen.name, "each host by a name of its own");
+        refuse_second(name, path + ".name", seen.name, "a different name for each host");
       }
       if (seen.address.text == host.address) {
         refuse_second(address, path + ".address", seen.address,
-                      "each host at an address of its own");
+                      "a different address for each host");
       }
     }
     seen_.push_back({path, name, address});
@@ -151,17 +149,18 @@ class Reader {
     read_start(reader, item, path, host);
     read_prefix(reader, path, host);
     const Entry* services = reader.find("services");
-    // A host without any only watches: its tools find the others, and they it.
-    if (services != nullptr) read_services(*services, path + ".services", host);
+    // A host without services only watches: its tools and the other hosts find each other.
+    if (services != nullptr) placements_.read(*services, path + ".services", host);
     inventory_.hosts.push_back(std::move(host));
   }
 
-  // Nobody else reaches it there.
+  // Other hosts cannot reach a loopback address.
   void refuse_loopback_beside_others() const {
     if (seen_.size() < 2) return;
     for (const SeenHost& seen : seen_) {
       if (seen.address.text.starts_with("127.")) {
-        refuse(seen.address, seen.path + ".address", "an address at which the others reach it");
+        refuse(seen.address, seen.path + ".address",
+               "an address at which the others reach this host");
       }
     }
   }
@@ -170,7 +169,8 @@ class Reader {
     const Entry* start = reader.find("start");
     if (start == nullptr) {
       if (here_ != nullptr) {
-        throw ConfigError(item.place + ": " + path, "no \"start\", as the host at " + here_->place,
+        throw ConfigError(item.place + ": " + path,
+                          "no \"start\", like the host at " + here_->place,
                           "start: [ssh, NAME] for every host but this machine");
       }
       here_ = &item;
@@ -188,9 +188,10 @@ class Reader {
       host.prefix = runtime::prefix();
       return;
     }
-    // It stands in systemd's command lines, where blanks, quotes, % and $ have a meaning.
+    // The prefix becomes part of systemd's command lines, where blanks, quotes, % and $ are
+    // special.
     const std::string want =
-        "an absolute path under which bin/stillhand is, such as /usr, of letters, digits and /._+-";
+        "the absolute path of bin/stillhand's prefix, such as /usr, of letters, digits and /._+-";
     host.prefix = text_of(*prefix, path + ".prefix", want);
     const auto plain = [](unsigned char c) {
       return std::isalnum(c) != 0 ||
@@ -201,75 +202,11 @@ class Reader {
     }
   }
 
-  void read_services(const Entry& list, const std::string& path, Host& host) {
-    const auto& items = items_of(list, path, "a list of services, such as [rig, sensing]");
-    if (items.size() > kMostServicesOnAHost) {
-      throw ConfigError(list.place + ": " + path, std::to_string(items.size()) + " services",
-                        "at most " + std::to_string(kMostServicesOnAHost) +
-                            " on a host: further ones would take the next domain's ports");
-    }
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const std::string at = item_path(path, i);
-      Placement placement = read_placement(items[i], at);
-      const auto [place, fresh] =
-          placed_.try_emplace({placement.service, placement.rig}, &items[i]);
-      if (!fresh) {
-        throw ConfigError(
-            items[i].place + ": " + at,
-            "a second " + placement.service + " for rig " + inventory_.rig(placement.rig).name,
-            "each service once a rig; the first stands at " + place->second->place);
-      }
-      host.services.push_back(std::move(placement));
-    }
-  }
-
-  Placement read_placement(const Entry& item, const std::string& path) {
-    const std::string form = "{service: rig, rig: " + inventory_.rigs.front().name + "}";
-    if (item.kind != Entry::Kind::kMap) {
-      if (inventory_.rigs.size() > 1) refuse(item, path, form + ", as there are several rigs");
-      return {service_in(item, path), inventory_.rigs.front().number};
-    }
-    SectionReader reader(item, path);
-    allow_only(reader, {"service", "rig"});
-    const Entry& service = required(reader, item, path, "service", form);
-    const Entry& rig = required(reader, item, path, "rig", form);
-    return {service_in(service, path + ".service"), rig_in(rig, path + ".rig")};
-  }
-
-  static std::string service_in(const Entry& entry, const std::string& path) {
-    std::string service = text_of(entry, path, "the name of a service");
-    if (std::ranges::find(topics::kServices, service) == topics::kServices.end()) {
-      refuse(entry, path,
-             "a service: \"" + settings::nearest(service, topics::kServices) + "\" perhaps");
-    }
-    return service;
-  }
-
-  std::uint32_t rig_in(const Entry& entry, const std::string& path) const {
-    const std::string name = text_of(entry, path, "the name of a rig");
-    const auto found = std::ranges::find(inventory_.rigs, name, &Rig::name);
-    if (found != inventory_.rigs.end()) return found->number;
-    std::vector<std::string_view> names;
-    for (const Rig& rig : inventory_.rigs) names.push_back(rig.name);
-    refuse(entry, path, "one of the rigs: \"" + settings::nearest(name, names) + "\" perhaps");
-  }
-
-  void refuse_absent_services(const Entry& hosts) const {
-    for (const Rig& rig : inventory_.rigs) {
-      for (const std::string_view service : topics::kServices) {
-        if (placed_.contains({std::string(service), rig.number})) continue;
-        throw ConfigError(hosts.place + ": inventory.hosts",
-                          "no host that runs " + std::string(service) + " for rig " + rig.name,
-                          "each of the nine services on exactly one host for each rig");
-      }
-    }
-  }
-
   Entry top_;
   Inventory inventory_;
   std::vector<SeenHost> seen_;
   const Entry* here_ = nullptr;  ///< the host without words before a command
-  std::map<std::pair<std::string, std::uint32_t>, const Entry*> placed_;
+  Placements placements_{inventory_.rigs};
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// systemd units.  The watchdog is fed with each life sign (services/runtime/reporting), ten times a
-// second: a process that hangs is started again, long after the interlock has opened.
+// systemd units.  Each life sign (services/runtime/reporting), ten times a second, feeds the
+// watchdog.  systemd restarts a process that hangs, long after the interlock has opened.
 #include <fmt/format.h>
 
 #include "apps/deploy/host_files.hpp"
@@ -9,7 +9,8 @@
 namespace stillhand::deploy {
 namespace {
 
-// Fast DDS lists the interfaces by netlink; without homes a program in one could not start.
+// Fast DDS lists the interfaces by netlink.  A program in a home could not start if homes were
+// hidden.
 std::string hardening(const Host& host, bool shows_a_screen) {
   const std::filesystem::path inside = host.prefix.relative_path();
   const std::string top = inside.empty() ? "" : inside.begin()->string();
@@ -34,7 +35,7 @@ SystemCallArchitectures=native
                      shows_a_screen ? "no" : "yes");  // the screen's socket is in /tmp
 }
 
-// Always: a service ends with each session, to begin the next without anything of the one before.
+// Restart=always: a service ends with each session and begins the next one without old state.
 std::string head(const Inventory& inventory, const Host& host, const std::string& description) {
   return fmt::format(R"(# {}
 [Unit]
@@ -64,7 +65,7 @@ std::string command_of(const Inventory& inventory, const Host& host, const Place
   return command;
 }
 
-// A file of its own for each start: the recorder writes over none.
+// A new file for each start: the recorder never overwrites one.
 std::string recorder_command(const Inventory& inventory, const std::string& command) {
   return "/bin/sh -c 'exec " + command + " --out /var/lib/stillhand/" + inventory.lab +
          "/$$(date -u +%%Y%%m%%dT%%H%%M%%SZ).mcap'";
@@ -76,14 +77,14 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
   const bool recorder = placement.service == "recorder";
   std::string text =
       head(inventory, host, fmt::format("Stillhand {} of rig {}", placement.service, rig));
-  // 2: a setting, file or certificate is refused; trying again mends none.
+  // 2: a setting, file or certificate is refused; a restart would not help.
   text += "RestartPreventExitStatus=2\n";
   text += fmt::format("Environment=STILLHAND_CONFIG={}/share/stillhand/deploy/config\n",
                       host.prefix.string());
   if (screen) {
     text +=
-        "# Whose graphical session shows the screen: User, DISPLAY and XAUTHORITY by `systemctl "
-        "edit`.\nEnvironment=DISPLAY=:0\n";
+        "# The graphical session that shows the screen: set User, DISPLAY and XAUTHORITY with "
+        "`systemctl edit`.\nEnvironment=DISPLAY=:0\n";
   }
   if (recorder) text += "StateDirectory=stillhand/" + inventory.lab + "\n";
   const std::string command = command_of(inventory, host, placement);
@@ -100,7 +101,7 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
 GeneratedFile server_unit(const Inventory& inventory, const Host& host) {
   return {"stillhand-discovery.service",
           head(inventory, host, "Stillhand discovery server") +
-              fmt::format("# Of the Debian package fastdds-tools.\n"
+              fmt::format("# From the Debian package fastdds-tools.\n"
                           "ExecStart=/usr/bin/fast-discovery-server -i 0 -x "
                           "{}/discovery_server.xml\n",
                           installed_folder(inventory)) +

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/identify/identify.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/excitation_check.hpp"
@@ -16,7 +17,7 @@ using diagnosis::Channel;
 using diagnosis::Measurement;
 using diagnosis::Stretch;
 
-std::string count(std::size_t samples) { return std::to_string(samples) + " samples"; }
+std::string count(std::size_t samples) { return fmt::format("{} samples", samples); }
 
 // Frequencies of the model's response: from a seventh of the excited band's lower edge to twice the
 // preprocessing filter's.
@@ -27,9 +28,9 @@ constexpr int kResponsePoints = 120;
 constexpr int kNotchPoints = 2000;
 constexpr double kNotchLowestHz = 0.5;
 constexpr double kNotchHighestHz = 10.0;  // the preprocessing filter's edge
-// Less is a ripple that the random error of a fit makes too.
+// A smaller rise can be a ripple from the random error of the fit.
 constexpr double kNotchDepth_db = 1.0;
-// At 50 Hz 5 s: lines of 0.2 Hz resolve the excited band's lower edge.
+// 5 s at 50 Hz: lines of 0.2 Hz resolve the excited band's lower edge.
 constexpr std::size_t kSegmentSamples = 256;
 
 const Channel& channel_of(const Measurement& measurement, const std::string& option,
@@ -68,7 +69,7 @@ double rms_about_mean(const std::vector<double>& values) {
   return std::sqrt(squares);
 }
 
-// What divides the input before the fit.
+// The divisor of the input before the fit.
 double scale_of(const Channel& input, const std::vector<double>& values) {
   if (input.unit == "m/s^2") return 1.0;
   const double rms = rms_about_mean(values);
@@ -82,9 +83,8 @@ void divide(std::vector<double>& values, double scale) {
 identification::Record record_of(const Measurement& measurement, const Channel& input,
                                  const Channel& output, const Stretch& stretch) {
   if (measurement.rate_hz < identification::kRecordingRateHz * (1.0 - 1e-6)) {
-    char rate[32];
-    std::snprintf(rate, sizeof(rate), "%.6g Hz", measurement.rate_hz);
-    throw ConfigError(measurement.source, rate, "100 Hz or more, the paper's recording rate");
+    throw ConfigError(measurement.source, fmt::format("{:.6g} Hz", measurement.rate_hz),
+                      "100 Hz or more, the paper's recording rate");
   }
   const std::size_t samples = stretch.end - stretch.first;
   if (static_cast<double>(samples) < measurement.rate_hz) {
@@ -94,25 +94,23 @@ identification::Record record_of(const Measurement& measurement, const Channel& 
   return {measurement.rate_hz, cut(input, stretch), cut(output, stretch)};
 }
 
-// Seen before the filters: their start would make a step of it.
+// Checked before the filters, whose transient would turn a constant into a step.
 void check_moves(const Channel& channel, const std::vector<double>& values,
                  const std::string& source) {
   const auto [low, high] = std::ranges::minmax(values);
   if (low < high) return;
-  char value[32];
-  std::snprintf(value, sizeof(value), "%g ", low);
-  throw ConfigError(source + ", channel " + channel.name, value + channel.unit + " throughout",
-                    "a channel that moves");
+  throw ConfigError(source + ", channel " + channel.name,
+                    fmt::format("{:g} {} throughout", low, channel.unit), "a channel that varies");
 }
 
-// The chain's own messages don't know the file.
+// Adds the file and the channels, which the chain's own messages do not name.
 void check_excitation(const identification::Record& fitted, const IdentifyOptions& options,
                       const std::string& source) {
   const auto excitation =
       identification::check_excitation(fitted, static_cast<int>(options.config.order));
   if (!excitation.sufficient) {
     throw ConfigError(source + ", " + options.input + " to " + options.output, excitation.verdict,
-                      "a recording that excites what is to be identified");
+                      "a recording that excites the system to be identified");
   }
 }
 
@@ -130,7 +128,7 @@ std::optional<Notch> notch_of(const signal::DifferenceModel& model) {
   return {};
 }
 
-// The chain, and what is left of it where no filter for the canceller comes out.
+// Runs the chain.  Keeps the fit if no filter for the canceller results.
 void fit(const identification::Record& recorded, const identification::Record& fitted,
          const identification::Config& config, IdentifyResult& out) {
   const auto paper = identification::fit_arx(fitted, static_cast<int>(config.order));
@@ -140,14 +138,14 @@ void fit(const identification::Record& recorded, const identification::Record& f
     out.model.control = steps.control.model;
     out.model.conversion_error = steps.control.max_error;
     out.model.refined = steps.refined_used;
-    out.why_refined = steps.refined_used && config.refine  ? "as asked for"
+    out.why_refined = steps.refined_used && config.refine  ? "as requested"
                       : steps.paper_unusable == "unstable" ? "the paper's fit is unstable"
                                                            : steps.paper_unusable;
   } catch (const ConfigError& error) {
     out.unusable = error.what();
     out.model.refined = config.refine || !paper.stable;
     if (out.model.refined)
-      out.why_refined = config.refine ? "as asked for" : "the paper's fit is unstable";
+      out.why_refined = config.refine ? "as requested" : "the paper's fit is unstable";
   }
   if (out.model.refined) {
     const auto refined = identification::refine_output_error(fitted, paper.model);
@@ -159,23 +157,23 @@ void fit(const identification::Record& recorded, const identification::Record& f
   }
 }
 
-// Eq. ID-1 has no constant.
+// The model, Eq. ID-1, has no constant term.
 void note_offset(const Channel& channel, const std::vector<double>& values,
                  std::vector<std::string>& notes) {
   const double mean = mean_of(values);
   if (std::abs(mean) <= rms_about_mean(values)) return;
-  char text[160];
-  std::snprintf(text, sizeof(text), " has a mean of %.4g ", mean);
-  notes.push_back(channel.name + text + channel.unit +
-                  ", more than it moves; the paper's model has no offset and bends to it.");
+  notes.push_back(
+      fmt::format("{} has a mean of {:.4g} {}, larger than its variation; the paper's model has no "
+                  "offset, so the mean distorts the fit.",
+                  channel.name, mean, channel.unit));
 }
 
 void note_what_was_used(const Measurement& measurement, const Stretch& used,
                         std::vector<std::string>& notes) {
   if (measurement.stretches.size() > 1) {
-    notes.push_back("The longest of " + std::to_string(measurement.stretches.size()) +
-                    " stretches is used, " + count(used.end - used.first) + " of " +
-                    count(measurement.size()) + ".");
+    notes.push_back(fmt::format("The longest of {} stretches is used, {} of {}.",
+                                measurement.stretches.size(), count(used.end - used.first),
+                                count(measurement.size())));
   }
 }
 
@@ -185,8 +183,8 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   const Channel& input = channel_of(measurement, "--input", options.input);
   const Channel& output = channel_of(measurement, "--output", options.output);
   if (&input == &output) {
-    throw ConfigError("--output", "'" + output.name + "', the input",
-                      "another channel than --input");
+    throw ConfigError("--output", "'" + output.name + "', which is the input",
+                      "a channel other than --input");
   }
   const Stretch& used = longest(measurement.stretches);
   identification::Record recorded = record_of(measurement, input, output, used);
@@ -212,7 +210,7 @@ IdentifyResult identify(const Measurement& measurement, const IdentifyOptions& o
   if (same) {
     throw ConfigError(measurement.source,
                       "'" + output.name + "' with the values of '" + input.name + "'",
-                      "a measured answer to the input");
+                      "a measured response to the input");
   }
   fit(recorded, fitted, options.config, out);
   divide(out.model.fit.numerator, scale);

@@ -24,30 +24,31 @@ struct Notch {
   double magnitude_db;
 };
 
-/// The paper's fit of one recording, and what there is to say about it.  Coefficients and
-/// magnitudes in the output's unit per input's.
+/// The paper's fit of one recording, and its evaluation.  Coefficients and magnitudes are in the
+/// output's unit per the input's unit.
 struct IdentifyResult {
   std::string source;
   std::string input, input_unit;
   std::string output, output_unit;
   double rate_hz = 0.0;     ///< [Hz] of the recording
-  std::size_t samples = 0;  ///< [-] of it that were used
+  std::size_t samples = 0;  ///< [-] samples of the recording that were used
   std::vector<std::string> notes;
-  /// `control` is empty where `unusable` says why.
+  /// `control` is empty if `unusable` is not.
   identification::FeedthroughModel model;
-  std::string why_refined;  ///< why it isn't the paper's least squares; empty: it is
-  std::string unusable;     ///< why no filter for the canceller comes out; empty: one does
+  std::string why_refined;  ///< reason for the refinement; empty: the paper's least squares
+  std::string unusable;     ///< why there is no filter for the canceller; empty: there is one
   double dc_gain_db = 0.0;
   std::optional<Notch> notch;
   std::vector<identification::ResponsePoint> response;  ///< of the model, at its own rate
   signal::TransferEstimate measured;                    ///< of the record that was fitted
 };
 
-/// Runs the chain of paper III-A on the longest stretch of a recording.  An input in another unit
-/// than m/s^2 is scaled to an RMS of 1 for the fit, since the check for excitation knows
-/// accelerations; the model comes back in the input's own unit.  Pure.
-/// @throws stillhand::ConfigError naming the recording, when a channel is not there or nothing can
-///         be identified from it.
+/// Runs the chain of paper III-A (Eqs 3 to 5; identification, Eqs ID-1 to ID-10) on the longest
+/// stretch of a recording.  An input in a unit other than m/s^2 is scaled to an RMS of 1 for the
+/// fit, because the excitation check expects accelerations; the model is returned in the input's
+/// own unit.  Pure.
+/// @throws stillhand::ConfigError naming the recording, when a channel is missing or nothing can be
+///         identified from it.
 IdentifyResult identify(const diagnosis::Measurement& measurement, const IdentifyOptions& options);
 
 }  // namespace stillhand::identify

@@ -32,7 +32,7 @@ int run(const Words& words) {
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
-                        "it without --save, or another --order");
+                        "no --save, or another --order");
     }
     files.set("--save", identification::model_json(result.model));
   }
@@ -48,30 +48,28 @@ void add_identify_command(CLI::App& cli, int& status) {
   auto words = std::make_shared<Words>();
   CLI::App* verb = cli.add_subcommand(
       "identify",
-      "The paper's fit of one recording: difference model by least squares at 50 Hz, its "
-      "frequency\n"
-      "response beside the measured one, its error on the quarter that the fit did not see.\n"
-      "REC: CSV with columns 'name [unit]', 't [s]' first, at 100 Hz or more; or the MCAP file of "
-      "a\n"
-      "session. Files of earlier results are replaced; they appear together or not at all.\n"
+      "Fits the paper's model to one recording: a difference model by least squares at 50 Hz.\n"
+      "Reports its frequency response next to the measured one, and its error on the quarter of\n"
+      "the recording that the fit did not see. REC is a CSV file with columns 'name [unit]',\n"
+      "'t [s]' first, at 100 Hz or more; or the MCAP file of a session. Files of earlier results\n"
+      "are replaced; they appear together or not at all.\n"
       "Example: stillhand identify demo/session.mcap --save model.json --json out.json");
   verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
   verb->add_option("--order", words->identify.config.order, "order of the model, 1 to 12")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
-  verb->add_flag(
-      "--refine", words->identify.config.refine,
-      "refine the least squares on its free-run error; done anyway where it is unstable");
-  verb->add_option("--input", words->identify.input, "channel that drives")->capture_default_str();
-  verb->add_option("--output", words->identify.output, "channel that answers")
+  verb->add_flag("--refine", words->identify.config.refine,
+                 "refine the least squares on its free-run error; also done if it is unstable");
+  verb->add_option("--input", words->identify.input, "input channel of the model")
+      ->capture_default_str();
+  verb->add_option("--output", words->identify.output, "output channel of the model")
       ->capture_default_str();
   verb->add_option(
       "--trial", words->read.trial,
-      "of a session: number, or letter of its condition (I, A, B, C) [identification]");
-  verb->add_option("--save", words->save, "file of the model, as the cancellation reads it")
+      "trial of a session: number, or letter of its condition (I, A, B, C) [identification]");
+  verb->add_option("--save", words->save, "file for the model, in the form that cancellation reads")
       ->check(settings::check_name);
-  verb->add_option("--json", words->json, "file of everything that was found")
-      ->check(settings::check_name);
+  verb->add_option("--json", words->json, "file for all results")->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

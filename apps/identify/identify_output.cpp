@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/identify/identify_output.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -13,11 +13,6 @@ namespace stillhand::identify {
 namespace {
 
 using nlohmann::ordered_json;
-
-// JSON has no infinity: the logarithm of an exact zero is null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
 
 ordered_json model_json(const signal::DifferenceModel& model) {
   return {{"numerator", model.numerator},
@@ -29,8 +24,8 @@ ordered_json response_json(const IdentifyResult& result) {
   ordered_json points = ordered_json::array();
   for (const auto& point : result.response) {
     points.push_back({{"frequency_hz", point.frequency_hz},
-                      {"magnitude_db", number(point.magnitude_db)},
-                      {"phase_deg", number(point.phase_deg)}});
+                      {"magnitude_db", point.magnitude_db},
+                      {"phase_deg", point.phase_deg}});
   }
   return points;
 }
@@ -38,57 +33,48 @@ ordered_json response_json(const IdentifyResult& result) {
 ordered_json measured_json(const IdentifyResult& result) {
   ordered_json points = ordered_json::array();
   const auto& measured = result.measured;
-  // The first line is 0 Hz, of which the mean was taken off; the last is half the rate.
+  // Leaves out the first line, 0 Hz, whose mean was removed, and the last, half the rate.
   for (std::size_t k = 1; k + 1 < measured.frequency_hz.size(); ++k) {
     const auto h = measured.response[k];
     points.push_back({{"frequency_hz", measured.frequency_hz[k]},
-                      {"magnitude_db", number(20.0 * std::log10(std::abs(h)))},
-                      {"phase_deg", number(std::arg(h) * 180.0 / std::numbers::pi)},
-                      {"coherence", number(measured.coherence[k])},
-                      {"magnitude_ci95", number(measured.magnitude_ci95[k])}});
+                      {"magnitude_db", 20.0 * std::log10(std::abs(h))},
+                      {"phase_deg", std::arg(h) * 180.0 / std::numbers::pi},
+                      {"coherence", measured.coherence[k]},
+                      {"magnitude_ci95", measured.magnitude_ci95[k]}});
   }
   return points;
 }
 
-// printf onto the end of a text.
-[[gnu::format(printf, 2, 3)]] void print(std::string& text, const char* format, ...) {
-  char line[400];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof(line), format, arguments);
-  va_end(arguments);
-  text += line;
-}
-
-void print_coefficients(std::string& text, const IdentifyResult& result) {
-  const std::string unit = result.output_unit + "/(" + result.input_unit + ")";
-  print(text, "  %2s  %18s  %18s\n", "i", ("c_i [" + unit + "]").c_str(), "d_i [-]");
+std::string coefficient_table(const IdentifyResult& result) {
+  const std::string title = fmt::format("c_i [{}/({})]", result.output_unit, result.input_unit);
+  std::string text = fmt::format("  {:>2}  {:>18}  {:>18}\n", "i", title, "d_i [-]");
   for (std::size_t i = 0; i < result.model.fit.denominator.size(); ++i) {
-    print(text, "  %2zu  %18.9g  %18.9g\n", i, result.model.fit.numerator[i],
-          result.model.fit.denominator[i]);
+    text += fmt::format("  {:2}  {:18.9g}  {:18.9g}\n", i, result.model.fit.numerator[i],
+                        result.model.fit.denominator[i]);
   }
+  return text;
 }
 
-void print_quality(std::string& text, const IdentifyResult& result) {
+std::string quality_lines(const IdentifyResult& result) {
   const auto& heldout = result.model.heldout;
-  print(text, "stable             %s\n", signal::is_stable(result.model.fit) ? "yes" : "no");
-  print(text, "free run, unseen   VAF %.2f %%, RMS error %.4g %s (last quarter, fit to the rest)\n",
-        heldout.free_run_vaf_percent, heldout.free_run_rms_n, result.output_unit.c_str());
-  print(text, "one step, unseen   VAF %.2f %%\n", heldout.one_step_vaf_percent);
-  print(text, "condition number   %.3g\n", result.model.condition_number);
-  print(text, "gain at 0 Hz       %.2f dB\n", result.dc_gain_db);
-  if (result.notch) {
-    print(text, "notch              %.2f Hz, %.1f dB\n", result.notch->frequency_hz,
-          result.notch->magnitude_db);
-  } else {
-    print(text, "notch              none from 0.5 to 10 Hz\n");
-  }
-  if (result.unusable.empty()) {
-    print(text, "filter at 1 kHz    within %.2f %% of the model's peak gain, 0 to 10 Hz\n",
-          100.0 * result.model.conversion_error);
-  } else {
-    text += "filter at 1 kHz    none (" + result.unusable + ")\n";
-  }
+  std::string text = fmt::format(
+      "stable             {}\n"
+      "free run, unseen   VAF {:.2f} %, RMS error {:.4g} {} (last quarter, fit to the rest)\n"
+      "one step, unseen   VAF {:.2f} %\n"
+      "condition number   {:.3g}\n"
+      "gain at 0 Hz       {:.2f} dB\n",
+      signal::is_stable(result.model.fit) ? "yes" : "no", heldout.free_run_vaf_percent,
+      heldout.free_run_rms_n, result.output_unit, heldout.one_step_vaf_percent,
+      result.model.condition_number, result.dc_gain_db);
+  text += result.notch ? fmt::format("notch              {:.2f} Hz, {:.1f} dB\n",
+                                     result.notch->frequency_hz, result.notch->magnitude_db)
+                       : "notch              none from 0.5 to 10 Hz\n";
+  text +=
+      result.unusable.empty()
+          ? fmt::format("filter at 1 kHz    within {:.2f} % of the model's peak gain, 0 to 10 Hz\n",
+                        100.0 * result.model.conversion_error)
+          : fmt::format("filter at 1 kHz    none ({})\n", result.unusable);
+  return text;
 }
 
 }  // namespace
@@ -107,43 +93,44 @@ std::string result_json(const IdentifyResult& result) {
       {"order", result.model.fit.order()},
       {"model", model_json(result.model.fit)},
       {"heldout",
-       {{"free_run_vaf_percent", number(heldout.free_run_vaf_percent)},
-        {"free_run_rmse", number(heldout.free_run_rms_n)},
-        {"one_step_vaf_percent", number(heldout.one_step_vaf_percent)},
+       {{"free_run_vaf_percent", heldout.free_run_vaf_percent},
+        {"free_run_rmse", heldout.free_run_rms_n},
+        {"one_step_vaf_percent", heldout.one_step_vaf_percent},
         {"samples", heldout.samples}}},
       {"stable", signal::is_stable(result.model.fit)},
       {"refined", result.model.refined},
       {"why_refined", result.why_refined},
-      {"condition_number", number(result.model.condition_number)},
-      {"dc_gain_db", number(result.dc_gain_db)},
+      {"condition_number", result.model.condition_number},
+      {"dc_gain_db", result.dc_gain_db},
       {"notch_hz", result.notch ? ordered_json(result.notch->frequency_hz) : nullptr},
       {"usable", usable},
       {"text", result.unusable},
       {"control_model", usable ? model_json(result.model.control) : ordered_json(nullptr)},
-      {"conversion_error", usable ? number(result.model.conversion_error) : nullptr},
+      {"conversion_error", usable ? ordered_json(result.model.conversion_error) : nullptr},
       {"notes", result.notes}};
   json["frequency_response"] = response_json(result);
   json["measured_response"] = measured_json(result);
-  // A file's name may be of any bytes.
+  // A file's name may contain bytes that are no UTF-8.  JSON has no infinity: dump() writes a number
+  // that is not finite, such as the logarithm of an exact zero, as null.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string result_table(const IdentifyResult& result) {
   std::string text = "recording          " + result.source + "\n";
   for (const std::string& note : result.notes) text += "                   " + note + "\n";
-  text += "input, output      " + result.input + " [" + result.input_unit + "], " + result.output +
-          " [" + result.output_unit + "]\n";
-  print(text, "rate, samples      %.6g Hz, %zu (%.4g s); fitted at %.6g Hz\n", result.rate_hz,
-        result.samples, static_cast<double>(result.samples) / result.rate_hz,
-        result.model.fit.rate_hz);
-  print(text, "model              order %zu, %s\n", result.model.fit.order(),
-        result.model.refined ? "refined on its free-run error" : "the paper's least squares");
+  text += fmt::format("input, output      {} [{}], {} [{}]\n", result.input, result.input_unit,
+                      result.output, result.output_unit);
+  text +=
+      fmt::format("rate, samples      {:.6g} Hz, {} ({:.4g} s); fitted at {:.6g} Hz\n",
+                  result.rate_hz, result.samples,
+                  static_cast<double>(result.samples) / result.rate_hz, result.model.fit.rate_hz);
+  text += fmt::format(
+      "model              order {}, {}\n", result.model.fit.order(),
+      result.model.refined ? "refined on its free-run error" : "the paper's least squares");
   if (result.model.refined) {
-    text += "                   (" + result.why_refined + ")\n";
+    text += fmt::format("                   ({})\n", result.why_refined);
   }
-  print_coefficients(text, result);
-  print_quality(text, result);
-  return text;
+  return text + coefficient_table(result) + quality_lines(result);
 }
 
 }  // namespace stillhand::identify

@@ -8,7 +8,7 @@
 namespace stillhand::measurement {
 namespace {
 
-// Steps through samples and keeps the rows beside the current one.
+// Steps through samples and keeps the rows next to the current one.
 class Walk {
  public:
   explicit Walk(std::span<const double> places) : places_(places) {}
@@ -37,9 +37,9 @@ struct Support {
 
 Support support_of(std::span<const double> places, std::size_t row) {
   const double gap = places[row + 1] - places[row];
-  // Further out, the noise of the two outer rows weighs less and the cubic's own error more.  From
-  // half a period on a pair of nearly equal times can't spoil it; beyond the second bound the row
-  // lies behind another gap.
+  // With a larger distance the noise of the two outer rows has less weight, and the cubic's own
+  // error grows.  At half a period or more, nearly equal times do no harm.  Beyond the second bound
+  // the row lies behind another gap.
   const double near = std::max(0.5, 0.25 * gap);
   const double far = 2.0 * near + 2.0;
   Support out;
@@ -56,8 +56,9 @@ Support support_of(std::span<const double> places, std::size_t row) {
   return out;
 }
 
-// Lagrange's polynomial.  Values near the end of a double's range can overflow in it, and times
-// that differ in the last digit divide by nothing: then a straight line, then the row before.
+// Lagrange's polynomial, Eq. ME-4.  Values near the end of a double's range can overflow in it, and
+// times that differ in the last digit divide by zero.  Then a straight line is used, or the row
+// before.
 double interpolated(std::span<const double> places, std::span<const double> values,
                     const Support& support, std::size_t row, double sample) {
   double sum = 0.0;

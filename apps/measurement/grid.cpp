@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/measurement/grid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <span>
 #include <string>
 
@@ -17,27 +18,21 @@ using diagnosis::Measurement;
 
 constexpr double kLeastStretch_s = 1.0;
 constexpr std::size_t kLeastStretch_samples = 20;
-// What a hand does lies between 0.1 and 10 Hz: a slower recording can't show it.
+// A hand moves at 0.1 to 10 Hz, which a slower recording can't show.
 constexpr double kLeastRate_hz = 5.0;
 
 // "1 row", "2 rows"
 std::string counted(double count, const std::string& what) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.15g ", count);
-  return text + what + (count == 1.0 ? "" : "s");
+  return fmt::format("{:.15g} {}{}", count, what, count == 1.0 ? "" : "s");
 }
 std::string counted(std::size_t count, const std::string& what) {
   return counted(static_cast<double>(count), what);
 }
 
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
+std::string figure(double value) { return fmt::format("{:.4g}", value); }
 
-// A stretch of less than 20 samples says nothing, one of less than a second hardly anything beside
-// a longer one.
+// A stretch of less than 20 samples holds no information.  One of less than a second adds hardly
+// any to a longer one.
 void leave_out_short(RowPlaces& places, std::vector<std::string>& notes) {
   std::size_t longest = 0;
   for (const RowStretch& stretch : places.stretches) {
@@ -54,8 +49,8 @@ void leave_out_short(RowPlaces& places, std::vector<std::string>& notes) {
     return is_short;
   });
   if (rows > 0) {
-    notes.push_back(counted(rows, "row") + " left out, in stretches shorter than " +
-                    figure(least / places.rate_hz) + " s.");
+    notes.push_back(fmt::format("{} left out, in stretches shorter than {} s.",
+                                counted(rows, "row"), figure(least / places.rate_hz)));
   }
 }
 
@@ -65,12 +60,12 @@ std::size_t grid_size(const RowPlaces& places) {
   return samples;
 }
 
-// A table with 't [s]' above milliseconds looks like one of a very slow sensor.
+// A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.
 void check_rate(const std::string& source, double rate_hz) {
   if (rate_hz >= kLeastRate_hz) return;
   throw ConfigError(source + ", time", figure(1.0 / rate_hz) + " s between rows",
                     "at most " + figure(1.0 / kLeastRate_hz) +
-                        " s; are the times in milliseconds, where 't [s]' says seconds?");
+                        " s; are the times in milliseconds, although 't [s]' means seconds?");
 }
 
 void check_size(const recording::Recording& rows, std::size_t samples, std::size_t most_values) {
@@ -78,7 +73,7 @@ void check_size(const recording::Recording& rows, std::size_t samples, std::size
     throw ConfigError(rows.source,
                       counted(samples, "sample") + " of " + counted(rows.columns.size(), "channel"),
                       "at most " + std::to_string(most_values) +
-                          " values: a part of it, fewer channels or a lower rate");
+                          " values; use a part of it, fewer channels or a lower rate");
   }
 }
 
@@ -87,19 +82,20 @@ void note_what_happened(const RowPlaces& places, std::size_t long_gaps, std::siz
   const std::string bridge_ms =
       figure(1e3 * static_cast<double>(longest_bridge(places.rate_hz)) / places.rate_hz);
   if (places.as_stamped) {
-    notes.push_back("The time stamps lie off an even grid, by " +
-                    figure(100.0 * places.jitter_periods) +
-                    " % of a period in the median: resampled to " + figure(places.rate_hz) +
-                    " Hz by cubic interpolation.");
+    notes.push_back(fmt::format(
+        "The time stamps differ from an even grid by {} % of a period (median): resampled to {} Hz "
+        "by cubic interpolation.",
+        figure(100.0 * places.jitter_periods), figure(places.rate_hz)));
   }
   if (filled > 0) {
-    notes.push_back(counted(filled, "row") + " missing in gaps of at most " + bridge_ms +
-                    " ms: filled in by cubic interpolation, and not counted.");
+    notes.push_back(fmt::format(
+        "{} missing in gaps of at most {} ms: filled in by cubic interpolation, with weight 0.",
+        counted(filled, "row"), bridge_ms));
   }
   if (long_gaps > 0) {
-    notes.push_back(counted(places.lost_between, "row") + " missing in " +
-                    counted(long_gaps, "gap") + " longer than " + bridge_ms +
-                    " ms: what follows is a new stretch.");
+    notes.push_back(
+        fmt::format("{} missing in {} longer than {} ms: a new stretch begins after each.",
+                    counted(places.lost_between, "row"), counted(long_gaps, "gap"), bridge_ms));
   }
 }
 

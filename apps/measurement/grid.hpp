@@ -8,15 +8,16 @@
 
 namespace stillhand::measurement {
 
-/// [samples] measured ones that a measurement has at least.
+/// Least number of measured samples of a measurement [-].
 inline constexpr std::size_t kLeastSamples = 50;
 
-/// Puts the rows of a recording on a uniform grid: short gaps filled in with weight 0, long ones
-/// between stretches, stretches too short to tell anything left out, jittered rows resampled.  What
-/// was done is in the notes.  Takes the rows' memory over where nothing has to be interpolated.
-/// @param rows  as parse_csv() gives them; columns may not be empty
+/// Puts the rows of a recording on a uniform grid, README Eqs. ME-1 to ME-4.  Short gaps are filled
+/// in with weight 0, long gaps separate stretches, very short stretches are left out, and jittered
+/// rows are resampled.  The notes report each change.  If nothing has to be interpolated, the rows'
+/// memory is reused.
+/// @param rows  as parse_csv() returns them, with at least one column
 /// @param most_values  [-] samples times channels of the result at most
-/// @throws stillhand::ConfigError when nothing useful is left, or too much.
+/// @throws stillhand::ConfigError when too few or too many values are left.
 diagnosis::Measurement on_grid(recording::Recording rows, std::size_t most_values);
 
 }  // namespace stillhand::measurement

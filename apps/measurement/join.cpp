@@ -41,7 +41,7 @@ void check_same_rig(const Measurement& one, const Measurement& other) {
   }
   for (const Channel& channel : other.channels) {
     if (one.find(channel.name) == nullptr) {
-      throw ConfigError(other.source, title(channel) + " besides",
+      throw ConfigError(other.source, title(channel) + " in addition",
                         list_of(one.channels) + " as " + one.source + " has");
     }
   }

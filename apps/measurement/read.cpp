@@ -15,12 +15,12 @@
 namespace stillhand::measurement {
 namespace {
 
-// A table of small numbers has fewer bytes than its doubles; one of 20 digits has more.  2 GiB of
-// text hold 60 million of those.
+// A table of short numbers has fewer bytes than its doubles; one of 20-digit numbers has more.
+// 2 GiB of text hold 60 million 20-digit numbers.
 constexpr std::uint64_t kMostCsv_bytes = std::uint64_t{2} << 30;
 
 bool is_mcap(const std::string& path) {
-  // MCAP specification, "Magic"; the rest of its eight bytes may be cut off.
+  // MCAP specification, "Magic".  Only five of its eight bytes: the rest may be cut off.
   constexpr std::array<std::byte, 5> kMagic{std::byte{0x89}, std::byte{'M'}, std::byte{'C'},
                                             std::byte{'A'}, std::byte{'P'}};
   recording::FileSource file(path);
@@ -31,7 +31,7 @@ bool is_mcap(const std::string& path) {
   return begin == kMagic;
 }
 
-// Length in bytes of the character that the text begins with; 0: it is no UTF-8 (RFC 3629).
+// Length in bytes of the first character of the text; 0 if it is no UTF-8 (RFC 3629).
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
@@ -45,7 +45,7 @@ std::size_t character_length(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xC0U) != 0x80U) return 0;
   }
-  // Longer than it need be, a surrogate, beyond U+10FFFF.
+  // Overlong, a surrogate, or beyond U+10FFFF.
   if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F) ||
       (lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) > 0x8F)) {
     return 0;
@@ -53,7 +53,7 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
-// Names and units go on into JSON and HTML; rows are numbers.
+// Names and units are written to JSON and HTML, so they must be UTF-8.
 void check_titles(const std::string& path, std::string_view text) {
   const std::string_view header = text.substr(0, text.find('\n'));
   for (std::size_t i = 0; i < header.size();) {
@@ -66,7 +66,7 @@ void check_titles(const std::string& path, std::string_view text) {
   }
 }
 
-// Before the table is built: what it will hold.
+// Checks the number of values before the table is built.
 void check_table_size(const std::string& path, const std::string& text, std::size_t most_values) {
   const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
   const std::size_t rows = std::max<std::size_t>(lines, 1) - 1;  // without the header
@@ -77,7 +77,7 @@ void check_table_size(const std::string& path, const std::string& text, std::siz
     throw ConfigError(path,
                       std::to_string(rows) + " rows of " + std::to_string(columns) + " channels",
                       "at most " + std::to_string(most_values) +
-                          " values: a part of the file, fewer columns or a lower rate");
+                          " values; use a part of the file, fewer columns or a lower rate");
   }
 }
 
@@ -86,7 +86,7 @@ recording::Recording read_table(const std::string& path, std::size_t most_values
   if (bytes > kMostCsv_bytes) {
     throw ConfigError(path, std::to_string(bytes >> 20) + " MiB",
                       "at most " + std::to_string(kMostCsv_bytes >> 20) +
-                          " MiB: a part of the file, fewer columns or a lower rate");
+                          " MiB; use a part of the file, fewer columns or a lower rate");
   }
   const std::string text = recording::read_file(path);
   check_table_size(path, text, most_values);
@@ -100,7 +100,7 @@ diagnosis::Measurement read_measurement(const std::string& path, const ReadOptio
   if (!is_mcap(path)) {
     if (!options.trial.empty()) {
       throw ConfigError("--trial", options.trial + " with the table " + path,
-                        "the recording of a session (MCAP), or none");
+                        "no --trial, or the recording of a session (MCAP)");
     }
     return on_grid(read_table(path, options.most_values), options.most_values);
   }

@@ -11,17 +11,18 @@
 namespace stillhand::measurement {
 namespace {
 
-// Beyond this a resampled value is nearer to the truth than the row as it stands: at a tenth of the
-// rate, 2 % of a period are 1.3 % of a sine's amplitude.
+// Beyond this a resampled value is closer to the truth than the unchanged row, Eq. ME-2: at a tenth
+// of the rate, 2 % of a period are 1.3 % of a sine's amplitude.
 constexpr double kMostJitter_periods = 0.02;
 
-// Smallest decimal step that every time is a multiple of, or else what a double resolves.
+// Largest decimal step of which every time is a multiple, or else the resolution of a double.
 double resolution_s(const std::vector<double>& time_s) {
   const double largest_s = std::max(std::abs(time_s.front()), std::abs(time_s.back()));
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   for (int digits = 0; digits <= 9; ++digits) {
     const double scale = std::pow(10.0, digits);
-    // Rounding of a decimal number to a double, scaled; a double of 1e13 has no digits left to see.
+    // Allows for the rounding of a decimal number to a double.  A double of 1e13 has no digits
+    // left.
     if (largest_s * scale > 1e13) break;
     const bool multiple = std::ranges::all_of(time_s, [&](double t) {
       const double scaled = t * scale;
@@ -32,12 +33,12 @@ double resolution_s(const std::vector<double>& time_s) {
   return 2.0 * kEpsilon * largest_s;
 }
 
-// Stamps as coarse as the period come in steps of 1 and 2, which RC-1 and RC-2 take for a shorter
-// period and many gaps of one row.
+// Stamps as coarse as the period have steps of 1 and 2.  RC-1 and RC-2 interpret these as a shorter
+// period with many gaps of one row.
 RowCount best_count(const recording::Recording& rows, double resolution_s) {
   const double period_s = 1.0 / rows.rate_hz;
   constexpr double kCoarse_periods = 0.25;
-  constexpr std::ptrdiff_t kFewGaps = 4;  // that many are gaps
+  constexpr std::ptrdiff_t kFewGaps = 4;  // up to this number, they are real gaps
   RowCount plain = count_rows(rows.time_s, period_s);
   const auto singles = std::ranges::count(rows.gaps, 1, &recording::Gap::missing_rows);
   if (resolution_s < kCoarse_periods * period_s || singles <= kFewGaps) return plain;
@@ -50,7 +51,7 @@ RowCount best_count(const recording::Recording& rows, double resolution_s) {
     count += 1.0;
   }
   RowCount coarse = count_rows(rows.time_s, sum_s / count);
-  // It has to do without any such gap, or it has only moved them.
+  // The coarse period must leave no such gap; otherwise it has only moved the gaps.
   const auto gap =
       std::ranges::adjacent_find(coarse.places, [](double a, double b) { return b - a == 2.0; });
   const bool explains =
@@ -58,8 +59,8 @@ RowCount best_count(const recording::Recording& rows, double resolution_s) {
   return explains ? coarse : plain;
 }
 
-// A whole number of Hz, or of seconds, when over the longest stretch it makes no difference that
-// the stamps could show.
+// Rounds to a whole number of Hz, or of seconds, if the stamps cannot show the difference over the
+// longest stretch, Eq. ME-1.
 double tidy_rate_hz(double period_s, double resolution_s, const RowCount& count) {
   double longest = 1.0;
   for (const RowStretch& stretch : count.stretches) {
@@ -92,7 +93,7 @@ RowPlaces place_rows(const recording::Recording& rows) {
     throw ConfigError(rows.source + ", time",
                       "stamps from " + std::to_string(time_s.front()) + " to " +
                           std::to_string(time_s.back()) + " s",
-                      "seconds that a sample rate can be found from");
+                      "times in seconds that give a sample rate");
   }
   const double resolution = resolution_s(time_s);
   RowCount count = best_count(rows, resolution);
@@ -108,7 +109,7 @@ RowPlaces place_rows(const recording::Recording& rows) {
   if (out.as_stamped) place_as_stamped(time_s, out);
   for (RowStretch& stretch : out.stretches) {
     const double last = out.places[stretch.end_row - 1];
-    // 1e-9: a last row that rounding put before its sample.
+    // 1e-9: rounding may have put the last row before its sample.
     stretch.grid_samples = static_cast<std::size_t>(last + 1e-9) + 1;
   }
   return out;

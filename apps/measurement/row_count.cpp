@@ -11,7 +11,7 @@ constexpr double kBridged_s = 0.05;
 constexpr std::int64_t kLeastBridge_rows = 3;
 constexpr std::int64_t kMostBridge_rows = 1000;
 
-// Follows the clock's phase through the rows and counts the periods between them.
+// Follows the clock's phase through the rows and counts the periods between them, Eq. ME-1.
 class Counter {
  public:
   Counter(double period_s, std::int64_t longest_bridge)
@@ -22,24 +22,24 @@ class Counter {
     place_ = offset_ = 0.0;
     rows_ = 1.0;
   }
-  // Periods since the row before; more than the longest bridge + 1: a new stretch.
+  // Periods since the row before.  More than the longest bridge + 1 means a new stretch.
   double step_to(double time_s) {
     const double elapsed = (time_s - start_s_) / period_s_;
     double step = std::round(elapsed - offset_ - place_);
-    if (step < 1.0) {  // none is added, or a late row would move all that follow
+    if (step < 1.0) {  // counts as 0, so that a late row does not move all following rows
       crowded_ = true;
       step = 0.0;
     }
     if (step > longest_ + 1.0) return step;
     place_ += step;
     rows_ += 1.0;
-    // A clock that wanders slowly is followed; one late row is not.
+    // Follows a slowly drifting clock, but not a single late row.
     constexpr double kGain = 0.01;
     offset_ += std::max(kGain, 1.0 / rows_) * (elapsed - place_ - offset_);
     return step;
   }
   [[nodiscard]] double place() const { return place_; }
-  // Two rows in one period were met.
+  // True if two rows shared a period.
   [[nodiscard]] bool crowded() const { return crowded_; }
 
  private:
@@ -98,7 +98,8 @@ struct Slope {
   }
 };
 
-// Eq. ME-1: one period for all, a phase for each stretch, short gaps being whole periods.
+// Eq. ME-1: one period for all stretches, a phase for each; a short gap is a whole number of
+// periods.
 double refined(const std::vector<double>& time_s, const RowCount& counted, double period_s) {
   Slope slope;
   for (const RowStretch& stretch : counted.stretches) {
@@ -108,7 +109,7 @@ double refined(const std::vector<double>& time_s, const RowCount& counted, doubl
 }
 
 void judge(const std::vector<double>& time_s, RowCount& out) {
-  // A median of some hundred thousand rows is as good as that of all.
+  // A median of some hundred thousand rows is accurate enough.
   const std::size_t stride = time_s.size() / 300'000 + 1;
   std::vector<double> distances;
   for (const RowStretch& stretch : out.stretches) {
@@ -140,7 +141,7 @@ bool agree(double period_s, double other_s) { return std::abs(period_s / other_s
 
 std::int64_t longest_bridge(double rate_hz) noexcept {
   const double rows = std::min(kBridged_s * rate_hz, static_cast<double>(kMostBridge_rows));
-  // 0.01: 0.05 s at 100 Hz are five rows, also when the stamps say 99.99 Hz.
+  // 0.01: 0.05 s at 100 Hz are five rows, even if the stamps give 99.99 Hz.
   return std::max(kLeastBridge_rows, static_cast<std::int64_t>(rows + 0.01));
 }
 

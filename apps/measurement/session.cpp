@@ -21,7 +21,7 @@
 namespace stillhand::measurement {
 namespace {
 
-// A topic beside the sensed one that is there for fewer of the ticks would make most of them
+// Least share of the sensed ticks that a further topic must have.  With fewer, most ticks would be
 // missing rows.
 constexpr double kLeastShare = 0.9;
 
@@ -49,7 +49,7 @@ struct TrialStreams {
   Stream<2> tracking;
 };
 
-// What a sample with such a flag says was held from an earlier one.
+// A sample with such a flag holds values of an earlier one.
 constexpr Flags kNotMeasured = Flag::kInputInvalid | Flag::kFault;
 
 void take_sensed(const stillhand_msgs::Sensed& m, Stream<7>& stream) {
@@ -90,7 +90,7 @@ TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& cho
         }
         return true;
       });
-  // What failed here failed in the first pass too, and is in the notes.
+  // A failure here also occurred in the first pass, and is in the notes.
   (void)status;
   return streams;
 }
@@ -101,7 +101,7 @@ std::vector<Tick> in_both(const std::vector<Tick>& a, const std::vector<Tick>& b
   return both;
 }
 
-// Keeps the samples at these ticks, all of which it has.
+// Keeps the samples at these ticks; the stream has all of them.
 template <std::size_t columns>
 void keep(Stream<columns>& stream, const std::vector<Tick>& ticks) {
   std::size_t from = 0;
@@ -114,7 +114,7 @@ void keep(Stream<columns>& stream, const std::vector<Tick>& ticks) {
 }
 
 recording::Recording table_of(TrialStreams streams, bool with_motor, bool with_tracking) {
-  // design.md section 3.
+  // Names and units of the CSV format (services/recording/README.md).
   constexpr std::array<std::array<const char*, 2>, 7> kSensed{{{"a_x", "m/s^2"},
                                                                {"a_y", "m/s^2"},
                                                                {"a_z", "m/s^2"},
@@ -161,7 +161,7 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial)
   if (streams.sensed.invalid > 0) {
     const auto invalid = streams.sensed.invalid;
     out.notes.push_back(std::to_string(invalid) + (invalid == 1 ? " sample" : " samples") +
-                        " without a valid reading taken as missing.");
+                        " without a valid reading: treated as missing.");
   }
   if (!with_tracking && !streams.tracking.ticks.empty()) {
     out.notes.push_back("x_r and x_p left out: most of their samples are missing.");
@@ -181,12 +181,11 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial)
   out.rows.source = path;
   if (out.rows.row_count() < 2) {
     throw ConfigError(path + ", trial " + chosen.name(),
-                      std::to_string(out.rows.row_count()) + " samples",
-                      "a trial that was recorded");
+                      std::to_string(out.rows.row_count()) + " samples", "a recorded trial");
   }
   recording::estimate_timing(out.rows);
   out.loss = recording::loss_line(path, reader, std::nullopt, file.being_written());
-  // A damaged file says so once for each chunk that was lost.
+  // A damaged file gives one finding for each lost chunk.
   constexpr std::size_t kMostDamage = 3;
   const auto& damage = reader.damage();
   for (std::size_t i = 0; i < std::min(damage.size(), kMostDamage); ++i) {
@@ -194,7 +193,7 @@ SessionRows read_session_rows(const std::string& path, const std::string& trial)
   }
   if (damage.size() > kMostDamage) {
     out.notes.push_back("Damaged file: " + std::to_string(damage.size() - kMostDamage) +
-                        " findings more.");
+                        " more findings.");
   }
   return out;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/measurement/session_trials.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -15,10 +16,10 @@
 namespace stillhand::measurement {
 namespace {
 
-// A hundred days at 1 kHz: ticks beyond are no session's, and their sums would overflow.
+// A hundred days at 1 kHz.  No session has later ticks, and their sums would overflow.
 constexpr Tick kMostTicks = 8'640'000'000;
 
-// What the first pass knows so far.
+// State of the first pass.
 class TrialFinder {
  public:
   void take_sensed(const recording::SampleHead& head) {
@@ -31,7 +32,7 @@ class TrialFinder {
     ++samples_;
     first_tick_ = std::min(first_tick_, head.tick);
     newest_tick_ = std::max(newest_tick_, head.tick);
-    // Counted at once where the trial is known; announced a second before it begins, it is.
+    // The trial is known here, because it is announced one second before it begins.
     if (current_ >= 0 && by_number_.at(current_).holds(head.tick)) {
       ++by_number_.at(current_).recorded_ticks;
     }
@@ -91,7 +92,7 @@ class TrialFinder {
   }
 
  private:
-  // No trial: what ran did not come to its end, or did long ago.
+  // No trial runs now: the current one was ended early, or had ended before.
   void break_off() {
     if (current_ < 0) return;
     SessionTrial& trial = by_number_.at(current_);
@@ -131,11 +132,8 @@ bool less_wanted(const SessionTrial& a, const SessionTrial& b) {
 }  // namespace
 
 std::string SessionTrial::name() const {
-  char text[64];
   const double length_s = static_cast<double>(end_tick - trial.start_tick) * kControlPeriod_s;
-  std::snprintf(text, sizeof(text), "%lld (%c, %.4g s)", static_cast<long long>(trial.number),
-                letter, length_s);
-  return text;
+  return fmt::format("{} ({}, {:.4g} s)", trial.number, letter, length_s);
 }
 
 SessionTrials find_trials(recording::McapReader& reader, const std::string& path) {
@@ -171,7 +169,7 @@ const SessionTrial& choose(const SessionTrials& trials, const std::string& wante
   const auto found = std::ranges::find_if(trials.trials, answers);
   const auto count = std::ranges::count_if(trials.trials, answers);
   if (count != 1) {
-    throw ConfigError("--trial", wanted + (count == 0 ? "" : ", which several are"),
+    throw ConfigError("--trial", wanted + (count == 0 ? "" : ", which matches several trials"),
                       "one of " + all_names(trials.trials, nullptr) + " in " + path);
   }
   return *found;
@@ -180,19 +178,19 @@ const SessionTrial& choose(const SessionTrials& trials, const std::string& wante
 std::vector<std::string> notes_of(const SessionTrials& trials, const SessionTrial& chosen) {
   std::vector<std::string> notes;
   if (chosen.trial.number < 0) {
-    notes.emplace_back("The recording tells of no trial: read as a whole.");
+    notes.emplace_back("The recording announces no trial; it is read as a whole.");
   } else {
     const std::string others = all_names(trials.trials, &chosen);
     notes.push_back("Trial " + chosen.name() + " of the session" +
                     (others.empty() ? "." : "; there are also " + others + "."));
     if (chosen.end_tick < chosen.trial.start_tick + chosen.trial.duration_ticks) {
-      notes.push_back("The trial was broken off after " +
-                      std::to_string(chosen.end_tick - chosen.trial.start_tick) + " of " +
-                      std::to_string(chosen.trial.duration_ticks) + " ticks.");
+      notes.push_back(fmt::format("The trial was ended early, after {} of {} ticks.",
+                                  chosen.end_tick - chosen.trial.start_tick,
+                                  chosen.trial.duration_ticks));
     }
   }
   if (trials.other_rigs) {
-    notes.push_back("Rig " + std::to_string(trials.rig) + "; samples of other rigs left out.");
+    notes.push_back("Rig " + std::to_string(trials.rig) + "; samples of other rigs are left out.");
   }
   if (!trials.broken.empty()) notes.push_back("Reading ended early: " + trials.broken + ".");
   return notes;

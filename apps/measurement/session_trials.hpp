@@ -10,12 +10,12 @@
 
 namespace stillhand::measurement {
 
-/// One trial as its recording tells it.
+/// One trial, as recorded.
 struct SessionTrial {
   Trial trial;
-  char letter = '?';  ///< I: identification; A, B, C as the paper's conditions; ?: not told
-  Tick end_tick = 0;  ///< first tick that no longer belongs to it; earlier than planned: broken off
-  std::int64_t recorded_ticks = 0;  ///< [-] of them, samples of stillhand/sensed
+  char letter = '?';  ///< I: identification; A, B, C: the paper's conditions; ?: unknown
+  Tick end_tick = 0;  ///< first tick after the trial; earlier than planned if it was ended early
+  std::int64_t recorded_ticks = 0;  ///< [-] samples of stillhand/sensed within the trial
 
   [[nodiscard]] bool holds(Tick tick) const noexcept {
     return tick >= trial.start_tick && tick < end_tick;
@@ -25,23 +25,23 @@ struct SessionTrial {
 };
 
 struct SessionTrials {
-  std::uint32_t rig = 0;             ///< the first that was met
-  bool other_rigs = false;           ///< samples of others are in the file too
+  std::uint32_t rig = 0;             ///< rig of the first sample
+  bool other_rigs = false;           ///< the file also holds samples of other rigs
   std::vector<SessionTrial> trials;  ///< recorded ones, in order of their numbers
   std::string broken;                ///< why reading ended early, or empty
 };
 
-/// First pass over a session's recording: which trials it holds.  A recording that tells of none is
-/// one trial as a whole.
+/// First pass over a session's recording: finds its trials.  A recording that announces none is one
+/// trial as a whole.
 /// @throws stillhand::ConfigError when it has no samples of stillhand/sensed.
 SessionTrials find_trials(recording::McapReader& reader, const std::string& path);
 
 /// @param wanted  as ReadOptions::trial
-/// @throws stillhand::ConfigError naming the trials there are.
+/// @throws stillhand::ConfigError naming the trials of the recording.
 const SessionTrial& choose(const SessionTrials& trials, const std::string& wanted,
                            const std::string& path);
 
-/// Which trial was taken, of which.
+/// Notes on the chosen trial and on the others of the recording.
 std::vector<std::string> notes_of(const SessionTrials& trials, const SessionTrial& chosen);
 
 }  // namespace stillhand::measurement

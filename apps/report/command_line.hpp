@@ -5,7 +5,7 @@
 
 namespace stillhand::report {
 
-/// How this program was called, "stillhand study --seed 1", for a report's facts.
+/// Command line of this program, such as "stillhand study --seed 1", for the facts of a report.
 std::string command_line();
 
 }  // namespace stillhand::report

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/report/page.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -13,10 +15,10 @@
 namespace stillhand::report {
 namespace {
 
-constexpr std::size_t kLongValue = 26;  // characters; longer ones have a line of their own
+constexpr std::size_t kLongValue = 26;  // characters; a longer value has its own line
 
-std::string element(const std::string& tag, std::string_view text) {
-  return "<" + tag + ">" + html_escaped(text) + "</" + tag + ">\n";
+std::string element(std::string_view tag, std::string_view text) {
+  return fmt::format("<{0}>{1}</{0}>\n", tag, html_escaped(text));
 }
 
 const char* class_of(Emphasis emphasis) {
@@ -48,8 +50,8 @@ std::string row_html(const Table& table, const std::vector<Cell>& cells) {
   std::string html = "<tr>";
   for (std::size_t i = 0; i < columns; ++i) {
     const Cell cell = i < cells.size() ? cells[i] : Cell();
-    html += std::string("<td class=\"") + class_of(table, i) + class_of(cell.emphasis) + "\">" +
-            html_escaped(cell.text) + "</td>";
+    html += fmt::format(R"(<td class="{}{}">{}</td>)", class_of(table, i), class_of(cell.emphasis),
+                        html_escaped(cell.text));
   }
   return html + "</tr>\n";
 }
@@ -58,8 +60,8 @@ std::string head_html(const Table& table) {
   if (table.header.empty()) return {};
   std::string html = "<thead><tr>";
   for (std::size_t i = 0; i < table.header.size(); ++i) {
-    html += std::string("<th scope=\"col\" class=\"") + class_of(table, i) + "\">" +
-            html_escaped(table.header[i]) + "</th>";
+    html += fmt::format(R"(<th scope="col" class="{}">{}</th>)", class_of(table, i),
+                        html_escaped(table.header[i]));
   }
   return html + "</tr></thead>\n";
 }
@@ -72,18 +74,18 @@ Page::Page(std::string title, std::string lead)
 void Page::facts(const std::vector<std::pair<std::string, std::string>>& pairs) {
   facts_ += "<dl>\n";
   for (const auto& [name, value] : pairs) {
-    facts_ += std::string(value.size() > kLongValue ? "<div class=\"wide\">" : "<div>") + "<dt>" +
-              html_escaped(name) + "</dt><dd>" + html_escaped(value) + "</dd></div>\n";
+    facts_ += fmt::format("<div{}><dt>{}</dt><dd>{}</dd></div>\n",
+                          value.size() > kLongValue ? R"( class="wide")" : "", html_escaped(name),
+                          html_escaped(value));
   }
   facts_ += "</dl>\n";
 }
 
 void Page::section(std::string_view heading, int level) {
   STILLHAND_EXPECTS(level == 2 || level == 3);
-  const std::string id = "section-" + std::to_string(headings_.size() + 1);
+  const std::string id = fmt::format("section-{}", headings_.size() + 1);
   headings_.push_back({std::string(heading), id, level});
-  const std::string tag = "h" + std::to_string(level);
-  body_ += "<" + tag + " id=\"" + id + "\">" + html_escaped(heading) + "</" + tag + ">\n";
+  body_ += fmt::format("<h{0} id=\"{1}\">{2}</h{0}>\n", level, id, html_escaped(heading));
 }
 
 void Page::paragraph(std::string_view text) { body_ += element("p", text); }
@@ -95,40 +97,39 @@ void Page::list(const std::vector<std::string>& items) {
 }
 
 void Page::warning(std::string_view text) {
-  body_ += "<div class=\"warning\" role=\"note\"><strong>Note.</strong> " + html_escaped(text) +
-           "</div>\n";
+  body_ += fmt::format("<div class=\"warning\" role=\"note\"><strong>Note.</strong> {}</div>\n",
+                       html_escaped(text));
 }
 
 void Page::table(const Table& table) {
-  const std::string number = std::to_string(++tables_);
-  body_ += "<figure class=\"table\" id=\"table-" + number + "\">\n<figcaption><b>Table " + number +
-           ".</b> " + html_escaped(table.caption) + "</figcaption>\n";
-  body_ += "<div class=\"scroll\" tabindex=\"0\"><table>\n" + head_html(table) + "<tbody>\n";
+  body_ += fmt::format(
+      "<figure class=\"table\" id=\"table-{0}\">\n<figcaption><b>Table {0}.</b> {1}</figcaption>\n"
+      "<div class=\"scroll\" tabindex=\"0\"><table>\n{2}<tbody>\n",
+      ++tables_, html_escaped(table.caption), head_html(table));
   for (const std::vector<Cell>& cells : table.rows) body_ += row_html(table, cells);
   body_ += "</tbody></table></div>\n</figure>\n";
 }
 
 void Page::figure(const Drawing& drawing) {
-  const std::string number = std::to_string(++figures_);
-  body_ += "<figure id=\"figure-" + number + "\">\n<div class=\"scroll card\" tabindex=\"0\">" +
-           inline_svg(drawing.svg, drawing.caption.empty() ? drawing.name : drawing.caption,
-                      drawing.width_px) +
-           "</div>\n<figcaption><b>Figure " + number + ".</b> " + html_escaped(drawing.caption) +
-           "</figcaption>\n</figure>\n";
+  const std::string& label = drawing.caption.empty() ? drawing.name : drawing.caption;
+  body_ += fmt::format(
+      "<figure id=\"figure-{0}\">\n<div class=\"scroll card\" tabindex=\"0\">{1}</div>\n"
+      "<figcaption><b>Figure {0}.</b> {2}</figcaption>\n</figure>\n",
+      ++figures_, inline_svg(drawing.svg, label, drawing.width_px), html_escaped(drawing.caption));
 }
 
 std::string Page::contents() const {
   if (headings_.size() < 2) return {};
   std::string html = "<nav aria-label=\"Contents\"><h2>Contents</h2>\n<ul>\n";
   for (const Heading& heading : headings_) {
-    html += "<li class=\"level" + std::to_string(heading.level) + "\"><a href=\"#" + heading.id +
-            "\">" + html_escaped(heading.text) + "</a></li>\n";
+    html += fmt::format("<li class=\"level{}\"><a href=\"#{}\">{}</a></li>\n", heading.level,
+                        heading.id, html_escaped(heading.text));
   }
   return html + "</ul></nav>\n";
 }
 
 std::string Page::html() const {
-  // The policy makes the browser see to it that nothing is loaded and no script runs.
+  // With this policy the browser loads nothing and runs no script.
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
@@ -136,9 +137,9 @@ std::string Page::html() const {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
       "<meta name=\"color-scheme\" content=\"light dark\"/>\n";
   html += element("title", title_);
-  html += "<style>\n" + std::string(kPageStyle) + "</style>\n</head>\n<body>\n";
+  html += "<style>\n" + page_style() + "</style>\n</head>\n<body>\n";
   html += contents() + "<main>\n<header>\n" + element("h1", title_);
-  if (!lead_.empty()) html += "<p class=\"lead\">" + html_escaped(lead_) + "</p>\n";
+  if (!lead_.empty()) html += fmt::format("<p class=\"lead\">{}</p>\n", html_escaped(lead_));
   return html + facts_ + "</header>\n" + body_ + "</main>\n</body>\n</html>\n";
 }
 

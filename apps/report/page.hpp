@@ -24,17 +24,17 @@ struct Cell {
 
 enum class Align { kLeft, kRight, kCentre };
 
-/// Rows may be shorter than the header; what is missing stays empty.
+/// Rows may be shorter than the header; missing cells stay empty.
 struct Table {
   std::string caption = {};
   std::vector<std::string> header = {};
   std::vector<std::vector<Cell>> rows = {};
-  std::vector<Align> align = {};  ///< of the columns; by default the first left, the others right
+  std::vector<Align> align = {};  ///< of the columns; default: the first left, the others right
 };
 
-/// One HTML page that needs nothing besides itself: style and figures are inside, there is no
-/// script, and it loads nothing.  Light and dark as the reader's system is; readable on a phone and
-/// on paper.  Every text is plain text and escaped.  Tables and figures are numbered in order.
+/// One HTML page that needs no other file: it contains its style and figures, has no script and
+/// loads nothing.  It follows the reader's light or dark scheme, and is readable on a phone and on
+/// paper.  Every text is plain text and escaped.  Tables and figures are numbered in order.
 ///
 ///   report::Page page("Study", "Twelve subjects ...");
 ///   page.facts({{"seed", "1"}});
@@ -47,13 +47,13 @@ class Page {
  public:
   explicit Page(std::string title, std::string lead = {});
 
-  /// What the results came from: seed, versions, command line.
+  /// Origin of the results: seed, versions, command line.
   void facts(const std::vector<std::pair<std::string, std::string>>& pairs);
   /// A heading, listed in the table of contents.  `level` is 2 or 3.
   void section(std::string_view heading, int level = 2);
   void paragraph(std::string_view text);
   void list(const std::vector<std::string>& items);
-  /// A box that cannot be overlooked.
+  /// A highlighted box.
   void warning(std::string_view text);
   void table(const Table& table);
   void figure(const Drawing& drawing);
@@ -61,8 +61,8 @@ class Page {
   /// The whole page.
   [[nodiscard]] std::string html() const;
 
-  /// html() into a file, which appears whole or not at all.
-  /// @throws std::runtime_error saying which file and why
+  /// Writes html() to a file, which appears whole or not at all.
+  /// @throws std::runtime_error with the file and the reason
   void write(const std::filesystem::path& path) const;
 
  private:

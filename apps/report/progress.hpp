@@ -5,7 +5,7 @@
 
 namespace stillhand::report {
 
-/// Progress of long work: a bar that moves on a terminal, nothing in a pipe.
+/// Progress of long work: a bar on a terminal, nothing in a pipe.
 class ProgressLine {
  public:
   ProgressLine();

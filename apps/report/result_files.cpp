@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-// Where a name leads, also when nothing is there yet.
+// The file to which a path leads, even if it does not exist yet.
 fs::path followed(const fs::path& path) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(fs::absolute(path), error);
@@ -41,7 +41,7 @@ void check_place(const ResultFile& file, const fs::path& place) {
   }
   const fs::path folder = place.parent_path();
   if (!place.has_filename() || !fs::is_directory(folder, error)) {
-    throw ConfigError(file.option, name, "a file in a folder that is there");
+    throw ConfigError(file.option, name, "a file in a folder that exists");
   }
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     throw ConfigError(file.option, folder.string() + ": " + reason(errno),
@@ -56,10 +56,10 @@ void write(const fs::path& path, const std::string& text) {
   if (!stream) throw std::runtime_error(path.string() + ": cannot be written: " + reason(errno));
 }
 
-// Removes what was not moved.
-struct Beside {
+// Temporary files next to their places.  Removes those that were not moved.
+struct Staged {
   std::vector<fs::path> paths;
-  ~Beside() {
+  ~Staged() {
     for (const fs::path& path : paths) ::unlink(path.c_str());
   }
 };
@@ -77,13 +77,13 @@ ResultFiles::ResultFiles(const std::vector<ResultFile>& files,
     for (const fs::path& input : inputs) {
       if (followed(input) == entry.place || fs::equivalent(input, entry.place, error)) {
         throw ConfigError(file.option, file.path.string(),
-                          "another file than " + input.string() + ", which is read");
+                          "a file other than " + input.string() + ", which is read");
       }
     }
     for (const Entry& other : entries_) {
       if (other.plain && other.place == entry.place) {
         throw ConfigError(file.option, file.path.string(),
-                          "another file than " + other.file.option + " has");
+                          "a file other than that of " + other.file.option);
       }
     }
     entries_.push_back(std::move(entry));
@@ -102,20 +102,20 @@ void ResultFiles::set(const std::string& option, std::string text) {
 }
 
 void ResultFiles::publish() {
-  Beside beside;
+  Staged staged_files;
   for (const Entry& entry : entries_) {
     if (!entry.plain) continue;
     // The process number keeps two runs apart.
     fs::path staged = entry.place;
     staged += ".new-" + std::to_string(::getpid());
-    beside.paths.push_back(staged);
+    staged_files.paths.push_back(staged);
     write(staged, entry.text);
   }
   std::size_t next = 0;
   for (const Entry& entry : entries_) {
     if (!entry.plain) {
       write(entry.place, entry.text);
-    } else if (std::rename(beside.paths[next++].c_str(), entry.place.c_str()) != 0) {
+    } else if (std::rename(staged_files.paths[next++].c_str(), entry.place.c_str()) != 0) {
       throw std::runtime_error(entry.file.path.string() + ": cannot be replaced: " + reason(errno));
     }
   }

@@ -7,34 +7,34 @@
 
 namespace stillhand::report {
 
-/// One file that a command was asked for.
+/// One file that an option names.
 struct ResultFile {
-  std::string option;          ///< that named it, for messages: "--save"
-  std::filesystem::path path;  ///< empty: not asked for
+  std::string option;          ///< the option, for messages: "--save"
+  std::filesystem::path path;  ///< empty: the option was not given
 };
 
-/// Files of results that appear together, over files of the same names, or not at all.  What isn't
-/// a plain file, such as /dev/stdout, is written as it stands.
+/// Files of results that appear together or not at all.  They replace files of the same names.  A
+/// path that is no plain file, such as /dev/stdout, is written directly.
 class ResultFiles {
  public:
-  /// Looks at the places, so that what can't be written is known before the work; makes nothing.
-  /// @param inputs  files that are read: none may be written over
-  /// @throws ConfigError naming the option, when two files are one, an input would be lost, or a
-  ///         file can't be made there.
+  /// Checks the places before the work, without writing.
+  /// @param inputs  files that are read: none may be overwritten
+  /// @throws ConfigError naming the option, when two paths are the same file, an input would be
+  ///         overwritten, or a file can't be made.
   ResultFiles(const std::vector<ResultFile>& files,
               const std::vector<std::filesystem::path>& inputs);
 
   [[nodiscard]] bool wants(const std::string& option) const;
-  /// What is to be in a file that was asked for.
+  /// Sets the content of a wanted file.
   void set(const std::string& option, std::string text);
-  /// Writes everything beside its place, then moves it there.
-  /// @throws std::runtime_error which, and why; files that were there before are then as they were.
+  /// Writes every file next to its place, then moves it there.
+  /// @throws std::runtime_error with the file and the reason; earlier files are then unchanged.
   void publish();
 
  private:
   struct Entry {
     ResultFile file;
-    std::filesystem::path place;  ///< of the file itself, links followed
+    std::filesystem::path place;  ///< path of the file itself, with links followed
     bool plain = true;
     std::string text;
   };

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStagingPrefix = ".unfinished-";
 
-// The outermost folder on the way to `path`, absolute, that is not there yet; empty: it is there.
+// The outermost missing folder on the absolute `path`; empty if `path` exists.
 fs::path first_missing(fs::path path) {
   fs::path missing;
   std::error_code ignored;
@@ -74,9 +74,9 @@ void StagedFolder::lock() {
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     made_.clear();
     throw ConfigError(option_, out_.string() + ", in which another run is writing",
-                      "a folder of its own for each run");
+                      "a different folder for each run");
   }
-  // Whoever made such a folder and left it was killed: it would hold the lock otherwise.
+  // The program that left such a folder was killed; otherwise it would hold the lock.
   for (const fs::directory_entry& entry : fs::directory_iterator(out_)) {
     if (entry.path().filename().string().starts_with(kStagingPrefix)) fs::remove_all(entry.path());
   }
@@ -85,7 +85,7 @@ void StagedFolder::lock() {
 void StagedFolder::clear_away() noexcept {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
-  // Folders made here, from the inside, as long as nobody put anything into them.
+  // Removes the folders that this object made, innermost first, as long as they are empty.
   if (!made_.empty()) {
     for (fs::path at = out_; fs::remove(at, ignored) && at != made_;) at = at.parent_path();
   }
@@ -102,7 +102,8 @@ void StagedFolder::check() const {
   for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
     const fs::path target = out_ / file.path().filename();
     if (fs::is_directory(target)) {
-      throw ConfigError(option_, target.string() + ", a folder", "no folder where a file is to be");
+      throw ConfigError(option_, target.string() + ", a folder",
+                        "no folder in the place of a file");
     }
   }
 }

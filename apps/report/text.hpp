@@ -6,8 +6,8 @@
 
 namespace stillhand::report {
 
-/// Text on one line that every XML reader takes: control characters become spaces, what is no UTF-8
-/// or no XML character becomes U+FFFD.
+/// Text on one line that every XML reader accepts: control characters become spaces, and bytes that
+/// are no UTF-8 or no XML character become U+FFFD.
 std::string clean(std::string_view text);
 
 /// clean(), with & < > " ' as entities: for HTML text and for attributes in either quotes.
@@ -17,12 +17,11 @@ std::string html_escaped(std::string_view text);
 /// quote inside is doubled.
 std::string gnuplot_quoted(std::string_view text);
 
-/// Shortest decimal text of up to nine digits that reads as the same number to nine digits; the
-/// locale has no say.  For scripts, so with an ASCII minus.
+/// For scripts: decimal text of up to nine significant digits, with an ASCII minus, in any locale.
 std::string decimal(double value);
 
-/// For people: `decimals` digits after the point, U+2212 as minus, no "−0.0", an en dash for what
-/// is not finite.
+/// For people: `decimals` digits after the point, U+2212 as minus, no "−0.0", an en dash for a
+/// value that is not finite.
 std::string number(double value, int decimals);
 
 /// For people: as short as three significant digits allow, powers of ten as "2×10⁻⁵" outside
@@ -32,7 +31,7 @@ std::string short_number(double value);
 /// factor×10^exponent for people, with superscripts: "10⁻⁵", "2×10³".
 std::string power_of_ten(int factor, int exponent);
 
-/// Width of text in DejaVu Sans, generous [px].  Other sans-serif fonts are narrower.
+/// Upper estimate of the width of a text in DejaVu Sans [px].  Other sans-serif fonts are narrower.
 double text_width_px(std::string_view text, double font_size_px);
 
 }  // namespace stillhand::report

@@ -17,7 +17,7 @@ using session::kMetrics;
 constexpr const char* kPaperConditions = "ABC";
 constexpr Eigen::Index kThirds = 3;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// A quotient of gains means nothing where there is no gain.
+// Least gain of the own model, Eq. SU-4: a quotient of gains is meaningless without a gain.
 constexpr double kLeastGain = 0.05;
 constexpr std::size_t kWindow_s = 10;  // of the moving averages, which have one value a second
 
@@ -42,7 +42,7 @@ Comparison compared(const Analysis& analysis, char from, char to) {
     try {
       out.tests[k] = statistics::paired_t_test(after, before);
     } catch (const ConfigError&) {
-      // No variance, or a crossover that could not be found: no test.
+      // No variance, or a crossover that was not found: no test.
     }
   }
   return out;
@@ -69,7 +69,7 @@ MultivariateResult main_effects(const Analysis& analysis, Eigen::Index subjects)
   return manova(observations, {subjects, 3, 1});
 }
 
-// RMS error and dwell ratio of one third of a trial, from windows that follow one another.
+// RMS error and dwell ratio of one third of a trial, from consecutive windows.
 std::array<double, 2> third(const TrackedTrial& trial, std::size_t which, std::size_t windows) {
   double square_mm2 = 0.0;
   double dwell = 0.0;
@@ -85,7 +85,7 @@ std::array<double, 2> third(const TrackedTrial& trial, std::size_t which, std::s
 MultivariateResult thirds(const std::vector<SubjectResult>& results) {
   const auto entries = results.front().trials.at('A').metrics.moving_rms_mm.size();
   const std::size_t windows = (entries + kWindow_s - 1) / kWindow_s / kThirds;
-  if (windows == 0) return {std::nullopt, "trials of 30 s or more have thirds to compare"};
+  if (windows == 0) return {std::nullopt, "the thirds of a trial need 30 s or more"};
   const auto subjects = static_cast<Eigen::Index>(results.size());
   Eigen::MatrixXd observations(subjects * 3 * kThirds, 2);
   for (Eigen::Index row = 0; row < observations.rows(); ++row) {
@@ -107,7 +107,7 @@ std::vector<PooledLine> pooled_lines(const std::vector<SubjectResult>& results, 
       const auto& at = result.trials.at(condition).metrics.lines[line];
       out[line].frequency_hz = at.frequency_hz;
       out[line].paper_db += 20.0 * std::log10(std::abs(at.gain));
-      // X_r = X_p + X_e, so X_p/X_r = G/(1 + G) and X_e/X_r = 1/(1 + G).
+      // Eq. SU-3.  X_r = X_p + X_e, so X_p/X_r = G/(1 + G) and X_e/X_r = 1/(1 + G).
       cursor += at.gain / (1.0 + at.gain);
       error += 1.0 / (1.0 + at.gain);
       remnant.push_back(std::min(1.0, 1.0 / at.error_snr));
@@ -138,7 +138,7 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
   }
 }
 
-// Eq. SU-5: of the means over those subjects whose metric was found in all three conditions.
+// Eq. SU-5, over the subjects whose metric was found in all three conditions.
 void add_restoration(Analysis& analysis) {
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     const auto& a = analysis.conditions.at('A')[k].per_subject;

@@ -16,7 +16,7 @@
 namespace stillhand::study {
 
 inline constexpr std::size_t kMetricCount = session::kMetrics.size();
-/// Millimetres in one unit of the paper's RMS error, which has none; README, "The paper's unit".
+/// Assumed size of a unit of the paper's RMS error [mm]; README, "The paper's unit".
 inline constexpr double kPaperUnit_mm = 5.5;
 
 /// One metric under one condition.
@@ -25,17 +25,17 @@ struct MetricSample {
   double mean = 0.0;
   std::optional<double> standard_deviation;  ///< needs two subjects
   statistics::BoxPlot box;
-  std::size_t known = 0;  ///< subjects that the three above are over: a crossover may not be found
+  std::size_t known = 0;  ///< subjects in mean, deviation and box: a crossover may not be found
 };
 
 /// Two conditions, all metrics.
 struct Comparison {
   char from, to;
-  /// Differences to - from; none for one subject or without variance.
+  /// Tests of the differences to - from; none for one subject or without variance.
   std::array<std::optional<statistics::TTest>, kMetricCount> tests;
 };
 
-/// Multivariate test, or why there is none.
+/// Multivariate test, or the reason why there is none.
 struct MultivariateResult {
   std::optional<statistics::Manova> manova;
   std::string reason;
@@ -44,20 +44,21 @@ struct MultivariateResult {
 /// Open loop at one line, over the subjects of a condition.
 struct PooledLine {
   double frequency_hz = 0.0;
-  double paper_db = 0.0;       ///< mean over subjects of 20 log10 |X_p/X_e|
-  double reference_db = 0.0;   ///< |mean X_p/X_r / mean X_e/X_r|, Eq. SU-3: no bias by the remnant
-  double remnant_share = 0.0;  ///< of the error's power at the line [-], median
+  double paper_db = 0.0;  ///< mean over subjects of 20 log10 |X_p/X_e|
+  double reference_db =
+      0.0;  ///< |mean X_p/X_r / mean X_e/X_r|, Eq. SU-3: not biased by the remnant
+  double remnant_share = 0.0;  ///< median share of the error's power at the line [-]
 };
 
 /// One wrong model, over the subjects.
 struct WrongModel {
   std::array<MetricSample, kMetricCount> metrics;
-  /// Share of the own model's gain that survives, Eq. SU-4, by RMS error, per subject [-]; NaN
-  /// where the own model gains less than a twentieth of B's error.
+  /// Surviving share of the own model's gain in RMS error, Eq. SU-4, per subject [-]; NaN if the
+  /// own model gains less than a twentieth of B's error.
   std::vector<double> surviving_share;
 };
 
-/// Every number that the report and the summary show.
+/// All numbers of the report and the summary.
 struct Analysis {
   std::map<char, std::array<MetricSample, kMetricCount>> conditions;
   std::map<char, MetricSample> cancelled_share;  ///< conditions with a motor
@@ -65,16 +66,18 @@ struct Analysis {
   std::map<char, std::vector<PooledLine>> open_loop;
   std::vector<Comparison> comparisons;
   MultivariateResult main_effects;  ///< A, B, C with one trial a cell: no interaction
-  MultivariateResult thirds;        ///< with the thirds of a trial as replicates: RMS error, dwell
+  MultivariateResult thirds;        ///< RMS error and dwell, thirds of a trial as replicates
   std::array<std::optional<double>, kMetricCount> restoration;  ///< Eq. SU-5
   std::map<char, WrongModel> wrong;
   std::int64_t refined_used = 0;  ///< subjects whose paper's fit could not cancel
 };
 
-/// Mean, deviation and box of the values that are finite: a crossover may not be found.  NaN mean
-/// when none is.
+/// Mean, deviation and box of the finite values: a crossover may not be found.  The mean is NaN if
+/// no value is finite.
 MetricSample summarised(std::vector<double> values);
 
+/// Eqs. SU-3 to SU-5; statistics of services/statistics.  Pure.
+/// @param results  at least one subject, all with the same conditions
 Analysis analyse(const std::vector<SubjectResult>& results);
 
 }  // namespace stillhand::study

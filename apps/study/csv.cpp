@@ -8,7 +8,7 @@
 namespace stillhand::study {
 namespace {
 
-// Shortest text that reads back as the same number; nothing where there is none.
+// Shortest text that reads back as the same number; empty for a value that is not finite.
 std::string text(double value) {
   if (!std::isfinite(value)) return "";
   std::array<char, 32> buffer{};
@@ -42,8 +42,7 @@ CsvFile subjects_file(const StudyRecord& record) {
   std::string out =
       "subject,trunk mass [kg],seat stiffness [N/m],seat damping [N s/m],arm mass [kg],shoulder "
       "stiffness [N/m],shoulder damping [N s/m],grip stiffness [N/m],grip damping [N s/m],hand "
-      "mass "
-      "[kg],co-contraction [-],crossover [Hz],delay [s],muscle [rad/s],remnant ratio "
+      "mass [kg],co-contraction [-],crossover [Hz],delay [s],muscle [rad/s],remnant ratio "
       "[-],regression error [m]\n";
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     const rig::BodyConfig& body = record.results[i].subject.body;

@@ -10,9 +10,10 @@
 
 namespace stillhand::study {
 
-/// The paper's figures of this study, named after their numbers: Fig. 4 and 6 (figures_models.cpp),
-/// Fig. 7 to 13 (figures_tracking.cpp), and what the paper has no figure of: mitigations and wrong
-/// models.  A figure whose conditions were not run is left out.
+/// The figures of this study, named after the paper's: Fig. 4 and 6 (figures_models.cpp), Fig. 7 to
+/// 9 and 12 (figures_tracking.cpp), Fig. 10, 11 and 13 (figures_boxes.cpp).  The figure of the
+/// wrong models (figures_boxes.cpp) has no counterpart in the paper.  A figure whose conditions
+/// were not run is left out.
 std::vector<report::Figure> study_figures(const StudyRecord& record);
 
 /// Names of all figures that study_figures() can make.
@@ -37,14 +38,14 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric);  ///< 
 report::Figure figure_open_loop(const StudyRecord& record);                ///< Fig. 12
 report::Figure figure_wrong_models(const StudyRecord& record);
 
-/// The subject that the figures of one subject show: the median of B's RMS error, or of the first
-/// condition there is.
+/// The subject of the figures that show one subject: nearest to the median RMS error of B, or of
+/// the first condition that was run.
 std::size_t typical_subject(const StudyRecord& record);
 
 report::Colour colour_of(char condition);
 /// "A stationary"
 std::string label_of(char condition);
-/// Letters of the conditions that were run, of those asked for.
+/// The letters in `among` whose conditions were run.
 std::string conditions_run(const StudyRecord& record, const std::string& among);
 
 }  // namespace stillhand::study

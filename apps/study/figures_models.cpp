@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -15,7 +17,7 @@ using report::Panel;
 using report::Scale;
 using report::Series;
 
-// The paper's Bode plots end near the filter's 10 Hz; the models are drawn a little beyond.
+// The paper's Bode plots end near the filter's 10 Hz; the plots here go slightly further.
 constexpr double kLowest_hz = 0.2;
 constexpr double kHighest_hz = 15.0;
 constexpr int kPoints = 160;
@@ -72,7 +74,7 @@ void add_estimate(Panel& magnitude, Panel& phase, Panel& coherence,
     dots.y.push_back(decibels(estimate.response[i]));
     band.x.push_back(f);
     band.y_high.push_back(20.0 * std::log10(size + half));
-    // An interval that reaches zero has no lower end in decibels; drawn to 20 dB below.
+    // An interval that reaches zero has no lower end in decibels; the band then ends 20 dB below.
     band.y_low.push_back(20.0 * std::log10(std::max(size - half, 0.1 * size)));
     angle.x.push_back(f);
     angle.y.push_back(phase_deg(estimate.response[i]));
@@ -124,14 +126,17 @@ report::Figure figure_estimate(const StudyRecord& record) {
   add_model(magnitude, phase, found.refined.model, "output-error fit", Colour::kAccent,
             Kind::kDashedLine);
   phase.legend = coherence.legend = report::Legend::kNone;
-  return {.name = "fig04_feedthrough_estimate",
-          .caption = "The paper's Fig. 4: feedthrough of subject " + std::to_string(typical + 1) +
-                     " by cross-spectrum over spectrum, with its 95 % band and coherence, and the "
-                     "fitted models. The motion is strongest from 0.7 to 4 Hz and ends at 12.6 Hz.",
-          .panels = {magnitude, phase, coherence},
-          .columns = 1,
-          .width_px = 860,
-          .height_px = 760};
+  return {
+      .name = "fig04_feedthrough_estimate",
+      .caption = fmt::format(
+          "The paper's Fig. 4: feedthrough of subject {} by cross-spectrum over spectrum, with "
+          "its 95 % band and coherence, and the fitted models. The motion is strongest from 0.7 "
+          "to 4 Hz and ends at 12.6 Hz.",
+          typical + 1),
+      .panels = {magnitude, phase, coherence},
+      .columns = 1,
+      .width_px = 860,
+      .height_px = 760};
 }
 
 report::Figure figure_models(const StudyRecord& record) {
@@ -140,9 +145,10 @@ report::Figure figure_models(const StudyRecord& record) {
   report::Figure figure{
       .name = "fig06_feedthrough_models",
       .caption =
-          "The paper's Fig. 6: the models that cancelled, a subject each; grey, all others "
-          "shown. The paper reports about 10 dB at 0 Hz, a notch between 5 and 8 Hz with a "
-          "small peak after it, and 180° at both ends.",
+          "The paper's Fig. 6: the model that cancelled for each subject; in grey the models of "
+          "all "
+          "other subjects shown. The paper reports about 10 dB at 0 Hz, a notch between 5 and 8 Hz "
+          "with a small peak after it, and 180° at both ends.",
       .panels = {},
       .columns = static_cast<int>(columns),
       .width_px = 960,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
-#include "apps/session/protocol.hpp"
 #include "apps/study/figures.hpp"
 
 namespace stillhand::study {
@@ -44,7 +44,7 @@ Panel trace_panel(const TrackedTrial& trial, char condition) {
   return panel;
 }
 
-// Mean over subjects and one standard deviation either side, against the window's start.
+// Mean over subjects with one standard deviation on either side, against the start of the window.
 Panel moving_panel(const StudyRecord& record, char condition,
                    const std::vector<double>& (*series_of)(const TrackedTrial&)) {
   Panel panel;
@@ -76,9 +76,10 @@ report::Figure moving_figure(const StudyRecord& record, const char* name, const 
                              const char* number,
                              const std::vector<double>& (*series_of)(const TrackedTrial&)) {
   report::Figure figure{.name = name,
-                        .caption = std::string("The paper's ") + number + ": " + quantity +
-                                   " over a moving 10 s window, mean of the subjects with one "
-                                   "standard deviation either side.",
+                        .caption = fmt::format(
+                            "The paper's {}: {} over a moving window of 10 s, mean of the subjects "
+                            "with one standard deviation on either side.",
+                            number, quantity),
                         .panels = {},
                         .columns = 3,
                         .width_px = 1180,
@@ -90,7 +91,7 @@ report::Figure moving_figure(const StudyRecord& record, const char* name, const 
       highest = std::max(highest, y);
     }
   }
-  for (Panel& panel : figure.panels) {  // one scale, so that the conditions can be compared
+  for (Panel& panel : figure.panels) {  // the same scale for all conditions
     panel.y.low = 0.0;
     panel.y.high = 1.08 * highest;
   }
@@ -124,10 +125,9 @@ report::Figure figure_traces(const StudyRecord& record) {
   const std::size_t typical = typical_subject(record);
   report::Figure figure{
       .name = "fig07_traces",
-      .caption =
-          "The paper's Fig. 7: up to twenty seconds from the middle of the trials "
-          "of subject " +
-          std::to_string(typical + 1) + ".",
+      .caption = fmt::format(
+          "The paper's Fig. 7: up to twenty seconds from the middle of the trials of subject {}.",
+          typical + 1),
       .panels = {},
       .columns = 1,
       .width_px = 980,
@@ -139,7 +139,7 @@ report::Figure figure_traces(const StudyRecord& record) {
       for (const double y : series.y) farthest_mm = std::max(farthest_mm, std::abs(y));
     }
   }
-  for (Panel& panel : figure.panels) {  // one scale for all
+  for (Panel& panel : figure.panels) {  // the same scale for all conditions
     panel.y.low = -1.05 * farthest_mm;
     panel.y.high = 1.05 * farthest_mm;
   }
@@ -160,59 +160,15 @@ report::Figure figure_moving_dwell(const StudyRecord& record) {
                        });
 }
 
-report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
-  constexpr std::array<const char*, kMetricCount> kNames{"fig10_rms_error", "fig11_dwell_ratio",
-                                                         "fig13_crossover"};
-  constexpr std::array<const char*, kMetricCount> kNumbers{"Fig. 10", "Fig. 11", "Fig. 13"};
-  const session::Metric& what = session::kMetrics[metric];
-  const double unit = metric == 0 ? kPaperUnit_mm : 1.0;
-  Panel panel;
-  panel.y.label = what.title;
-  panel.y.low = 0.0;
-  Series paper{.label = "paper, mean", .kind = Kind::kPoints, .colour = Colour::kTarget};
-  double place = 1.0;
-  for (const auto& [condition, metrics] : record.analysis.conditions) {
-    const statistics::BoxPlot& box = metrics[metric].box;
-    Series series{.kind = Kind::kBox, .colour = colour_of(condition)};
-    // Whiskers over the whole range, as in the paper.
-    series.boxes = {
-        {place, box.minimum, box.lower_quartile, box.median, box.upper_quartile, box.maximum, {}}};
-    series.show_in_legend = false;
-    panel.series.push_back(series);
-    panel.x.ticks.push_back({place, label_of(condition)});
-    if (condition <= 'C') {
-      paper.x.push_back(place);
-      paper.y.push_back(unit * (condition == 'A'   ? what.paper_a
-                                : condition == 'B' ? what.paper_b
-                                                   : what.paper_c));
-    }
-    place += 1.0;
-  }
-  const bool has_paper = !paper.x.empty();
-  if (has_paper) panel.series.push_back(paper);
-  panel.x.low = 0.4;
-  panel.x.high = place - 0.4;
-  return {.name = kNames[metric],
-          .caption = std::string("The paper's ") + kNumbers[metric] + ": " + what.title +
-                     " over the subjects; box from quartile to quartile with the median, whiskers "
-                     "over the whole range." +
-                     (!has_paper    ? ""
-                      : metric == 0 ? " Squares: the paper's means, at 5.5 mm a unit."
-                                    : " Squares: the paper's means."),
-          .panels = {panel},
-          .columns = 1,
-          .width_px = 760,
-          .height_px = 400};
-}
-
 report::Figure figure_open_loop(const StudyRecord& record) {
   const std::size_t typical = typical_subject(record);
   report::Figure figure{
       .name = "fig12_open_loop",
-      .caption = "The paper's Fig. 12: open loop X_p/X_e of subject " +
-                 std::to_string(typical + 1) +
-                 " at the fifteen frequencies of the target, with the line of −20 dB/decade "
-                 "through the lowest eleven. It crosses 0 dB at the crossover frequency.",
+      .caption = fmt::format(
+          "The paper's Fig. 12: open loop X_p/X_e of subject {} at the fifteen frequencies of the "
+          "target, with a line of −20 dB/decade fitted to the lowest eleven. The line crosses 0 dB "
+          "at the crossover frequency.",
+          typical + 1),
       .panels = {},
       .columns = 3,
       .width_px = 1180,
@@ -223,9 +179,8 @@ report::Figure figure_open_loop(const StudyRecord& record) {
     Panel phase;
     const auto& metrics = record.results[typical].trials.at(condition).metrics;
     add_open_loop(magnitude, phase, metrics, condition);
-    char text[48];
-    std::snprintf(text, sizeof text, "f_c = %.2f Hz", metrics.crossover_hz);
-    magnitude.notes = {{.text = text, .corner = report::Corner::kTopRight}};
+    magnitude.notes = {{.text = fmt::format("f_c = {:.2f} Hz", metrics.crossover_hz),
+                        .corner = report::Corner::kTopRight}};
     magnitude.title = label_of(condition);
     magnitude.x = phase.x = {.label = "", .scale = Scale::kLogarithmic, .low = 0.008, .high = 6.0};
     phase.x.label = "frequency [Hz]";
@@ -242,100 +197,6 @@ report::Figure figure_open_loop(const StudyRecord& record) {
   figure.columns = static_cast<int>(phases.size());
   figure.panels.insert(figure.panels.end(), phases.begin(), phases.end());
   return figure;
-}
-
-report::Figure figure_wrong_models(const StudyRecord& record) {
-  Panel panel;
-  panel.y.label = "share of the own model's gain that survives [-]";
-  panel.x.label = "subjects, worst first";
-  for (const auto& [which, wrong] : record.analysis.wrong) {
-    Series series{.label = which == 'O' ? "another subject's model" : "mean model of all others",
-                  .kind = Kind::kLineAndPoints,
-                  .colour = which == 'O' ? Colour::kWarning : Colour::kModel};
-    std::copy_if(wrong.surviving_share.begin(), wrong.surviving_share.end(),
-                 std::back_inserter(series.y), [](double share) { return std::isfinite(share); });
-    std::sort(series.y.begin(), series.y.end());
-    for (std::size_t i = 0; i < series.y.size(); ++i) {
-      series.x.push_back(static_cast<double>(i + 1));
-    }
-    panel.series.push_back(series);
-  }
-  panel.reference_lines = {{.at = 1.0, .label = "own model", .colour = Colour::kNeutral},
-                           {.at = 0.0, .label = "no cancellation", .colour = Colour::kNeutral}};
-  return {.name = "wrong_models",
-          .caption =
-              "Cancelling with a model that is not the subject's: (B − C with that model) / "
-              "(B − C with the own) by RMS error, same motion and target.",
-          .panels = {panel},
-          .columns = 1,
-          .width_px = 860,
-          .height_px = 380};
-}
-
-std::vector<report::Figure> study_figures(const StudyRecord& record) {
-  std::vector<report::Figure> figures{figure_estimate(record), figure_models(record)};
-  if (!conditions_run(record, kPaperConditions).empty()) {
-    figures.push_back(figure_traces(record));
-    const auto& first = *record.results.front().trials.begin();
-    if (!first.second.metrics.moving_rms_mm.empty()) {
-      figures.push_back(figure_moving_rms(record));
-      figures.push_back(figure_moving_dwell(record));
-    }
-  }
-  for (const std::size_t metric : {std::size_t{0}, std::size_t{1}}) {
-    figures.push_back(figure_box(record, metric));
-  }
-  if (!conditions_run(record, kPaperConditions).empty()) {
-    figures.push_back(figure_open_loop(record));
-  }
-  figures.push_back(figure_box(record, 2));
-  if (!record.analysis.wrong.empty()) figures.push_back(figure_wrong_models(record));
-  return figures;
-}
-
-std::size_t typical_subject(const StudyRecord& record) {
-  const auto& metrics = record.analysis.conditions.contains('B')
-                            ? record.analysis.conditions.at('B')
-                            : record.analysis.conditions.begin()->second;
-  const std::vector<double>& values = metrics[0].per_subject;
-  const double middle = metrics[0].box.median;
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::abs(values[i] - middle) < std::abs(values[best] - middle)) best = i;
-  }
-  return best;
-}
-
-report::Colour colour_of(char condition) {
-  switch (condition) {
-    case 'A':
-      return Colour::kConditionA;
-    case 'B':
-      return Colour::kConditionB;
-    case 'C':
-      return Colour::kConditionC;
-    case 'D':
-      return Colour::kConditionD;
-    case 'E':
-      return Colour::kConditionE;
-    case 'F':
-      return Colour::kConditionF;
-    default:
-      return Colour::kNeutral;
-  }
-}
-
-std::string label_of(char condition) {
-  return std::string(1, condition) + " " +
-         session::condition_name(static_cast<session::Condition>(condition));
-}
-
-std::string conditions_run(const StudyRecord& record, const std::string& among) {
-  std::string out;
-  for (const char condition : among) {
-    if (record.analysis.conditions.contains(condition)) out += condition;
-  }
-  return out;
 }
 
 }  // namespace stillhand::study

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/output.hpp"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
 #include "apps/report/plot/draw.hpp"
 #include "apps/study/figures.hpp"
+#include "apps/study/report_cells.hpp"
 #include "apps/study/study_report.hpp"
 #include "services/rig/sealed_file.hpp"
 
 namespace stillhand::study {
 namespace {
 
-// Every file that any study writes.
+// Names of all files that a study can write.
 std::vector<std::string> every_name() {
   std::vector<std::string> names{"report.html",   "summary.json",   "metrics.csv",
                                  "subjects.csv",  "models.csv",     "moving_averages.csv",
@@ -22,6 +24,36 @@ std::vector<std::string> every_name() {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
   return names;
+}
+
+// Means under each condition, restoration, and the paper's values.
+void print_metric(const Analysis& analysis, std::size_t k) {
+  const session::Metric& metric = session::kMetrics[k];
+  fmt::print("{:<22}", metric.title);
+  for (const auto& [condition, metrics] : analysis.conditions) {
+    fmt::print(" {:9.3f}", metrics[k].mean);
+  }
+  if (analysis.restoration[k]) {
+    fmt::print("   {:7.0f} %", 100.0 * *analysis.restoration[k]);
+  } else {
+    fmt::print("   {:>9}", "-");
+  }
+  fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, 'A'), paper_value(k, 'B'),
+             paper_value(k, 'C'), metric.paper_restored_percent);
+}
+
+void print_comparison(const Comparison& comparison) {
+  fmt::print("paired t-test {}-{}, p:", comparison.from, comparison.to);
+  for (const auto& test : comparison.tests) {
+    if (!test) {
+      fmt::print(" -");
+    } else if (test->p > 0.0) {
+      fmt::print(" {:.3g}", test->p);
+    } else {
+      fmt::print(" <1e-300");
+    }
+  }
+  fmt::print("\n");
 }
 
 }  // namespace
@@ -40,45 +72,20 @@ void write_study(const StudyRecord& record, report::StagedFolder& folder) {
 
 void print_study(const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
-  std::printf("\n%-22s", "mean of the subjects");
-  for (const auto& entry : analysis.conditions) std::printf(" %9c", entry.first);
-  std::printf("   %9s   %s\n", "restored", "paper: A, B, C, restored");
-  for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const session::Metric& metric = session::kMetrics[k];
-    std::printf("%-22s", metric.title);
-    for (const auto& [condition, metrics] : analysis.conditions) {
-      std::printf(" %9.3f", metrics[k].mean);
-    }
-    if (analysis.restoration[k]) {
-      std::printf("   %7.0f %%", 100.0 * *analysis.restoration[k]);
-    } else {
-      std::printf("   %9s", "-");
-    }
-    const double unit = k == 0 ? kPaperUnit_mm : 1.0;
-    std::printf("   %.2f, %.2f, %.2f, %.0f %%\n", unit * metric.paper_a, unit * metric.paper_b,
-                unit * metric.paper_c, metric.paper_restored_percent);
-  }
-  std::printf("The paper's RMS error has no unit: taken as %.1f mm a unit.%s\n", kPaperUnit_mm,
-              is_calibrated(record.options)
-                  ? " A and B were calibrated on, C is a prediction."
-                  : " Not the population and lengths that A and B were calibrated with.");
-  for (const Comparison& comparison : analysis.comparisons) {
-    std::printf("paired t-test %c-%c, p:", comparison.from, comparison.to);
-    for (const auto& test : comparison.tests) {
-      if (!test) {
-        std::printf(" -");
-      } else if (test->p > 0.0) {
-        std::printf(" %.3g", test->p);
-      } else {
-        std::printf(" <1e-300");
-      }
-    }
-    std::printf("\n");
-  }
+  fmt::print("\n{:<22}", "mean of the subjects");
+  for (const auto& entry : analysis.conditions) fmt::print(" {:>9}", entry.first);
+  fmt::print("   {:>9}   {}\n", "restored", "paper: A, B, C, restored");
+  for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
+  fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,
+             is_calibrated(record.options)
+                 ? " A and B are calibrated, C is a prediction."
+                 : " A and B were calibrated with another population or other lengths.");
+  for (const Comparison& comparison : analysis.comparisons) print_comparison(comparison);
   if (analysis.main_effects.manova) {
     const auto& manova = *analysis.main_effects.manova;
-    std::printf(
-        "MANOVA, main effects: condition Wilks %.3g (p %.3g), subject Wilks %.3g (p %.3g)\n",
+    fmt::print(
+        "MANOVA, main effects: condition Wilks {:.3g} (p {:.3g}), subject Wilks {:.3g} (p "
+        "{:.3g})\n",
         manova.condition.wilks_lambda, manova.condition.wilks.p, manova.subject.wilks_lambda,
         manova.subject.wilks.p);
   }

@@ -9,11 +9,11 @@
 
 namespace stillhand::study {
 
-/// What a study leaves behind.
+/// Inputs and results of a study.
 struct StudyRecord {
   StudyOptions options;
   std::string command_line;
-  std::string sealed;  ///< undeclared_effect.json; empty: there is no effect
+  std::string sealed;  ///< text of undeclared_effect.json; empty: there is no effect
   std::vector<SubjectResult> results;
   Analysis analysis;
   double wall_s = 0.0;
@@ -22,21 +22,21 @@ struct StudyRecord {
 /// summary.json; README, "summary.json".
 std::string summary_json(const StudyRecord& record);
 
-/// A table as text: header and rows of numbers, for a spreadsheet.
+/// A CSV file: header and rows of numbers.
 struct CsvFile {
   std::string name;
   std::string text;
 };
 
-/// metrics, subjects, models, moving averages and open loop as CSV.
+/// Metrics, subjects, models, moving averages and open loop as CSV.
 std::vector<CsvFile> csv_files(const StudyRecord& record);
 
-/// Report, figures and numbers, all at once.
-/// @throws std::runtime_error which file could not be written, and why; ConfigError without
-/// gnuplot.
+/// Writes report, figures and numbers; all files appear together.
+/// @throws std::runtime_error with the file that could not be written and the reason; ConfigError
+///         without gnuplot
 void write_study(const StudyRecord& record, report::StagedFolder& folder);
 
-/// The table beside the paper's, on standard output.
+/// Prints the results next to the paper's, on standard output.
 void print_study(const StudyRecord& record);
 
 }  // namespace stillhand::study

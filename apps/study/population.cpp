@@ -14,12 +14,12 @@ namespace {
 
 // Stream of the draws under the study's seed; the subject's index is added.
 constexpr std::uint64_t kSubjectStream = 0x7375626a00000000;
-// A deviate farther out than this is drawn again.
+// A deviate beyond this is drawn again, Eq. SU-1.
 constexpr double kFarthestDeviate = 2.5;
 
-// Winter (2009) table 4.1: head, arms and trunk 0.678, of which 0.6 sways on a seat; upper arm,
-// forearm and hand 0.050, three tenths of it felt at the hand; hand 0.006, two thirds of it on the
-// handle.
+// Shares of the body mass, Winter (2009) table 4.1.  Head, arms and trunk are 0.678, of which 0.6
+// sways on a seat.  Upper arm, forearm and hand are 0.050, of which three tenths are felt at the
+// hand.  The hand is 0.006, of which two thirds are on the handle.
 constexpr double kTrunkShare = 0.40;
 constexpr double kArmShare = 0.0147;
 constexpr double kHandShare = 0.0040;

@@ -9,9 +9,9 @@
 
 namespace stillhand::study {
 
-/// From what a study's subjects are drawn: a mean and a coefficient of variation (standard
-/// deviation over mean) a quantity, README "The population".  Every draw is lognormal, so that no
-/// mass or stiffness can be negative, and cut at 2.5 standard deviations of its logarithm.
+/// Distributions of a study's subjects: for each quantity a mean and a coefficient of variation
+/// (standard deviation over mean), README "The population".  Every draw is lognormal, so no mass or
+/// stiffness is negative, and cut at 2.5 standard deviations of its logarithm, Eq. SU-1.
 struct Population {
   double body_mass_kg = 75.0;
   double body_mass_cv = 0.13;
@@ -52,7 +52,7 @@ struct Population {
     spread("body_mass_cv", self.body_mass_cv);
     visit("seat_frequency_hz", self.seat_frequency_hz, Range{1.2, 8.0},
           "[Hz] first lateral mode of the trunk on seat and harness; 1.5 to 4 Hz, Fairley and "
-          "Griffin (1990); calibrated within");
+          "Griffin (1990); calibrated in this range");
     spread("seat_frequency_cv", self.seat_frequency_cv);
     visit("seat_damping_ratio", self.seat_damping_ratio, Range{0.1, 1.0},
           "[-] of that mode; 0.2 to 0.45, Fairley and Griffin (1990)");
@@ -86,7 +86,7 @@ struct Population {
     spread("muscle_cv", self.muscle_cv);
     visit("remnant_ratio", self.remnant_ratio, Range{0.0, 0.05},
           "[-] noise-to-signal ratio of what is seen; 0.01 to 0.03, Levison, Kleinman and Baron "
-          "(1969); calibrated within");
+          "(1969); calibrated in this range");
     spread("remnant_cv", self.remnant_cv);
     visit("regression_error_m", self.regression_error_m, Range{0.005, 1.0},
           "[m] RMS of fast error that halves the crossover; calibrated, README");
@@ -97,18 +97,18 @@ struct Population {
 /// One simulated subject.
 struct Subject {
   rig::BodyConfig body;
-  human_operator::CrossoverConfig who;  ///< its seed is the session's to set
+  human_operator::CrossoverConfig who;  ///< the session sets its seed
 };
 
-/// How a subject who has learnt a stick feels it at the hand: M, B, K of the driving-point
-/// impedance of stick and tracking arm (README of rig, RG-7), least squares over 0.1 to 1 Hz, Eq.
-/// SU-2.
+/// Feel of the stick for a subject who has learnt it, Eq. SU-2: M, B, K of the driving-point
+/// impedance of stick and tracking arm at the hand (README of rig, RG-7), by least squares over 0.1
+/// to 1 Hz.
 human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick);
 
-/// The subject that has every quantity's mean.
+/// The subject in which every quantity has its mean.
 Subject mean_subject(const Population& population);
 
-/// Subject `index` of the study with this seed: the same whatever else is drawn, Eq. SU-1.
+/// Subject `index` of the study with this seed, Eq. SU-1.  It does not depend on other draws.
 /// @throws stillhand::ConfigError when the population's fields are out of range.
 Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index);
 

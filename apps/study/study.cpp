@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Runs job(0) .. job(count - 1) on several threads; each index once.
+// Runs job(0) .. job(count - 1) on several threads, each index once.
 void run_all(std::int64_t count, unsigned threads, const std::function<void(std::int64_t)>& job,
              const std::function<bool(std::int64_t)>& on_done) {
   std::atomic<std::int64_t> next{0};
@@ -71,7 +71,7 @@ void run_all(std::int64_t count, unsigned threads, const std::function<void(std:
   if (interrupted) throw Interrupted();
 }
 
-// The model of everybody but `left_out`: one least squares on all their records.
+// The mean model of all subjects but `left_out`: one least-squares fit to their records, Eq. ID-18.
 signal::DifferenceModel mean_model(const std::vector<SubjectResult>& results,
                                    std::size_t left_out) {
   std::vector<identification::ArxFactor> factors;
@@ -93,13 +93,13 @@ void run_wrong_models(const StudyOptions& options, std::vector<SubjectResult>& r
 void check_wrong_models(const StudyOptions& options) {
   if (!options.wrong_models) return;
   if (options.subjects < 2) {
-    throw ConfigError("--wrong-models", "1 subject", "2 or more: there must be another one");
+    throw ConfigError("--wrong-models", "1 subject", "2 or more subjects");
   }
   const auto& conditions = options.protocol.conditions;
   for (const auto needed : {session::Condition::kMoving, session::Condition::kMovingCancelled}) {
     if (std::find(conditions.begin(), conditions.end(), needed) == conditions.end()) {
       throw ConfigError("--wrong-models", std::string("no condition ") + static_cast<char>(needed),
-                        "B and C, between which a model's gain lies");
+                        "conditions B and C, because their difference is a model's gain");
     }
   }
 }

@@ -9,12 +9,13 @@
 
 namespace stillhand::study {
 
-/// Told of progress from the calling thread; @return false stops the study early.
+/// Reports progress, on the calling thread.  @return false to stop the study early
 using OnProgress = std::function<bool(std::int64_t done, std::int64_t all)>;
 
-/// Every subject on all cores, in subject order; the same bits whatever the number of threads.
-/// @throws ConfigError for options out of range, or what a subject's run throws (the first one's,
-///         by index); Interrupted when on_progress said so.
+/// Runs every subject on all cores.  The results are in subject order, with the same bits for any
+/// number of threads.
+/// @throws ConfigError for options out of range; the exception of the first subject, by index, that
+///         fails; Interrupted when on_progress returned false.
 std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgress& on_progress);
 
 /// A study that was stopped before its end.

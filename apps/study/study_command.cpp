@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/study_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 
 #include "apps/report/command_line.hpp"
@@ -23,6 +24,7 @@
 namespace stillhand::study {
 namespace {
 
+// Options that are no field of StudyOptions.
 struct Words {
   std::string conditions = "A,B,C";
   std::filesystem::path population;
@@ -35,7 +37,7 @@ int run(StudyRecord& record, const Words& words) {
   report::require_gnuplot();
   if (record.options.undeclared_effect != 0) {
     record.sealed = rig::sealed_text(sealed_effect(record.options).open(), rig::new_nonce());
-    std::printf("undeclared effect sealed, sha256 %s\n", rig::sha256(record.sealed).c_str());
+    fmt::print("undeclared effect sealed, sha256 {}\n", rig::sha256(record.sealed));
   }
   report::ProgressLine progress;
   const auto start = std::chrono::steady_clock::now();
@@ -50,12 +52,53 @@ int run(StudyRecord& record, const Words& words) {
   write_study(record, folder);
   print_study(record);
   if (record.options.subjects <= 2) {
-    std::cerr << "stillhand study: " << record.options.subjects
-              << " subject(s): a t-test means little or cannot be made; 12 as in the paper is the "
-                 "default\n";
+    fmt::print(stderr,
+               "stillhand study: got {} subject(s), want 3 or more for a meaningful t-test; the "
+               "default is the paper's 12\n",
+               record.options.subjects);
   }
-  std::printf("report and figures in %s\n", words.out.string().c_str());
+  fmt::print("report and figures in {}\n", words.out.string());
   return 0;
+}
+
+// Conditions, lengths and seed.
+void add_protocol_options(CLI::App& study, StudyOptions& options, Words& words) {
+  study.add_option("--seed", options.seed, "seed of everything random")
+      ->check(session::check_seed)
+      ->capture_default_str();
+  study
+      .add_option("--conditions", words.conditions,
+                  "A stationary, B moving, C moving with cancellation, D filter on the command, "
+                  "E damped stick, F arm rest")
+      ->capture_default_str();
+  study.add_flag("--wrong-models", options.wrong_models,
+                 "run C again with another subject's model and with the mean model of all others");
+  study.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
+      ->capture_default_str();
+  study
+      .add_option("--identify-seconds", options.protocol.identify_s,
+                  "length of the pegged trial [s]")
+      ->capture_default_str();
+}
+
+// Subjects and their rigs.
+void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
+  study.add_option("--subjects", options.subjects, "number of subjects; the paper has 12")
+      ->capture_default_str();
+  study
+      .add_option("--population", words.population,
+                  "file with the population's distributions; deploy/experiments/population.yaml "
+                  "shows every key")
+      ->check(settings::check_name);
+  study
+      .add_option("--stick-damping", options.damped_stick_n_s_m,
+                  "condition E: damping added to the stick [N s/m]")
+      ->check(CLI::Range(0.0, 49.0))
+      ->capture_default_str();
+  study
+      .add_option("--undeclared-effect", options.undeclared_effect,
+                  "seed of an effect that only the rigs hold, revealed with the results; 0: none")
+      ->check(session::check_seed);
 }
 
 }  // namespace
@@ -63,55 +106,25 @@ int run(StudyRecord& record, const Words& words) {
 void add_study_command(CLI::App& cli, int& status) {
   auto record = std::make_shared<StudyRecord>();
   auto words = std::make_shared<Words>();
-  StudyOptions& options = record->options;
-  options.protocol.identify_s = 120.0;  // paper III-A
-
+  record->options.protocol.identify_s = 120.0;  // paper III-A
   CLI::App* study = cli.add_subcommand(
       "study",
-      "The paper's experiment with simulated subjects, in one process and as fast as it goes: a "
-      "pegged\n"
-      "identification and one trial a condition each, tables and figures beside the paper's.\n"
+      "Runs the paper's experiment with simulated subjects, in one process and as fast as it can.\n"
+      "Each subject has a pegged identification and one trial for each condition. Tables and\n"
+      "figures stand next to the paper's.\n"
       "Example: stillhand study --subjects 12 --seed 1 --out study1");
-  study->add_option("--subjects", options.subjects, "how many; the paper's are 12")
-      ->capture_default_str();
-  study->add_option("--seed", options.seed, "seed of everything random")
-      ->check(session::check_seed)
-      ->capture_default_str();
-  study->add_option("--out", words->out, "folder of report, figures and numbers")->required();
+  study->add_option("--out", words->out, "folder for report, figures and numbers")->required();
+  add_protocol_options(*study, record->options, *words);
+  add_subject_options(*study, record->options, *words);
   study
-      ->add_option("--conditions", words->conditions,
-                   "A stationary, B moving, C moving with cancellation, D filter on the command, "
-                   "E damped stick, F arm rest")
-      ->capture_default_str();
-  study->add_flag("--wrong-models", options.wrong_models,
-                  "C again with another subject's model and with the mean of all others'");
-  study
-      ->add_option("--population", words->population,
-                   "file with the population's distributions; deploy/experiments/population.yaml "
-                   "shows every key")
-      ->check(settings::check_name);
-  study->add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
-      ->capture_default_str();
-  study
-      ->add_option("--identify-seconds", options.protocol.identify_s,
-                   "length of the pegged trial [s]")
-      ->capture_default_str();
-  study
-      ->add_option("--stick-damping", options.damped_stick_n_s_m,
-                   "condition E: damping added to the stick [N s/m]")
-      ->check(CLI::Range(0.0, 49.0))
-      ->capture_default_str();
-  study
-      ->add_option("--undeclared-effect", options.undeclared_effect,
-                   "seed of an effect that only the rigs know of, opened with the results; 0: none")
-      ->check(session::check_seed);
-  study->add_option("--threads", options.threads, "0: one a core; the result is the same")
+      ->add_option("--threads", record->options.threads,
+                   "number of threads, 0: one per core; the results do not depend on it")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   study->callback([record, words, &status] {
     record->options.protocol.conditions =
         session::parse_conditions(words->conditions, session::kStudyConditions);
-    // The set of conditions makes the study, not the order in which they were named.
+    // The set of conditions defines the study, not the order in which they are named.
     std::sort(record->options.protocol.conditions.begin(),
               record->options.protocol.conditions.end());
     if (!words->population.empty()) {

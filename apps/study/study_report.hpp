@@ -8,8 +8,8 @@
 
 namespace stillhand::study {
 
-/// report.html: tables I and II beside the paper's, its figures, the statistics, the open
-/// questions.  @param drawings  of study_figures()
+/// report.html: Tables I and II next to the paper's, the figures, the statistics, the open
+/// questions.  @param drawings  the drawn study_figures()
 report::Page study_report(const StudyRecord& record, const std::vector<report::Drawing>& drawings);
 
 }  // namespace stillhand::study

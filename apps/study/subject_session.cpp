@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/subject_session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,10 +21,10 @@ using session::PlannedTrial;
 // The paper records at 100 Hz.
 constexpr Tick kKeepEvery = 10;
 const int kOrder = static_cast<int>(identification::Config{}.order);
-// Welch segments of Fig. 4: 5.12 s, 0.2 Hz a line, 45 averages of two minutes; shorter for a record
-// that would not hold four of them.
+// Welch segments of Fig. 4: 5.12 s, 0.2 Hz a line, 45 averages of two minutes.  They are shorter
+// for a record that is shorter than four segments.
 constexpr std::size_t kSegmentSamples = 256;
-// What Fig. 7 shows.
+// Length and thinning of Fig. 7.
 constexpr double kExcerpt_s = 20.0;
 constexpr std::size_t kExcerptStride = 5;
 
@@ -53,7 +55,7 @@ session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subj
   }
   // Each subject practised with the stick as it is in the trial (paper III-C).
   configs.human_operator.arm = learnt_feel(configs.rig.body, configs.rig.stick);
-  // The command filter can know an average person's arm only.
+  // The command filter uses an average person's arm.
   const human_operator::ArmFeel average = mean_subject(options.population).who.arm;
   configs.command_filter.mass_kg = average.effective_mass_kg;
   configs.command_filter.damping_n_s_m = average.effective_damping_n_s_m;
@@ -81,12 +83,12 @@ Identification identified(const identification::Record& pegged) {
   return out;
 }
 
-// A model that the canceller refuses would leave condition C without a motor, unseen.
+// Without this check, condition C would run without a motor if the canceller refuses the model.
 void use(session::InProcessLoop& loop, const signal::DifferenceModel& control) {
   const cancellation::Refusal refusal = loop.use_model(at_control_rate(control));
   if (refusal != cancellation::Refusal::kNone) {
     throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
-                      "a model that the canceller takes; a longer --identify-seconds helps");
+                      "a model that the canceller accepts; a longer --identify-seconds helps");
   }
 }
 
@@ -125,7 +127,7 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
   return out;
 }
 
-// A stick or a body other than that of A to D needs a rig of its own.
+// E and F change the stick or the body, so they need their own rig.
 bool own_rig(char condition) { return condition == 'E' || condition == 'F'; }
 
 }  // namespace
@@ -150,8 +152,8 @@ void check_subject(const StudyOptions& options, std::int64_t index) {
     }
   } catch (const ConfigError& error) {
     throw ConfigError("population",
-                      "subject " + std::to_string(index + 1) + " of it with " + error.what(),
-                      "means nearer the defaults or smaller spreads");
+                      fmt::format("subject {} of it with {}", index + 1, error.what()),
+                      "means closer to the defaults or smaller spreads");
   }
 }
 

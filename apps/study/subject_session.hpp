@@ -16,34 +16,34 @@
 
 namespace stillhand::study {
 
-/// What a study asks of each subject.
+/// Options of a study.
 struct StudyOptions {
   std::int64_t subjects = 12;
   std::uint64_t seed = 1;
-  session::ProtocolOptions protocol;  ///< conditions and lengths; its seed is the subject's
+  session::ProtocolOptions protocol;  ///< conditions and lengths; the seed is set for each subject
   Population population;
   double damped_stick_n_s_m = 20.0;       ///< condition E, added to the stick's own
   double arm_rest_stiffness_n_m = 500.0;  ///< condition F
   double arm_rest_damping_n_s_m = 30.0;   ///< condition F
-  bool wrong_models = false;              ///< C again with other people's models
-  std::uint64_t undeclared_effect = 0;    ///< seed of what only the rigs are told of; 0: nothing
-  unsigned threads = 0;                   ///< 0: one a core
+  bool wrong_models = false;              ///< run C again with models of other subjects
+  std::uint64_t undeclared_effect = 0;    ///< seed of an effect that only the rigs hold; 0: none
+  unsigned threads = 0;                   ///< 0: one per core
 };
 
-/// True for the population and the lengths of trials that conditions A and B were calibrated with.
+/// True for the population and the lengths of trials with which conditions A and B were calibrated.
 bool is_calibrated(const StudyOptions& options);
 
 /// The pegged trial's outcome, paper III-A and IV-A.
 struct Identification {
   identification::ArxFit paper;            ///< Eqs 3 to 5
-  identification::OutputErrorFit refined;  ///< the same model on its free-run error
+  identification::OutputErrorFit refined;  ///< the same model fitted on its free-run error
   identification::ArxFactor factor;        ///< for pooled fits
   signal::TransferEstimate estimate;       ///< Fig. 4's dots, 0 to 25 Hz
-  identification::RateConversion control;  ///< what the canceller runs
-  std::string paper_unusable;  ///< why the refined model runs instead; empty: it does not
+  identification::RateConversion control;  ///< the filter of the canceller
+  std::string paper_unusable;              ///< why the refined model is used; empty: it is not
 };
 
-/// A tracking trial in what the report shows.
+/// The parts of a tracking trial that the report shows.
 struct TrackedTrial {
   identification::TrackingMetrics metrics;  ///< moving averages once a second
   double cancelled_share = 0.0;             ///< of the feedthrough force; 0 without a motor
@@ -57,23 +57,23 @@ struct SubjectResult {
   Subject subject;
   Identification identification;
   std::map<char, TrackedTrial> trials;  ///< by condition
-  std::string order;                    ///< in which the conditions were run
+  std::string order;                    ///< order in which the conditions were run
   std::map<char, TrackedTrial> wrong;  ///< 'O' another subject's model, 'M' the mean of all others'
 };
 
 /// The undeclared effect of this study's rigs: the same for every subject, sized against the mean
-/// one.
+/// subject.
 rig::SealedEffect sealed_effect(const StudyOptions& options);
 
-/// Draws subject `index` and makes a rig of it for every condition, as a check.
-/// @throws ConfigError "population" with the subject's number and what is out of range.
+/// Checks subject `index`: draws it and makes its rig for every condition.
+/// @throws ConfigError "population" with the subject's number and the value out of range.
 void check_subject(const StudyOptions& options, std::int64_t index);
 
-/// Runs subject `index`: pegged trial, identification, every condition in shuffled order.  The same
-/// numbers whatever else runs.  @throws ConfigError when no usable model comes out.
+/// Runs subject `index`: pegged trial, identification, every condition in shuffled order.  The
+/// numbers do not depend on other subjects.  @throws ConfigError when no usable model results.
 SubjectResult run_subject(const StudyOptions& options, std::int64_t index);
 
-/// Condition C, which the options hold, once more: same motion and target, another model.
+/// Runs condition C, which the options contain, with another model at the same motion and target.
 TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
                             std::int64_t index, const signal::DifferenceModel& control_model);
 

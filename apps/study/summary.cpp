@@ -11,21 +11,15 @@ namespace {
 using nlohmann::ordered_json;
 using session::kMetrics;
 
-// JSON has no NaN: what could not be computed is null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json number(const std::optional<double>& value) {
-  return value ? number(*value) : ordered_json(nullptr);
+ordered_json or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
 ordered_json sample_json(const MetricSample& sample) {
   ordered_json each = ordered_json::array();
-  for (const double value : sample.per_subject) each.push_back(number(value));
-  return {{"mean", number(sample.mean)},
-          {"std", number(sample.standard_deviation)},
-          {"per_subject", each}};
+  for (const double value : sample.per_subject) each.push_back(value);
+  return {
+      {"mean", sample.mean}, {"std", or_null(sample.standard_deviation)}, {"per_subject", each}};
 }
 
 ordered_json conditions_json(const StudyRecord& record) {
@@ -53,7 +47,7 @@ ordered_json p_values_json(const Analysis& analysis) {
     ordered_json one;
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       const auto& test = comparison.tests[k];
-      one[kMetrics[k].key] = test ? number(test->p) : ordered_json(nullptr);
+      one[kMetrics[k].key] = test ? ordered_json(test->p) : ordered_json(nullptr);
     }
     out[name_of(comparison)] = one;
   }
@@ -67,12 +61,12 @@ ordered_json t_test_details_json(const Analysis& analysis) {
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       const auto& test = comparison.tests[k];
       if (!test) continue;
-      one[kMetrics[k].key] = {{"t", number(test->t)},
-                              {"degrees_of_freedom", number(test->degrees_of_freedom)},
-                              {"mean_difference", number(test->mean_difference)},
-                              {"ci95", {number(test->ci_low), number(test->ci_high)}},
-                              {"cohen_dz", number(test->cohen_dz)},
-                              {"hedges_gz", number(test->hedges_gz)}};
+      one[kMetrics[k].key] = {{"t", test->t},
+                              {"degrees_of_freedom", test->degrees_of_freedom},
+                              {"mean_difference", test->mean_difference},
+                              {"ci95", {test->ci_low, test->ci_high}},
+                              {"cohen_dz", test->cohen_dz},
+                              {"hedges_gz", or_null(test->hedges_gz)}};
     }
     out[name_of(comparison)] = one;
   }
@@ -80,13 +74,13 @@ ordered_json t_test_details_json(const Analysis& analysis) {
 }
 
 ordered_json effect_json(const statistics::MultivariateTest& effect) {
-  return {{"wilks_lambda", number(effect.wilks_lambda)},
-          {"f", number(effect.wilks.f)},
-          {"numerator_df", number(effect.wilks.numerator_df)},
-          {"denominator_df", number(effect.wilks.denominator_df)},
-          {"p", number(effect.wilks.p)},
-          {"pillai_trace", number(effect.pillai_trace)},
-          {"pillai_p", number(effect.pillai.p)}};
+  return {{"wilks_lambda", effect.wilks_lambda},
+          {"f", effect.wilks.f},
+          {"numerator_df", effect.wilks.numerator_df},
+          {"denominator_df", effect.wilks.denominator_df},
+          {"p", effect.wilks.p},
+          {"pillai_trace", effect.pillai_trace},
+          {"pillai_p", effect.pillai.p}};
 }
 
 ordered_json manova_json(const MultivariateResult& result, const char* design) {
@@ -102,7 +96,7 @@ ordered_json manova_json(const MultivariateResult& result, const char* design) {
 ordered_json restoration_json(const Analysis& analysis) {
   ordered_json out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    out[kMetrics[k].restoration_key] = number(analysis.restoration[k]);
+    out[kMetrics[k].restoration_key] = or_null(analysis.restoration[k]);
   }
   return out;
 }
@@ -112,12 +106,12 @@ ordered_json identification_json(const StudyRecord& record) {
   for (const SubjectResult& result : record.results) {
     const Identification& found = result.identification;
     subjects.push_back(
-        {{"heldout_vaf_percent", number(found.paper.heldout.free_run_vaf_percent)},
-         {"refined_heldout_vaf_percent", number(found.refined.heldout.free_run_vaf_percent)},
+        {{"heldout_vaf_percent", found.paper.heldout.free_run_vaf_percent},
+         {"refined_heldout_vaf_percent", found.refined.heldout.free_run_vaf_percent},
          {"refined_used", !found.paper_unusable.empty()},
          {"reason", found.paper_unusable.empty() ? ordered_json(nullptr)
                                                  : ordered_json(found.paper_unusable)},
-         {"gain_at_0_hz_n_s2_m", number(std::abs(signal::response_at(found.refined.model, 0.0)))}});
+         {"gain_at_0_hz_n_s2_m", std::abs(signal::response_at(found.refined.model, 0.0))}});
   }
   return {{"refined_used", record.analysis.refined_used}, {"subjects", subjects}};
 }
@@ -130,8 +124,7 @@ ordered_json wrong_json(const Analysis& analysis) {
       one[kMetrics[k].key] = sample_json(wrong.metrics[k]);
     }
     one["surviving_share"] = ordered_json::array();
-    for (const double share : wrong.surviving_share)
-      one["surviving_share"].push_back(number(share));
+    for (const double share : wrong.surviving_share) one["surviving_share"].push_back(share);
     out[which == 'O' ? "other_subject" : "mean_of_others"] = one;
   }
   return out;
@@ -156,6 +149,7 @@ std::string summary_json(const StudyRecord& record) {
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
   summary["version"] = kVersion;
+  // JSON has no NaN: dump() writes a number that is not finite as null.
   return summary.dump(2) + "\n";
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run by CPack: what installation leaves to the builder's umask, and what its --strip passes over (the debug information
-# of the static libraries would be 400 MB).
+# CPack runs this. It sets the permissions that installation takes from the builder's umask, and strips the static
+# libraries, which CPack's own strip skips (their debug information would be 400 MB).
 file(CHMOD_RECURSE ${CPACK_TEMPORARY_INSTALL_DIRECTORY} DIRECTORY_PERMISSIONS
      OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 file(GLOB_RECURSE archives ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*.a)

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Manual pages of what the programs say about themselves with --help: stillhand(1), one a verb, one a service.
+# Makes manual pages from the --help of the programs: stillhand(1), one per verb, one per service.
 # Usage: deploy/debian/man_pages.sh FOLDER PREFIX VERSION OUT PROGRAM...
-#   FOLDER  holds the programs, which name their own prefix
-#   PREFIX  what the pages name instead
+#   FOLDER  folder of the programs, whose help texts contain their own prefix
+#   PREFIX  replaces that prefix in the pages
 set -euo pipefail
 programs=$(cd "$1" && pwd) prefix=$2 version=$3 out=$4
 shift 4
@@ -15,9 +15,9 @@ page() {  # page PROGRAM [VERB...]
   shift
   name=$(IFS=-; echo "$program${*:+-$*}")
   help=$("$programs/$program" "$@" --help)
-  # Its first sentence, or what stands before the colon.
+  # The first sentence, or the text before the colon.
   title=$(sed -e '/^Usage:/,$ d' -e "s/^$program: //" <<<"$help" | tr '\n' ' ' | sed 's/[.:?;] .*//')
-  # In a page "-" is "\-". help2man knows of no verbs: it takes the program's name for the page's.
+  # A page writes "-" as "\-". help2man does not support verbs: it uses the program's name as the page's name.
   help2man --no-info --section=1 --version-string="$version" --name="$title" --include="$files" \
            --help-option="$* --help" "$programs/$program" |
     sed -e "s|@prefix@|$prefix|" -e "s|${built//-/\\\\-}/|${prefix//-/\\\\-}/|g" -e "1,/^\.SH SYNOPSIS/ {

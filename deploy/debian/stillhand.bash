@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Completes verbs, options and the choices of an option, as `stillhand ... --help` tells them; file names elsewhere.
+# Completes verbs, options and the choices of an option from `stillhand ... --help`, and file names elsewhere.
 _stillhand() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
   local next help words choices=

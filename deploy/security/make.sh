@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# A lab's authority, one key, certificate and signed permissions a service, and the signed governance: everything that
-# `--security DIR` reads (deploy/security/README.md).
+# Creates a lab's authority, a key, a certificate and signed permissions for each service, and the signed governance:
+# every file that `--security DIR` reads (deploy/security/README.md).
 # Usage: deploy/security/make.sh DIR [--days N] [--lab NAME] [--domain N]
-#   DIR       is made, and must not be there
-#   --days    how long the certificates are good, 365
-#   --lab     the authority's organisation, "stillhand"
-#   --domain  the one DDS domain that they are good for; every domain without it
+#   DIR       new folder; it must not exist
+#   --days    validity of the certificates [days], default 365
+#   --lab     organisation of the authority, default "stillhand"
+#   --domain  the only DDS domain for which they are valid; default: every domain
 set -euo pipefail
 
 fail() { echo "make.sh: $1" >&2; exit "${2:-2}"; }
@@ -18,28 +18,28 @@ while [ $# -gt 0 ]; do
     --days) days=$2; shift ;;
     --lab) lab=$2; shift ;;
     --domain) first=$2 last=$2; shift ;;
-    -*) fail "$1: want DIR [--days N] [--lab NAME] [--domain N]" ;;
-    *) [ -z "$dir" ] || fail "got the folders $dir and $1, want one"; dir=$1 ;;
+    -*) fail "got $1, want DIR [--days N] [--lab NAME] [--domain N]" ;;
+    *) [ -z "$dir" ] || fail "got two folders, $dir and $1, want one"; dir=$1 ;;
   esac
   shift
 done
-[ -n "$dir" ] || fail "want DIR [--days N] [--lab NAME] [--domain N]"
+[ -n "$dir" ] || fail "got no folder, want DIR [--days N] [--lab NAME] [--domain N]"
 [[ $days =~ ^[1-9][0-9]{0,3}$ ]] || fail "--days: got $days, want 1 to 9999"
-# What needs no quoting in a certificate's name.
-[[ $lab =~ ^[A-Za-z0-9._-]{1,64}$ ]] || fail "--lab: got $lab, want up to 64 letters, digits and . _ -"
+# Characters that need no quotes in a certificate's name.
+[[ $lab =~ ^[A-Za-z0-9._-]{1,64}$ ]] || fail "--lab: got $lab, want 1 to 64 letters, digits and . _ -"
 [[ $first =~ ^(0|[1-9][0-9]{0,2})$ ]] && [ "$first" -le 232 ] || fail "--domain: got $first, want 0 to 232"
-[ ! -e "$dir" ] || fail "$dir: is there already, want a new folder"
+[ ! -e "$dir" ] || fail "$dir: got a folder that exists, want a new one"
 parent=$(dirname "$dir")
-[ -w "$parent" ] || fail "$parent: got no folder that can be written to, want one for $(basename "$dir")"
-command -v openssl >/dev/null || fail "openssl is not installed (deploy/setup.sh)"
-# In the build tree, or in bin beside share/stillhand/deploy/security.
+[ -w "$parent" ] || fail "$parent: got no folder that can be written, want one in which $(basename "$dir") can be made"
+command -v openssl >/dev/null || fail "got no openssl, want it installed (deploy/setup.sh installs it)"
+# In the build tree, or in bin of the prefix that holds share/stillhand/deploy/security.
 shipped=$(cd "$(dirname "$0")/../.." && pwd)
 for prefix in "${STILLHAND_BUILD:-$shipped/build}" "$shipped/../.."; do
   permissions=$prefix/bin/stillhand-permissions
   [ ! -x "$permissions" ] || break
 done
 [ -x "$permissions" ] ||
-  fail "no stillhand-permissions in ${STILLHAND_BUILD:-$shipped/build}/bin (deploy/build.sh makes it)"
+  fail "got no stillhand-permissions in ${STILLHAND_BUILD:-$shipped/build}/bin, want it built (deploy/build.sh)"
 
 umask 077
 made=$(mktemp -d "$parent/.stillhand-security.XXXXXX")
@@ -65,7 +65,7 @@ new_key "$made/authority_key.pem"
 quietly openssl req -x509 -config "$made/openssl.cnf" -sha256 -days "$days" -subj "/O=$lab/CN=authority" \
   -key "$made/authority_key.pem" -out "$made/authority.pem"
 
-# A day more on both sides: the certificate is the limit, whatever a machine's time zone.
+# One day longer on both sides, so that in every time zone the certificate is the limit.
 mkdir "$made/unsigned"
 "$permissions" "$made/unsigned" "$lab" "$(date -u -d '-1 day' +%Y-%m-%dT%H:%M:%S)" \
   "$(date -u -d "+$((days + 1)) days" +%Y-%m-%dT%H:%M:%S)" "$first" "$last" >"$made/identities"
@@ -82,7 +82,7 @@ while read -r identity; do
 done <"$made/identities"
 
 rm -r "$made/unsigned" "$made/identities" "$made/openssl.cnf" "$made/request.pem" "$log"
-# All but the keys is for everybody.
+# Everybody may read every file but the keys.
 find "$made" -type d -exec chmod 755 {} + -o ! -name '*key.pem' -exec chmod 644 {} +
 mv -T "$made" "$dir"
-echo "$dir: good for $days days; keep authority_key.pem where no machine of the lab reaches it"
+echo "$dir: valid for $days days; keep authority_key.pem offline, away from the lab's machines"

@@ -194,8 +194,8 @@ class StudyTest(unittest.TestCase):
         out = self.folder / "study"
         run = study("--subjects", "2", "--trial-seconds", "20", "--identify-seconds", "20", "--out", str(out))
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("means little", run.stderr)
-        self.assertIn("means little", (out / "report.html").read_text())
+        self.assertIn("meaningful t-test", run.stderr)
+        self.assertIn("proves little", (out / "report.html").read_text())
 
 
 if __name__ == "__main__":

@@ -11,10 +11,10 @@ namespace {
 
 // Room for one tick label and its neighbour's distance [px].
 constexpr double kVerticalPitch_px = 36.0;
-constexpr double kHorizontalPitch_px = 40.0;  // labels are measured besides
+constexpr double kHorizontalPitch_px = 40.0;  // labels are measured too
 constexpr double kLabelGap_px = 14.0;
 constexpr double kMinorDecade_px = 60.0;  // a decade shorter than this has no lines at 2 to 9
-constexpr double kMostTicks = 60.0;       // a step below span/60 is a slip, not a wish
+constexpr double kMostTicks = 60.0;       // a step below span/60 is taken as a mistake
 
 constexpr double kDenseEnough = 10.0;
 
@@ -46,7 +46,7 @@ double automatic_step(const Axis& axis, double span, double ticks) {
   return axis.scale == Scale::kDegrees ? degree_step(span / ticks) : nice_step(span / ticks);
 }
 
-// Decimals that tell neighbouring ticks apart.
+// Decimals that distinguish neighbouring ticks.
 int decimals_of(double step) {
   const int decimals = static_cast<int>(std::ceil(-std::log10(step) - 1e-9));
   const bool needs_more = std::abs(step * std::pow(10.0, decimals) -
@@ -91,7 +91,7 @@ void add_linear_ticks(AxisLayout& layout, const Axis& axis, double length_px, bo
   }
 }
 
-// Ticks at `factors` times every `every`-th power of ten; what lies between is minor.
+// Ticks at `factors` times every `every`-th power of ten; ticks in between are minor.
 void add_decade_ticks(AxisLayout& layout, double length_px, bool horizontal) {
   const double decades = std::log10(layout.high / layout.low);
   const double pitch_px = horizontal ? 40.0 : 24.0;  // labels such as "0.2" or "10⁻⁵"
@@ -128,7 +128,7 @@ void open_up(AxisLayout& layout) {
     return;
   }
   const double centre = 0.5 * (layout.low + layout.high);
-  // Below this spread rounding of the numbers themselves is what would be drawn.
+  // Below this spread the plot would show the rounding of the numbers.
   const double least = std::max(std::abs(centre) * 1e-9, 1e-300);
   if (!(layout.high - layout.low > least)) {
     const double half = centre == 0.0 ? 1.0 : std::abs(centre) * 0.1;
@@ -198,7 +198,7 @@ AxisLayout lay_out_axis(const Axis& axis, const Extent& extent, double length_px
   if (layout.logarithmic) {
     add_decade_ticks(layout, length_px, horizontal);
     if (layout.major.size() >= 2) return layout;
-    layout.minor.clear();  // less than a decade: even steps say more
+    layout.minor.clear();  // less than a decade: even steps are clearer
   }
   add_linear_ticks(layout, axis, length_px, horizontal, font_size_px);
   return layout;

@@ -11,12 +11,12 @@ namespace stillhand::report {
 /// Larger values are gaps, as NaN is: spans and steps of what is drawn must not overflow.
 inline constexpr double kLargestValue = 1e100;
 
-/// What an axis has to hold.  Gaps never enter.
+/// Range of the values that an axis shows.  Gaps do not count.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
-  bool marks = false;      ///< points, bars or boxes: they need room beyond their centre
-  bool from_zero = false;  ///< bars stand on zero, without room below
+  bool marks = false;      ///< holds points, bars or boxes, which need room beyond their centre
+  bool from_zero = false;  ///< holds bars, which start at zero
 
   [[nodiscard]] bool empty() const { return !(low <= high); }
 };
@@ -37,7 +37,7 @@ struct AxisLayout {
   [[nodiscard]] bool drawable(double value) const;
 };
 
-/// Extents of a panel's x and y axis.  Where x has limits, only what is between them counts for y.
+/// Extents of a panel's x and y axis.  If x has limits, only the values between them count for y.
 Extent extent_x(const Panel& panel);
 Extent extent_y(const Panel& panel);
 

@@ -37,7 +37,7 @@ std::string canvas_commands(const Figure& figure, const std::string& body, int o
          plot(output + 1);
 }
 
-// Figures are dealt out in turn: neighbours tend to be alike, so the jobs take equally long.
+// Figures are dealt out in turn.  Neighbours tend to be alike, so the jobs take equally long.
 std::vector<GnuplotJob> jobs_of(std::span<const Figure> figures) {
   std::vector<GnuplotJob> jobs(std::min(kProcesses, figures.size()));
   for (GnuplotJob& job : jobs) job.script = "set encoding utf8\n";
@@ -51,7 +51,7 @@ std::vector<GnuplotJob> jobs_of(std::span<const Figure> figures) {
   return jobs;
 }
 
-// gnuplot does not always notice that it could not write.
+// gnuplot does not always report that it could not write.
 void expect_whole(const Figure& figure, const std::string& svg, const std::string& png) {
   constexpr std::string_view kEndOfPng = "IEND\xAE\x42\x60\x82";
   const auto last = svg.find_last_not_of(" \n");

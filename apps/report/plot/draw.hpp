@@ -19,19 +19,19 @@ struct Drawing {
   std::string png;  ///< twice the figure's pixels, on white
 };
 
-/// Starts gnuplot and lets it end: for before the work whose figures it is to draw.
+/// Starts gnuplot and lets it end, to check that it is installed before the work.
 /// @throws as draw()
 void require_gnuplot();
 
 /// Draws figures with gnuplot, in two processes at the same time when there are two or more.
 /// The same figures give the same bytes.  Names must differ.
 /// @throws ConfigError         when gnuplot is not installed
-/// @throws std::runtime_error  when it fails, with what it said
+/// @throws std::runtime_error  when gnuplot fails, with its message
 std::vector<Drawing> draw(std::span<const Figure> figures);
 
-/// draw(), and each as NAME.svg and NAME.png in `folder`, which exists.  Each file appears whole or
-/// not at all.
-/// @throws std::runtime_error besides, when a file cannot be written: which, and why
+/// As draw(), and writes each figure as NAME.svg and NAME.png in `folder`, which exists.  Each file
+/// appears whole or not at all.
+/// @throws also std::runtime_error when a file cannot be written, with the file and the reason
 std::vector<Drawing> render(std::span<const Figure> figures, const std::filesystem::path& folder);
 
 }  // namespace stillhand::report

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-/// What a figure shows, as plain structs; draw.hpp makes pictures of it.  All texts are UTF-8 and
-/// taken literally (no markup: a unit is written "m/s²"); a control character becomes a space.
-/// Numbers are in the unit that the axis label names.  A value that is not finite, or not positive
-/// on a logarithmic axis, is a gap.
+/// Content of a figure as plain structs; draw.hpp draws it.  All texts are UTF-8 and literal (no
+/// markup: a unit is written "m/s²"); a control character becomes a space. Numbers are in the unit
+/// that the axis label names.  A value that is not finite, or not positive on a logarithmic axis,
+/// is a gap.
 namespace stillhand::report {
 
-/// What a mark stands for.  A role has the same colour and point shape in every figure.
+/// Role of a mark.  A role has the same colour and point shape in every figure.
 enum class Colour {
   kConditionA,
   kConditionB,
@@ -44,9 +44,9 @@ enum class Scale {
 struct Axis {
   std::string label = {};
   Scale scale = Scale::kLinear;
-  std::optional<double> low = {};  ///< limits; from what is shown where not given
+  std::optional<double> low = {};  ///< limits; by default from the values shown
   std::optional<double> high = {};
-  std::vector<AxisTick> ticks = {};  ///< these instead of automatic ones, for example categories
+  std::vector<AxisTick> ticks = {};      ///< replace the automatic ticks, for example by categories
   std::optional<double> tick_step = {};  ///< distance of automatic ticks, linear and degrees only
 };
 
@@ -64,7 +64,7 @@ enum class Kind {
   kBox             ///< [boxes]
 };
 
-/// Five numbers and what lies beyond the whiskers.
+/// Five numbers, and the values beyond the whiskers.
 struct Box {
   double at = 0.0;  ///< place on the x axis, mostly a category's number
   double low = 0.0;
@@ -121,7 +121,7 @@ struct Panel {
   std::vector<Note> notes = {};
   bool equal_aspect = false;  ///< one unit is as long on x as on y; linear axes only
   Legend legend = Legend::kAbove;
-  bool blank = false;  ///< nothing is drawn: a place that a row leaves empty
+  bool blank = false;  ///< nothing is drawn; the place in the row stays empty
 };
 
 /// Panels fill rows from the left; plots of one column are aligned, all are equally high.

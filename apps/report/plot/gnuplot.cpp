@@ -26,11 +26,11 @@ namespace {
 // Descriptors of the outputs in the child: 0 to 2 are the standard ones.
 constexpr int kFirstOutput = 3;
 
-// An anonymous file in memory: neither a pipe that could fill up nor a name that could stay behind.
+// An anonymous file in memory.  Unlike a pipe it cannot fill up, and it leaves no file behind.
 class MemoryFile {
  public:
-  // The number is lifted out of the way of the child's own (fcntl), so that no dup2 there hits one
-  // that is still needed.
+  // fcntl moves the descriptor above those of the child, so that no dup2 in the child overwrites a
+  // descriptor that is still needed.
   explicit MemoryFile(int above) {
     const int low = memfd_create("stillhand-report", MFD_CLOEXEC);
     if (low < 0) throw std::system_error(errno, std::generic_category(), "memory for gnuplot");
@@ -78,8 +78,8 @@ class MemoryFile {
   int descriptor_ = -1;
 };
 
-// The caller's environment, but none of its locale and of gnuplot's own variables.  C.UTF-8 is C
-// with letters beyond ASCII; every Debian has it.
+// The caller's environment without its locale and gnuplot's variables.  C.UTF-8 is C with letters
+// beyond ASCII; every Debian has it.
 std::vector<std::string> environment() {
   std::vector<std::string> variables{"LC_ALL=C.UTF-8"};
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
@@ -104,8 +104,8 @@ class SpawnSettings {
   SpawnSettings() {
     posix_spawn_file_actions_init(&actions_);
     posix_spawnattr_init(&attributes_);
-    // Ctrl-C is the caller's to act on: in a group of its own gnuplot ends when it has drawn, or is
-    // ended.  Signals that the caller blocked to wait for them are none of gnuplot's.
+    // Only the caller reacts to Ctrl-C: gnuplot is in its own process group, and ends when it has
+    // drawn or the caller kills it.  Signals that the caller blocks are not blocked in gnuplot.
     sigset_t none;
     sigemptyset(&none);
     posix_spawnattr_setsigmask(&attributes_, &none);
@@ -123,7 +123,7 @@ class SpawnSettings {
   posix_spawnattr_t attributes_;
 };
 
-// The end of what gnuplot said, where the reason is, on one line.
+// The end of gnuplot's message, which holds the reason, on one line.
 std::string last_words(const std::string& text) {
   std::string line;
   for (const char c : text) {
@@ -135,7 +135,7 @@ std::string last_words(const std::string& text) {
   return line.size() > kEnough ? "... " + line.substr(line.size() - kEnough) : line;
 }
 
-// One gnuplot, from start to end; ended and reaped even when something else throws.
+// One gnuplot process.  The destructor kills and reaps it if an exception interrupts the work.
 class Gnuplot {
  public:
   explicit Gnuplot(const GnuplotJob& job)
@@ -166,8 +166,9 @@ class Gnuplot {
       const std::string how = WIFSIGNALED(status)
                                   ? std::string("signal ") + sigdescr_np(WTERMSIG(status))
                                   : "exit status " + std::to_string(WEXITSTATUS(status));
-      throw std::runtime_error("gnuplot: ended with " + how +
-                               ", want exit status 0; it said: " + last_words(errors_.content()));
+      throw std::runtime_error(
+          "gnuplot: ended with " + how +
+          ", want exit status 0; its message: " + last_words(errors_.content()));
     }
     std::vector<std::string> contents;
     for (const MemoryFile& output : outputs_) contents.push_back(output.content());

@@ -18,8 +18,8 @@ struct LegendBlock {
   [[nodiscard]] double height_px() const { return kLegendRow_px * rows; }
 };
 
-/// Fills rows from the left until `width_px` is used up; an entry wider than that has a row of its
-/// own.  Series without a label or with show_in_legend off are left out.
+/// Fills rows from the left until `width_px` is used up; a wider entry has its own row.
+/// Series without a label or with show_in_legend off are left out.
 LegendBlock flow_legend(const std::vector<Series>& series, double width_px);
 
 /// The entries of a block moved by (left_px, top_px).

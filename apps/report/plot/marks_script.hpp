@@ -17,7 +17,7 @@ struct Canvas {
   [[nodiscard]] std::string at(double x_px, double y_px) const;
 };
 
-/// Where a text's given point is.
+/// Position of the given point in a text.
 enum class Anchor { kLeft, kCentre, kRight };
 
 struct Lettering {
@@ -32,7 +32,7 @@ struct Lettering {
 std::string text_command(const Canvas& canvas, const std::string& text, double x_px, double y_px,
                          const Lettering& lettering);
 
-/// Commands for what a panel shows besides its data: legend, reference lines, notes.  Pure.
+/// Commands for the other parts of a panel: legend, reference lines, notes.  Pure.
 std::string legend_script(const Panel& panel, const PanelLayout& layout, const Canvas& canvas);
 std::string reference_line_script(const Panel& panel, const PanelLayout& layout,
                                   const Canvas& canvas);

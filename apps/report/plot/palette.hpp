@@ -7,15 +7,15 @@
 
 namespace stillhand::report {
 
-/// How a role looks.  Conditions also differ in shape, so a figure survives a grey printer.
+/// Look of a role.  Conditions also differ in shape, so a figure is readable in grey.
 struct Look {
   std::string_view rgb;  ///< "#rrggbb"
   int point_type;        ///< gnuplot's number of a filled shape
 };
 
 /// Colours of the conditions: Okabe and Ito, "Color Universal Design" (2008), which people with any
-/// of the common colour deficiencies can tell apart; F is their yellow darkened to be legible on
-/// white.  The other roles are darker than every condition, so lightness keeps them apart.
+/// of the common colour deficiencies can distinguish.  F is their yellow, darkened to be legible on
+/// white.  The other roles are darker than every condition, so they differ in lightness.
 constexpr Look look(Colour colour) {
   constexpr int kSquare = 5;
   constexpr int kCircle = 7;

@@ -22,14 +22,14 @@ struct Rectangle {
   [[nodiscard]] double height() const { return bottom - top; }
 };
 
-/// One entry of a legend: which series, and where its sample begins.
+/// One entry of a legend: its series, and the start of its sample.
 struct LegendEntry {
   std::size_t series = 0;
   double left_px = 0.0;
   double middle_px = 0.0;
 };
 
-/// Where everything of one panel goes.
+/// Places of all parts of one panel.
 struct PanelLayout {
   Rectangle plot;  ///< inside the axes
   AxisLayout x;
@@ -38,7 +38,7 @@ struct PanelLayout {
   double y_label_px = 0.0;               ///< centre line of the y axis label, from the left edge
   double x_label_px = 0.0;               ///< centre line of the x axis label, from the top edge
   double title_px = 0.0;                 ///< centre line of the title, from the top edge
-  Legend legend_place = Legend::kAbove;  ///< as wished, or above where a corner has no room
+  Legend legend_place = Legend::kAbove;  ///< as requested, or above if a corner has no room
   Rectangle legend;                      ///< background of a legend inside the plot; else empty
   std::vector<LegendEntry> entries;
 };

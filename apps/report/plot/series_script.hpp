@@ -9,7 +9,7 @@
 
 namespace stillhand::report {
 
-/// Data block and plot clauses of one series; no clauses when it holds nothing to draw.
+/// Data block and plot clauses of one series; no clauses if it has nothing to draw.
 struct SeriesScript {
   std::string data;
   std::vector<std::string> clauses;
@@ -20,15 +20,15 @@ struct SeriesScript {
 SeriesScript series_script(const Series& series, const PanelLayout& layout,
                            const std::string& block);
 
-/// gnuplot's words for how the line of a kind is drawn: colour, width, dashes.
+/// gnuplot's line style of a series: colour, width, dashes.
 std::string line_style(const Series& series);
-/// The same for its points: shape and size.
+/// gnuplot's point style of a series: shape and size.
 std::string point_style(const Series& series);
-/// Colour of a kind that has points alone; a line's style holds it already, and gnuplot takes a
-/// colour once.
+/// Colour of a series that has only points.  A line's style contains the colour already, and
+/// gnuplot accepts it only once.
 std::string colour_style(const Series& series);
 
-/// How much of the colour the area of a band, bar or box takes [-].
+/// Share of the colour in the area of a band, bar or box [-].
 double fill_density(Kind kind);
 
 }  // namespace stillhand::report

@@ -8,7 +8,7 @@
 namespace stillhand::report {
 namespace {
 
-// Where there is no DejaVu Sans; all of these are narrower, so nothing overlaps.
+// For systems without DejaVu Sans; all of these are narrower, so nothing overlaps.
 constexpr std::string_view kFonts = "'DejaVu Sans','Liberation Sans',Arial,Helvetica,sans-serif";
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {

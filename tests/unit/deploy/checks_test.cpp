@@ -189,9 +189,9 @@ TEST(CheckTest, OfAToolsKeysThoseThatAreThereAreLookedAt) {
               AllOf(HasSubstr("rig/certificate.pem"), dashboard, testing::Not(tap)));
 }
 
-TEST(CheckTest, ThatTheOthersAnswerIsNotPretended) {
+TEST(CheckTest, WhetherOtherHostsAnswerIsNotChecked) {
   const Inventory inventory = sample_inventory(two_rigs());
-  const Finding sut = tell_reachability(inventory, inventory.hosts[0]);
+  const Finding sut = reachability_commands(inventory, inventory.hosts[0]);
   EXPECT_THAT(sut, not_checked());
   EXPECT_EQ(sut.mend, "ping -c 1 10.0.0.2; ping -c 1 10.0.0.3");
 }

@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"HostsOfAWord", "  - name: rig-pc\n", "  rig-pc\n  - name: rig-pc\n", ":5:9",
                 "illegal map value", "well-formed YAML"},
         Refusal{"HostWithoutName", "name: desk\n    address", "address", ":8:5: hosts[1]",
-                "no \"name\"", "name: what people"},
+                "no \"name\"", "name: the machine"},
         Refusal{"HostWithoutAddress", "    address: 192.168.7.3\n", "", ":8:5: hosts[1]",
                 "no \"address\"", "IPv4"},
         Refusal{"TwoHostsOfOneName", "name: desk", "name: rig-pc", ":8:11: hosts[1].name",

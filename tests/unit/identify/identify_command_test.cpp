@@ -154,7 +154,7 @@ TEST_F(IdentifyCommandTest, AfterARefusalEarlierResultsAreAsTheyWere) {
 
 TEST_F(IdentifyCommandTest, TheRecordingIsNotWrittenOver) {
   EXPECT_THAT(error_of({at("ride.csv"), "--json", at("ride.csv")}),
-              HasSubstr("--json: got " + at("ride.csv") + ", want another file than"));
+              HasSubstr("--json: got " + at("ride.csv") + ", want a file other than"));
 }
 
 TEST_F(IdentifyCommandTest, AModelThatCannotCancelIsNotSaved) {

@@ -140,7 +140,8 @@ TEST(IdentifyTest, AChannelThatIsNotThereIsRefusedWithThoseThatAre) {
 TEST(IdentifyTest, AnOutputThatIsTheInputIsRefused) {
   IdentifyOptions options;
   options.output = "a_y";
-  EXPECT_THAT(error_of(pegged_body(), options), HasSubstr("--output: got 'a_y', the input"));
+  EXPECT_THAT(error_of(pegged_body(), options),
+              HasSubstr("--output: got 'a_y', which is the input"));
 }
 
 TEST(IdentifyTest, AnOutputWithTheInputsValuesIsRefused) {

@@ -87,7 +87,7 @@ TEST(JoinTest, ChannelsThatDifferAreNamed) {
               HasSubstr("b.csv: got f [lbf], want f [N] as a.csv has"));
   Measurement more = part("b.csv", 0.0, 10.0);
   more.channels.push_back({"roll", "rad", {0.0, 0.0}});
-  EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), more), HasSubstr("roll [rad] besides"));
+  EXPECT_THAT(error_of(part("a.csv", 0.0, 1.0), more), HasSubstr("roll [rad] in addition"));
 }
 
 TEST(JoinTest, NothingIsRefused) { EXPECT_THROW((void)join({}), ConfigError); }

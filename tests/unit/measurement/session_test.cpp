@@ -122,7 +122,8 @@ TEST(SessionTest, ALetterThatTwoTrialsHaveIsNotEnough) {
     run_ticks(file, 100 * trial, 100 * trial + 100);
   }
   const std::string path = file_of(file.close());
-  EXPECT_THAT(error_of(path, "C"), HasSubstr("C, which several are, want one of 0 (C, 0.1 s), 1"));
+  EXPECT_THAT(error_of(path, "C"),
+              HasSubstr("C, which matches several trials, want one of 0 (C, 0.1 s), 1"));
   EXPECT_EQ(read_measurement(path, {"1"}).size(), 100u);
 }
 
@@ -145,7 +146,7 @@ TEST(SessionTest, ATrialThatWasBrokenOffEndsThere) {
   run_ticks(file, 200, 700);
   const Measurement sut = read_measurement(file_of(file.close()));
   EXPECT_EQ(sut.size(), 150u);
-  EXPECT_THAT(sut.notes, Contains("The trial was broken off after 150 of 500 ticks."));
+  EXPECT_THAT(sut.notes, Contains("The trial was ended early, after 150 of 500 ticks."));
 }
 
 TEST(SessionTest, TicksThatOneTopicLacksAreMissing) {
@@ -164,7 +165,7 @@ TEST(SessionTest, TicksThatOneTopicLacksAreMissing) {
     EXPECT_NEAR(sut.find("f")->values[n], 5e-3 * static_cast<double>(n), 1e-12);
     EXPECT_NEAR(sut.find("x_p")->values[n], 9e-3 * static_cast<double>(n), 1e-12);
   }
-  EXPECT_THAT(sut.notes, Contains("1 sample without a valid reading taken as missing."));
+  EXPECT_THAT(sut.notes, Contains("1 sample without a valid reading: treated as missing."));
 }
 
 TEST(SessionTest, ATopicThatIsMostlyMissingIsLeftOut) {
@@ -185,7 +186,7 @@ TEST(SessionTest, ARecordingWithoutTrialsIsReadAsAWhole) {
   run_ticks(file, 30, 130, false);
   const Measurement sut = read_measurement(file_of(file.close()));
   EXPECT_EQ(sut.size(), 100u);
-  EXPECT_THAT(sut.notes, Contains("The recording tells of no trial: read as a whole."));
+  EXPECT_THAT(sut.notes, Contains("The recording announces no trial; it is read as a whole."));
 }
 
 TEST(SessionTest, SamplesOfAnotherRigAreLeftOut) {
@@ -196,7 +197,7 @@ TEST(SessionTest, SamplesOfAnotherRigAreLeftOut) {
   }
   const Measurement sut = read_measurement(file_of(file.close()));
   EXPECT_EQ(sut.size(), 100u);
-  EXPECT_THAT(sut.notes, Contains("Rig 3; samples of other rigs left out."));
+  EXPECT_THAT(sut.notes, Contains("Rig 3; samples of other rigs are left out."));
 }
 
 TEST(SessionTest, SamplesDeliveredTwiceOrLateCountOnce) {

@@ -95,7 +95,7 @@ TEST_F(ResultFilesTest, ADeviceIsWrittenToAndStaysADevice) {
 
 TEST_F(ResultFilesTest, PlacesThatCannotBeAreRefused) {
   EXPECT_THAT(error_of({{"--save", folder_}}), HasSubstr("a folder, want the name of a file"));
-  EXPECT_THAT(error_of({{"--save", at("no") / "a"}}), HasSubstr("a folder that is there"));
+  EXPECT_THAT(error_of({{"--save", at("no") / "a"}}), HasSubstr("a folder that exists"));
   EXPECT_THAT(error_of({{"--save", at("a")}, {"--json", folder_ / "." / "a"}}),
               HasSubstr("--json: got"));
 }

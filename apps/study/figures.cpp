@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/figures.hpp"
+
+#include <cmath>
+
+#include "apps/session/protocol.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using report::Colour;
+
+constexpr const char* kPaperConditions = "ABC";
+
+}  // namespace
+
+std::vector<report::Figure> study_figures(const StudyRecord& record) {
+  std::vector<report::Figure> figures{figure_estimate(record), figure_models(record)};
+  if (!conditions_run(record, kPaperConditions).empty()) {
+    figures.push_back(figure_traces(record));
+    const auto& first = *record.results.front().trials.begin();
+    if (!first.second.metrics.moving_rms_mm.empty()) {
+      figures.push_back(figure_moving_rms(record));
+      figures.push_back(figure_moving_dwell(record));
+    }
+  }
+  for (const std::size_t metric : {std::size_t{0}, std::size_t{1}}) {
+    figures.push_back(figure_box(record, metric));
+  }
+  if (!conditions_run(record, kPaperConditions).empty()) {
+    figures.push_back(figure_open_loop(record));
+  }
+  figures.push_back(figure_box(record, 2));
+  if (!record.analysis.wrong.empty()) figures.push_back(figure_wrong_models(record));
+  return figures;
+}
+
+std::size_t typical_subject(const StudyRecord& record) {
+  const auto& metrics = record.analysis.conditions.contains('B')
+                            ? record.analysis.conditions.at('B')
+                            : record.analysis.conditions.begin()->second;
+  const std::vector<double>& values = metrics[0].per_subject;
+  const double middle = metrics[0].box.median;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i] - middle) < std::abs(values[best] - middle)) best = i;
+  }
+  return best;
+}
+
+report::Colour colour_of(char condition) {
+  switch (condition) {
+    case 'A':
+      return Colour::kConditionA;
+    case 'B':
+      return Colour::kConditionB;
+    case 'C':
+      return Colour::kConditionC;
+    case 'D':
+      return Colour::kConditionD;
+    case 'E':
+      return Colour::kConditionE;
+    case 'F':
+      return Colour::kConditionF;
+    default:
+      return Colour::kNeutral;
+  }
+}
+
+std::string label_of(char condition) {
+  return std::string(1, condition) + " " +
+         session::condition_name(static_cast<session::Condition>(condition));
+}
+
+std::string conditions_run(const StudyRecord& record, const std::string& among) {
+  std::string out;
+  for (const char condition : among) {
+    if (record.analysis.conditions.contains(condition)) out += condition;
+  }
+  return out;
+}
+
+}  // namespace stillhand::study

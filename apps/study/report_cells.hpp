@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "apps/study/analysis.hpp"
+
+/// Values and texts that several tables of the report share.
+namespace stillhand::study {
+
+/// Digits after the point of a metric, an index of session::kMetrics.
+int decimals(std::size_t metric);
+
+/// The paper's mean of a metric under condition A, B or C; RMS error at kPaperUnit_mm a unit.
+double paper_value(std::size_t metric, char condition);
+
+/// A probability for people; "< 10⁻³⁰⁰" if it underflows.
+std::string p_value(double p);
+
+/// "47 %" of the share 0.47.
+std::string percent(double share);
+
+/// "23.1 ± 4.0", with the number of subjects if the metric was not found in all.
+std::string mean_and_deviation(const MetricSample& sample, std::size_t metric);
+
+/// The comparison of two conditions, or nullptr.
+const Comparison* find_comparison(const Analysis& analysis, char from, char to);
+
+}  // namespace stillhand::study

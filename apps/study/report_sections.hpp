@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "apps/report/page.hpp"
+#include "apps/study/output.hpp"
+
+/// Parts of study_report().
+namespace stillhand::study {
+
+// report_tables.cpp
+/// Tables I and II, restoration, outcome, calibration; conditions A, B and C were run.
+void add_paper_tables(report::Page& page, const StudyRecord& record);
+/// MANOVA, and the number of subjects needed.
+void add_statistics(report::Page& page, const Analysis& analysis);
+
+// report_loop.cpp
+void add_crossover(report::Page& page, const Analysis& analysis);
+/// Open loop at the lines of the target, Eq. SU-3.
+void add_open_loop(report::Page& page, const Analysis& analysis);
+/// Conditions D, E and F against B.
+void add_mitigations(report::Page& page, const StudyRecord& record);
+/// Surviving shares, Eq. SU-4.
+void add_wrong_models(report::Page& page, const Analysis& analysis);
+
+}  // namespace stillhand::study

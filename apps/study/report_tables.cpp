@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Report: Tables I and II of the paper, restoration, calibration, and the statistics.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/report/text.hpp"
+#include "apps/study/report_cells.hpp"
+#include "apps/study/report_sections.hpp"
+#include "services/statistics/power.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using report::Cell;
+using report::Emphasis;
+using report::number;
+using report::short_number;
+using session::kMetrics;
+
+// The paper's p-values, Tables I and II.
+constexpr std::array<double, kMetricCount> kPaperAToB{1.79e-9, 1.5e-12, 5.67e-7};
+constexpr std::array<double, kMetricCount> kPaperBToC{4.05e-6, 4.07e-5, 0.0047};
+
+// Tables I and II of the paper: two conditions, their difference, its significance.
+report::Table paper_table(const Analysis& analysis, char from, char to, const char* title,
+                          const std::array<double, kMetricCount>& paper_p) {
+  report::Table table;
+  table.caption = title;
+  const std::string letters = {from, ',', ' ', to};
+  table.header = {"metric", std::string(1, from), std::string(1, to), "change [95 % CI]", "p",
+                  "g_z",    "paper " + letters,   "paper p"};
+  const Comparison* comparison = find_comparison(analysis, from, to);
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    std::vector<Cell> row{kMetrics[k].title, mean_and_deviation(analysis.conditions.at(from)[k], k),
+                          mean_and_deviation(analysis.conditions.at(to)[k], k)};
+    const auto& test = comparison->tests[k];
+    if (test) {
+      row.emplace_back(fmt::format("{} [{}, {}]", number(test->mean_difference, decimals(k)),
+                                   number(test->ci_low, decimals(k)),
+                                   number(test->ci_high, decimals(k))));
+      row.emplace_back(p_value(test->p), test->p < 0.01 ? Emphasis::kStrong : Emphasis::kNone);
+      row.emplace_back(test->hedges_gz ? number(*test->hedges_gz, 2) : "–");
+    } else {
+      row.insert(row.end(), 3, Cell("–"));
+    }
+    row.emplace_back(
+        number(paper_value(k, from), decimals(k)) + ", " + number(paper_value(k, to), decimals(k)),
+        Emphasis::kFaint);
+    row.emplace_back(short_number(paper_p[k]), Emphasis::kFaint);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+report::Table calibration_table(const Analysis& analysis, bool is_default) {
+  report::Table table;
+  table.caption =
+      is_default
+          ? "Comparison of the population with the paper. A and B are calibrated, the RMS error "
+            "with a unit that was itself inferred from the dwell ratios. C is a prediction."
+          : "Comparison of this study with the paper. A and B were calibrated with another "
+            "population or other lengths of the trials.";
+  table.header = {"metric", "condition", "study", "paper", "study / paper", "role"};
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    for (const char condition : {'A', 'B', 'C'}) {
+      const double mean = analysis.conditions.at(condition)[k].mean;
+      const double paper = paper_value(k, condition);
+      const double ratio = mean / paper;
+      const bool calibrated = is_default && condition != 'C';
+      table.rows.push_back(
+          {kMetrics[k].title, std::string(1, condition), number(mean, decimals(k)),
+           number(paper, decimals(k)),
+           Cell(number(ratio, 2),
+                calibrated && std::abs(ratio - 1.0) > 0.1 ? Emphasis::kBad : Emphasis::kNone),
+           calibrated   ? "calibrated"
+           : is_default ? "predicted"
+                        : "–"});
+    }
+  }
+  const double ours = analysis.conditions.at('B')[0].mean / analysis.conditions.at('A')[0].mean;
+  const double theirs = kMetrics[0].paper_b / kMetrics[0].paper_a;
+  table.rows.push_back({"RMS error, B / A (no unit needed)", "", number(ours, 2), number(theirs, 2),
+                        number(ours / theirs, 2), is_default ? "calibrated" : "–"});
+  return table;
+}
+
+report::Table restoration_table(const Analysis& analysis) {
+  report::Table table;
+  table.caption =
+      "Restoration (B − C)/(B − A) of the means; 100 % is the value on the stationary platform.";
+  table.header = {"metric", "study", "paper"};
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    table.rows.push_back(
+        {kMetrics[k].title, percent(analysis.restoration[k].value_or(NAN)),
+         Cell(percent(kMetrics[k].paper_restored_percent / 100.0), Emphasis::kFaint)});
+  }
+  return table;
+}
+
+void add_outcome(report::Page& page, const Analysis& analysis) {
+  const double restored = analysis.restoration[0].value_or(NAN);
+  const double paper = kMetrics[0].paper_restored_percent / 100.0;
+  page.paragraph(fmt::format(
+      "The motor cancels {} of the feedthrough force and restores {} of the RMS error. {}",
+      percent(analysis.cancelled_share.at('C').mean), percent(restored),
+      restored > paper
+          ? "That is more than in the paper. Between the pegged trial and tracking, these "
+            "subjects differ only in the stiffness of a co-contracted arm. Real subjects "
+            "also change posture and grip over minutes and adapt to the motor. The motion "
+            "also disturbs them in other ways than through the hand."
+          : "That is less than in the paper. This population's tracking arms differ more "
+            "from the idle ones that were identified, or its feedthrough differs more "
+            "from the model."));
+}
+
+void add_effect(report::Table& table, const char* name, const statistics::MultivariateTest& test) {
+  table.rows.push_back(
+      {name, short_number(test.wilks_lambda), number(test.wilks.f, 2),
+       number(test.wilks.numerator_df, 0) + ", " + number(test.wilks.denominator_df, 1),
+       Cell(p_value(test.wilks.p), test.wilks.p < 0.01 ? Emphasis::kStrong : Emphasis::kNone)});
+}
+
+void add_manova(report::Page& page, const MultivariateResult& result, const char* caption) {
+  if (!result.manova) {
+    page.paragraph(fmt::format("{} No test: {}.", caption, result.reason));
+    return;
+  }
+  report::Table table;
+  table.caption = caption;
+  table.header = {"effect", "Wilks' Λ", "F (Rao)", "degrees of freedom", "p"};
+  add_effect(table, "condition", result.manova->condition);
+  add_effect(table, "subject", result.manova->subject);
+  if (result.manova->interaction) add_effect(table, "interaction", *result.manova->interaction);
+  page.table(table);
+}
+
+}  // namespace
+
+void add_paper_tables(report::Page& page, const StudyRecord& record) {
+  const Analysis& analysis = record.analysis;
+  page.table(
+      paper_table(analysis, 'A', 'B',
+                  "Table I: the effect of the motion. Mean ± SD over the subjects; g_z is Hedges' "
+                  "corrected effect size of the differences; p is not adjusted for three metrics.",
+                  kPaperAToB));
+  page.table(paper_table(analysis, 'B', 'C',
+                         "Table II: the effect of cancellation. Columns as in Table I.",
+                         kPaperBToC));
+  page.table(restoration_table(analysis));
+  add_outcome(page, analysis);
+  page.table(calibration_table(analysis, is_calibrated(record.options)));
+}
+
+void add_statistics(report::Page& page, const Analysis& analysis) {
+  page.section("Multivariate analysis of variance");
+  add_manova(
+      page, analysis.main_effects,
+      "All three metrics, with one trial a cell. Only the main effects are tested, because an "
+      "interaction cannot be separated from the error.");
+  add_manova(
+      page, analysis.thirds,
+      "RMS error and dwell ratio, with the thirds of each trial (whole windows of 10 s) as "
+      "replicates, which makes the interaction of condition and subject testable. The thirds "
+      "of one trial are not independent, so these p-values are too small. The crossover "
+      "needs a whole trial.");
+  const Comparison* test = find_comparison(analysis, 'B', 'C');
+  if (test == nullptr) return;
+  report::Table table;
+  table.caption =
+      "Number of subjects needed to find the change from B to C at α = 0.01, if its size is that "
+      "of this study.";
+  table.header = {"metric", "effect size d_z", "for power 0.8", "for power 0.95"};
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    if (!test->tests[k]) continue;
+    const double dz = test->tests[k]->cohen_dz;
+    if (std::abs(dz) > 100.0 || std::abs(dz) < 0.01) continue;
+    table.rows.push_back({kMetrics[k].title, number(dz, 2),
+                          std::to_string(statistics::subjects_for_power(dz, 0.8, 0.01)),
+                          std::to_string(statistics::subjects_for_power(dz, 0.95, 0.01))});
+  }
+  if (!table.rows.empty()) page.table(table);
+}
+
+}  // namespace stillhand::study
