@@ -27,16 +27,16 @@ struct ArmFeel {
     visit("effective_mass_kg", self.effective_mass_kg, Range{0.05, 5.0},
           "[kg] M felt at the hand below 1 Hz; README, \"What the stick feels like\"");
     visit("effective_damping_n_s_m", self.effective_damping_n_s_m, Range{0.0, 300.0},
-          "[N s/m] B felt at the hand below 1 Hz");
+          "[N s/m] B felt at the hand below 1 Hz; README, \"What the stick feels like\"");
     visit("effective_stiffness_n_m", self.effective_stiffness_n_m, Range{0.0, 5000.0},
           "[N/m] K: shoulder, grip and seat of the rig's body in series, co-contracted");
     visit("cursor_per_hand", self.cursor_per_hand, Range{0.1, 100.0},
-          "[m/m] cursor per hand displacement; paper III-C (0.6 m/rad) over II (0.10 m lever)");
+          "[m/m] cursor displacement per hand displacement; paper III-C (0.6 m/rad) and II (0.10 m "
+          "lever)");
     visit("max_force_n", self.max_force_n, Range{0.0, 60.0},
-          "[N] bound of the volitional force, twice what the whole screen takes; README, "
-          "\"Bounds\"");
+          "[N] largest volitional force, twice the force for the whole screen; README, \"Bounds\"");
     visit("max_slew_n_s", self.max_slew_n_s, Range{1.0, 20000.0},
-          "[N/s] bound of its rate; README, \"Bounds\"");
+          "[N/s] largest rate of change of the volitional force; README, \"Bounds\"");
   }
 
   /// Eq. HO-1.

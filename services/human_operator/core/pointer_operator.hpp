@@ -39,10 +39,10 @@ class PointerOperator {
     template <typename Visitor, typename Self>
     static void fields(Visitor&& visit, Self& self) {
       visit("smoothing_rad_s", self.smoothing_rad_s, Range{5.0, 200.0},
-            "[rad/s] of the second-order lag that joins 60 Hz pointer samples; a person's own arm "
-            "is about 13");
+            "[rad/s] w_n of the second-order lag that smooths the 60 Hz pointer samples; the arm "
+            "of a person has about 13");
       visit("stale_age_ticks", self.stale_age_ticks, Range{1.0, 60000.0},
-            "[ticks] age at which a pointer is flagged as stale");
+            "[ticks] age from which a pointer is flagged as stale");
       visit.group("arm", self.arm);
     }
   };

@@ -24,18 +24,19 @@ struct PlatformConfig {
     visit("workspace_m", self.workspace_m, Range{0.01, 5.0},
           "[m] travel, each side of the centre; paper III-C (0.15 m)");
     visit("max_velocity_m_s", self.max_velocity_m_s, Range{0.1, 10.0},
-          "[m/s] the ball screw's; 0.15 m at 0.7 Hz needs 0.66 m/s");
+          "[m/s] speed limit of the ball screw; 0.15 m at 0.7 Hz needs 0.66 m/s");
     visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 50.0},
-          "[m/s^2] the servo motor's; twice the 7.5 m/s^2 of paper III-C");
-    visit("loop_frequency_hz", self.loop_frequency_hz, Range{1.0, 30.0},
-          "[Hz] natural frequency of the position loop; paper III-C wants a bandwidth above 6 Hz");
+          "[m/s^2] acceleration limit of the servo motor; twice the 7.5 m/s^2 of paper III-C");
+    visit(
+        "loop_frequency_hz", self.loop_frequency_hz, Range{1.0, 30.0},
+        "[Hz] natural frequency of the position loop; paper III-C requires a bandwidth above 6 Hz");
     visit("loop_damping", self.loop_damping, Range{0.3, 2.0}, "[-] damping ratio of that loop");
     visit("acceleration_feedforward", self.acceleration_feedforward, Range{0.0, 1.0},
           "[-] share of the commanded acceleration fed forward");
     visit("torque_lag_s", self.torque_lag_s, Range{0.0005, 0.01},
           "[s] first-order lag of the drive's torque loop and the screw");
     visit("catch_velocity_m_s", self.catch_velocity_m_s, Range{0.01, 2.0},
-          "[m/s] fastest approach to a command that the platform is away from");
+          "[m/s] largest speed at which the platform approaches a distant command");
     visit("stop_deceleration_m_s2", self.stop_deceleration_m_s2, Range{0.5, 50.0},
           "[m/s^2] deceleration when the command is missing");
   }

@@ -28,7 +28,7 @@ struct RigConfig {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] of the sensors' noise");
+    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] seed of the sensor noise");
     visit("max_operator_force_n", self.max_operator_force_n, Range{0.0, 60.0},
           "[N] bound of the volitional force at the hand");
     visit("max_operator_age_ticks", self.max_operator_age_ticks, Range{1.0, 10000.0},
