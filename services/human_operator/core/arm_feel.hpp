@@ -8,12 +8,13 @@
 
 namespace stillhand::human_operator {
 
-/// Stick and arm as the subject has learnt to feel them at the hand, and the bounds of the
-/// subject's force, Eq. HO-1:
+/// Dynamics of stick and arm at the hand, as the subject has learnt them, and the bounds of the
+/// subject's force:
 ///
 ///   f = M a + B v + K x,   x hand displacement from upright [m], + right
 ///
 /// J^* of the paper is 1 / (M s^2 + B s + K): joystick with the arm's driving-point impedance.
+/// Source: README Eq. HO-1; paper Eq. 2.
 struct ArmFeel {
   double effective_mass_kg = 1.38;
   double effective_damping_n_s_m = 9.5;
@@ -46,10 +47,10 @@ struct ArmFeel {
   }
 };
 
-/// Ticks in which a force fades once the subject has nothing to act on.
+/// Ticks in which the force fades to zero when the subject has no valid input.
 inline constexpr std::int64_t kFade_ticks = 50;
 
-/// The last thing a volitional force passes through.
+/// The envelope that bounds the volitional force; it is the last stage.
 inline signal::ForceEnvelope force_envelope(const ArmFeel& feel) {
   return signal::ForceEnvelope({feel.max_force_n, feel.max_slew_n_s, kFade_ticks});
 }

@@ -5,9 +5,9 @@
 
 namespace stillhand::rig {
 
-/// Seated subject as a lateral chain seat - trunk - arm - grip - hand, README Eq. RG-3.  Values are
-/// those of the idle, relaxed hand; `cocontraction_*` turn them into those of a hand that tracks.
-/// The ranges are wide enough for a population of subjects; README, "Where the numbers come from".
+/// Seated subject as a lateral chain seat - trunk - arm - grip - hand, README Eq. RG-3.  The values
+/// describe the idle, relaxed hand; the factors `cocontraction_*` give those of a tracking hand.
+/// The ranges cover a population of subjects; README, "Where the numbers come from".
 struct BodyConfig {
   double trunk_mass_kg = 30.0;                  ///< m_t
   double seat_stiffness_n_m = 10500.0;          ///< k_t
@@ -61,10 +61,10 @@ struct BodyConfig {
   }
 };
 
-/// Joystick, stated at the hand [N, kg, m], README Eq. RG-4 and RG-5.
+/// Joystick; all quantities refer to the hand [N, kg, m], README Eq. RG-4 and RG-5.
 struct StickConfig {
   double lever_m = 0.10;                   ///< r, hand to pivot
-  double handle_mass_kg = 0.10;            ///< m_g, above the load cell; feels a_y
+  double handle_mass_kg = 0.10;            ///< m_g, above the load cell; a_y acts on it
   double drive_mass_kg = 0.25;             ///< m_d, rotor, drum and stem; balanced about the pivot
   double viscous_damping_n_s_m = 0.5;      ///< b
   double coulomb_friction_n = 0.2;         ///< F_c
@@ -73,7 +73,7 @@ struct StickConfig {
   double stop_stiffness_n_m = 50000.0;     ///< k_s
   double stop_damping_n_s_m = 150.0;       ///< c_s
   double stop_travel_m = 0.002;            ///< rubber ends, steel begins
-  double peg_seat_time_s = 0.1;  ///< time constant with which the peg draws the stick to 0
+  double peg_seat_time_s = 0.1;            ///< time constant of the peg as it moves the stick to 0
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {

@@ -56,11 +56,11 @@ class Motor {
   };
 
   /// @param lever_m  hand to pivot [m]
-  /// @throws stillhand::ConfigError when a field is outside its range.
+  /// @throws stillhand::ConfigError if a field is outside its range.
   Motor(const MotorConfig& config, double lever_m);
 
   Output step(const MotorDemand& demand) noexcept;
-  /// True when the demand counts: there, permitted, fresh and finite.
+  /// True if the demand is valid, permitted, fresh and finite.
   [[nodiscard]] bool usable(const MotorDemand& demand) const noexcept;
 
  private:

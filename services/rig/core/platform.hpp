@@ -49,7 +49,7 @@ struct PlatformState {
   double acceleration_m_s2 = 0.0;
 };
 
-/// Command for this tick; `valid` false: none arrived.
+/// Command for this tick; `valid` false: no command arrived.
 struct PlatformDemand {
   bool valid;
   double position_m;
@@ -57,14 +57,16 @@ struct PlatformDemand {
   double acceleration_m_s2;
 };
 
-/// Ideal motion source for the body (paper II-A: the vehicle is much heavier), README Eq. RG-1:
+/// Ideal motion source for the body:
 ///
 ///   v_d = v_c + clip((w/2z)(x_c - x), V_catch),  a_d = 2 z w (v_d - v) + k_a a_c
 ///   tau da/dt = a_d - a
 ///
-/// then Eq. RG-2 limits the acceleration so that the platform can still stop inside its workspace.
-/// Without a command it brakes to rest and holds.  Acceleration is constant within a tick:
-/// position_m and velocity_m_s are those at its end.  Pure; never allocates or throws.
+/// Eq. RG-2 then limits the acceleration so that the platform can still stop inside its workspace.
+/// Without a command it brakes to rest and holds.  Acceleration is constant within a tick;
+/// position_m and velocity_m_s are the values at its end.
+/// Source: README Eq. RG-1 and RG-2; paper II-A (the vehicle is much heavier than the body).
+/// Pure; never allocates or throws.
 class Platform {
  public:
   struct Output {
@@ -72,7 +74,7 @@ class Platform {
     Flags flags;  ///< kInputStale (no command), kInputInvalid, kSaturated, kWorkspaceLimit
   };
 
-  /// @throws stillhand::ConfigError when a field is outside its range or the loop is unstable.
+  /// @throws stillhand::ConfigError if a field is outside its range or the loop is unstable.
   explicit Platform(const PlatformConfig& config);
 
   /// One tick.
@@ -81,7 +83,7 @@ class Platform {
  private:
   [[nodiscard]] double wanted_acceleration(const PlatformDemand& demand,
                                            Flags& flags) const noexcept;
-  /// Largest acceleration that still stops short of a wall at `room_m` ahead, Eq. RG-2.
+  /// Largest acceleration that still allows a stop before a wall at `room_m`, Eq. RG-2.
   [[nodiscard]] double brakeable(double room_m, double closing_m_s) const noexcept;
 
   PlatformConfig config_;

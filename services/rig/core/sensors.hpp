@@ -51,7 +51,7 @@ struct SensorConfig {
   }
 };
 
-/// What the sensing device sees; counts and volts as an acquisition board gives them.
+/// Sample of the acquisition board, in volts and counts.
 struct RawSample {
   double accel_x_v = 0.0;           ///< [V] fore-aft
   double accel_y_v = 0.0;           ///< [V] lateral, + right
@@ -61,7 +61,7 @@ struct RawSample {
   double roll_rad = 0.0;            ///< [rad] inclinometer
 };
 
-/// True quantities in front of the sensors; frame and signs as RawSample.
+/// True inputs of the sensors; frame and signs as in RawSample.
 struct SensorInput {
   double accel_x_m_s2;
   double accel_y_m_s2;
@@ -71,8 +71,8 @@ struct SensorInput {
   double roll_rad;
 };
 
-/// Sensors and 16-bit acquisition, README Eq. RG-9.  Deterministic in (config, seed, inputs).
-/// Never allocates or throws.
+/// Sensors and acquisition board.  Source: README Eq. RG-9.
+/// Config, seed and inputs determine the output.  Never allocates or throws.
 class Sensors {
  public:
   struct Output {
@@ -80,13 +80,13 @@ class Sensors {
     Flags flags;  ///< kSaturated: a channel is at the end of its range
   };
 
-  /// @throws stillhand::ConfigError when a field is outside its range.
+  /// @throws stillhand::ConfigError if a field is outside its range.
   Sensors(const SensorConfig& config, std::uint64_t seed);
 
   Output step(const SensorInput& input) noexcept;
 
  private:
-  /// Clipped to the board's range and rounded to a code [V].
+  /// Voltage, clipped to the range of the board and rounded to a code [V].
   [[nodiscard]] double converted(double volts, Flags& flags) const noexcept;
   double accelerometer(double accel_m_s2, Flags& flags) noexcept;
 

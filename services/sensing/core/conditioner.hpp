@@ -54,7 +54,7 @@ struct Config {
   }
 };
 
-/// One sample of the acquisition board, with its tick.  Signs as in Sensed.
+/// One sample of the acquisition board, with its tick; signs as in Sensed.
 struct DeviceSample {
   Tick tick = 0;
   double accel_x_v = 0.0;           ///< [V] fore-aft
@@ -67,21 +67,22 @@ struct DeviceSample {
 
 /// Calibrated, filtered sample.
 struct Sensed {
-  double accel_x_m_s2, accel_y_m_s2, accel_z_m_s2;  ///< specific force; z reads +1 g at rest
+  double accel_x_m_s2, accel_y_m_s2, accel_z_m_s2;  ///< specific force; z is +1 g at rest
   double roll_rad;
   double force_n;  ///< force of hand on stick, + right
   double theta_rad, omega_rad_s;
   Flags flags;  ///< kInputGap, kInputInvalid, kSaturated
 };
 
-/// Calibration and anti-alias filtering, README Eq. SE-1 to SE-4.  Acceleration and force pass the
-/// same filter, so their ratio, the feedthrough, is unchanged.
+/// Calibration and anti-alias filtering.  Acceleration and force pass the same filter, so their
+/// ratio, the feedthrough, is unchanged.
 ///
-/// Lost ticks set kInputGap; up to `max_bridged_ticks` are bridged by linear interpolation of the
-/// calibrated values, so that the filters keep the time base.  After more, after a jump back by
-/// more (the source restarted), and on the first sample the filters start settled at the sample.
-/// A channel that is NaN, infinite or impossible holds its last good value and sets kInputInvalid;
-/// a sample that comes twice or late repeats the last output with kInputInvalid.
+/// Lost ticks set kInputGap.  Linear interpolation of the calibrated values bridges up to
+/// `max_bridged_ticks`, so the filters keep the time base.  The filters start in steady state at
+/// the sample if the gap is longer, if the source restarted (a larger step back), and at the first
+/// sample.  A channel that is NaN, infinite or impossible holds its last good value and sets
+/// kInputInvalid.  A repeated or late sample gives the last output again with kInputInvalid.
+/// Source: README Eq. SE-1 to SE-4; paper III-A.
 /// Pure; never allocates or throws after construction.
 class Conditioner {
  public:
@@ -113,7 +114,7 @@ class Conditioner {
   double rad_per_count_;
   std::array<signal::Butterworth, kAnalogChannels> antialias_;
   signal::Butterworth rate_filter_;
-  std::array<double, kAnalogChannels> baseline_{};  ///< level at which the filters settled
+  std::array<double, kAnalogChannels> baseline_{};  ///< x_0 of Eq. SE-2
   Calibrated last_;
   Sensed out_{};
   Tick last_tick_ = 0;

@@ -6,7 +6,7 @@
 namespace stillhand::rig {
 namespace {
 
-TEST(InterlockReportTest, TellsTheOpeningAndTheForcesZeroOnceEach) {
+TEST(InterlockReportTest, ReportsTheOpeningAndTheZeroForceOnceEach) {
   InterlockReport sut;
   EXPECT_FALSE(sut.step(false, false, 9, 3.0).opened);
   const auto first = sut.step(true, false, 10, 3.0);
@@ -19,7 +19,7 @@ TEST(InterlockReportTest, TellsTheOpeningAndTheForcesZeroOnceEach) {
   EXPECT_FALSE(sut.step(true, false, 50, 0.0).force_zero);
 }
 
-TEST(InterlockReportTest, TellsAnOpeningOfTheNextTrialAnew) {
+TEST(InterlockReportTest, ReportsAnOpeningOfTheNextTrialAgain) {
   InterlockReport sut;
   sut.step(true, false, 10, 0.0);
   sut.step(false, false, 11, 0.0);
