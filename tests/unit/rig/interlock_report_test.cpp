@@ -23,20 +23,20 @@ TEST(InterlockReportTest, ReportsAnOpeningOfTheNextTrialAgain) {
   InterlockReport sut;
   sut.step(true, false, 10, 0.0);
   sut.step(false, false, 11, 0.0);
-  const auto told = sut.step(true, false, 20, 0.0);
-  EXPECT_TRUE(told.opened);
-  EXPECT_TRUE(told.force_zero);
-  EXPECT_EQ(told.after_ticks, 0);
+  const auto notice = sut.step(true, false, 20, 0.0);
+  EXPECT_TRUE(notice.opened);
+  EXPECT_TRUE(notice.force_zero);
+  EXPECT_EQ(notice.after_ticks, 0);
 }
 
 // Who pressed it waits for the answer, whatever had taken the force away before.
-TEST(InterlockReportTest, TellsAnEmergencyStopBehindAnotherOpening) {
+TEST(InterlockReportTest, ReportsAnEmergencyStopAfterAnotherOpening) {
   InterlockReport sut;
   sut.step(true, false, 10, 3.0);
   sut.step(true, false, 49, 0.0);
-  const auto told = sut.step(true, true, 60, 0.0);
-  EXPECT_TRUE(told.opened);
-  EXPECT_TRUE(told.force_zero);
+  const auto notice = sut.step(true, true, 60, 0.0);
+  EXPECT_TRUE(notice.opened);
+  EXPECT_TRUE(notice.force_zero);
   EXPECT_FALSE(sut.step(true, true, 61, 0.0).opened);
 }
 
