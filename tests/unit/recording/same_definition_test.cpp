@@ -47,7 +47,8 @@ TEST(SameDefinitionTest, EveryDifferenceThatMovesAByteIsNamed) {
   EXPECT_EQ(difference("module m { enum K { A, B, C }; " + in +
                        "struct P { unsigned long rig; K kind; In in; string<20> text; }; };"),
             "kind has other values");
-  EXPECT_EQ(difference("module m { struct Q { long a; }; };"), "its schema does not define the type");
+  EXPECT_EQ(difference("module m { struct Q { long a; }; };"),
+            "its schema does not define the type");
 }
 
 }  // namespace
