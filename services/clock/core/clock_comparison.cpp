@@ -53,19 +53,19 @@ std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noex
                       seconds(offset_ns - origin_offset_ns_), round_trip_s};
   if (count_ > 0 && sample.at_s <= samples_[count_ - 1].at_s) return std::nullopt;
 
-  double beside_s = 0.0;
+  double distance_s = 0.0;
   if (count_ >= kLeast) {
     const Line line = fitted();
-    beside_s = sample.offset_s - (line.offset_s + line.drift * (sample.at_s - line.at_s));
+    distance_s = sample.offset_s - (line.offset_s + line.drift * (sample.at_s - line.at_s));
     const double allowed_s =
         std::max(0.5 * sample.round_trip_s + 3.0 * line.spread_s, kLeastStep_s);
-    const bool beside = std::abs(beside_s) > allowed_s;
-    if (beside && (away_ == 0 || away_above_ == (beside_s > 0.0))) {
+    const bool off_line = std::abs(distance_s) > allowed_s;
+    if (off_line && (away_ == 0 || away_above_ == (distance_s > 0.0))) {
       ++away_;
-      away_above_ = beside_s > 0.0;
+      away_above_ = distance_s > 0.0;
     } else {
-      away_ = beside ? 1 : 0;
-      away_above_ = beside_s > 0.0;
+      away_ = off_line ? 1 : 0;
+      away_above_ = distance_s > 0.0;
     }
   }
   if (count_ == kWindow) forget_but(kWindow - 1);
@@ -75,7 +75,7 @@ std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noex
   ++steps_;
   forget_but(kStepSamples);
   away_ = 0;
-  return nanoseconds(beside_s);
+  return nanoseconds(distance_s);
 }
 
 void ClockComparison::forget_but(std::size_t newest) noexcept {
@@ -118,7 +118,7 @@ ClockComparison::Line ClockComparison::fitted() const noexcept {
       &Sample::round_trip_s);
   line.round_trip_s = quickest.round_trip_s;
   line.quickest_at_s = quickest.at_s;
-  line.beside_s =
+  line.distance_s =
       std::abs(quickest.offset_s - line.offset_s - line.drift * (quickest.at_s - line.at_s));
   double square_s2 = 0.0;
   for (std::size_t i = 0; i < line.used; ++i) {
@@ -141,7 +141,7 @@ std::optional<ClockOffset> ClockComparison::offset(std::int64_t now_ns) const no
   out.offset_ns = origin_offset_ns_ + nanoseconds(line.offset_s + line.drift * ahead_s);
   // Eq. CK-4.
   const double drift = std::isfinite(line.drift_sigma) ? 3.0 * line.drift_sigma : kPlainDrift;
-  out.uncertainty_ns = 1e9 * (0.5 * line.round_trip_s + line.beside_s +
+  out.uncertainty_ns = 1e9 * (0.5 * line.round_trip_s + line.distance_s +
                               drift * std::abs(now_s - line.quickest_at_s));
   out.drift_ppm = 1e6 * line.drift;
   out.drift_sigma_ppm = 1e6 * line.drift_sigma;

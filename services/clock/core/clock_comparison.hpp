@@ -61,7 +61,7 @@ class ClockComparison {
     double spread_s = 0.0;       ///< scaled median absolute deviation
     double round_trip_s = 0.0;   ///< shortest round trip
     double quickest_at_s = 0.0;  ///< time of that exchange
-    double beside_s = 0.0;       ///< distance between the line and its offset
+    double distance_s = 0.0;     ///< distance between the line and its offset
     std::size_t used = 0;
   };
 

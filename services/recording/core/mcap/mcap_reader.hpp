@@ -49,8 +49,7 @@ class McapReader {
  public:
   explicit McapReader(ByteSource& source, McapReaderOptions options = {});
 
-  /// Not ok if the source failed, contains no MCAP, or has a later version; everything is then
-  /// empty.
+  /// Not ok if the source failed, contains no MCAP, or has a later version; all else is then empty.
   [[nodiscard]] const Status& status() const noexcept { return status_; }
   /// False if the reader scanned the file because it has no usable index.
   [[nodiscard]] bool indexed() const noexcept { return indexed_; }
