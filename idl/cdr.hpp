@@ -10,11 +10,11 @@
 
 namespace stillhand {
 
-/// One message from its bytes as recorded: CDR with the 4-byte encapsulation header.
-/// @return false when the bytes are not such a message; `message` is then unspecified.
+/// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.
+/// @return false if the bytes are another message; `message` is then unspecified.
 template <typename Message>
 bool from_cdr(std::span<const std::byte> bytes, Message& message) {
-  // Fast CDR reads only, but its buffer type wants a non-const pointer.
+  // Fast CDR only reads here, but its buffer type needs a non-const pointer.
   auto* begin = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
   eprosima::fastcdr::FastBuffer buffer(begin, bytes.size());
   eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,

@@ -5,7 +5,7 @@
 
 namespace stillhand {
 
-/// Samples flow and misses count: also in a pause between two trials.
+/// True while samples flow and misses count, including a pause between two trials.
 inline bool is_running(stillhand_msgs::SessionState session) noexcept {
   return session == stillhand_msgs::SESSION_RUNNING || session == stillhand_msgs::SESSION_PAUSED;
 }

@@ -7,14 +7,14 @@
 
 namespace stillhand::topics {
 
-/// How a topic communicates; names its QoS profile in qos/profiles.xml.
+/// Communication pattern of a topic; selects its QoS profile in qos/profiles.xml.
 enum class Pattern {
   kStream1khz,    ///< "stream_1khz": newest sample counts, deadline, lifespan, liveliness
   kStreamSlow,    ///< "stream_slow": 10 to 60 Hz, newest sample counts, liveliness
-  kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last one
-  kEvent,         ///< "event": reliable, every one counts
-  kExchange,      ///< "exchange": best effort, what comes late is worth nothing
-  kCommand,       ///< "command": reliable, and nothing that was asked before one was there
+  kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last sample
+  kEvent,         ///< "event": reliable, every sample counts
+  kExchange,      ///< "exchange": best effort, a late sample has no use
+  kCommand,       ///< "command": reliable, a late joiner gets no earlier request
 };
 
 constexpr std::string_view profile_of(Pattern pattern) {
@@ -35,22 +35,21 @@ constexpr std::string_view profile_of(Pattern pattern) {
   return "";
 }
 
-/// Every process of a session.  "recorder" reads every topic, "experiment" is the session's
-/// conductor.
+/// Every process of a session.  "recorder" reads every topic, "experiment" conducts the session.
 inline constexpr std::array<std::string_view, 9> kServices{
     "motion",         "rig",      "sensing",   "cancellation", "display", "human_operator",
     "identification", "recorder", "experiment"};
 
-/// Identity of what listens to a secured bus from outside of a session (deploy/security).
+/// Identity of a listener on a secured bus that is outside of a session (deploy/security).
 inline constexpr std::string_view kTap = "tap";
 
-/// Who may ask something of a session from outside; no process of one waits for it.
+/// The client that may send requests to a session from outside; no process waits for it.
 inline constexpr std::string_view kDashboard = "dashboard";
 
-/// Text of the rig's event that an emergency stop opened the interlock.
+/// Text of the rig's event after an emergency stop opened the interlock.
 inline constexpr std::string_view kEmergencyStop = "emergency stop";
 
-/// The recorder's note of its file begins with this, where the process is to end with the session.
+/// Start of the recorder's note with its file name, if the process ends with the session.
 inline constexpr std::string_view kRecordingNote = "records ";
 
 /// One row of the catalogue.
@@ -58,7 +57,7 @@ struct Topic {
   std::string_view name;  ///< DDS topic name
   std::string_view type;  ///< DDS type name
   Pattern pattern;
-  double rate_hz;  ///< [Hz] nominal, 0 = when something happens
+  double rate_hz;  ///< [Hz] nominal, 0: irregular
   std::span<const std::string_view> writers;
   std::span<const std::string_view> readers;
 };
@@ -175,16 +174,15 @@ inline constexpr Topic kSessionCommand{"stillhand/session_command",
                                        who::kDashboards,
                                        who::kCommandReaders};
 
-/// The whole catalogue; idl/README.md holds the same rows for people (tests/interface compares
-/// them).
+/// The whole catalogue; idl/README.md holds the same rows (tests/interface compares them).
 inline constexpr std::array<const Topic*, 19> kCatalogue{
     &kPlatformCommand,  &kRawSample,      &kRigTruth,   &kSensed,        &kMotorCommand,
     &kTrackingSample,   &kOperatorForce,  &kPointer,    &kTrialControl,  &kTrialAssignment,
     &kFeedthroughModel, &kAugmentedModel, &kEvent,      &kServiceStatus, &kClockQuestion,
     &kClockAnswer,      &kClockOffset,    &kHostStatus, &kSessionCommand};
 
-/// Remote control of `stillhand record` and `stillhand replay`: outside of every session, so that
-/// no process waits for them.
+/// Remote control of `stillhand record` and `stillhand replay`, outside of every session; no
+/// process waits for these topics.
 inline constexpr Topic kRecorderCommand{"stillhand/recorder_command",
                                         "stillhand_msgs::RecorderCommand",
                                         Pattern::kCommand,

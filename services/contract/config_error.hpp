@@ -6,8 +6,8 @@
 
 namespace stillhand {
 
-/// Text from a file or command line as a part of one line of a message: control characters are '?',
-/// what is longer than 1000 bytes ends in "...".
+/// Text from a file or command line for one line of a message: '?' replaces control characters, and
+/// a text of more than 1000 bytes is cut and ends in "...".
 inline std::string in_one_line(std::string text) {
   constexpr std::size_t kMost = 1000;
   constexpr char kDelete = 0x7f;
@@ -23,8 +23,8 @@ inline std::string in_one_line(std::string text) {
   return text;
 }
 
-/// A setting or file the operator can fix.  Thrown only before a run starts; main() prints it as
-/// one line and exits with 2.
+/// A mistake in a setting or file that the operator can correct.  Thrown only before a run; main()
+/// prints it as one line and exits with status 2.
 class ConfigError : public std::runtime_error {
  public:
   /// Message: "<key>: got <got>, want <want>", for example

@@ -12,13 +12,13 @@
 
 namespace stillhand {
 
-/// Closed interval of admissible values, in the field's own unit.
+/// Closed interval of allowed values, in the unit of the field.
 struct Range {
   double min;
   double max;
 };
 
-// A core's Config describes its fields once, in one static function template:
+// The Config of a core describes its fields once, in one static function template:
 //
 //   struct Config {
 //     double trunk_mass_kg = 30.0;
@@ -29,10 +29,9 @@ struct Range {
 //       Winter (2009)"); visit.group("body", self.body);
 //     }
 //   };
-//
 // `self` is const or not, as the visitor needs.  Fields are double, std::int64_t, bool (Range{0,
-// 1}) or std::string (Range is the length).  Reading from YAML (services/settings), bounds, and the
-// printed list of settings all come from this one description.
+// 1}) or std::string (Range is the length).  Three parts use this description: the YAML reader
+// (services/settings), the check of the bounds, and the printed list of settings.
 
 /// Visitor that throws ConfigError for the first field outside its range; NaN is outside every
 /// range.
@@ -69,7 +68,7 @@ class FieldValidator {
 
 /// Checks every field of a Config against its range.
 /// @param scope  prefix of the keys in messages, for example "rig"
-/// @throws ConfigError naming the first field that is out of range.
+/// @throws ConfigError with the first field that is out of range.
 template <typename Config>
 void validate(const Config& config, const std::string& scope) {
   FieldValidator visitor(scope);

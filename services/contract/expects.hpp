@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// A broken precondition is a bug of the caller: say where and abort.  For a mistake that the
-/// operator can mend throw ConfigError; for running input set a Flag.
+/// A broken precondition is a bug of the caller: prints its place and aborts.  For a mistake that
+/// the operator can correct, throw ConfigError; for bad input during a run, set a Flag.
 #define STILLHAND_EXPECTS(condition)                                                            \
   do {                                                                                          \
     if (!(condition)) {                                                                         \

@@ -6,7 +6,7 @@
 namespace stillhand {
 
 /// Sample index of the sample clock [-], counted from the start of the rig (or of the sensing
-/// hardware).  The one clock of the control loop: cores know no other time.
+/// hardware).  It is the only clock of the control loop; cores use no other time.
 using Tick = std::int64_t;
 
 /// Control rate of the experiment [Hz]; paper section III-C ("motion control was managed at 1000
@@ -20,8 +20,9 @@ constexpr Tick ticks_in(double duration_s) noexcept {
   return static_cast<Tick>(duration_s * kControlRateHz + (duration_s < 0.0 ? -0.5 : 0.5));
 }
 
-/// From a model's publication to the first tick that it may be used at [ticks]: long enough that
-/// whoever uses it takes it at that very tick, so that a replay answers as the session did.
+/// Time from the publication of a model to the first tick at which it may be used [ticks].  It is
+/// long enough for the canceller to take the model at exactly this tick, so a replay gives the same
+/// answers as the session.
 inline constexpr Tick kModelNotice_ticks = 250;
 
 }  // namespace stillhand

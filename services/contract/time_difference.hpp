@@ -6,8 +6,8 @@
 
 namespace stillhand {
 
-/// a - b [ns] of two times that somebody else wrote, within 30 years: whatever they are, what is
-/// computed on with it does not overflow.  Pure.
+/// a - b [ns] of two received times, clipped to about 30 years: further computation with the result
+/// does not overflow, for any received values.  Pure.
 inline std::int64_t difference_ns(std::int64_t a_ns, std::int64_t b_ns) noexcept {
   constexpr std::int64_t kMost_ns = 1'000'000'000'000'000'000;
   std::int64_t difference = 0;

@@ -7,16 +7,16 @@
 
 namespace stillhand {
 
-/// What a trial is for.
+/// Purpose of a trial.
 enum class TrialPhase : std::uint8_t {
-  kIdle = 0,      ///< nothing runs; every force is zero
+  kIdle = 0,      ///< no trial runs; every force is zero
   kPegged = 1,    ///< stick held by the peg, idle hand: feedthrough identification (paper III-A)
   kTracking = 2,  ///< pursuit tracking (paper III-C)
 };
 
-/// One trial on the sample clock.  Measured ticks are [start_tick, start_tick + duration_ticks);
-/// motion and target also run during `ramp_ticks` before and after, growing and fading.
-/// Holds nothing that tells the condition: display and operator stay blinded.
+/// One trial on the sample clock.  Measured ticks are [start_tick, start_tick + duration_ticks).
+/// Motion and target also run during `ramp_ticks` before and after, where they fade in and out.
+/// The struct does not contain the condition: display and operator stay blinded.
 struct Trial {
   std::int64_t number = -1;  ///< [-] counted from 0 in a session; -1: none yet
   TrialPhase phase = TrialPhase::kIdle;
@@ -24,8 +24,8 @@ struct Trial {
   Tick duration_ticks = 0;  ///< [ticks] measured length
   Tick ramp_ticks = 0;      ///< [ticks] length of each ramp
 
-  /// True where start, length and ramps are 0 to 2^60 ticks: adding them cannot overflow, whatever
-  /// a message said.  The functions below are for those alone.
+  /// True if start, length and ramps are 0 to 2^60 ticks, so that their sum cannot overflow for any
+  /// received message.  The functions below require it.
   [[nodiscard]] bool sound() const noexcept {
     constexpr Tick kLast = Tick{1} << 60;
     return start_tick >= 0 && start_tick <= kLast && duration_ticks >= 0 &&
@@ -36,7 +36,7 @@ struct Trial {
     return phase != TrialPhase::kIdle && tick >= start_tick - ramp_ticks &&
            tick < start_tick + duration_ticks + ramp_ticks;
   }
-  /// True for the measured ticks alone.
+  /// True only for the measured ticks.
   [[nodiscard]] bool measures(Tick tick) const noexcept {
     return phase != TrialPhase::kIdle && tick >= start_tick && tick < start_tick + duration_ticks;
   }

@@ -14,6 +14,6 @@ int main(int argc, char** argv) {
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.add_flag("--pointer", with_pointer,
-                     "a person's mouse instead of the simulated subject");
+                     "use a person's mouse instead of the simulated subject");
       });
 }

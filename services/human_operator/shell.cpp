@@ -4,8 +4,8 @@
 namespace stillhand::human_operator {
 namespace {
 
-// The samples of pointer and tracking both come from the display: with no new tick on the pointer
-// for this long while tracking goes on, the window is gone.
+// The display sends both pointer and tracking samples. If tracking continues and the pointer gets
+// no new tick for this time, the window is closed.
 constexpr Tick kPointerLost_ticks = 2000;
 
 SubjectConfig seeded(SubjectConfig config, std::uint64_t seed) {

@@ -11,7 +11,7 @@
 
 namespace stillhand::human_operator {
 
-/// What a subject is started with: the simulated one, or the arm behind a person's pointer.
+/// Settings of both subjects: the simulated one and the arm that a person's pointer moves.
 struct SubjectConfig {
   CrossoverConfig crossover;
   PointerOperator::Config pointer;
@@ -23,10 +23,11 @@ struct SubjectConfig {
   }
 };
 
-/// The subject's process: one volitional force for each tracking sample, in the receiving thread.
+/// The process of the subject: one volitional force for each tracking sample, in the receiving
+/// thread.
 class Shell {
  public:
-  /// @param with_pointer  a person at the mouse takes the simulated subject's place
+  /// @param with_pointer  a person's mouse replaces the simulated subject
   Shell(runtime::Service& service, bool with_pointer);
   void run() { service_.run(); }
 

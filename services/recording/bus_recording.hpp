@@ -8,12 +8,12 @@
 
 namespace stillhand::recording {
 
-/// A bus on a tape, whoever listens: a channel for each writer, what came of each, and both as
-/// metadata of every file, "stillhand.counts" and "stillhand.trials".  take() is for DDS's threads,
-/// the rest for any.
+/// Records a bus on a tape: a channel for each writer, the counts of each writer, and the trials.
+/// Every file contains the metadata "stillhand.counts" and "stillhand.trials".  The threads of DDS
+/// call take(); any thread may call the other functions.
 class BusRecording {
  public:
-  /// @throws ConfigError as Tape does
+  /// @throws ConfigError like Tape
   explicit BusRecording(TapeOptions options);
 
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
@@ -26,7 +26,7 @@ class BusRecording {
  private:
   [[nodiscard]] std::vector<Metadata> last_words() const;
 
-  // The tape asks both for their words as it closes a file: it is made after them and ends first.
+  // The tape reads both when it closes a file, so it is constructed after them and destroyed first.
   TrialLog trials_;
   Tally tally_;
   Tape tape_;

@@ -24,7 +24,7 @@ Status failure(const std::string& path, const std::string& step, int error) {
                          path + ": " + step + ": " + reason(error));
 }
 
-// All bytes, however the system cuts them up.
+// Writes all bytes, also if the system accepts them in parts.
 Status write_all(int descriptor, const std::string& path, std::span<const std::byte> bytes,
                  std::uint64_t& written) {
   while (!bytes.empty()) {
@@ -50,9 +50,9 @@ FileSink::FileSink(const std::string& path, Existing existing, Durability durabi
           0644)) {
   if (descriptor_ < 0) {
     throw ConfigError(path, reason(errno),
-                      errno == EEXIST ? "a name that is not taken" : "a file that can be made");
+                      errno == EEXIST ? "an unused name" : "a file that can be created");
   }
-  // A file system without locks only takes the readers' notice away, so a failure is none.
+  // A failure is ignored: on a file system without locks, readers only lose this information.
   (void)::flock(descriptor_, LOCK_EX | LOCK_NB);
 }
 
@@ -64,7 +64,7 @@ Status FileSink::write(std::span<const std::byte> bytes) {
 }
 
 Status FileSink::flush() {
-  // EINVAL: a pipe or a device has nothing to synchronise.
+  // EINVAL: a pipe or a device cannot be synchronised.
   if (::fdatasync(descriptor_) != 0 && errno != EINVAL) {
     return failure(path_, "cannot synchronise", errno);
   }
@@ -72,13 +72,13 @@ Status FileSink::flush() {
 }
 
 FileSource::FileSource(const std::string& path)
-    // A pipe without a writer would be waited for, with every signal blocked.
+    // Without O_NONBLOCK, a pipe without a writer would block, and every signal is masked.
     : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   if (descriptor_ < 0) throw ConfigError(path, reason(errno), "a file that can be read");
   struct stat facts {};
   if (::fstat(descriptor_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
     ::close(descriptor_);
-    throw ConfigError(path, "no regular file", "a file");
+    throw ConfigError(path, "not a regular file", "a file");
   }
   size_ = static_cast<std::uint64_t>(facts.st_size);
 }
@@ -113,10 +113,10 @@ Status FileSource::read_at(std::uint64_t offset, std::span<std::byte> into) {
 }
 
 Status write_file_atomically(const std::string& path, std::string_view content) {
-  // The process number keeps two writers of one name apart.
+  // The process number distinguishes two writers of one name.
   const std::string temporary = path + ".new-" + std::to_string(::getpid());
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) return failure(temporary, "cannot make", errno);
+  if (descriptor < 0) return failure(temporary, "cannot create", errno);
   std::uint64_t written = 0;
   Status status = write_all(descriptor, temporary, std::as_bytes(std::span(content)), written);
   if (status.ok() && ::fsync(descriptor) != 0) {

@@ -11,21 +11,21 @@
 
 namespace stillhand::recording {
 
-/// What to do about a file that is already there.
+/// Action if the file already exists.
 enum class Existing { kRefuse, kReplace };
 
-/// What write() to a file waits for.
+/// Condition for the return of write().
 enum class Durability {
-  kProcess,  ///< the system has it: it survives the end of the process
-  kPower     ///< the disk has it (fdatasync): it survives a loss of power, as far as the disk does
+  kProcess,  ///< the operating system has the bytes: they survive the end of the process
+  kPower     ///< the disk has the bytes (fdatasync): they survive a power failure, if the disk does
 };
 
-/// Sink on a file.  Unbuffered: what write() accepted survives the end of the process; flush()
-/// makes it survive a loss of power (fdatasync).  Holds an advisory lock (flock) as long as it
-/// lives, by which readers know that the file is still being written.  Thread-compatible.
+/// Sink on a file.  It is unbuffered: bytes accepted by write() survive the end of the process, and
+/// after flush() (fdatasync) they survive a power failure.  The sink holds an advisory lock (flock)
+/// for its lifetime; readers use the lock to detect a file in writing.  Thread-compatible.
 class FileSink : public ByteSink {
  public:
-  /// @throws ConfigError when the file cannot be made, with the system's reason.
+  /// @throws ConfigError with the reason of the system if the file cannot be created.
   explicit FileSink(const std::string& path, Existing existing = Existing::kRefuse,
                     Durability durability = Durability::kProcess);
   ~FileSink() override;
@@ -43,11 +43,11 @@ class FileSink : public ByteSink {
   std::uint64_t size_ = 0;
 };
 
-/// Source on a file; its size is taken once, at opening: what is appended later is not seen.
+/// Source on a file.  It reads the size once, at opening, and ignores bytes appended later.
 /// Thread-compatible.
 class FileSource : public ByteSource {
  public:
-  /// @throws ConfigError when the file cannot be opened or is no regular file.
+  /// @throws ConfigError if the file cannot be opened or is not a regular file.
   explicit FileSource(const std::string& path);
   ~FileSource() override;
   FileSource(const FileSource&) = delete;
@@ -55,7 +55,7 @@ class FileSource : public ByteSource {
 
   Status read_at(std::uint64_t offset, std::span<std::byte> into) override;
   [[nodiscard]] std::uint64_t size() const override { return size_; }
-  /// A FileSink has it open at this moment, or it grew since it was opened here.
+  /// True if a FileSink has the file open, or if the file has grown since its opening here.
   [[nodiscard]] bool being_written() const;
 
  private:
@@ -64,14 +64,15 @@ class FileSource : public ByteSource {
   std::uint64_t size_ = 0;
 };
 
-/// Writes a file so that a reader sees the old one or the whole new one: temporary file beside it,
-/// fsync, rename.  On failure the old file stays and the temporary one is removed.
+/// Replaces a file atomically: a reader sees either the old file or the complete new file.  Writes
+/// a temporary file in the same folder, then calls fsync and rename.  After a failure the old file
+/// remains and the temporary file is removed.
 Status write_file_atomically(const std::string& path, std::string_view content);
 
-/// Whole file as text.  @throws ConfigError when it cannot be read.
+/// The whole file as text.  @throws ConfigError if it cannot be read.
 std::string read_file(const std::string& path);
 
-/// parse_csv() on a file.  @throws ConfigError as both do.
+/// parse_csv() of a file.  @throws ConfigError like read_file() and parse_csv().
 Recording read_csv(const std::string& path);
 /// to_csv() into a file, atomically.
 Status write_csv(const std::string& path, const Recording& recording);

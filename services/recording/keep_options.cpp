@@ -9,13 +9,13 @@
 namespace stillhand::recording {
 namespace {
 
-// At most 1 s is lost on kill -9: the interval, one round of the writing thread (20 ms) and a
-// write to a disk that is not idle.
+// A kill -9 loses at most 1 s: the interval, one round of the writing thread (20 ms) and one write
+// to a busy disk.
 constexpr int kLeastFlush_ms = 10;
 constexpr int kMostFlush_ms = 800;
 constexpr double kBytesPerMb = 1e6;
 constexpr double kMostMb = 1e9;
-constexpr const char* kNotPacked = "none";  // what a file calls ""
+constexpr const char* kNotPacked = "none";  // "" in the file
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void add_keep_options(CLI::App& cli, KeepOptions& options) {
          [&options](const std::string& name) {
            options.compression = *compression_of(name == kNotPacked ? "" : name);
          },
-         "of the chunks: zstd, lz4 or none [zstd]")
+         "compression of the chunks: zstd, lz4 or none [zstd]")
       ->check(CLI::IsMember({"zstd", "lz4", kNotPacked}))
       ->group(group);
   cli.add_option_function<int>(
@@ -34,15 +34,16 @@ void add_keep_options(CLI::App& cli, KeepOptions& options) {
          [&options](int interval_ms) {
            options.flush_interval = std::chrono::milliseconds(interval_ms);
          },
-         "to the file at least that often [ms]; a kill loses no more than this and a write [500]")
+         "longest time between two chunks [ms]; a kill loses at most this time and one write [500]")
       ->check(CLI::Range(kLeastFlush_ms, kMostFlush_ms))
       ->group(group);
   cli.add_flag_callback(
          "--fsync", [&options] { options.durability = Durability::kPower; },
-         "wait for the disk after each chunk: a loss of power loses no more than a kill")
+         "wait for the disk after each chunk; a power failure then loses no more than a kill")
       ->group(group);
-  cli.add_option("--min-free-mb", options.min_free_mb,
-                 "stop, with a whole file, when less is left on the disk [MB]")
+  cli.add_option(
+         "--min-free-mb", options.min_free_mb,
+         "smallest free space on the disk [MB]; below it close the file completely and stop")
       ->check(within(0.0, kMostMb))
       ->capture_default_str()
       ->group(group);

@@ -15,23 +15,22 @@ class App;
 
 namespace stillhand::recording {
 
-/// How a recorder keeps what it gets; the same options wherever one is started.
+/// Options of a recorder; every program that starts a recorder has the same options.
 struct KeepOptions {
   Compression compression = Compression::kZstd;
-  std::chrono::milliseconds flush_interval{500};  ///< between chunks: a kill costs at most this
-                                                  ///< and what waits for the disk
+  std::chrono::milliseconds flush_interval{500};  ///< between chunks: a kill loses at most this
+                                                  ///< time and the data that wait for the disk
   Durability durability = Durability::kProcess;
-  double min_free_mb = 16;  ///< [MB] left on the disk; below, the recording stops
+  double min_free_mb = 16;  ///< [MB] free on the disk; below it the recording stops
 };
 
-/// Adds --compression, --flush-ms, --fsync and --min-free-mb, which set `options` as they are
-/// parsed.
+/// Adds --compression, --flush-ms, --fsync and --min-free-mb; parsing sets `options`.
 void add_keep_options(CLI::App& cli, KeepOptions& options);
 
-/// The same as words of a command line, for a recorder that another process starts.
+/// The options as words of a command line, to start a recorder in another process.
 std::vector<std::string> keep_words(const KeepOptions& options);
 
-/// A tape that keeps what it gets so.
+/// Options of a tape with these settings.
 TapeOptions tape_options(const KeepOptions& keep, const std::string& path);
 
 }  // namespace stillhand::recording

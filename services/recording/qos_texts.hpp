@@ -8,11 +8,11 @@
 
 namespace stillhand::recording {
 
-/// A writer's QoS as the texts of its channel (FORMAT.md, "Channel metadata").
+/// QoS of a writer as metadata of its channel (FORMAT.md, "Channel metadata").
 TextMap qos_texts(const runtime::WriterQos& qos);
 
-/// Back again; nothing when the texts hold no QoS, as those of other programs.  Unknown words count
-/// as the default.
+/// The reverse; nothing if the texts hold no QoS, as in files of other programs.  An unknown word
+/// gives the default.
 std::optional<runtime::WriterQos> qos_of(const TextMap& texts);
 
 }  // namespace stillhand::recording

@@ -10,15 +10,16 @@
 
 namespace stillhand::recording {
 
-/// What every 1 kHz message of idl/control_loop.idl begins with.
+/// First fields of every 1 kHz message of idl/control_loop.idl.
 struct SampleHead {
   std::uint32_t rig = 0;
-  Tick tick = -1;  ///< -1: the bytes are not such a message
+  Tick tick = -1;  ///< -1: the bytes are another message
   std::int64_t stamp_ns = 0;
 };
 
-/// Reads it from CDR: 4 bytes of encapsulation (second one 1 = little-endian), then rig (4),
-/// padding (4), tick (8), stamp (8); offsets by the CDR alignment rules, OMG CORBA 3.x 15.3.
+/// Reads these fields from CDR: 4 bytes of encapsulation (the second is 1 for little-endian), then
+/// rig (4), padding (4), tick (8), stamp (8).  The offsets follow the CDR alignment rules, OMG
+/// CORBA 3.x 15.3.
 inline SampleHead sample_head(std::span<const std::byte> cdr) noexcept {
   constexpr std::size_t kHeadBytes = 4 + 24;
   if (cdr.size() < kHeadBytes || cdr[1] != std::byte{1}) return {};

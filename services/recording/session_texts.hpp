@@ -8,12 +8,11 @@
 
 namespace stillhand::recording {
 
-/// Where and by what a recording is made: host, domain, versions, clocks.  What every metadata
-/// record "stillhand.session" holds.
+/// Content of the metadata record "stillhand.session": host, domain, versions and clocks.
 TextMap session_texts(std::uint32_t domain, const std::string& recorded_by);
 
-/// What the stamps of the samples are behind the log times [ns]: system clock less monotonic clock,
-/// now.
+/// Present offset of the log times from the stamps of the samples [ns]: system clock minus
+/// monotonic clock.
 std::string clock_offset();
 
 }  // namespace stillhand::recording

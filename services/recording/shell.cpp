@@ -46,7 +46,7 @@ void Shell::subscribe(const topics::Topic& topic) {
       });
 }
 
-// A trial that nobody keeps is no trial: with the tape the process ends, run() says why.
+// An unrecorded trial is not valid: the process ends with the tape, and run() reports the reason.
 void Shell::watch() {
   while (!service_.stop().requested() && !recording_->tape().stopped()) {
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWatch_ns);
@@ -58,10 +58,10 @@ void Shell::watch() {
   }
 }
 
-// What they say at their end belongs to the session.
+// The last messages of the other processes belong to the session.
 void Shell::see_others_out() {
   constexpr std::int64_t kPatience_ns = 3'000'000'000;
-  constexpr std::size_t kOthers = topics::kServices.size() - 2;  // but the experiment, which waits
+  constexpr std::size_t kOthers = topics::kServices.size() - 2;  // without recorder and experiment
   const std::int64_t limit_ns = runtime::monotonic_ns() + kPatience_ns;
   while (runtime::monotonic_ns() < limit_ns && service_.bus().lost_peers().size() < kOthers) {
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWatch_ns);
@@ -78,8 +78,8 @@ void Shell::run() {
   service_.run([&] {
     watch();
     if (!service_.options().one_session) return;
-    // Its life sign goes on until the file is whole: who waits for the one may take the other.
-    recording_->tape().set_paused(true);  // what still comes is of the time after the session
+    // The life sign continues until the file is complete: its end shows that the file is ready.
+    recording_->tape().set_paused(true);  // later messages do not belong to the session
     closed = recording_->tape().close();
   });
   if (!service_.options().one_session) closed = recording_->tape().close();
@@ -88,7 +88,7 @@ void Shell::run() {
   const std::uint64_t missing = end.dropped + unattributed_.load(std::memory_order_relaxed);
   if (missing > 0) {
     throw std::runtime_error(end.file + ": " + std::to_string(missing) +
-                             " messages received and not written");
+                             " received messages not written");
   }
 }
 

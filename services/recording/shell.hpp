@@ -11,13 +11,13 @@
 
 namespace stillhand::recording {
 
-/// The recorder's process: every topic of the catalogue, as it came, into one MCAP file.  The
-/// receiving thread only copies bytes into the tape's queue.
+/// The process of the recorder: it writes every topic of the catalogue, unchanged, into one MCAP
+/// file.  The receiving thread only copies bytes into the queue of the tape.
 class Shell {
  public:
-  /// @throws ConfigError as Tape does
+  /// @throws ConfigError like Tape
   Shell(runtime::Service& service, const KeepOptions& keep);
-  /// @throws std::runtime_error when something that was received is not in the file
+  /// @throws std::runtime_error if a received message is not in the file
   void run();
 
  private:
@@ -26,7 +26,7 @@ class Shell {
   void see_others_out();
 
   runtime::Service& service_;
-  std::optional<BusRecording> recording_;  // made last, so that a refusal leaves no file
+  std::optional<BusRecording> recording_;  // constructed last, so a refusal leaves no file
   std::atomic<std::uint64_t> unattributed_{0};
 };
 

@@ -15,7 +15,7 @@ using runtime::TappedSample;
 
 namespace {
 
-/// Its samples begin with rig, tick and stamp, one tick after the other.
+/// True if the samples begin with rig, tick and stamp and have consecutive ticks.
 bool counts_ticks(const std::string& type) {
   return std::ranges::any_of(topics::kCatalogue, [&](const topics::Topic* row) {
     return row->type == type && row->pattern == topics::Pattern::kStream1khz;
@@ -49,7 +49,7 @@ void Tally::take(const FoundWriter& writer, const TappedSample& sample) {
   }
   Source& source = known->second;
   source.count.step(sample.sequence, source.has_ticks ? sample_head(sample.bytes).tick : -1);
-  // MCAP has 32 bits for it; a reader sees a gap all the same.
+  // MCAP has 32 bits for the sequence; a gap remains visible.
   tape_->put(source.channel, static_cast<std::uint32_t>(sample.sequence), sample.logged_ns,
              sample.source_ns, sample.bytes);
 }

@@ -21,21 +21,21 @@ struct TopicTally {
   bool type_known = true;
 };
 
-/// From the bus to the tape: makes a channel for each writer at its first sample and counts what
-/// came of each.  take() is for DDS's threads, the rest for any.
+/// Passes samples from the bus to the tape: makes a channel for each writer at its first sample and
+/// counts its samples.  The threads of DDS call take(); any thread may call the other functions.
 class Tally {
  public:
-  /// @param tape  not nullptr; not used before the first take()
+  /// @param tape  not nullptr; first used by take()
   explicit Tally(Tape* tape) : tape_(tape) {}
 
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
 
-  /// By topic; the wanted writers that sent nothing are there with zeros.
+  /// Counts by topic; a wanted writer that sent nothing has zeros.
   [[nodiscard]] std::map<std::string, TopicTally> topics(
       const std::vector<runtime::FoundWriter>& found) const;
-  /// Topics of which a sample came.
+  /// Topics with at least one sample.
   [[nodiscard]] std::set<std::string> heard() const;
-  /// The same counts as the metadata record "stillhand.counts" of a file.
+  /// The counts as metadata record "stillhand.counts" of a file.
   [[nodiscard]] TextMap texts() const;
 
  private:

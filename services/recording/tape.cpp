@@ -20,7 +20,7 @@ constexpr std::size_t kWakeBytes = 1u << 20;
 constexpr std::int64_t kGuardInterval_ns = 100'000'000;
 constexpr std::size_t kMaxWindowBytes = std::size_t{1} << 30;
 
-/// Left on the disk that holds `path`; UINT64_MAX when the system does not tell.
+/// Free bytes on the disk of `path`; UINT64_MAX if the system does not report them.
 std::uint64_t free_bytes_at(const std::string& path) {
   struct statvfs facts {};
   std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -63,7 +63,7 @@ struct Tape::Part {
   McapWriter writer;
   std::map<std::uint32_t, ChannelId> ids;
   std::map<std::string, SchemaId> schemas;
-  std::uint64_t first_ns = 0;  // log time of its first message, 0: none yet
+  std::uint64_t first_ns = 0;  // log time of the first message, 0: none yet
 };
 
 Tape::Tape(TapeOptions options)
@@ -76,7 +76,7 @@ Tape::Tape(TapeOptions options)
   if (!open_part()) {
     part_.reset();
     std::error_code none;
-    std::filesystem::remove(options_.path, none);  // this tape made it, and nothing is in it
+    std::filesystem::remove(options_.path, none);  // this tape created the file, and it is empty
     throw std::runtime_error(status_.stopped);
   }
   writing_ = std::jthread([this](const std::stop_token& stop) { work(stop); });

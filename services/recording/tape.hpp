@@ -20,65 +20,67 @@
 
 namespace stillhand::recording {
 
-/// How a recording is kept.
+/// Options of a tape.
 struct TapeOptions {
-  std::string path;                              ///< of the first file
+  std::string path;                              ///< path of the first file
   McapWriterOptions writer;                      ///< chunks and compression
-  std::int64_t flush_interval_ns = 500'000'000;  ///< [ns] between chunks; lost by a kill at most
-  Durability durability = Durability::kProcess;  ///< what a chunk waits for
+  std::int64_t flush_interval_ns = 500'000'000;  ///< [ns] between chunks; largest loss by a kill
+  Durability durability = Durability::kProcess;  ///< condition for the end of a write
   RotationLimits rotation;
-  std::uint64_t min_free_bytes = 16u << 20;   ///< [B] left on the disk; below, the tape stops
-  std::int64_t window_ns = 0;                 ///< [ns] keep only this much until trigger(), 0: all
-  std::size_t max_queued_bytes = 256u << 20;  ///< [B] waiting for the disk; what more comes is lost
-  TextMap session;                            ///< metadata "stillhand.session" of every file
-  std::function<std::vector<Metadata>()> last_words;  ///< metadata added to a file as it is closed
+  std::uint64_t min_free_bytes = 16u << 20;  ///< [B] free on the disk; below it the tape stops
+  std::int64_t window_ns = 0;  ///< [ns] length of the event window until trigger(), 0: write all
+  std::size_t max_queued_bytes = 256u
+                                 << 20;  ///< [B] waiting for the disk; further messages are lost
+  TextMap session;                       ///< metadata "stillhand.session" of every file
+  std::function<std::vector<Metadata>()> last_words;  ///< metadata added when a file is closed
 };
 
-/// Where a tape is.
+/// State of a tape.
 struct TapeStatus {
   std::uint64_t written = 0;      ///< messages in files
   std::uint64_t dropped = 0;      ///< messages lost between receiving and file
-  std::uint64_t passed_over = 0;  ///< messages that came during a pause or left the window unwanted
+  std::uint64_t passed_over = 0;  ///< messages received in a pause, or removed from the window
   std::uint64_t held = 0;         ///< messages in the event window
-  std::uint64_t bytes = 0;        ///< [B] of the file now open
-  std::uint64_t free_bytes = 0;   ///< [B] left on the disk
+  std::uint64_t bytes = 0;        ///< [B] size of the open file
+  std::uint64_t free_bytes = 0;   ///< [B] free on the disk
   std::uint32_t parts = 0;        ///< files so far
   bool paused = false;
-  std::string file;     ///< now open
-  std::string stopped;  ///< why the tape has stopped by itself, or ""
+  std::string file;     ///< the open file
+  std::string stopped;  ///< reason why the tape stopped by itself, or ""
 };
 
-/// Writes messages to MCAP files in a thread of its own: the receiving thread only copies bytes.
-/// Rotation, event window, pause and disk guard are decided in that thread.  Every message that
-/// does not get into a file is counted in the status.
+/// Writes messages to MCAP files in its own thread; the receiving thread only copies bytes.  The
+/// writing thread decides on rotation, event window, pause and disk guard.  The status counts every
+/// message that is not in a file.
 ///
-/// When the disk has less than min_free_bytes left, or a write fails, the file is closed as well as
-/// the disk allows and `stopped` says why; what comes later is dropped and counted.
+/// If the disk has less than min_free_bytes free, or if a write fails, the tape closes the file as
+/// far as the disk allows, and `stopped` states the reason.  It drops and counts later messages.
 class Tape {
  public:
-  /// @throws ConfigError when the file cannot be made or the disk is too full to begin;
-  ///         std::runtime_error when it cannot be written.  Either leaves no file behind.
+  /// @throws ConfigError if the file cannot be created or the disk is too full;
+  ///         std::runtime_error if the file cannot be written.  Neither leaves a file.
   explicit Tape(TapeOptions options);
   ~Tape();
   Tape(const Tape&) = delete;
   Tape& operator=(const Tape&) = delete;
 
-  /// A topic of one writer; any thread.  @returns its number
+  /// Adds a topic of one writer; any thread.  @returns its number
   std::uint32_t add_channel(Channel channel, std::string schema_name, std::string_view schema_text);
-  /// Copies one message into the queue; any thread, does not wait for the disk.
+  /// Copies one message into the queue; any thread; does not wait for the disk.
   void put(std::uint32_t channel, std::uint32_t sequence, std::int64_t log_time_ns,
            std::int64_t publish_time_ns, std::span<const std::byte> bytes);
 
-  /// What comes while paused is passed over, and counted.
+  /// A paused tape ignores messages and counts them.
   void set_paused(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }
-  /// Writes what the event window holds, with a metadata record "stillhand.trigger" that says why.
+  /// Writes the content of the event window and a metadata record "stillhand.trigger" with the
+  /// reason.
   void trigger(const std::string& why);
   [[nodiscard]] TapeStatus status() const;
   /// Messages in files, by channel.
   [[nodiscard]] std::vector<std::uint64_t> written_by_channel() const;
   [[nodiscard]] bool stopped() const noexcept { return stopped_.load(std::memory_order_relaxed); }
 
-  /// Writes what still waits and closes the file.  @returns the first failure of all
+  /// Writes the queued messages and closes the file.  @returns the first failure
   Status close();
 
  private:
@@ -100,7 +102,7 @@ class Tape {
   void stop_because(std::string why);
 
   TapeOptions options_;
-  std::unique_ptr<Part> part_;  // of the writing thread, as is window_
+  std::unique_ptr<Part> part_;  // used by the writing thread, like window_
   EventWindow window_;
   std::int64_t flushed_ns_ = 0;
   std::int64_t guarded_ns_ = 0;

@@ -9,8 +9,8 @@
 
 namespace stillhand::recording {
 
-/// Trials that were heard of while a file was written.  take() is for DDS's threads, the rest for
-/// any.
+/// Trials announced while a file is written.  The threads of DDS call take(); any thread may call
+/// the other functions.
 class TrialLog {
  public:
   void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);

@@ -7,8 +7,8 @@
 
 namespace stillhand::recording {
 
-/// Check of an option that is a number, `least` to `most`, both included.  CLI::Range takes NaN,
-/// which is beyond neither bound.
+/// Check of a numeric option: `least` to `most`, both included.  It refuses NaN, which CLI::Range
+/// accepts.
 inline CLI::Validator within(double least, double most) {
   std::ostringstream range;
   range << least << " to " << most;

@@ -6,7 +6,7 @@
 
 namespace stillhand::rig {
 
-/// Which messages a step used: with RigTruth a recording holds everything the step depended on.
+/// The messages that a step used. With RigTruth, a recording holds all inputs of the step.
 struct UsedTicks {
   Tick command = -1;   ///< tick of the platform command, -1 none
   Tick motor = -1;     ///< tick answered by the motor command, -1 none
@@ -17,7 +17,7 @@ stillhand_msgs::RawSample to_idl(const RigOutput& output, Tick tick);
 stillhand_msgs::RigTruth to_idl(const RigOutput& output, Tick tick, const RigInput& input,
                                 const UsedTicks& used);
 
-/// The input of the step at `tick` from the messages it used; nullptr = none.
+/// The input of the step at `tick`, from the messages that it uses; nullptr: no message.
 RigInput make_input(Tick tick, const stillhand_msgs::PlatformCommand* command,
                     const stillhand_msgs::MotorCommand* motor,
                     const stillhand_msgs::OperatorForce* volition, bool pegged,

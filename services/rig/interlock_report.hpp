@@ -5,36 +5,37 @@
 
 namespace stillhand::rig {
 
-/// When the interlock's opening is told, and when that the force is zero: once each, and once more
-/// when an emergency stop follows an opening for another reason.  Pure; one thread.
+/// Decides when the rig reports that the interlock opened and that the force is zero. It reports
+/// each once, and again if an emergency stop follows an opening for another reason.
+/// Pure; one thread.
 class InterlockReport {
  public:
-  struct Told {
+  struct Notice {
     bool opened = false;
     bool force_zero = false;
-    Tick after_ticks = 0;  ///< from the opening to the force's zero
+    Tick after_ticks = 0;  ///< from the opening to zero force
   };
 
-  /// @param latched  the interlock is open for good, for this trial or after a stop
-  /// @param stopped  by an emergency stop
-  Told step(bool latched, bool stopped, Tick tick, double motor_force_n) noexcept {
+  /// @param latched  the interlock stays open, for this trial or after a stop
+  /// @param stopped  an emergency stop opened it
+  Notice step(bool latched, bool stopped, Tick tick, double motor_force_n) noexcept {
     if (!latched) {
       opened_tick_ = kNotOpen;
       return {};
     }
-    Told told;
+    Notice notice;
     if (opened_tick_ == kNotOpen || stopped != stopped_) {
-      told.opened = true;
+      notice.opened = true;
       opened_tick_ = tick;
       zero_ = false;
     }
     stopped_ = stopped;
     if (!zero_ && motor_force_n == 0.0) {
       zero_ = true;
-      told.force_zero = true;
-      told.after_ticks = tick - opened_tick_;
+      notice.force_zero = true;
+      notice.after_ticks = tick - opened_tick_;
     }
-    return told;
+    return notice;
   }
 
  private:

@@ -16,18 +16,19 @@ std::string text_for(const rig::SealedSeed& sealed, const rig::RigConfig& config
   return rig::sealed_text(rig::SealedEffect(sealed.seed, config).open(), sealed.nonce);
 }
 
-/// The effect of a session that is over, drawn anew and written down: no bus, no session.
+/// Draws the effect of a finished session again and writes it; uses no bus and no session.
 int open_effect(int argc, char** argv) {
   try {
-    CLI::App cli("stillhand-rig: writes the undeclared effect of a session that is over");
+    CLI::App cli("stillhand-rig: write the undeclared effect of a finished session");
     bool open = false;
     std::filesystem::path config;
     std::filesystem::path out;
     std::string verdict;
-    cli.add_flag("--open-undeclared-effect", open, "the seed comes on standard input")->required();
+    cli.add_flag("--open-undeclared-effect", open, "read the seed from standard input")->required();
     cli.add_option("--config", config, "folder with the settings of each service")->required();
     cli.add_option("--out", out, "folder of the session")->required();
-    cli.add_option("--verdict", verdict, "file of that folder that was written without the truth");
+    cli.add_option("--verdict", verdict,
+                   "file in that folder with the verdict; its digest is added to the commitment");
     try {
       cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -46,7 +47,7 @@ int open_effect(int argc, char** argv) {
   }
 }
 
-/// Reads the seed, writes the commitment, and keeps the effect from everybody.
+/// Reads the seed and writes the commitment; the effect stays inside this process.
 rig::SealedEffect sealed_effect(const runtime::Service& service) {
   const auto sealed = rig::read_sealed_seed(std::cin);
   const auto config = service.config<rig::RigConfig>();
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.add_flag("--undeclared-effect", holds_effect,
-                     "holds an effect that nothing else is told of; its seed comes on standard "
-                     "input, its digest goes to --out");
+                     "apply an undeclared effect: read its seed from standard input, write its "
+                     "digest to --out");
       });
 }

@@ -43,7 +43,7 @@ SealedSeed read_sealed_seed(std::istream& from) {
   SealedSeed sealed{};
   if (!(from >> sealed.seed >> sealed.nonce) || sealed.nonce.size() != 32) {
     throw ConfigError("--undeclared-effect", "standard input without a seed and its nonce",
-                      "what `stillhand lab --undeclared-effect SEED` sends");
+                      "the line that `stillhand lab --undeclared-effect SEED` sends");
   }
   return sealed;
 }
@@ -87,7 +87,7 @@ void open_effect(const std::filesystem::path& folder, const std::string& text,
   const std::string line = digest_line(text, kSealedFile);
   if (!recording::read_file(commitment).starts_with(line)) {
     throw ConfigError(commitment, "the digest of another effect",
-                      "what the rig wrote when the session began");
+                      "the digest that the rig wrote at the start of the session");
   }
   if (!verdict_file.empty()) {
     const std::string verdict = recording::read_file((folder / verdict_file).string());

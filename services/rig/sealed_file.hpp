@@ -13,35 +13,36 @@ namespace stillhand::rig {
 inline constexpr const char* kSealedFile = "undeclared_effect.json";
 inline constexpr const char* kCommitmentFile = "undeclared_effect.sha256";
 
-/// What the rig's process is told of its effect, and nobody else.
+/// Seed of the effect; only the process of the rig receives it.
 struct SealedSeed {
   std::uint64_t seed;
-  std::string nonce;  ///< hexadecimal; without it a commitment could be tried out seed by seed
+  std::string nonce;  ///< hexadecimal; prevents a search over seeds for the digest
 };
 
-/// 128 bits from the system's random source, hexadecimal.
+/// 128 bits from the random source of the operating system, hexadecimal.
 std::string new_nonce();
 
-/// "SEED NONCE", one line.  @throws ConfigError for anything else.
+/// Reads one line "SEED NONCE".  @throws ConfigError for any other text.
 SealedSeed read_sealed_seed(std::istream& from);
-/// The same as text.
+/// The line that read_sealed_seed() reads.
 std::string text_of(const SealedSeed& sealed);
 
-/// undeclared_effect.json, byte for byte: README, "The sealed file".
+/// Content of undeclared_effect.json; README, "The sealed file".
 std::string sealed_text(const OpenedEffect& effect, const std::string& nonce);
 
 /// SHA-256 (FIPS 180-4), hexadecimal.
 std::string sha256(const std::string& bytes);
-/// A line as sha256sum writes and checks it.
+/// A line in the format of sha256sum.
 std::string digest_line(const std::string& bytes, const std::string& name);
 
-/// Before the session: the digest of a text that nobody has yet.
-/// @throws std::runtime_error which file could not be written.
+/// Writes the digest of the sealed text, before the session.
+/// @throws std::runtime_error with the file that could not be written.
 void commit_effect(const std::filesystem::path& folder, const std::string& sealed_text);
-/// After the verdict: first the verdict's digest beside the commitment (a file of the same folder,
-/// or empty: there is none), then the text.
-/// @throws ConfigError when the verdict can't be read or the commitment is of another text;
-///         std::runtime_error which file could not be written.
+/// Opens the effect after the verdict: adds the digest of the verdict to the commitment, then
+/// writes the sealed text.
+/// @param verdict_file  a file of the same folder; empty: no verdict
+/// @throws ConfigError if the verdict cannot be read or the commitment belongs to another text;
+///         std::runtime_error with the file that could not be written.
 void open_effect(const std::filesystem::path& folder, const std::string& sealed_text,
                  const std::string& verdict_file);
 

@@ -10,8 +10,8 @@ namespace stillhand::rig {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-// Later than this the schedule is laid anew instead of caught up: a burst of ticks would look to
-// the loop like a motor command growing old.
+// If the loop is later than this, its schedule restarts from now. Catching up would make a burst of
+// ticks, in which the newest motor command would appear too old.
 constexpr std::int64_t kMaxCatchUp_ns = 5 * kPeriod_ns;
 
 RigConfig seeded(RigConfig config, std::uint64_t seed) {
@@ -28,7 +28,7 @@ Shell::Shell(runtime::Service& service, SealedEffect effect)
       raw_(service.bus().publisher<stillhand_msgs::RawSample>(topics::kRawSample)),
       truth_(service.bus().publisher<stillhand_msgs::RigTruth>(topics::kRigTruth)) {
   for (auto& command : commands_) command.tick(-1);
-  // "None" until the first one comes.
+  // Tick -1 means "none" until the first message arrives.
   stillhand_msgs::MotorCommand no_motor;
   no_motor.tick(-1);
   for (int i = 0; i < 3; ++i) motor_.store(no_motor);
@@ -45,10 +45,10 @@ Shell::Shell(runtime::Service& service, SealedEffect effect)
   bus.subscribe<stillhand_msgs::OperatorForce>(
       topics::kOperatorForce,
       [this](const auto& message, const auto&) { volition_.store(message); });
-  // The rig watches everybody's life sign through this topic; its content is not used.
+  // This topic carries the life sign of every process; the rig does not use its content.
   bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
                                                [](const auto&, const auto&) {});
-  // Straight to the rig: it works without the experiment.
+  // The emergency stop reaches the rig directly and works without the experiment.
   bus.subscribe<stillhand_msgs::SessionCommand>(
       topics::kSessionCommand, [this](const auto& message, const auto&) {
         if (message.action() == stillhand_msgs::SESSION_EMERGENCY_STOP) {
@@ -74,12 +74,13 @@ void Shell::run() {
     while (!service_.stop().requested()) {
       due_ns += kPeriod_ns;
       runtime::sleep_until_ns(due_ns);
-      // An end that is latched from the session before starts no clock; that of its own stops none.
+      // A latched end of the previous session does not start the clock; the end of this session
+      // does not stop it.
       if (tick == 0 && !is_running(announced_.load().session)) continue;
       const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
       if (late_ns > kMaxCatchUp_ns) {
         due_ns += late_ns;
-        service_.note_event(stillhand_msgs::EVENT_CYCLE_MISSED, "sample clock held up",
+        service_.note_event(stillhand_msgs::EVENT_CYCLE_MISSED, "sample clock delayed",
                             static_cast<double>(late_ns) / 1000.0);
       }
       tick_once(tick++);
@@ -99,7 +100,7 @@ void Shell::tick_once(Tick tick) {
   const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
   const RigInput input = make_input(tick, command, motor, volition, pegged, permitted);
   const RigOutput output = core_.step(input);
-  tell_interlock(trial, tick, output.truth.motor_force_n);
+  report_interlock(trial, tick, output.truth.motor_force_n);
 
   auto raw = to_idl(output, tick);
   raw_.write(raw);
@@ -112,18 +113,18 @@ void Shell::tick_once(Tick tick) {
   service_.note_tick(tick);
 }
 
-void Shell::tell_interlock(const Trial& trial, Tick tick, double motor_force_n) {
-  const auto told =
+void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n) {
+  const auto notice =
       interlock_report_.step(interlock_.latched(trial), interlock_.stopped(), tick, motor_force_n);
-  if (told.opened) {
+  if (notice.opened) {
     service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
                         interlock_.stopped()              ? topics::kEmergencyStop.data()
                         : service_.bus().replay_present() ? "a replay is on the bus"
                                                           : "a process is missing");
   }
-  if (told.force_zero) {
+  if (notice.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",
-                        static_cast<double>(told.after_ticks) * kControlPeriod_s * 1e6);
+                        static_cast<double>(notice.after_ticks) * kControlPeriod_s * 1e6);
   }
 }
 
@@ -139,7 +140,7 @@ const stillhand_msgs::PlatformCommand* Shell::command_for(Tick tick) {
 
 const stillhand_msgs::MotorCommand* Shell::motor_now() {
   const auto& newest = motor_.load();
-  // A missed DDS deadline voids what is there; the next command counts again.
+  // A missed DDS deadline voids the newest command; the next command is valid again.
   if (motor_deadline_missed_.exchange(false, std::memory_order_relaxed)) {
     motor_void_tick_ = newest.tick();
   }

@@ -15,11 +15,11 @@
 
 namespace stillhand::rig {
 
-/// The rig's process: one step each millisecond on an absolute schedule.  It holds the sample clock
-/// that everybody else answers to, so it alone runs a loop of its own.
+/// The process of the rig: one step each millisecond on an absolute schedule.  It holds the sample
+/// clock that all other processes answer, so only this process has a timed loop.
 class Shell {
  public:
-  /// @param effect  what nothing but this rig is told of; empty: nothing
+  /// @param effect  the undeclared effect; empty: none
   Shell(runtime::Service& service, SealedEffect effect);
   void run();
 
@@ -28,11 +28,11 @@ class Shell {
     Trial trial;
     stillhand_msgs::SessionState session = stillhand_msgs::SESSION_WAITING;
   };
-  /// Platform commands arrive ahead of their tick; this many are kept.
+  /// Platform commands arrive before their tick; the shell keeps this many.
   static constexpr std::size_t kCommandsAhead = 64;
 
   void tick_once(Tick tick);
-  void tell_interlock(const Trial& trial, Tick tick, double motor_force_n);
+  void report_interlock(const Trial& trial, Tick tick, double motor_force_n);
   const stillhand_msgs::PlatformCommand* command_for(Tick tick);
   const stillhand_msgs::MotorCommand* motor_now();
 
@@ -51,7 +51,7 @@ class Shell {
   runtime::LatestValue<stillhand_msgs::OperatorForce> volition_;
   runtime::LatestValue<Announced> announced_;
   std::atomic<bool> motor_deadline_missed_{false};
-  std::atomic<bool> emergency_stop_{false};  ///< asked for; never taken back
+  std::atomic<bool> emergency_stop_{false};  ///< requested; never reset
 
   // Of the loop.
   std::array<stillhand_msgs::PlatformCommand, kCommandsAhead> commands_;

@@ -7,7 +7,7 @@
 namespace stillhand::sensing {
 
 DeviceSample from_idl(const stillhand_msgs::RawSample& message);
-/// @param raw  the sample behind it: its tick and acquisition stamp travel on
+/// @param raw  the raw sample; its tick and acquisition stamp are copied
 stillhand_msgs::Sensed to_idl(const Sensed& sensed, const stillhand_msgs::RawSample& raw);
 
 }  // namespace stillhand::sensing

@@ -5,11 +5,11 @@
 
 namespace stillhand::settings {
 
-/// For CLI11: what is wrong with the name of a file or folder that an option was given, or nothing.
-/// (An empty one, from a script's unset variable, would pass for an option that wasn't given:
-/// `--security ""` for no security.)
+/// Check for CLI11 of an option that names a file or folder: an error text, or an empty text.  It
+/// refuses an empty name.  Without this check, an unset variable of a script (`--security ""`)
+/// would have the same effect as an omitted option.
 inline std::string check_name(const std::string& word) {
-  return word.empty() ? "got an empty name, want one" : "";
+  return word.empty() ? "got an empty name, want a name" : "";
 }
 
 }  // namespace stillhand::settings

@@ -8,7 +8,7 @@
 namespace stillhand::settings {
 namespace {
 
-// Shortest text that reads back as the same number.
+// The shortest text that gives the same number again.
 std::string shortest(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
@@ -17,7 +17,7 @@ std::string shortest(double value) {
 
 std::string interval(Range range) { return shortest(range.min) + " to " + shortest(range.max); }
 
-// A bar would end the table's cell.
+// A bar would end the cell of the table.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -9,7 +9,8 @@
 
 namespace stillhand::settings {
 
-/// Visitor that writes one Markdown table row a field, groups as dotted names.
+/// Visitor that writes one Markdown table row for each field; the name of a group is a dotted
+/// prefix.
 class TableWriter {
  public:
   explicit TableWriter(std::string prefix = {}) : prefix_(std::move(prefix)) {}
@@ -37,7 +38,7 @@ class TableWriter {
   std::string rows_;
 };
 
-/// The Markdown table "name | default | range | doc" of a Config; the values shown are its own.
+/// The Markdown table "name | default | range | doc" of a Config, with the values of `config`.
 template <typename Config>
 std::string describe(const Config& config) {
   TableWriter writer;

@@ -12,7 +12,7 @@ namespace stillhand::settings {
 JsonEntry JsonEntry::at(const std::string& key) const {
   if (!json_.is_object()) refuse("an object");
   const auto found = json_.find(key);
-  if (found == json_.end()) throw ConfigError(path_ + "." + key, "no such entry", "one");
+  if (found == json_.end()) throw ConfigError(path_ + "." + key, "no such entry", "an entry");
   return {*found, path_ + "." + key};
 }
 
@@ -23,7 +23,7 @@ void JsonEntry::allow_only(std::initializer_list<std::string_view> keys) const {
     std::string known;
     for (const std::string_view each : keys)
       known += (known.empty() ? "" : ", ") + std::string(each);
-    throw ConfigError(path_ + "." + key, "an entry that has no meaning here", "one of " + known);
+    throw ConfigError(path_ + "." + key, "an unknown entry", "one of " + known);
   }
 }
 
@@ -79,21 +79,22 @@ void JsonEntry::refuse(const std::string& want) const {
 JsonEntry::Json parsed_json(std::string_view json, const std::string& origin,
                             const std::string& want) {
   using Json = JsonEntry::Json;
-  std::vector<std::set<std::string>> open;  // keys of each object that is being read
+  std::vector<std::set<std::string>> open;  // keys of each open object
   const auto look = [&](int /*depth*/, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::object_start) open.emplace_back();
     if (event == Json::parse_event_t::object_end) open.pop_back();
     if (event == Json::parse_event_t::key &&
         !open.back().insert(parsed.get<std::string>()).second) {
-      throw ConfigError(origin, "the entry \"" + parsed.get<std::string>() + "\" twice", "it once");
+      throw ConfigError(origin, "the entry \"" + parsed.get<std::string>() + "\" twice",
+                        "one such entry");
     }
     return true;
   };
   try {
     return Json::parse(json, look);
   } catch (const Json::exception& error) {
-    // The library's text names line and column, or the number that does not fit a double; its own
-    // name stands before, in brackets.
+    // The text of the library states line and column, or the number that a double cannot hold. The
+    // name of the library precedes it in brackets.
     const std::string text = error.what();
     const std::size_t bracket = text.find("] ");
     throw ConfigError(origin, bracket == std::string::npos ? text : text.substr(bracket + 2), want);

@@ -8,8 +8,7 @@
 
 namespace stillhand::settings {
 
-/// A Config filled from a parsed section: keys that are missing keep their defaults, nested groups
-/// are nested maps.
+/// A Config from a parsed section.  A missing key keeps its default; a group is a nested map.
 /// @throws stillhand::ConfigError "<file>:<line>:<column>: <scope>.<key>: got ..., want ..." for an
 ///         unknown key, a wrong type, a value that is not finite or out of its range.
 template <typename Config>
@@ -21,14 +20,14 @@ Config load_section(const Entry& section, const std::string& scope) {
   return config;
 }
 
-/// The same from YAML text.  @param source_name  stands for the file in messages
+/// A Config from YAML text.  @param source_name  name of the text in messages
 template <typename Config>
 Config load_text(const std::string& yaml, const std::string& scope,
                  const std::string& source_name = "text") {
   return load_section<Config>(parse_text(yaml, source_name), scope);
 }
 
-/// The same from a YAML file whose top level is the Config.
+/// A Config from a YAML file whose top level is the Config.
 /// @param scope  prefix of keys in messages, for example "motion"; not a key of the file
 template <typename Config>
 Config load(const std::filesystem::path& file, const std::string& scope) {

@@ -8,7 +8,7 @@
 namespace stillhand::settings {
 namespace {
 
-// Insertions, deletions, substitutions, each one.
+// Insertion, deletion and substitution count one each.
 std::size_t edit_distance(std::string_view from, std::string_view to) {
   std::vector<std::size_t> row(to.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

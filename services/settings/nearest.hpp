@@ -7,8 +7,8 @@
 
 namespace stillhand::settings {
 
-/// The candidate that a misspelt word is nearest to, by edit distance (Levenshtein 1966); the first
-/// of several, empty without candidates.
+/// The candidate nearest to a misspelt word by edit distance (Levenshtein 1966); the first of
+/// several; empty without candidates.
 std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace stillhand::settings

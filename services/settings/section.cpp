@@ -24,8 +24,8 @@ std::string place_of(const YAML::Mark& mark, const std::string& source_name) {
   return source_name + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
 }
 
-// Settings are nested three deep and have some tens of keys.  An alias may stand for a part that it
-// is in itself, which has no end, or multiply a part at every level.
+// Settings have three levels and some tens of keys.  An alias inside its own anchor would never
+// end, and aliases can multiply a part at every level.
 constexpr int kDeepest = 16;
 constexpr std::size_t kMostEntries = 10'000;
 
@@ -36,14 +36,15 @@ void add_children(Entry& map, const YAML::Node& node, const std::string& source_
                   std::size_t& count) {
   for (const auto& pair : node) {
     const std::string place = place_of(pair.first.Mark(), source_name);
-    if (!pair.first.IsScalar()) throw ConfigError(place, "a key that is no word", "a plain name");
+    if (!pair.first.IsScalar())
+      throw ConfigError(place, "a key that is not a plain word", "a plain name");
     Entry child = converted(pair.second, source_name, depth + 1, count);
     child.key = pair.first.Scalar();
     child.key_place = place;
     for (const Entry& sibling : map.children) {
       if (sibling.key == child.key) {
         throw ConfigError(place, "a second \"" + child.key + "\"",
-                          "each key once; the first stands at " + sibling.key_place);
+                          "each key once; the first is at " + sibling.key_place);
       }
     }
     map.children.push_back(std::move(child));
@@ -55,7 +56,7 @@ Entry converted(const YAML::Node& node, const std::string& source_name, int dept
   Entry entry;
   entry.place = entry.key_place = place_of(node.Mark(), source_name);
   if (depth > kDeepest || ++count > kMostEntries) {
-    throw ConfigError(entry.place, "settings without end", "no alias inside what it stands for");
+    throw ConfigError(entry.place, "endless settings", "no alias inside its own anchor");
   }
   if (node.IsMap()) {
     entry.kind = Entry::Kind::kMap;
@@ -83,7 +84,7 @@ std::string interval(Range range) {
   return "a value from " + shown(range.min) + " to " + shown(range.max);
 }
 
-// The whole text as a number; from_chars knows neither a leading + nor other locales.
+// The whole text as a number; from_chars accepts no leading + and ignores the locale.
 template <typename Number>
 std::optional<Number> number_from(const Entry& entry) {
   if (entry.kind != Entry::Kind::kScalar || entry.quoted) return std::nullopt;
@@ -136,7 +137,7 @@ Entry parse_file(const std::filesystem::path& file) {
   }
   std::ifstream stream(file, std::ios::binary);
   const std::string yaml{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw ConfigError(file.string(), "an unreadable file", "a file one may read");
+  if (!stream) throw ConfigError(file.string(), "an unreadable file", "a readable file");
   return parse_text(yaml, file.string());
 }
 

@@ -11,7 +11,7 @@
 
 namespace stillhand::settings {
 
-/// One value of a settings file with the place it stands at.
+/// One value of a settings file, with its place.
 struct Entry {
   enum class Kind : std::uint8_t { kNull, kScalar, kMap, kSequence };
 
@@ -20,26 +20,26 @@ struct Entry {
   std::string text;             ///< scalar only
   bool quoted = false;          ///< scalar in quotes: a string, never a number
   std::string place;            ///< "file:line:column" of the value, counted from 1
-  std::string key_place;        ///< the same of its key
+  std::string key_place;        ///< place of its key
   std::vector<Entry> children;  ///< map: in the order of the file
 };
 
 /// Parses one YAML document.  An empty document is an empty map.
-/// @throws stillhand::ConfigError for malformed YAML, a duplicate key, or a top level that is no
+/// @throws stillhand::ConfigError for malformed YAML, a duplicate key, or a top level that is not a
 /// map.
 Entry parse_text(const std::string& yaml, const std::string& source_name);
-/// @throws stillhand::ConfigError also when the file is missing or unreadable.
+/// @throws stillhand::ConfigError also if the file is missing or unreadable.
 Entry parse_file(const std::filesystem::path& file);
 
-/// What stands there, for messages: its text, "nothing", "a map" or "a list".
+/// Description of an entry for messages: its text, "nothing", "a map" or "a list".
 std::string got_of(const Entry& entry);
 
-/// Visitor of a Config's `fields()` that overwrites the fields the section names.
+/// Visitor of a Config's `fields()` that sets the fields whose keys are in the section.
 class SectionReader {
  public:
   /// @param section  outlives the reader; a map or null (nothing set)
   /// @param scope    prefix of keys in messages
-  /// @throws stillhand::ConfigError when the section is no map.
+  /// @throws stillhand::ConfigError if the section is not a map.
   SectionReader(const Entry& section, std::string scope);
 
   void operator()(std::string_view name, double& value, Range range, std::string_view doc);
@@ -56,11 +56,12 @@ class SectionReader {
     }
   }
 
-  /// The entry of that name, which is known from now on, or nullptr: for what is no field, a list.
+  /// The entry of that name, or nullptr; marks the name as known.  For an entry that is no field,
+  /// such as a list.
   const Entry* find(std::string_view name);
 
-  /// Call after the last field.  @throws stillhand::ConfigError naming the first key that no field
-  /// has, and the nearest name that one has.
+  /// Call this after the last field.  @throws stillhand::ConfigError with the first key that is not
+  /// a field, and the nearest name of a field.
   void refuse_unknown() const;
 
  private:

@@ -117,7 +117,7 @@ class BadInputTest(LabTestCase):
 
     def test_settings_that_hold_themselves_are_refused(self):
         folder = self.settings("rig.yaml", "motor: &motor [*motor]\n")
-        self.assert_refused([f"{folder}/rig.yaml:1:", "settings without end"], "--config", folder)
+        self.assert_refused([f"{folder}/rig.yaml:1:", "endless settings"], "--config", folder)
 
     def test_settings_that_no_trial_can_have_are_refused_before_the_session(self):
         folder = self.settings("motion.yaml", "limits:\n  max_position_m: 0.005\n")

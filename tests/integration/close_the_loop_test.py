@@ -138,7 +138,7 @@ class CloseTheLoopTest(unittest.TestCase):
         for verb in (["lab", "--out", lab, "--headless", "--model"], ["diagnose"], ["info"], ["identify"]):
             ran = subprocess.run([STILLHAND, *verb, pipe], capture_output=True, text=True, timeout=20)
             self.assertEqual(ran.returncode, 2, verb)
-            self.assertIn("no regular file", ran.stderr)
+            self.assertIn("not a regular file", ran.stderr)
 
     def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
         summary = self.summary()

@@ -27,7 +27,7 @@ std::vector<std::string> cells(const std::string& row) {
 
 std::set<std::string> names(const std::string& text) {
   // Remote control: no process of a session.
-  if (text == "who asks" || text.starts_with("stillhand re")) return {};
+  if (text == "any client" || text.starts_with("stillhand re")) return {};
   if (text == "every process") return {kServices.begin(), kServices.end()};
   std::set<std::string> list;
   std::istringstream stream(text);

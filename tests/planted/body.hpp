@@ -9,7 +9,7 @@
 
 namespace stillhand::planted {
 
-/// What a spring may do besides F = k z; every default leaves it linear.
+/// Deviations of a spring from F = k z; with the defaults it is linear.
 struct SpringLaw {
   double gap_m = 0.0;        ///< clearance each side, no force inside
   double hardening_m = 0.0;  ///< F = k z (1 + (z/h)^2); 0: off
@@ -28,7 +28,7 @@ struct Spring {
   SpringLaw law;
 };
 
-/// Where a third mass hangs.
+/// Attachment of a third mass.
 enum class ModeSite { kNone, kTorso, kArm, kStick };
 
 /// Torso on a seat, arm on the torso, hand on a stick that moves with the platform.  Lateral, +
@@ -37,10 +37,9 @@ enum class ModeSite { kNone, kTorso, kArm, kStick };
 ///   m_t z_t'' = -m_t a - F_seat(z_t) - F_shoulder(z_t - z_a)
 ///   m_a z_a'' = -m_a a + F_shoulder(z_t - z_a) - F_grip(z_a)
 ///   f = F_grip(z_a),   F(z) = k law(z) + c z'
-///
-/// Linear: four poles; f/a is about -(m_a + m_t k_shoulder/(k_seat + k_shoulder)) at rest, and its
-/// zeros are the torso swinging with the hand at rest: the notch.  A third mass, if any, hangs on
-/// one of the three.
+/// The linear response has four poles.  At 0 Hz, f/a is about
+/// -(m_a + m_t k_shoulder/(k_seat + k_shoulder)).  At its zeros, the notch, the torso swings while
+/// the hand rests.  A third mass may hang on one of the three.  Source: README Eq. PL-1 and PL-2.
 struct Body {
   double torso_kg = 0.0;
   double arm_kg = 0.0;
@@ -53,7 +52,7 @@ struct Body {
   double mode_damping = 0.0;  ///< ratio
 };
 
-/// What a 120 s fit sees of a body, linear part only.
+/// Features of the linear response that a fit over 120 s can show.
 struct BodyFigures {
   double dc_n_per_m_s2 = 0.0;  ///< negative
   double notch_hz = 0.0;
@@ -62,7 +61,7 @@ struct BodyFigures {
   double peak_height = 0.0;  ///< |H(peak)| / |H(0)|
 };
 
-/// f/a of the linear part, third mass left out [N per m/s^2].
+/// f/a of the linear part, without the third mass [N per m/s^2].
 std::complex<double> response(const Body& body, double frequency_hz);
 BodyFigures figures_of(const Body& body);
 
@@ -70,7 +69,7 @@ BodyFigures figures_of(const Body& body);
 /// paper's Fig. 4: 2.2 to 4.5 N per m/s^2 at rest, notch between 5 and 8 Hz, a small peak after it.
 Body draw_body(Draw& draw);
 
-/// Deflections along with the force, for scaling what is planted into a spring.
+/// Force and deflections; the deflections scale the effects in a spring.
 struct Motion {
   Series force_n;
   double seat_rms_m = 0.0;

@@ -12,14 +12,14 @@
 
 namespace stillhand::planted {
 
-/// One number of a planted effect, as the truth tells it.
+/// One number of a planted effect, as in the truth.
 struct Parameter {
   std::string name;
   double value = 0.0;
   std::string unit;
 };
 
-/// Sizes of the untouched recording, to scale what is planted.
+/// Magnitudes of the recording without effects; they scale the effects.
 struct Reference {
   double force_rms_n = 0.0;
   double acceleration_rms_m_s2 = 0.0;
@@ -28,14 +28,14 @@ struct Reference {
   double grip_rms_m = 0.0;
 };
 
-/// An effect of which everything is drawn but its size.
+/// An effect with all properties except its size.
 struct Effect {
   Kind kind{};
   std::string variant;  ///< where and how, for example "grip spring, hardening"
   std::vector<std::string>
       channels;                   ///< the ones it depends on, without a_y unless it is the point
-  std::vector<std::string> also;  ///< channels that tell nearly the same: not wrong to name
-  bool any_size = false;  ///< the sensible range lies beyond the strengths asked for: size is drawn
+  std::vector<std::string> also;  ///< channels with nearly the same information
+  bool any_size = false;     ///< the size is drawn, because it cannot reach the requested strengths
   bool reads_noise = false;  ///< the noise arises before the reading stages, which act on it too
   /// Changes the plant; size in 0 (barely there) .. 1 (largest sensible), stronger as it grows.
   std::function<void(double size, Plant& plant)> plant;
@@ -46,7 +46,7 @@ struct Effect {
 Effect draw_effect(Kind kind, const Scene& scene, const Body& body, const Reference& reference,
                    Draw& draw);
 
-// By where they act; draw_effect chooses.
+// Grouped by place of action; draw_effect() selects one.
 Effect draw_spring_effect(Kind kind, const Reference& reference, Draw& draw);
 Effect draw_resonance(const Scene& scene, const Body& body, Draw& draw);
 Effect draw_range_effect(Kind kind, const Reference& reference, Draw& draw);

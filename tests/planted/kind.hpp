@@ -8,8 +8,8 @@
 
 namespace stillhand::planted {
 
-/// What can be planted.  The names are those of the verdicts, kept here a second time on purpose:
-/// the simulator shares nothing with the engine that is judged by it.
+/// Kinds of planted effects.  The names equal those of the verdicts.  They are defined again here,
+/// because the simulator must not share code with the engine that it tests.
 enum class Kind {
   kDelay,
   kResonance,

@@ -18,13 +18,13 @@ inline constexpr std::array<std::string_view, 5> kNoiseNames{"white", "low_pass"
                                                              "heavy_tailed", "uneven"};
 
 struct Noise {
-  Series values;      ///< root mean square as asked for, exactly
+  Series values;      ///< with exactly the requested root mean square
   std::string about;  ///< for example "first-order low-pass, corner 0.8 Hz"
 };
 
 Noise draw_noise(NoiseShape shape, std::size_t count, double rate_hz, double rms, Draw& draw);
 
-/// Rows that a recording lost.
+/// Missing rows of a recording.
 struct Losses {
   std::vector<bool> lost;
   std::string about;

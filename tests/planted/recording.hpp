@@ -13,13 +13,13 @@
 
 namespace stillhand::planted {
 
-/// What is asked for; everything else is drawn.
+/// Requested properties; all others are drawn.
 struct Spec {
-  std::vector<Kind> kinds;             ///< none: nothing is planted
-  std::vector<double> strengths{0.1};  ///< of each kind; the last counts for those beyond
+  std::vector<Kind> kinds;             ///< empty: no effect
+  std::vector<double> strengths{0.1};  ///< of each kind; the last one applies to all further kinds
   double snr_db = 20.0;                ///< noise-free force over noise
-  /// Effects are drawn again, and if that doesn't help body and ride, until each effect alone
-  /// reaches this Truth::evidence; 0: whatever comes.  What the baseline swallows can't be missing.
+  /// Effects, and then body and ride, are drawn again until each effect alone reaches this
+  /// Truth::evidence; 0: accepts every draw.  An effect that the baseline absorbs is not missing.
   double least_evidence = 0.0;
   double length_s = 120.0;
   double rate_hz = 100.0;
@@ -29,7 +29,7 @@ struct Spec {
   std::optional<Excitation> excitation;
 };
 
-/// What was measured: a_y first, f last.
+/// Measured channels: a_y first, f last.
 struct Recording {
   std::vector<std::string> names;
   std::vector<std::string> units;
@@ -49,12 +49,12 @@ struct PlantedEffect {
   double left_by_order_4 = 0.0;  ///< alone: see Truth
   double evidence = 0.0;         ///< alone: see Truth
   /// of the parts of two contributions that no linear model of a_y explains: the largest
-  /// correlation with another planted effect, 0 .. 1; near 1 nobody can tell the two apart
+  /// correlation with another planted effect, 0 .. 1; near 1 the two cannot be distinguished
   double overlap = 0.0;
   double marginal = 0.0;  ///< rms(f with all - f with all but this) / rms(f without any)
 };
 
-/// Sealed until a verdict is out.
+/// The label; sealed until the verdict exists.
 struct Truth {
   std::uint64_t seed = 0;
   std::vector<PlantedEffect> effects;  ///< strongest first, by marginal strength
@@ -64,7 +64,7 @@ struct Truth {
   /// NaN when not computed (more than 100 000 samples)
   double left_by_order_4 = 0.0;
   /// samples (left_by_order_4 force_rms / noise_rms)^2: twice the log-likelihood that white noise
-  /// of this size leaves to tell the effects from nothing; below some tens nobody can
+  /// of this size leaves between the effects and none; below some tens no method can detect them
   double evidence = 0.0;
   double force_rms_n = 0.0;  ///< noise-free, effects included, mean left out
   double noise_rms_n = 0.0;  ///< the noise floor: rms(f recorded - f noise-free)

@@ -28,14 +28,14 @@ struct Grid {
   [[nodiscard]] std::size_t at(std::size_t n) const { return before + n * per_sample; }
 };
 
-/// How the platform moves.
+/// Motion of the platform.
 struct Excitation {
   bool multisine = false;
   double low_hz = 0.7;
   double high_hz = 4.0;
   double rms_m_s2 = 1.6;
   double period_s = 0.0;         ///< multisine only
-  std::vector<double> lines_hz;  ///< multisine only: odd harmonics, some left out on purpose
+  std::vector<double> lines_hz;  ///< multisine only: odd harmonics, some omitted deliberately
   bool starts_at_rest = false;
 };
 
@@ -46,11 +46,12 @@ struct Signal {
   Series values;
 };
 
-/// Everything that happens around the body; none of it depends on what is planted.
+/// All signals around the body; none depends on the planted effect.
 struct Scene {
   Grid grid;
   Excitation excitation;
-  std::vector<Signal> signals;      ///< a_y first; a_y is what is recorded, not always what acts
+  std::vector<Signal>
+      signals;  ///< a_y first; a_y is the recorded signal, which can differ from the acting one
   std::vector<double> periodic_hz;  ///< lines of any signal: a planted tone stays away from them
 
   [[nodiscard]] const Series& of(std::string_view name) const;

@@ -10,7 +10,7 @@
 
 namespace stillhand::planted {
 
-/// An effect with its size found.
+/// An effect with its size.
 struct SizedEffect {
   Effect effect;
   double size = 0.0;
@@ -41,7 +41,7 @@ class Stand {
   /// twelve.
   [[nodiscard]] SizedEffect plant(Kind kind, double strength, double least_evidence, double snr_db,
                                   Draw& draw) const;
-  /// What no impulse response of 2 s from a_y explains of a force, at about 100 Hz.
+  /// Share of a force that no impulse response of 2 s from a_y explains, at about 100 Hz.
   [[nodiscard]] Series beyond_linear(const Series& force_n) const;
   /// See Truth; NaN for a recording shorter than 4 s.
   [[nodiscard]] double irreducible(const Series& force_n) const;

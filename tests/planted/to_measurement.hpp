@@ -6,8 +6,8 @@
 
 namespace stillhand::planted {
 
-/// The recording as the engine takes it.  Up to five lost rows in a row are filled by straight
-/// lines and weigh nothing; a longer gap begins a new stretch.
+/// Converts the recording to the input type of the engine.  Linear interpolation fills up to five
+/// consecutive missing rows, with weight zero; a longer gap begins a new stretch.
 diagnosis::Measurement to_measurement(const Recording& recording);
 
 }  // namespace stillhand::planted

@@ -10,18 +10,18 @@
 namespace stillhand::clock {
 namespace {
 
-constexpr double kLongest_s = 1.0;       // of a round trip
-constexpr std::size_t kLeast = 8;        // exchanges before anything is said
-constexpr std::size_t kStepSamples = 3;  // in a row that make a step
-constexpr double kLeastStep_s = 1e-3;    // a smaller one is the network's, or drift
-constexpr double kLeastSpan_s = 5.0;     // below it a drift isn't told
-constexpr double kPlainDrift = 20e-6;    // a disciplined clock of a PC keeps within
+constexpr double kLongest_s = 1.0;       // longest valid round trip
+constexpr std::size_t kLeast = 8;        // exchanges before the first estimate
+constexpr std::size_t kStepSamples = 3;  // consecutive exchanges that show a step
+constexpr double kLeastStep_s = 1e-3;    // a smaller step can be network delay or drift
+constexpr double kLeastSpan_s = 5.0;     // shortest span for a drift
+constexpr double kPlainDrift = 20e-6;    // largest drift of a disciplined PC clock
 constexpr double kToSigma = 1.4826;      // of a median absolute deviation, normal errors
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 std::int64_t nanoseconds(double s) { return std::llround(1e9 * s); }
 
-// Of the first `count` values, which are put in some order.
+// Median of the first `count` values; reorders them.
 template <std::size_t size>
 double median(std::array<double, size>& values, std::size_t count) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
@@ -41,7 +41,7 @@ std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noex
   const double round_trip_s = seconds(here_ns - there_ns);
   if (here_ns < 0 || there_ns < 0 || round_trip_s < 0.0 || round_trip_s > kLongest_s)
     return std::nullopt;
-  // Eq. CK-1; differences first: the clocks themselves may be days apart.
+  // Eq. CK-1; the differences come first because the clocks can be days apart.
   const std::int64_t offset_ns =
       difference_ns(exchange.received_ns, exchange.asked_ns) - (here_ns - there_ns) / 2;
   if (count_ == 0) {
@@ -53,29 +53,29 @@ std::optional<std::int64_t> ClockComparison::take(const Exchange& exchange) noex
                       seconds(offset_ns - origin_offset_ns_), round_trip_s};
   if (count_ > 0 && sample.at_s <= samples_[count_ - 1].at_s) return std::nullopt;
 
-  double beside_s = 0.0;
+  double distance_s = 0.0;
   if (count_ >= kLeast) {
     const Line line = fitted();
-    beside_s = sample.offset_s - (line.offset_s + line.drift * (sample.at_s - line.at_s));
+    distance_s = sample.offset_s - (line.offset_s + line.drift * (sample.at_s - line.at_s));
     const double allowed_s =
         std::max(0.5 * sample.round_trip_s + 3.0 * line.spread_s, kLeastStep_s);
-    const bool beside = std::abs(beside_s) > allowed_s;
-    if (beside && (away_ == 0 || away_above_ == (beside_s > 0.0))) {
+    const bool off_line = std::abs(distance_s) > allowed_s;
+    if (off_line && (away_ == 0 || away_above_ == (distance_s > 0.0))) {
       ++away_;
-      away_above_ = beside_s > 0.0;
+      away_above_ = distance_s > 0.0;
     } else {
-      away_ = beside ? 1 : 0;
-      away_above_ = beside_s > 0.0;
+      away_ = off_line ? 1 : 0;
+      away_above_ = distance_s > 0.0;
     }
   }
   if (count_ == kWindow) forget_but(kWindow - 1);
   samples_[count_++] = sample;
   if (away_ < kStepSamples) return std::nullopt;
-  // Eq. CK-5: the clock has jumped.  What it said before tells nothing of what it says now.
+  // Eq. CK-5: the clock has jumped; the earlier exchanges are invalid.
   ++steps_;
   forget_but(kStepSamples);
   away_ = 0;
-  return nanoseconds(beside_s);
+  return nanoseconds(distance_s);
 }
 
 void ClockComparison::forget_but(std::size_t newest) noexcept {
@@ -118,7 +118,7 @@ ClockComparison::Line ClockComparison::fitted() const noexcept {
       &Sample::round_trip_s);
   line.round_trip_s = quickest.round_trip_s;
   line.quickest_at_s = quickest.at_s;
-  line.beside_s =
+  line.distance_s =
       std::abs(quickest.offset_s - line.offset_s - line.drift * (quickest.at_s - line.at_s));
   double square_s2 = 0.0;
   for (std::size_t i = 0; i < line.used; ++i) {
@@ -127,7 +127,7 @@ ClockComparison::Line ClockComparison::fitted() const noexcept {
     square_s2 += along_s * along_s;
   }
   line.spread_s = kToSigma * median(values, line.used);
-  // Of least squares, 1.5 times: the price of a median.
+  // The sigma of least squares times 1.5, because a median is less efficient.
   if (span_s >= kLeastSpan_s) line.drift_sigma = 1.5 * line.spread_s / std::sqrt(square_s2);
   return line;
 }
@@ -141,7 +141,7 @@ std::optional<ClockOffset> ClockComparison::offset(std::int64_t now_ns) const no
   out.offset_ns = origin_offset_ns_ + nanoseconds(line.offset_s + line.drift * ahead_s);
   // Eq. CK-4.
   const double drift = std::isfinite(line.drift_sigma) ? 3.0 * line.drift_sigma : kPlainDrift;
-  out.uncertainty_ns = 1e9 * (0.5 * line.round_trip_s + line.beside_s +
+  out.uncertainty_ns = 1e9 * (0.5 * line.round_trip_s + line.distance_s +
                               drift * std::abs(now_s - line.quickest_at_s));
   out.drift_ppm = 1e6 * line.drift;
   out.drift_sigma_ppm = 1e6 * line.drift_sigma;

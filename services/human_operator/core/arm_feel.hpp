@@ -8,12 +8,13 @@
 
 namespace stillhand::human_operator {
 
-/// Stick and arm as the subject has learnt to feel them at the hand, and the bounds of the
-/// subject's force, Eq. HO-1:
+/// Dynamics of stick and arm at the hand, as the subject has learnt them, and the bounds of the
+/// subject's force:
 ///
 ///   f = M a + B v + K x,   x hand displacement from upright [m], + right
 ///
 /// J^* of the paper is 1 / (M s^2 + B s + K): joystick with the arm's driving-point impedance.
+/// Source: README Eq. HO-1; paper Eq. 2.
 struct ArmFeel {
   double effective_mass_kg = 1.38;
   double effective_damping_n_s_m = 9.5;
@@ -27,16 +28,16 @@ struct ArmFeel {
     visit("effective_mass_kg", self.effective_mass_kg, Range{0.05, 5.0},
           "[kg] M felt at the hand below 1 Hz; README, \"What the stick feels like\"");
     visit("effective_damping_n_s_m", self.effective_damping_n_s_m, Range{0.0, 300.0},
-          "[N s/m] B felt at the hand below 1 Hz");
+          "[N s/m] B felt at the hand below 1 Hz; README, \"What the stick feels like\"");
     visit("effective_stiffness_n_m", self.effective_stiffness_n_m, Range{0.0, 5000.0},
           "[N/m] K: shoulder, grip and seat of the rig's body in series, co-contracted");
     visit("cursor_per_hand", self.cursor_per_hand, Range{0.1, 100.0},
-          "[m/m] cursor per hand displacement; paper III-C (0.6 m/rad) over II (0.10 m lever)");
+          "[m/m] cursor displacement per hand displacement; paper III-C (0.6 m/rad) and II (0.10 m "
+          "lever)");
     visit("max_force_n", self.max_force_n, Range{0.0, 60.0},
-          "[N] bound of the volitional force, twice what the whole screen takes; README, "
-          "\"Bounds\"");
+          "[N] largest volitional force, twice the force for the whole screen; README, \"Bounds\"");
     visit("max_slew_n_s", self.max_slew_n_s, Range{1.0, 20000.0},
-          "[N/s] bound of its rate; README, \"Bounds\"");
+          "[N/s] largest rate of change of the volitional force; README, \"Bounds\"");
   }
 
   /// Eq. HO-1.
@@ -46,10 +47,10 @@ struct ArmFeel {
   }
 };
 
-/// Ticks in which a force fades once the subject has nothing to act on.
+/// Ticks in which the force fades to zero when the subject has no valid input.
 inline constexpr std::int64_t kFade_ticks = 50;
 
-/// The last thing a volitional force passes through.
+/// The envelope that bounds the volitional force; it is the last stage.
 inline signal::ForceEnvelope force_envelope(const ArmFeel& feel) {
   return signal::ForceEnvelope({feel.max_force_n, feel.max_slew_n_s, kFade_ticks});
 }

@@ -24,28 +24,29 @@ struct CrossoverConfig {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] of the subject's remnant");
+    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] seed of the subject's remnant");
     visit("crossover_hz", self.crossover_hz, Range{0.02, 1.0},
-          "[Hz] crossover with no fast error, w_c0 / 2 pi; paper Table I (0.25 Hz, condition A)");
-    visit(
-        "delay_s", self.delay_s, Range{0.05, 0.6},
-        "[s] T_d of the whole subject, muscle lag included; 0.2 to 0.25 s, McRuer and Jex (1967)");
+          "[Hz] crossover frequency without fast error, w_c0 / 2 pi; paper Table I (0.25 Hz, "
+          "condition A)");
+    visit("delay_s", self.delay_s, Range{0.05, 0.6},
+          "[s] T_d of the whole subject, including the lag of the muscle; 0.2 to 0.25 s, McRuer "
+          "and Jex (1967)");
     visit("muscle_rad_s", self.muscle_rad_s, Range{4.0, 40.0},
           "[rad/s] w_n of arm and muscle; 10 to 20 rad/s, McRuer and Jex (1967)");
     visit("muscle_damping_ratio", self.muscle_damping_ratio, Range{0.1, 0.95},
           "[-] z of arm and muscle; McRuer and Jex (1967)");
     visit("regression_error_m", self.regression_error_m, Range{0.001, 1e6},
-          "[m] RMS of fast error that halves the crossover; README, Eq. HO-5");
+          "[m] E_0, RMS fast error that halves the crossover frequency; README, Eq. HO-5");
     visit("regression_above_hz", self.regression_above_hz, Range{0.05, 5.0},
-          "[Hz] error above this is fast: too fast to be tracked");
+          "[Hz] frequency above which an error counts as fast; README, Eq. HO-5");
     visit("regression_memory_s", self.regression_memory_s, Range{0.5, 60.0},
-          "[s] time constant of the subject's impression of the fast error");
+          "[s] time constant of the mean square of the fast error; README, Eq. HO-5");
     visit("remnant_ratio", self.remnant_ratio, Range{0.0, 0.2},
-          "[-] noise-to-signal ratio of what is seen, 0.01 is -20 dB; Levison, Kleinman and Baron "
-          "(1969)");
+          "[-] noise-to-signal ratio of the seen error, 0.01 is -20 dB; Levison, Kleinman and "
+          "Baron (1969)");
     visit(
         "remnant_floor_m", self.remnant_floor_m, Range{0.0, 0.02},
-        "[m] error RMS below which the remnant no longer shrinks, of the order of a line's width");
+        "[m] RMS error below which the remnant stays constant; assumed, about the width of a line");
     visit.group("arm", self.arm);
   }
 };

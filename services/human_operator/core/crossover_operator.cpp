@@ -14,7 +14,7 @@ namespace {
 
 // Stream of the remnant under the subject's seed; the trial's number is added.
 constexpr std::uint64_t kRemnantStream = 0x72656d6e616e7400;
-// Farther than any screen; what a message may claim beyond this isn't seen.
+// Wider than any screen; larger positions in a message are clipped.
 constexpr double kFarthestSeen_m = 1.0;
 
 const CrossoverConfig& checked(const CrossoverConfig& config) {
@@ -27,7 +27,7 @@ const CrossoverConfig& checked(const CrossoverConfig& config) {
   return config;
 }
 
-/// T_p in ticks: T_d without the muscle's lag.
+/// T_p in ticks: T_d without the lag of the muscle.
 std::size_t perception_ticks(const CrossoverConfig& config) {
   const double muscle_lag_s = 2.0 * config.muscle_damping_ratio / config.muscle_rad_s;
   return static_cast<std::size_t>(ticks_in(config.delay_s - muscle_lag_s));
@@ -39,7 +39,7 @@ Remnant remnant(const CrossoverConfig& config, std::int64_t trial_number) {
                  kRemnantStream + static_cast<std::uint64_t>(trial_number));
 }
 
-/// Nobody aims farther than the own strength can hold the stick.
+/// The wanted displacement is bounded by the displacement that max_force_n can hold against K.
 double reach(const ArmFeel& arm) {
   const double held_m = arm.max_force_n / std::max(arm.effective_stiffness_n_m, 1e-9);
   return std::min(kFarthestSeen_m, arm.cursor_per_hand * held_m);

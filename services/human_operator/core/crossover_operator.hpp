@@ -12,32 +12,32 @@
 
 namespace stillhand::human_operator {
 
-/// Simulated subject after McRuer's crossover model, paper Eq. 2, Eq. HO-3:
-///
+/// Simulated subject after McRuer's crossover model:
 ///   u' = w_c (e(t - T_p) + v(t))         wanted cursor, v the remnant (HO-4), w_c from HO-5
 ///   x  = muscle(u) / 6                   wanted hand position (HO-2)
-///   f_t = M x'' + B x' + K x             force that moves the felt stick so (HO-1)
-///
-/// With a stick that feels as expected the open loop is w_c exp(-j w T_d) / (j w) with
-/// T_d = T_p + 2 z / w_n.  The subject is a force source (paper section II-B): whatever else pushes
-/// the stick is seen only through the cursor.
-/// Force bounded and slew-limited.  It fades to zero within 50 ticks when inactive, and the subject
-/// starts afresh; also while the input isn't finite, which the subject doesn't see.  Deterministic:
-/// config, trial number and inputs fix every bit.  Pure; step() never allocates, locks or throws.
+///   f_t = M x'' + B x' + K x             force for this motion of the felt stick (HO-1)
+/// If the stick has the learnt dynamics, the open loop is w_c exp(-j w T_d) / (j w) with
+/// T_d = T_p + 2 z / w_n.  The subject is a force source (paper section II-B): it perceives other
+/// forces on the stick only through the cursor.
+/// The force is bounded and slew-limited.  If the subject is inactive or the input is not finite,
+/// the force fades to zero within 50 ticks.  An inactive subject restarts from rest.
+/// Config, trial number and inputs determine every bit of the output.
+/// Source: README Eq. HO-1 to HO-5; paper Eq. 2; McRuer and Jex (1967).
+/// Pure; step() never allocates, locks or throws.
 class CrossoverOperator {
  public:
   using Config = CrossoverConfig;
 
-  /// @throws stillhand::ConfigError naming the first field that is out of range, and when delay_s
-  ///         is less than the muscle's lag.
+  /// @throws stillhand::ConfigError naming the first field that is out of range, and if delay_s is
+  ///         less than the lag of the muscle.
   explicit CrossoverOperator(const Config& config);
 
-  /// A new trial: forgets the last one; the remnant's stream is that of the trial's number.
+  /// Begins a new trial; the trial number selects the stream of the remnant.
   void arm(const Trial& trial);
 
   OperatorOutput step(const OperatorInput& input) noexcept;
 
-  /// w_c / 2 pi in use [Hz].
+  /// Present w_c / 2 pi [Hz].
   [[nodiscard]] double crossover_hz() const noexcept;
 
  private:
@@ -45,7 +45,7 @@ class CrossoverOperator {
   double wanted_force(double error_m) noexcept;
 
   Config config_;
-  double reach_m_;  ///< cursor displacement that the subject ever wants, either side
+  double reach_m_;  ///< largest wanted cursor displacement, each side
   signal::DelayLine delay_;
   FastError fast_error_;
   Remnant remnant_;

@@ -6,16 +6,15 @@
 
 namespace stillhand::human_operator {
 
-/// How much of the error is too fast to be tracked, and what that does to the crossover, Eq. HO-5:
-///
+/// Mean square of the error that is too fast for tracking; it lowers the crossover frequency:
 ///   E' = (h^2 - E) / memory,   w_c = w_c0 / (1 + E / E_0^2)
-///
-/// h is the error above `above_hz` (second-order Butterworth).  Source: crossover regression,
-/// README [McRuer and Jex 1967]; this form and E_0, README "Regression".  Pure.
+/// h is the error above `above_hz` (second-order Butterworth).
+/// Source: README Eq. HO-5 and "Regression"; McRuer and Jex (1967) for crossover regression, the
+/// form and E_0 without a source.  Pure.
 class FastError {
  public:
   /// @param above_hz  cutoff [Hz]   @param memory_s  time constant of the mean [s]
-  /// @throws stillhand::ConfigError when the cutoff is not below half the control rate.
+  /// @throws stillhand::ConfigError if the cutoff is not below half the control rate.
   FastError(double above_hz, double memory_s)
       : high_pass_(2, above_hz, kControlRateHz, signal::Passband::kHigh),
         forget_(kControlPeriod_s / memory_s) {}

@@ -6,15 +6,15 @@
 
 namespace stillhand::human_operator {
 
-/// What the subject sees in one tick.
+/// Input of the subject in one tick.
 struct OperatorInput {
   Tick tick;
-  double target_m;  ///< x_r on the screen, right of its centre
+  double target_m;  ///< x_r on the screen, positive right of its centre
   double cursor_m;  ///< x_p, same frame
   bool active;      ///< a tracking trial runs and its samples arrive
 };
 
-/// What the subject does, whoever it is.
+/// Output of the subject, simulated or real.
 struct OperatorOutput {
   double force_n;  ///< f_t, volitional force at the hand, + right
   Flags flags;  ///< kInputGap, kInputInvalid, kInputStale, kSaturated, kSlewLimited, kRampingDown

@@ -11,7 +11,7 @@ namespace {
 
 // Close to critically damped: the arm follows the pointer without swinging past it.
 constexpr double kDampingRatio = 0.9;
-// Farther than any screen.
+// Wider than any screen.
 constexpr double kFarthest_m = 1.0;
 
 const PointerOperator::Config& checked(const PointerOperator::Config& config) {

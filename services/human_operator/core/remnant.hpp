@@ -11,20 +11,19 @@
 
 namespace stillhand::human_operator {
 
-/// Observation noise on the seen error: the remnant, Eq. HO-4.  White with the two-sided density
-///
+/// The remnant: observation noise on the seen error, white with the two-sided density
 ///   Phi = pi rho (m + floor^2)  [m^2 s],   E{v(t) v(t + tau)} = Phi delta(tau)
-///
-/// where m is the running mean square of the error over `kMemory_s`.  Drawn every kHold ticks and
-/// held: variance Phi / (kHold dt), white to beyond 10 Hz, far above what the muscle passes.
-/// Source: README [Levison, Kleinman and Baron 1969].  Same seed, same bits.  Pure.
+/// where m is the running mean square of the error over `kMemory_s`.  Each draw is held for kHold
+/// ticks and has the variance Phi / (kHold dt).  The noise is white to beyond 10 Hz, far above the
+/// bandwidth of the muscle.  The same seed gives the same bits.
+/// Source: README Eq. HO-4; Levison, Kleinman and Baron (1969).  Pure.
 class Remnant {
  public:
   static constexpr double kMemory_s = 4.0;
   static constexpr int kHold = 20;
 
   /// @param ratio    rho [-], 0 switches the remnant off
-  /// @param floor_m  error RMS below which it no longer shrinks [m]
+  /// @param floor_m  RMS error below which the remnant stays constant [m]
   Remnant(double ratio, double floor_m, std::uint64_t seed, std::uint64_t stream)
       : per_mean_square_(std::numbers::pi * ratio / (kHold * kControlPeriod_s)),
         mean_square_m2_(0.0),

@@ -16,7 +16,7 @@ struct KnownColumn {
   std::string_view name;
   std::string_view unit;
 };
-// design.md section 3, "Recordings as CSV".
+// Names with a fixed unit: services/recording/README.md, "CSV".
 constexpr std::array<KnownColumn, 10> kKnownColumns{{{"t", "s"},
                                                      {"a_x", "m/s^2"},
                                                      {"a_y", "m/s^2"},
@@ -28,7 +28,7 @@ constexpr std::array<KnownColumn, 10> kKnownColumns{{{"t", "s"},
                                                      {"x_p", "m"},
                                                      {"f", "N"}}};
 
-// A cell of more characters than this is quoted cut short in a message.
+// A message quotes at most this many characters of a cell.
 constexpr std::size_t kQuotedCharacters = 40;
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -39,7 +39,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Control characters of a file that is no text would move a terminal's cursor, and split a message.
+// Control characters of a binary file would move the cursor of a terminal and split a message.
 std::string quoted(std::string_view text) {
   std::string shown(text.substr(0, kQuotedCharacters));
   std::ranges::replace_if(
@@ -49,7 +49,7 @@ std::string quoted(std::string_view text) {
 
 std::string title(const Column& column) { return column.name + " [" + column.unit + "]"; }
 
-// Walks over lines and cells and knows where it is.
+// Walks over lines and cells and tracks its position.
 class CsvText {
  public:
   CsvText(std::string_view text, const std::string& source) : rest_(text), source_(source) {
@@ -106,7 +106,8 @@ Column parse_title(const CsvText& text, std::string_view cell, std::size_t numbe
   column.unit = trimmed(inner.substr(open + 1, inner.size() - open - 2));
   if (column.name.empty()) text.fail(raw.data(), "a unit without a name: " + quoted(raw), example);
   if (number == 0 && (column.name != "t" || column.unit != "s")) {
-    text.fail(raw.data(), "the first column " + quoted(raw), "'t [s]', time in seconds, first");
+    text.fail(raw.data(), "the first column " + quoted(raw),
+              "'t [s]', time in seconds, as the first");
   }
   const auto known = std::ranges::find(kKnownColumns, column.name, &KnownColumn::name);
   if (known != kKnownColumns.end() && known->unit != column.unit) {
@@ -135,7 +136,7 @@ std::vector<Column> parse_header(const CsvText& text, std::string_view line) {
     start = comma + 1;
   }
   if (columns.size() < 2) {
-    text.fail(line.data(), "no column beside the time", "'t [s]' and at least one 'name [unit]'");
+    text.fail(line.data(), "no column except the time", "'t [s]' and at least one 'name [unit]'");
   }
   return columns;
 }

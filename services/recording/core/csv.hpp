@@ -8,16 +8,16 @@
 
 namespace stillhand::recording {
 
-/// Reads a recording from CSV text: header `name [unit]`, comma-separated, `t [s]` first and
-/// strictly increasing, one row a sample, every cell a finite number, at least two rows.  A byte
-/// order mark, CRLF, blanks around cells and quoted header cells are accepted; missing rows show in
-/// `gaps`.
+/// Reads a recording from CSV text.  The header has comma-separated titles `name [unit]`; `t [s]`
+/// is first and strictly increasing.  Each row is a sample, every cell is a finite number, and
+/// there are at least two rows.  A byte order mark, CRLF, blanks around cells and quoted titles are
+/// accepted.  `gaps` lists missing rows.
 /// @param source  name of the text, for messages
 /// @throws ConfigError "<source>:<line>:<column>: got ..., want ..."; the column counts characters
 ///         from 1.
 Recording parse_csv(std::string_view text, const std::string& source);
 
-/// The reverse.  Numbers in the shortest form that reads back to the same double.
+/// The reverse.  Each number has the shortest form that gives the same double again.
 std::string to_csv(const Recording& recording);
 
 }  // namespace stillhand::recording

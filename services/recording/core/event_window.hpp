@@ -8,22 +8,22 @@
 
 namespace stillhand::recording {
 
-/// The last seconds of a recording, kept until something makes them worth writing.  Holds whole
-/// batches: a batch leaves when its newest message is older than the window, so up to one batch
-/// more than asked for is kept.  Pure; one thread.  Throws std::bad_alloc.
+/// The last seconds of a recording, kept in memory until a trigger writes them.  It holds whole
+/// batches and removes a batch when its newest message is older than the window.  It therefore
+/// keeps up to one batch more than the window.  Pure; one thread.  Throws std::bad_alloc.
 class EventWindow {
  public:
-  /// @param keep_ns  [ns] length, positive  @param max_bytes  [B] most it may hold
+  /// @param keep_ns  [ns] length, positive  @param max_bytes  [B] largest content
   EventWindow(std::int64_t keep_ns, std::size_t max_bytes)
       : keep_ns_(keep_ns), max_bytes_(max_bytes) {}
 
-  /// Takes a batch in the order of time and forgets what became too old.
+  /// Adds a batch, in the order of time, and removes batches that are too old.
   void add(MessageBatch batch);
-  /// Everything held, oldest first; the window is empty afterwards.
+  /// The whole content, oldest first; the window is empty afterwards.
   std::deque<MessageBatch> take();
 
   [[nodiscard]] std::uint64_t held_messages() const noexcept { return messages_; }
-  /// Messages that were younger than the window and had to leave for want of room.
+  /// Messages younger than the window that were removed because of max_bytes.
   [[nodiscard]] std::uint64_t crowded_out() const noexcept { return crowded_out_; }
 
  private:

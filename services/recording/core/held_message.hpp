@@ -8,7 +8,7 @@
 
 namespace stillhand::recording {
 
-/// Where one message of a batch lies, and what goes with it.
+/// Place of one message in a batch, and its properties.
 struct HeldMessage {
   std::uint32_t channel;
   std::uint32_t sequence;
@@ -18,7 +18,8 @@ struct HeldMessage {
   std::size_t size;
 };
 
-/// Messages on their way to the file, bytes in one piece: emptied and refilled without allocating.
+/// Messages before they are written, with all bytes in one buffer: clearing and refilling does not
+/// allocate.
 struct MessageBatch {
   std::vector<HeldMessage> messages;
   std::vector<std::byte> bytes;

@@ -8,17 +8,18 @@
 
 namespace stillhand::recording {
 
-/// What one writer sent and what came of it, Eq. RC-11.  Two numberings are compared: the sequence
-/// number that DDS gave each sample, and the tick that the sample itself carries.  A sample missing
-/// by either is lost; one missing by its tick alone never reached the writer's DDS, so the loss was
-/// before the bus.  Pure; one thread.
+/// Counts the received and lost samples of one writer.  It compares two numbers of each sample: the
+/// sequence number of DDS and the tick inside the sample.  A sample is lost if either number is
+/// missing.  If only the tick is missing, the sample never reached the writer's DDS and was lost
+/// before the bus.  Source: README Eq. RC-11.  Pure; one thread.
 class LossCount {
  public:
-  /// @param sequence  DDS's, counted by the writer  @param tick  the sample's own, -1: it has none
+  /// @param sequence  sequence number of DDS, counted by the writer
+  /// @param tick      tick of the sample, -1: none
   void step(std::int64_t sequence, Tick tick) noexcept {
     ++received_;
     const std::int64_t by_sequence = started_ ? sequence - sequence_ - 1 : 0;
-    // A tick that goes back is another session of the same writer.
+    // A decreasing tick means another session of the same writer.
     const std::int64_t by_tick = tick >= 0 && tick_ >= 0 ? tick - tick_ - 1 : 0;
     const std::int64_t on_the_way = std::max<std::int64_t>(by_sequence, 0);
     const std::int64_t before = std::max<std::int64_t>(by_tick - on_the_way, 0);
@@ -31,7 +32,7 @@ class LossCount {
 
   [[nodiscard]] std::int64_t received() const noexcept { return received_; }
   [[nodiscard]] std::int64_t lost() const noexcept { return lost_; }
-  /// Of these, missing by their tick alone.
+  /// Lost samples of which only the tick is missing.
   [[nodiscard]] std::int64_t not_sent() const noexcept { return not_sent_; }
 
  private:

@@ -8,14 +8,14 @@
 
 namespace stillhand::recording {
 
-/// How fast a recording is played: thousandths of real time, 0.1 to 100.
+/// Rate of a replay in thousandths of real time, 0.1 to 100.
 struct PlayRate {
   std::int64_t per_mille = 1000;  ///< [1/1000] 100 to 100 000
 
   static constexpr std::int64_t kSlowest = 100;
   static constexpr std::int64_t kFastest = 100'000;
 
-  /// "1", "0.25", "100": at most three decimals; nothing for any other text.
+  /// Parses "1", "0.25" or "100", with at most three decimals; nothing for any other text.
   static std::optional<PlayRate> parse(std::string_view text) noexcept;
   [[nodiscard]] std::string text() const;
   /// The next step up or down of 0.1 0.2 0.5 1 2 5 10 20 50 100.
@@ -24,21 +24,21 @@ struct PlayRate {
   bool operator==(const PlayRate&) const = default;
 };
 
-/// Where a replay is, and when a recorded instant is due, Eqs. RC-12 and RC-13:
+/// Position of a replay, and the time at which a recorded instant is due:
 ///
 ///   recorded = R0 + floor((now - N0) rate / 1000),   due = N0 + ceil((recorded - R0) 1000 / rate)
-///
-/// The anchor (N0, R0) moves only at a pause, a seek or a change of the rate, so errors of single
-/// releases never add up, and at most 1 ns is rounded at each such move.  Integers throughout.
-/// `now` is any steady clock of the caller's [ns].  Pure; one thread.
+/// The anchor (N0, R0) changes only at a pause, a seek or a change of the rate.  Errors of single
+/// releases therefore never accumulate; each change rounds by at most 1 ns.  All values are
+/// integers.  `now` is any steady clock of the caller [ns].
+/// Source: README Eq. RC-12 and RC-13.  Pure; one thread.
 class PlayClock {
  public:
   PlayClock(std::int64_t now_ns, std::int64_t recorded_ns, PlayRate rate) noexcept
       : now0_ns_(now_ns), recorded0_ns_(recorded_ns), rate_(rate) {}
 
-  /// Recorded instant that is played now.
+  /// The recorded instant at the time `now_ns`.
   [[nodiscard]] std::int64_t recorded_at(std::int64_t now_ns) const noexcept;
-  /// When a recorded instant is due; nothing while paused.
+  /// The time at which a recorded instant is due; nothing while paused.
   [[nodiscard]] std::optional<std::int64_t> due(std::int64_t recorded_ns) const noexcept;
 
   void pause(std::int64_t now_ns) noexcept;

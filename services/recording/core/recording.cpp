@@ -36,7 +36,7 @@ void estimate_timing(Recording& recording) {
   recording.gaps.clear();
   for (std::size_t i = 0; i < steps_s.size(); ++i) {
     if (steps_s[i] > 1.5 * period_s) {
-      // 2^53: any finite time may follow any other, and so many periods no integer need hold.
+      // 2^53 bounds the count: any finite time may follow any other time.
       const double periods = std::min(std::round(steps_s[i] / period_s), 0x1p53);
       recording.gaps.push_back({i, static_cast<std::int64_t>(periods) - 1});
     }

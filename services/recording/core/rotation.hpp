@@ -6,14 +6,14 @@
 
 namespace stillhand::recording {
 
-/// When a recording goes on in another file.
+/// Limits of one file; beyond them the recording continues in the next file.
 struct RotationLimits {
   std::uint64_t max_bytes = 0;  ///< [B] of one file, 0: no limit
   std::int64_t max_ns = 0;      ///< [ns] of one file, 0: no limit
 };
 
-/// True when the next message belongs into a new file.  @param age_ns  since the file's first
-/// message.
+/// True if the next message belongs to a new file.  @param age_ns  time since the first message of
+/// the file.
 constexpr bool is_full(const RotationLimits& limits, std::uint64_t bytes,
                        std::int64_t age_ns) noexcept {
   return (limits.max_bytes > 0 && bytes >= limits.max_bytes) ||

@@ -6,7 +6,8 @@
 namespace stillhand::recording {
 namespace {
 
-// Large enough that a scan over 100-byte messages is not a system call each, small beside a chunk.
+// Large enough to avoid a system call for each 100-byte message of a scan, small compared with a
+// chunk.
 constexpr std::uint64_t kWindowBytes = 64 * 1024;
 
 }  // namespace

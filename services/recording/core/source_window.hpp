@@ -9,14 +9,14 @@
 
 namespace stillhand::recording {
 
-/// Reads a source through one window, so that small records next to each other cost one read.
-/// The source outlives it.  Thread-compatible.
+/// Reads a source through one buffer, so that adjacent small records need one read.  The source
+/// must outlive it.  Thread-compatible.
 class SourceWindow {
  public:
   explicit SourceWindow(ByteSource& source) : source_(source) {}
 
-  /// The bytes [offset, offset + count), valid until the next call; empty when they do not lie
-  /// inside the source or it failed (see status()).  The caller bounds `count`.
+  /// The bytes [offset, offset + count), valid until the next call.  Empty if they are not inside
+  /// the source or the source failed (see status()).  The caller limits `count`.
   std::span<const std::byte> view(std::uint64_t offset, std::uint64_t count);
 
   /// First failure of the source, or ok.

@@ -6,17 +6,17 @@
 
 namespace stillhand::recording {
 
-/// Why an input or output step did not succeed.
+/// Reason why an input or output step failed.
 enum class StatusKind {
   kOk,
-  kIo,        ///< the operating system refused; text holds its reason
+  kIo,        ///< the operating system refused; text states the reason
   kNoSpace,   ///< the disk (or quota, or file size limit) is full
-  kClosed,    ///< written after close()
-  kTooLarge,  ///< larger than the format or the set limit allows; nothing was written
-  kDamaged,   ///< the bytes read are not what the format promises
+  kClosed,    ///< write after close()
+  kTooLarge,  ///< larger than the format or the limit allows; nothing was written
+  kDamaged,   ///< the bytes violate the format
 };
 
-/// Outcome of a step that can fail while a recording runs; never thrown, never to be ignored.
+/// Result of a step that can fail while a recording runs.  It is returned, never thrown.
 struct [[nodiscard]] Status {
   StatusKind kind = StatusKind::kOk;
   std::string text;  ///< one line for a person, empty when ok

@@ -6,8 +6,8 @@
 
 namespace stillhand::recording {
 
-// The newest star takes one character more whenever what follows it does not match: linear in the
-// text for each star, and no recursion that a pattern of many stars could drive.
+// If the text after the newest star does not match, the star takes one more character.  The time is
+// linear in the text for each star, without recursion.
 bool matches_pattern(std::string_view pattern, std::string_view text) noexcept {
   std::size_t p = 0;
   std::size_t t = 0;

@@ -9,11 +9,12 @@
 
 namespace stillhand::recording {
 
-/// `*` stands for any run of characters, a slash included, `?` for any one; the rest for itself.
+/// `*` matches any run of characters, including a slash; `?` matches any one character; every other
+/// character matches itself.
 bool matches_pattern(std::string_view pattern, std::string_view text) noexcept;
 
-/// Which topics are wanted: those that match an allow pattern (all without one) and no block
-/// pattern.  Pure.
+/// Selection of topics.  A topic is wanted if it matches an allow pattern (or none is given) and
+/// matches no block pattern.  Pure.
 struct TopicFilter {
   std::vector<std::string> allow;
   std::vector<std::string> block;
@@ -21,7 +22,7 @@ struct TopicFilter {
   [[nodiscard]] bool wants(std::string_view topic) const noexcept;
 };
 
-/// "one of a, b": every topic of a recording, for messages on a name that is none of them.
+/// "one of a, b" with every topic of a recording, for messages on an unknown name.
 std::string one_of_topics(const std::map<ChannelId, Channel>& channels);
 
 }  // namespace stillhand::recording

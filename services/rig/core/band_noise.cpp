@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kOrder = 4;
 
-/// Root of the energy of the impulse response.  The slowest pole of the high-pass, at 22.5 degrees
-/// from the imaginary axis, has decayed to exp(-2 pi 0.38 8) = 5e-9 after eight periods.
+/// Square root of the energy of the impulse response.  The slowest pole of the high-pass is 22.5
+/// degrees from the imaginary axis; it decays to exp(-2 pi 0.38 8) = 5e-9 after eight periods.
 double impulse_norm(signal::Butterworth high_pass, signal::Butterworth low_pass, double low_hz) {
   const auto samples = static_cast<int>(8.0 * kControlRateHz / low_hz);
   double energy = 0.0;

@@ -8,8 +8,12 @@
 
 namespace stillhand::rig {
 
-/// Seeded normal noise between two frequencies (Butterworth, order 4 at each edge, Eq. SG-4) at 1
-/// kHz, of a given RMS in the long run: y = R h * n / |h|, n white of unit variance.
+/// Seeded normal noise between two frequencies at 1 kHz (Butterworth, order 4 at each edge), with a
+/// given long-term RMS R:
+///
+///   y = R h * n / |h|,   n white noise of unit variance, h the impulse response of the filters
+///
+/// Source: filters after Eq. SG-4 (services/signal); noise after README Eq. RG-11.
 /// Never allocates or throws after construction.
 class BandNoise {
  public:

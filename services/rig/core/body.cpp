@@ -7,8 +7,8 @@
 namespace stillhand::rig {
 namespace {
 
-/// Closer and slower than this the peg counts as seated; the step to exactly 0 changes the grip
-/// force by less than 5 mN, a quarter of the load cell's noise.
+/// Below this distance and speed the peg counts as seated.  The step to exactly 0 changes the grip
+/// force by less than 5 mN, a quarter of the load-cell noise.
 constexpr double kSeated_m = 1e-6;
 constexpr double kSeated_m_s = 1e-5;
 
@@ -46,8 +46,7 @@ void add_forces(std::array<double, N>& x, const ForceColumns<N>& columns,
   }
 }
 
-/// Eq. RG-13: adds to `ahead` what the effect's forces do over the tick, as their mean of both
-/// ends.
+/// Eq. RG-13: adds the effect's forces over the tick to `ahead`, as the mean of both ends.
 template <std::size_t N>
 void apply(EffectOnChain& effect, const std::array<double, N>& from, std::array<double, N>& ahead,
            const ForceColumns<N>& columns, const std::array<double, N>* on_stick,
@@ -95,7 +94,7 @@ double Body::stop_force(const FreeChain::State& ahead, const FreeChain& chain) c
   if (depth_m <= 0.0) return 0.0;
   const double k = stick_.stop_stiffness_n_m;
   const double c = stick_.stop_damping_n_s_m;
-  // Implicit: the depth and speed that the force acts on are those at the end of the tick.
+  // Implicit: the force depends on depth and speed at the end of the tick.
   const double push_n = (k * depth_m + c * side * ahead[kStickRate]) /
                         (1.0 + k * chain.from_force[kStick] + c * chain.from_force[kStickRate]);
   return -side * std::max(0.0, push_n);
@@ -119,8 +118,8 @@ double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexce
     flags |= kAtStop;
     add_force(ahead, chain.free, stop_n);
   }
-  // The force that would end the tick at the wanted speed: rest for friction, which can't pull
-  // harder than F_c, the way to the centre for the peg, which can.
+  // The force that ends the tick at the wanted speed.  Friction aims at rest and is bounded by F_c;
+  // the peg aims at the path to the centre and is not bounded.
   double brake_n = 0.0;
   if (input.pegged) {
     brake_n = (seating_velocity() - ahead[kStickRate]) / chain.free.from_force[kStickRate];

@@ -9,9 +9,9 @@
 
 namespace stillhand::rig {
 
-/// Body and stick together, README Eq. RG-3 to RG-5; coordinates relative to the platform, + right.
-/// The linear part is discretised exactly (Eq. RG-10); friction, stops and peg are forces found
-/// implicitly at the end of the tick, so that they never put energy in.
+/// Body and stick together; coordinates relative to the platform, + right.
+/// Source: README Eq. RG-3 to RG-5.  The discretisation of the linear part is exact (Eq. RG-10).
+/// Friction, stops and peg are implicit forces at the end of the tick, so they never add energy.
 /// Pure: no clock, no I/O; never allocates or throws after construction.
 class Body {
  public:
@@ -19,8 +19,8 @@ class Body {
     double acceleration_m_s2;   ///< a_y of the platform at this tick
     double motor_force_n;       ///< at the hand, held over the tick that ends here
     double volitional_force_n;  ///< same
-    bool pegged;                ///< also: the hand is idle, muscles relaxed
-    double shaken_n = 0.0;      ///< on the hand, neither by the chain nor willed, Eq. RG-12; held
+    bool pegged;                ///< the peg holds the stick; the hand is idle, muscles relaxed
+    double shaken_n = 0.0;  ///< further force on the hand, Eq. RG-22 to RG-24; held over the tick
   };
   struct Output {
     double theta_rad;            ///< stick angle
@@ -30,15 +30,15 @@ class Body {
     Flags flags;                 ///< kAtStop
   };
 
-  /// @param period_s  length of a tick [s]; other than 1 ms only to study the discretisation
-  /// @param effect    what the chain lacks, Eq. RG-13; nothing by default
-  /// @throws stillhand::ConfigError when a field is outside its range.
+  /// @param period_s  length of a tick [s]; other values than 1 ms only study the discretisation
+  /// @param effect    effect that the chain lacks, Eq. RG-13; none by default
+  /// @throws stillhand::ConfigError if a field is outside its range.
   Body(const BodyConfig& body, const StickConfig& stick, double period_s = kControlPeriod_s,
        const ChainEffect& effect = {});
 
   Output step(const Input& input) noexcept;
 
-  /// Kinetic plus elastic energy of chain and stick, stops left out [J].
+  /// Kinetic plus elastic energy of chain and stick, without the stops [J].
   [[nodiscard]] double energy_j() const noexcept;
 
  private:
@@ -61,9 +61,9 @@ class Body {
   /// Load-cell force of a held stick with the chain at `x`, Eq. RG-5.
   [[nodiscard]] static double held_force(const HeldChain::State& x, const Input& input,
                                          const ChainParameters& p, const EffectOnChain& effect);
-  /// Velocity at the end of the tick on the critically damped way to the centre.
+  /// Velocity at the end of the tick on the critically damped path to the centre.
   [[nodiscard]] double seating_velocity() const noexcept;
-  /// Force of the rubber on a stick that would be at `ahead` without it, Eq. RG-4.
+  /// Force of the rubber on a stick; `ahead` is its state without this force, Eq. RG-4.
   [[nodiscard]] double stop_force(const FreeChain::State& ahead,
                                   const FreeChain& chain) const noexcept;
   void end_at_steel() noexcept;
@@ -72,13 +72,13 @@ class Body {
   double period_s_;
   double stop_m_;        ///< where the rubber begins, at the hand
   double seating_keep_;  ///< exp(-dt / peg_seat_time)
-  double friction_n_;    ///< F_c and what the effect adds
+  double friction_n_;    ///< F_c plus the friction of the effect
   Muscles relaxed_;
   Muscles tense_;
   EffectOnChain effect_;       ///< on x_
   EffectOnChain copy_effect_;  ///< on copy_
   FreeChain::State x_{};       ///< trunk, arm, stick
-  HeldChain::State copy_{};    ///< trunk and arm, had the stick been held at 0 all the time
+  HeldChain::State copy_{};    ///< trunk and arm with the stick always held at 0
   double last_acceleration_m_s2_ = 0.0;
   bool pegged_ = false;
   bool seated_ = false;  ///< the peg holds the stick at exactly 0

@@ -5,9 +5,9 @@
 
 namespace stillhand::rig {
 
-/// Seated subject as a lateral chain seat - trunk - arm - grip - hand, README Eq. RG-3.  Values are
-/// those of the idle, relaxed hand; `cocontraction_*` turn them into those of a hand that tracks.
-/// The ranges are wide enough for a population of subjects; README, "Where the numbers come from".
+/// Seated subject as a lateral chain seat - trunk - arm - grip - hand, README Eq. RG-3.  The values
+/// describe the idle, relaxed hand; the factors `cocontraction_*` give those of a tracking hand.
+/// The ranges cover a population of subjects; README, "Where the numbers come from".
 struct BodyConfig {
   double trunk_mass_kg = 30.0;                  ///< m_t
   double seat_stiffness_n_m = 10500.0;          ///< k_t
@@ -35,10 +35,9 @@ struct BodyConfig {
     visit(
         "arm_mass_kg", self.arm_mass_kg, Range{0.3, 4.0},
         "[kg] m_a, inertia of the arm felt at the hand; Mussa-Ivaldi et al. (1985), Winter (2009)");
-    visit(
-        "shoulder_stiffness_n_m", self.shoulder_stiffness_n_m, Range{50.0, 5000.0},
-        "[N/m] k_a, shoulder and elbow felt at the hand; Mussa-Ivaldi et al. (1985), Perreault et "
-        "al. (2002)");
+    visit("shoulder_stiffness_n_m", self.shoulder_stiffness_n_m, Range{50.0, 5000.0},
+          "[N/m] k_a, shoulder and elbow felt at the hand; Mussa-Ivaldi et al. (1985), Perreault "
+          "et al. (2002)");
     visit("shoulder_damping_n_s_m", self.shoulder_damping_n_s_m, Range{0.5, 300.0},
           "[N s/m] c_a; damping ratio 0.1 to 0.4 of the arm, Perreault et al. (2004)");
     visit("grip_stiffness_n_m", self.grip_stiffness_n_m, Range{200.0, 20000.0},
@@ -46,25 +45,26 @@ struct BodyConfig {
     visit("grip_damping_n_s_m", self.grip_damping_n_s_m, Range{0.5, 300.0},
           "[N s/m] c_h, palm and wrist; Hasser and Cutkosky (2002)");
     visit("arm_rest_stiffness_n_m", self.arm_rest_stiffness_n_m, Range{0.0, 5000.0},
-          "[N/m] k_r, padded rest under the forearm, fixed to the platform; the paper's subjects "
-          "were told not to use theirs");
+          "[N/m] k_r, padded rest under the forearm, fixed to the platform; the subjects of the "
+          "paper were instructed not to use theirs");
     visit("arm_rest_damping_n_s_m", self.arm_rest_damping_n_s_m, Range{0.0, 300.0},
-          "[N s/m] c_r, same");
+          "[N s/m] c_r, damping of the same arm rest");
     visit("hand_mass_kg", self.hand_mass_kg, Range{0.05, 0.8},
           "[kg] m_h, part of the hand that moves with the handle; hand 0.006 of body mass, Winter "
           "(2009) table 4.1");
     visit("cocontraction_stiffness_factor", self.cocontraction_stiffness_factor, Range{1.0, 4.0},
-          "[-] stiffness of shoulder and grip while tracking over that of the idle hand; 1.2 to 2, "
-          "Gomi and Osu (1998)");
+          "[-] ratio of the stiffness of shoulder and grip while tracking to that of the idle "
+          "hand; 1.2 to 2, Gomi and Osu (1998)");
     visit("cocontraction_damping_factor", self.cocontraction_damping_factor, Range{1.0, 4.0},
-          "[-] same for damping; square root of the stiffness factor keeps the damping ratio");
+          "[-] the same ratio for damping; the square root of the stiffness factor keeps the "
+          "damping ratio");
   }
 };
 
-/// Joystick, stated at the hand [N, kg, m], README Eq. RG-4 and RG-5.
+/// Joystick; all quantities refer to the hand [N, kg, m], README Eq. RG-4 and RG-5.
 struct StickConfig {
   double lever_m = 0.10;                   ///< r, hand to pivot
-  double handle_mass_kg = 0.10;            ///< m_g, above the load cell; feels a_y
+  double handle_mass_kg = 0.10;            ///< m_g, above the load cell; a_y acts on it
   double drive_mass_kg = 0.25;             ///< m_d, rotor, drum and stem; balanced about the pivot
   double viscous_damping_n_s_m = 0.5;      ///< b
   double coulomb_friction_n = 0.2;         ///< F_c
@@ -73,33 +73,33 @@ struct StickConfig {
   double stop_stiffness_n_m = 50000.0;     ///< k_s
   double stop_damping_n_s_m = 150.0;       ///< c_s
   double stop_travel_m = 0.002;            ///< rubber ends, steel begins
-  double peg_seat_time_s = 0.1;  ///< time constant with which the peg draws the stick to 0
+  double peg_seat_time_s = 0.1;            ///< time constant of the peg as it moves the stick to 0
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("lever_m", self.lever_m, Range{0.02, 0.5}, "[m] hand to pivot; paper II (10 cm)");
     visit("handle_mass_kg", self.handle_mass_kg, Range{0.01, 1.0},
           "[kg] m_g, handle above the load cell, unbalanced; aluminium grip of 0.1 m");
-    visit(
-        "drive_mass_kg", self.drive_mass_kg, Range{0.02, 2.0},
-        "[kg] m_d, balanced inertia below the load cell over lever squared; rotor 1.4e-5 kg m^2 "
-        "(maxon RE 40 data sheet) through a 10:1 capstan is 0.14 kg, drum and stem about as much");
+    visit("drive_mass_kg", self.drive_mass_kg, Range{0.02, 2.0},
+          "[kg] m_d, balanced inertia below the load cell divided by lever squared; rotor 1.4e-5 "
+          "kg m^2 (maxon RE 40 data sheet) through a 10:1 capstan is 0.14 kg; drum and stem add "
+          "about the same");
     visit("viscous_damping_n_s_m", self.viscous_damping_n_s_m, Range{0.0, 50.0},
           "[N s/m] b, bearings and back-emf of a current-driven motor");
     visit("coulomb_friction_n", self.coulomb_friction_n, Range{0.0, 5.0},
           "[N] F_c, brushes and capstan; 0.1 to 0.3 N is usual for capstan devices");
     visit("centring_stiffness_n_m", self.centring_stiffness_n_m, Range{0.0, 2000.0},
-          "[N/m] centring spring; the paper's stick has none");
+          "[N/m] k_c, centring spring; the stick of the paper has none");
     visit("stop_angle_rad", self.stop_angle_rad, Range{0.05, 1.2},
-          "[rad] mechanical stop, each side; paper III-C (30 degrees)");
+          "[rad] angle of the mechanical stop, each side; paper III-C (30 degrees)");
     visit("stop_stiffness_n_m", self.stop_stiffness_n_m, Range{2000.0, 500000.0},
-          "[N/m] rubber of the stop");
+          "[N/m] k_s, rubber of the stop");
     visit("stop_damping_n_s_m", self.stop_damping_n_s_m, Range{0.0, 5000.0},
-          "[N s/m] rubber of the stop");
+          "[N s/m] c_s, rubber of the stop");
     visit("stop_travel_m", self.stop_travel_m, Range{0.0001, 0.02},
           "[m] depth of the rubber; the stick never goes deeper");
     visit("peg_seat_time_s", self.peg_seat_time_s, Range{0.01, 2.0},
-          "[s] time constant with which the tapered peg draws the stick to its centre");
+          "[s] time constant of the tapered peg as it moves the stick to its centre");
   }
 };
 

@@ -50,8 +50,8 @@ Continuous continuous(const ChainParameters& p) {
   return system;
 }
 
-/// Eq. RG-10 for the first N states: the matrix exponential of the system extended by the
-/// acceleration, its slope and the force.
+/// Eq. RG-10 for the first N states: matrix exponential of the system, extended by acceleration,
+/// slope of the acceleration and force.
 template <std::size_t N>
 LinearStep<N> discretised(const Continuous& system, double period_s) {
   constexpr Eigen::Index kN = static_cast<Eigen::Index>(N);

@@ -23,9 +23,13 @@ struct ChainParameters {
 /// @param relaxed  true: idle hand;  false: co-contraction factors applied
 ChainParameters chain_parameters(const BodyConfig& body, const StickConfig& stick, bool relaxed);
 
-/// Exact step of dx/dt = A x + B a(t) + G u over one tick, a(t) linear between its samples and u
-/// constant, Eq. RG-10:  x[n] = Phi x[n-1] + B0 a[n-1] + B1 a[n] + G u[n].
-/// Source: Franklin, Powell and Workman, Digital Control of Dynamic Systems, 3rd ed., section 6.3.
+/// Exact step of dx/dt = A x + B a(t) + G u over one tick, with a(t) linear between its samples and
+/// u constant:
+///
+///   x[n] = Phi x[n-1] + B0 a[n-1] + B1 a[n] + G u[n]
+///
+/// Source: README Eq. RG-10; Franklin, Powell and Workman, Digital Control of Dynamic Systems, 3rd
+/// ed., section 6.3.
 template <std::size_t N>
 struct LinearStep {
   using State = std::array<double, N>;
@@ -59,8 +63,8 @@ enum ChainIndex : std::size_t { kTrunk = 0, kTrunkRate, kArm, kArmRate, kStick, 
 HeldChain held_chain(const ChainParameters& parameters, double period_s);
 FreeChain free_chain(const ChainParameters& parameters, double period_s);
 
-/// What a force of 1 N on a mass, constant over a tick, adds to the state at its end: G of Eq.
-/// RG-10 for the other masses.
+/// Change of the state at the end of a tick for a constant force of 1 N on a mass: G of Eq. RG-10
+/// for trunk and arm.
 template <std::size_t N>
 struct ForceColumns {
   std::array<double, N> trunk{};

@@ -38,7 +38,7 @@ Motor::Output Motor::step(const MotorDemand& demand) noexcept {
     lagged_n_ += lag_blend_ * (target_n - lagged_n_);
   }
   const auto out = envelope_.step(lagged_n_, counts);
-  // After a gap the lag starts from the force that acts, not from the one before the gap.
+  // After a gap, the lag starts from the present force, not from the force before the gap.
   if (!counts) lagged_n_ = out.force_n;
   return {out.force_n, flags | out.flags};
 }

@@ -22,15 +22,16 @@ struct MotorConfig {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("torque_constant_n_m_a", self.torque_constant_n_m_a, Range{0.001, 1.0},
-          "[N m/A] maxon RE 40, 150 W, 24 V winding, data sheet");
+          "[N m/A] k_T; maxon RE 40, 150 W, 24 V winding, data sheet");
     visit("capstan_ratio", self.capstan_ratio, Range{1.0, 50.0},
-          "[-] stick drum over motor pulley");
+          "[-] radius of the stick drum divided by that of the motor pulley");
     visit("current_limit_a", self.current_limit_a, Range{0.1, 40.0},
-          "[A] of the amplifier; 6 A continuous for the RE 40, 10 A for seconds");
+          "[A] current limit of the amplifier; the RE 40 allows 6 A continuously and 10 A for "
+          "seconds");
     visit("lag_s", self.lag_s, Range{0.0002, 0.02},
           "[s] current loop and capstan cable, first order; 1 to 2 ms");
     visit("max_motor_age_ticks", self.max_motor_age_ticks, Range{1.0, 100.0},
-          "[ticks] oldest sample that a motor command may answer");
+          "[ticks] largest age of the sample that a motor command answers");
     visit.group("limits", self.limits);
   }
 };
@@ -55,11 +56,11 @@ class Motor {
   };
 
   /// @param lever_m  hand to pivot [m]
-  /// @throws stillhand::ConfigError when a field is outside its range.
+  /// @throws stillhand::ConfigError if a field is outside its range.
   Motor(const MotorConfig& config, double lever_m);
 
   Output step(const MotorDemand& demand) noexcept;
-  /// True when the demand counts: there, permitted, fresh and finite.
+  /// True if the demand is valid, permitted, fresh and finite.
   [[nodiscard]] bool usable(const MotorDemand& demand) const noexcept;
 
  private:

@@ -16,7 +16,7 @@ bool finite(const PlatformDemand& demand) noexcept {
          std::isfinite(demand.acceleration_m_s2);
 }
 
-/// value within +-limit; sets `flag` when that changed it.
+/// Clips `value` to +-limit and sets `flag` if the value changed.
 double limited(double value, double limit, Flag flag, Flags& flags) noexcept {
   const double inside = std::clamp(value, -limit, limit);
   if (inside != value) flags |= flag;
@@ -28,11 +28,12 @@ double limited(double value, double limit, Flag flag, Flags& flags) noexcept {
 Platform::Platform(const PlatformConfig& config) : config_(config) {
   validate(config, "rig.platform");
   const double omega_rad_s = 2.0 * std::numbers::pi * config.loop_frequency_hz;
-  // Routh: tau w < 2 z; half of it leaves a gain margin of two.
+  // The Routh criterion requires tau w < 2 z; half of it leaves a gain margin of two.
   if (config.torque_lag_s * omega_rad_s > config.loop_damping) {
     std::ostringstream want;
     want << "at most " << config.loop_damping / omega_rad_s
-         << " (loop_damping / (2 pi loop_frequency_hz)), or the position loop is near instability";
+         << " (loop_damping / (2 pi loop_frequency_hz)); above it the position loop is near "
+            "instability";
     throw ConfigError("rig.platform.torque_lag_s", std::to_string(config.torque_lag_s), want.str());
   }
   rate_gain_s_ = 2.0 * config.loop_damping * omega_rad_s;
@@ -61,13 +62,13 @@ double Platform::wanted_acceleration(const PlatformDemand& demand, Flags& flags)
 
 double Platform::brakeable(double room_m, double closing_m_s) const noexcept {
   const double most_m_s2 = config_.max_acceleration_m_s2;
-  // Even a whole tick of full acceleration leaves room to brake: the usual case, without a root.
+  // The usual case, without a square root: a whole tick of full acceleration leaves room to brake.
   const double faster_m_s = std::abs(closing_m_s) + most_m_s2 * kDt_s;
   if (faster_m_s * (kDt_s + faster_m_s * brake_s2_m_) < room_m) return most_m_s2;
   const double half_m_s = 0.5 * most_m_s2 * kDt_s;
   const double square_m2_s2 =
       half_m_s * half_m_s + 2.0 * most_m_s2 * room_m - most_m_s2 * kDt_s * closing_m_s;
-  // (closing - half)^2 or more while the platform can brake; less by rounding alone.
+  // At least (closing - half)^2 while the platform can brake; only rounding makes it less.
   if (square_m2_s2 <= 0.0) return -most_m_s2;
   const double next_m_s = std::sqrt(square_m2_s2) - half_m_s;
   return std::max(-most_m_s2, (next_m_s - closing_m_s) * kControlRateHz);
@@ -92,7 +93,7 @@ Platform::Output Platform::step(const PlatformDemand& demand) noexcept {
   state_.position_m += (v_m_s + 0.5 * safe_m_s2 * kDt_s) * kDt_s;
   state_.velocity_m_s = v_m_s + safe_m_s2 * kDt_s;
   state_.acceleration_m_s2 = safe_m_s2;
-  // Only rounding can reach past the wall here (Eq. RG-2).
+  // Only rounding can exceed the workspace here (Eq. RG-2).
   state_.position_m = std::clamp(state_.position_m, -config_.workspace_m, config_.workspace_m);
   return {state_, flags};
 }

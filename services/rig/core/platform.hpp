@@ -24,18 +24,19 @@ struct PlatformConfig {
     visit("workspace_m", self.workspace_m, Range{0.01, 5.0},
           "[m] travel, each side of the centre; paper III-C (0.15 m)");
     visit("max_velocity_m_s", self.max_velocity_m_s, Range{0.1, 10.0},
-          "[m/s] the ball screw's; 0.15 m at 0.7 Hz needs 0.66 m/s");
+          "[m/s] speed limit of the ball screw; 0.15 m at 0.7 Hz needs 0.66 m/s");
     visit("max_acceleration_m_s2", self.max_acceleration_m_s2, Range{1.0, 50.0},
-          "[m/s^2] the servo motor's; twice the 7.5 m/s^2 of paper III-C");
-    visit("loop_frequency_hz", self.loop_frequency_hz, Range{1.0, 30.0},
-          "[Hz] natural frequency of the position loop; paper III-C wants a bandwidth above 6 Hz");
+          "[m/s^2] acceleration limit of the servo motor; twice the 7.5 m/s^2 of paper III-C");
+    visit(
+        "loop_frequency_hz", self.loop_frequency_hz, Range{1.0, 30.0},
+        "[Hz] natural frequency of the position loop; paper III-C requires a bandwidth above 6 Hz");
     visit("loop_damping", self.loop_damping, Range{0.3, 2.0}, "[-] damping ratio of that loop");
     visit("acceleration_feedforward", self.acceleration_feedforward, Range{0.0, 1.0},
           "[-] share of the commanded acceleration fed forward");
     visit("torque_lag_s", self.torque_lag_s, Range{0.0005, 0.01},
           "[s] first-order lag of the drive's torque loop and the screw");
     visit("catch_velocity_m_s", self.catch_velocity_m_s, Range{0.01, 2.0},
-          "[m/s] fastest approach to a command that the platform is away from");
+          "[m/s] largest speed at which the platform approaches a distant command");
     visit("stop_deceleration_m_s2", self.stop_deceleration_m_s2, Range{0.5, 50.0},
           "[m/s^2] deceleration when the command is missing");
   }
@@ -48,7 +49,7 @@ struct PlatformState {
   double acceleration_m_s2 = 0.0;
 };
 
-/// Command for this tick; `valid` false: none arrived.
+/// Command for this tick; `valid` false: no command arrived.
 struct PlatformDemand {
   bool valid;
   double position_m;
@@ -56,14 +57,16 @@ struct PlatformDemand {
   double acceleration_m_s2;
 };
 
-/// Ideal motion source for the body (paper II-A: the vehicle is much heavier), README Eq. RG-1:
+/// Ideal motion source for the body:
 ///
 ///   v_d = v_c + clip((w/2z)(x_c - x), V_catch),  a_d = 2 z w (v_d - v) + k_a a_c
 ///   tau da/dt = a_d - a
 ///
-/// then Eq. RG-2 limits the acceleration so that the platform can still stop inside its workspace.
-/// Without a command it brakes to rest and holds.  Acceleration is constant within a tick:
-/// position_m and velocity_m_s are those at its end.  Pure; never allocates or throws.
+/// Eq. RG-2 then limits the acceleration so that the platform can still stop inside its workspace.
+/// Without a command it brakes to rest and holds.  Acceleration is constant within a tick;
+/// position_m and velocity_m_s are the values at its end.
+/// Source: README Eq. RG-1 and RG-2; paper II-A (the vehicle is much heavier than the body).
+/// Pure; never allocates or throws.
 class Platform {
  public:
   struct Output {
@@ -71,7 +74,7 @@ class Platform {
     Flags flags;  ///< kInputStale (no command), kInputInvalid, kSaturated, kWorkspaceLimit
   };
 
-  /// @throws stillhand::ConfigError when a field is outside its range or the loop is unstable.
+  /// @throws stillhand::ConfigError if a field is outside its range or the loop is unstable.
   explicit Platform(const PlatformConfig& config);
 
   /// One tick.
@@ -80,7 +83,7 @@ class Platform {
  private:
   [[nodiscard]] double wanted_acceleration(const PlatformDemand& demand,
                                            Flags& flags) const noexcept;
-  /// Largest acceleration that still stops short of a wall at `room_m` ahead, Eq. RG-2.
+  /// Largest acceleration that still allows a stop before a wall at `room_m`, Eq. RG-2.
   [[nodiscard]] double brakeable(double room_m, double closing_m_s) const noexcept;
 
   PlatformConfig config_;

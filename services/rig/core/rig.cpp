@@ -15,7 +15,7 @@ const RigConfig& checked(const RigConfig& config) {
   return config;
 }
 
-/// A person's force changes as fast as it likes within its bound; a lost one fades in 50 ticks.
+/// The slew limit is too high to restrict a person; a lost force fades in 50 ticks.
 signal::ForceLimits volitional_limits(const RigConfig& config) {
   return {.max_force_n = config.max_operator_force_n, .max_slew_n_s = 20000.0, .ramp_ticks = 50};
 }
@@ -79,7 +79,7 @@ RigOutput Rig::step(const RigInput& input) noexcept {
   double accel_z_m_s2 = kGravity_m_s2;
   if (effect != nullptr) {
     shaken = effect->step(platform.state);
-    // Eq. RG-23: what masses and accelerometers feel along the rolled axes.
+    // Eq. RG-23: accelerations of masses and accelerometers along the rolled axes.
     const double sine = std::sin(shaken.roll_rad);
     const double cosine = std::cos(shaken.roll_rad);
     const double along_m_s2 = accel_y_m_s2;

@@ -28,7 +28,7 @@ struct RigConfig {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] of the sensors' noise");
+    visit("seed", self.seed, Range{0.0, 4294967295.0}, "[-] seed of the sensor noise");
     visit("max_operator_force_n", self.max_operator_force_n, Range{0.0, 60.0},
           "[N] bound of the volitional force at the hand");
     visit("max_operator_age_ticks", self.max_operator_age_ticks, Range{1.0, 10000.0},
@@ -41,7 +41,7 @@ struct RigConfig {
   }
 };
 
-/// Everything that reaches the rig in one tick.
+/// All inputs of the rig in one tick.
 struct RigInput {
   bool command_valid = false;  ///< a platform command for this tick arrived
   double command_position_m = 0.0;
@@ -57,11 +57,11 @@ struct RigInput {
   bool motor_permitted = false;   ///< interlock: every required process alive, and a trial runs
 };
 
-/// What only a simulated rig can tell; recorded for evaluation, never used for control.
+/// Quantities that only a simulated rig knows; recorded for evaluation, never used for control.
 struct RigTruth {
   double platform_position_m, platform_velocity_m_s, platform_acceleration_m_s2;
   double theta_rad, omega_rad_s;
-  double feedthrough_force_n;  ///< f'_b: the body's force on the stick were it held at 0
+  double feedthrough_force_n;  ///< f'_b: force of the body on a stick held at 0
   double motor_force_n;        ///< applied, after limits and lag
   double volitional_force_n;   ///< applied, after its bound
   double hand_force_n;         ///< through the load cell, without noise
@@ -70,21 +70,21 @@ struct RigTruth {
 struct RigOutput {
   RawSample raw;
   RigTruth truth;
-  Flags flags;  ///< of every part, or-ed
+  Flags flags;  ///< flags of all parts, combined with bitwise OR
 };
 
-/// Simulated platform, subject, stick, motor and sensors: the stand-in for the hardware.
+/// Simulated platform, subject, stick, motor and sensors; it replaces the hardware.
 ///
 ///   command -> Platform -> a_y -> Body (+ Motor, volitional force) -> Sensors -> RawSample
-///
-/// A volitional force that is stale or not finite fades to zero within 50 ticks; an absent one
-/// (operator_valid false) is none.  Source: paper section III-C; README Eq. RG-1 to RG-10.
-/// Pure: same config and inputs, same bits out; step() never allocates, locks or throws, and its
-/// output is finite and bounded for every input.
+/// A volitional force that is stale or not finite fades to zero within 50 ticks.  Without one
+/// (operator_valid false) the force is 0.
+/// Source: README Eq. RG-1 to RG-11; paper section III-C.
+/// Pure: the same config and inputs give the same bits; step() never allocates, locks or throws.
+/// The output is finite and bounded for every input.
 class Rig {
  public:
   /// @throws stillhand::ConfigError naming the first field that is out of range.
-  /// @param sealed  what nothing but this rig is told of; nothing by default
+  /// @param sealed  the undeclared effect; none by default
   explicit Rig(const RigConfig& config, SealedEffect sealed = {});
   ~Rig();
   Rig(Rig&&) noexcept;
@@ -92,8 +92,7 @@ class Rig {
 
   RigOutput step(const RigInput& input) noexcept;
 
-  /// Opens the sealed effect, once and for all: a step after it, or another opening, is a bug of
-  /// the caller and aborts.
+  /// Opens the sealed effect.  A later step or a second opening is a bug of the caller and aborts.
   [[nodiscard]] OpenedEffect open_effect();
 
  private:

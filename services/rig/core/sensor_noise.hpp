@@ -8,16 +8,16 @@
 
 namespace stillhand::rig {
 
-/// Seeded white normal noise, mean 0, standard deviation 1, by the ziggurat method, README Eq.
-/// RG-11: 128 layers of equal area under exp(-x^2/2).  Exactly normal, including the tail; four to
-/// five times as fast as std::normal_distribution, which four channels at 1 kHz would feel, and the
-/// same with every standard library.
-/// Source: Marsaglia and Tsang (2000), J. Stat. Software 5(8); Doornik (2005), ZIGNOR, whose use of
-/// separate bits for layer and value is followed here.
+/// Seeded white normal noise, mean 0, standard deviation 1, by the ziggurat method with 128 layers
+/// of equal area under exp(-x^2/2).  The distribution is exactly normal, including the tail.  The
+/// method is four to five times as fast as std::normal_distribution and gives the same values with
+/// every standard library.
+/// Source: README Eq. RG-11; Marsaglia and Tsang (2000), J. Stat. Software 5(8); Doornik (2005),
+/// ZIGNOR, for the separate bits of layer and value.
 /// Never allocates or throws after construction.
 class SensorNoise {
  public:
-  /// @param seed    the rig's seed  @param stream  which use of it
+  /// @param seed  seed of the rig  @param stream  number of the use of this seed
   SensorNoise(std::uint64_t seed, std::uint64_t stream);
 
   double operator()() noexcept {
@@ -38,8 +38,8 @@ class SensorNoise {
   double beyond_core(std::size_t layer, double u) noexcept;
   double tail(bool negative) noexcept;
 
-  std::array<double, kLayers + 1> edge_{};  ///< right end of each layer, [0] is the base's
-  std::array<double, kLayers> ratio_{};     ///< part of a layer wholly under the curve
+  std::array<double, kLayers + 1> edge_{};  ///< right end of each layer; [0] is the base
+  std::array<double, kLayers> ratio_{};     ///< part of a layer that is completely under the curve
   std::mt19937_64 engine_;
 };
 

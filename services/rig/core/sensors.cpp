@@ -10,7 +10,7 @@
 namespace stillhand::rig {
 namespace {
 
-/// Stream of the rig's seed that feeds the sensors.
+/// Stream of the rig's seed for the sensors.
 constexpr std::uint64_t kSensorStream = 0x5e45;
 
 /// Nearest integer, halves away from zero; |x| below 2^62.

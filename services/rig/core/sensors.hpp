@@ -29,28 +29,29 @@ struct SensorConfig {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("accel_sensitivity_v_m_s2", self.accel_sensitivity_v_m_s2, Range{0.001, 10.0},
-          "[V/(m/s^2)] 1000 mV/g, ADXL203 data sheet");
+          "[V/(m/s^2)] sensitivity; 1000 mV/g, ADXL203 data sheet");
     visit("accel_offset_v", self.accel_offset_v, Range{-1.0, 1.0},
-          "[V] left after the zero-g level is taken off");
+          "[V] offset that remains after subtraction of the zero-g level");
     visit("accel_noise_m_s2_rthz", self.accel_noise_m_s2_rthz, Range{0.0, 0.1},
           "[(m/s^2)/sqrt(Hz)] white noise density; 110 ug/sqrt(Hz), ADXL203 data sheet");
     visit("accel_range_m_s2", self.accel_range_m_s2, Range{5.0, 500.0},
-          "[m/s^2] 1.7 g, ADXL203 data sheet");
+          "[m/s^2] end of the sensor's range; 1.7 g, ADXL203 data sheet");
     visit("load_cell_sensitivity_v_n", self.load_cell_sensitivity_v_n, Range{0.001, 10.0},
-          "[V/N] 100 N to 10 V");
-    visit("load_cell_offset_v", self.load_cell_offset_v, Range{-1.0, 1.0}, "[V] bridge balance");
+          "[V/N] sensitivity; 100 N gives 10 V");
+    visit("load_cell_offset_v", self.load_cell_offset_v, Range{-1.0, 1.0},
+          "[V] offset of the bridge");
     visit("load_cell_noise_n_rthz", self.load_cell_noise_n_rthz, Range{0.0, 0.1},
           "[N/sqrt(Hz)] white noise density; assumed, 0.022 N RMS in 500 Hz");
     visit("encoder_counts_per_rev", self.encoder_counts_per_rev, Range{64.0, 10000000.0},
-          "[counts/rev] paper III-C (4096)");
+          "[counts/rev] counts in one turn; paper III-C (4096)");
     visit("inclinometer_step_rad", self.inclinometer_step_rad, Range{1e-7, 0.01},
-          "[rad] resolution, 0.01 degree");
+          "[rad] resolution; 0.01 degree");
     visit("adc_range_v", self.adc_range_v, Range{1.0, 20.0}, "[V] input range, each side of zero");
-    visit("adc_bits", self.adc_bits, Range{8.0, 24.0}, "[bit] of the acquisition board");
+    visit("adc_bits", self.adc_bits, Range{8.0, 24.0}, "[bit] resolution of the acquisition board");
   }
 };
 
-/// What the sensing device sees; counts and volts as an acquisition board gives them.
+/// Sample of the acquisition board, in volts and counts.
 struct RawSample {
   double accel_x_v = 0.0;           ///< [V] fore-aft
   double accel_y_v = 0.0;           ///< [V] lateral, + right
@@ -60,7 +61,7 @@ struct RawSample {
   double roll_rad = 0.0;            ///< [rad] inclinometer
 };
 
-/// True quantities in front of the sensors; frame and signs as RawSample.
+/// True inputs of the sensors; frame and signs as in RawSample.
 struct SensorInput {
   double accel_x_m_s2;
   double accel_y_m_s2;
@@ -70,8 +71,8 @@ struct SensorInput {
   double roll_rad;
 };
 
-/// Sensors and 16-bit acquisition, README Eq. RG-9.  Deterministic in (config, seed, inputs).
-/// Never allocates or throws.
+/// Sensors and acquisition board.  Source: README Eq. RG-9.
+/// Config, seed and inputs determine the output.  Never allocates or throws.
 class Sensors {
  public:
   struct Output {
@@ -79,13 +80,13 @@ class Sensors {
     Flags flags;  ///< kSaturated: a channel is at the end of its range
   };
 
-  /// @throws stillhand::ConfigError when a field is outside its range.
+  /// @throws stillhand::ConfigError if a field is outside its range.
   Sensors(const SensorConfig& config, std::uint64_t seed);
 
   Output step(const SensorInput& input) noexcept;
 
  private:
-  /// Clipped to the board's range and rounded to a code [V].
+  /// Voltage, clipped to the range of the board and rounded to a code [V].
   [[nodiscard]] double converted(double volts, Flags& flags) const noexcept;
   double accelerometer(double accel_m_s2, Flags& flags) noexcept;
 

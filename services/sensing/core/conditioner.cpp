@@ -8,9 +8,9 @@
 namespace stillhand::sensing {
 namespace {
 
-/// A reading within one 16-bit code of the end of the range is a clipped one.
+/// A reading within one 16-bit code of the end of the range counts as clipped.
 constexpr double kRail = 1.0 - 1.0 / 32768.0;
-/// Same for an accelerometer, whose clipped output still carries its noise.
+/// The same limit for an accelerometer, whose clipped output still has noise.
 constexpr double kSensorEnd = 0.99;
 
 const Config& checked(const Config& config) {
@@ -45,7 +45,7 @@ double Conditioner::in_units(double volts, double offset_v, double units_per_v, 
 double Conditioner::angle(std::int64_t counts, Flags& flags) const noexcept {
   const double from_zero =
       static_cast<double>(counts) - static_cast<double>(config_.encoder_zero_counts);
-  // A stick between stops turns less than a quarter turn; half a turn is a fault of the counter.
+  // Between its stops the stick moves less than a quarter turn; half a turn is a counter fault.
   if (std::abs(from_zero) > 0.5 * config_.encoder_counts_per_rev) {
     flags |= kInputInvalid;
     return last_.theta_rad;
@@ -96,8 +96,8 @@ void Conditioner::bridge(const Calibrated& now, Tick lost_ticks) noexcept {
 }
 
 void Conditioner::advance(const Calibrated& now) noexcept {
-  // Filtering the deviation from a baseline is the same as filtering the signal (the gain at 0 Hz
-  // is 1), and a filter at rest is one that has settled at the baseline.
+  // The gain at 0 Hz is 1, so filtering the deviation from a baseline equals filtering the signal.
+  // A filter at rest has settled at the baseline (Eq. SE-2).
   std::array<double, kAnalogChannels> filtered;
   for (std::size_t i = 0; i < kAnalogChannels; ++i) {
     filtered[i] = baseline_[i] + antialias_[i].step(now.analog[i] - baseline_[i]);

@@ -30,32 +30,31 @@ struct Config {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("accel_sensitivity_v_m_s2", self.accel_sensitivity_v_m_s2, Range{0.001, 10.0},
-          "[V/(m/s^2)] 1000 mV/g, ADXL203 data sheet");
-    visit("accel_x_offset_v", self.accel_x_offset_v, Range{-10.0, 10.0}, "[V] at 0 m/s^2");
-    visit("accel_y_offset_v", self.accel_y_offset_v, Range{-10.0, 10.0}, "[V] at 0 m/s^2");
-    visit("accel_z_offset_v", self.accel_z_offset_v, Range{-10.0, 10.0}, "[V] at 0 m/s^2");
+          "[V/(m/s^2)] sensitivity; 1000 mV/g, ADXL203 data sheet");
+    visit("accel_x_offset_v", self.accel_x_offset_v, Range{-10.0, 10.0}, "[V] voltage at 0 m/s^2");
+    visit("accel_y_offset_v", self.accel_y_offset_v, Range{-10.0, 10.0}, "[V] voltage at 0 m/s^2");
+    visit("accel_z_offset_v", self.accel_z_offset_v, Range{-10.0, 10.0}, "[V] voltage at 0 m/s^2");
     visit("accel_range_m_s2", self.accel_range_m_s2, Range{5.0, 500.0},
           "[m/s^2] end of the sensor's range; 1.7 g, ADXL203 data sheet");
     visit("load_cell_sensitivity_v_n", self.load_cell_sensitivity_v_n, Range{0.001, 10.0},
-          "[V/N] 100 N to 10 V");
-    visit("load_cell_offset_v", self.load_cell_offset_v, Range{-10.0, 10.0}, "[V] at 0 N");
+          "[V/N] sensitivity; 100 N gives 10 V");
+    visit("load_cell_offset_v", self.load_cell_offset_v, Range{-10.0, 10.0}, "[V] voltage at 0 N");
     visit("adc_range_v", self.adc_range_v, Range{1.0, 20.0}, "[V] input range, each side of zero");
     visit("encoder_counts_per_rev", self.encoder_counts_per_rev, Range{64.0, 1e7},
-          "[counts/rev] paper III-C (4096)");
+          "[counts/rev] counts in one turn; paper III-C (4096)");
     visit("encoder_zero_counts", self.encoder_zero_counts, Range{-1e7, 1e7},
           "[counts] reading with the stick upright");
     visit("antialias_cutoff_hz", self.antialias_cutoff_hz, Range{5.0, 450.0},
-          "[Hz] second-order Butterworth on acceleration and force; stands in for the paper's "
+          "[Hz] second-order Butterworth low-pass of acceleration and force; replaces the paper's "
           "analogue filters (III-A)");
     visit("rate_cutoff_hz", self.rate_cutoff_hz, Range{1.0, 450.0},
-          "[Hz] second-order Butterworth on the differenced encoder angle");
-    visit(
-        "max_bridged_ticks", self.max_bridged_ticks, Range{0.0, 1000.0},
-        "[ticks] longest gap that is bridged by interpolation; a longer one restarts the filters");
+          "[Hz] second-order Butterworth low-pass of the differenced encoder angle");
+    visit("max_bridged_ticks", self.max_bridged_ticks, Range{0.0, 1000.0},
+          "[ticks] longest gap that interpolation bridges; a longer gap restarts the filters");
   }
 };
 
-/// One sample of the acquisition board, with its tick.  Signs as in Sensed.
+/// One sample of the acquisition board, with its tick; signs as in Sensed.
 struct DeviceSample {
   Tick tick = 0;
   double accel_x_v = 0.0;           ///< [V] fore-aft
@@ -68,21 +67,22 @@ struct DeviceSample {
 
 /// Calibrated, filtered sample.
 struct Sensed {
-  double accel_x_m_s2, accel_y_m_s2, accel_z_m_s2;  ///< specific force; z reads +1 g at rest
+  double accel_x_m_s2, accel_y_m_s2, accel_z_m_s2;  ///< specific force; z is +1 g at rest
   double roll_rad;
   double force_n;  ///< force of hand on stick, + right
   double theta_rad, omega_rad_s;
   Flags flags;  ///< kInputGap, kInputInvalid, kSaturated
 };
 
-/// Calibration and anti-alias filtering, README Eq. SE-1 to SE-4.  Acceleration and force pass the
-/// same filter, so their ratio, the feedthrough, is unchanged.
+/// Calibration and anti-alias filtering.  Acceleration and force pass the same filter, so their
+/// ratio, the feedthrough, is unchanged.
 ///
-/// Lost ticks set kInputGap; up to `max_bridged_ticks` are bridged by linear interpolation of the
-/// calibrated values, so that the filters keep the time base.  After more, after a jump back by
-/// more (the source restarted), and on the first sample the filters start settled at the sample.
-/// A channel that is NaN, infinite or impossible holds its last good value and sets kInputInvalid;
-/// a sample that comes twice or late repeats the last output with kInputInvalid.
+/// Lost ticks set kInputGap.  Linear interpolation of the calibrated values bridges up to
+/// `max_bridged_ticks`, so the filters keep the time base.  The filters start in steady state at
+/// the sample if the gap is longer, if the source restarted (a larger step back), and at the first
+/// sample.  A channel that is NaN, infinite or impossible holds its last good value and sets
+/// kInputInvalid.  A repeated or late sample gives the last output again with kInputInvalid.
+/// Source: README Eq. SE-1 to SE-4; paper III-A.
 /// Pure; never allocates or throws after construction.
 class Conditioner {
  public:
@@ -114,7 +114,7 @@ class Conditioner {
   double rad_per_count_;
   std::array<signal::Butterworth, kAnalogChannels> antialias_;
   signal::Butterworth rate_filter_;
-  std::array<double, kAnalogChannels> baseline_{};  ///< level at which the filters settled
+  std::array<double, kAnalogChannels> baseline_{};  ///< x_0 of Eq. SE-2
   Calibrated last_;
   Sensed out_{};
   Tick last_tick_ = 0;

@@ -76,7 +76,7 @@ TEST(ReadTest, ATrialOfATableIsRefused) {
 
 TEST(ReadTest, AFileThatIsNotThereIsRefused) {
   EXPECT_THAT(error_of("/nowhere/ride.csv"), StartsWith("/nowhere/ride.csv: got No such file"));
-  EXPECT_THAT(error_of(testing::TempDir()), HasSubstr("no regular file"));
+  EXPECT_THAT(error_of(testing::TempDir()), HasSubstr("not a regular file"));
 }
 
 TEST(ReadTest, AnEmptyFileIsRefused) {
@@ -85,7 +85,7 @@ TEST(ReadTest, AnEmptyFileIsRefused) {
 
 TEST(ReadTest, OneColumnIsRefused) {
   EXPECT_THAT(complaint("t [s]\n0\n0.01\n0.02\n"),
-              StartsWith(":1:1: got no column beside the time"));
+              StartsWith(":1:1: got no column except the time"));
   EXPECT_THAT(complaint("f [N]\n0\n0.01\n0.02\n"),
               StartsWith(":1:1: got the first column 'f [N]'"));
 }

@@ -61,7 +61,7 @@ TEST(CsvTest, SaysWhatIsWrongWithTheHeader) {
               StartsWith("ride.csv:1:22: got a second column 'f'"));
   EXPECT_THAT(error_of("f [N],t [s]\n"), StartsWith("ride.csv:1:1: got the first column 'f [N]'"));
   EXPECT_THAT(error_of("t [ms],f [N]\n"), StartsWith("ride.csv:1:1: got the first column"));
-  EXPECT_THAT(error_of("t [s]\n0\n1\n"), HasSubstr("no column beside the time"));
+  EXPECT_THAT(error_of("t [s]\n0\n1\n"), HasSubstr("no column except the time"));
   EXPECT_THAT(error_of("t [s],,f [N]\n"), StartsWith("ride.csv:1:7: got an empty column title"));
   EXPECT_THAT(error_of("t [s];f [N]\n"), StartsWith("ride.csv:1:6: got ';' between columns"));
 }

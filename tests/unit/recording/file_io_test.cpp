@@ -68,7 +68,7 @@ TEST_F(FileIoTest, ARecordingIsNotOverwrittenUnlessWanted) {
 TEST_F(FileIoTest, FilesThatCannotBeOpenedAreNamed) {
   EXPECT_THAT(error_of([&] { FileSink sut(path("none/a")); }), HasSubstr("none/a: got No such"));
   EXPECT_THAT(error_of([&] { FileSource sut(path("none")); }), HasSubstr("none: got No such file"));
-  EXPECT_THAT(error_of([&] { FileSource sut(folder_.string()); }), HasSubstr("no regular file"));
+  EXPECT_THAT(error_of([&] { FileSource sut(folder_.string()); }), HasSubstr("not a regular file"));
 }
 
 TEST_F(FileIoTest, AFullDeviceIsAStatusWithItsReason) {

@@ -173,7 +173,7 @@ TEST(MessageColumnsLimitsTest, WhatCannotBeATableIsRefusedWithItsReason) {
   EXPECT_THAT(trouble("struct E { }; struct A { E all[4000000000]; };", "A"),
               HasSubstr("more than 4096"));
   EXPECT_THAT(trouble("union U switch (long) { case 1: long x; }; struct A { U u; };", "A"),
-              HasSubstr("'u' is of a kind that is not decoded: union U"));
+              HasSubstr("'u' has a kind that is not decoded: union U"));
   EXPECT_THAT(trouble("struct A { @optional long x; };", "A"), HasSubstr("'x' is @optional"));
   EXPECT_THAT(trouble("@extensibility(MUTABLE) struct A { long x; };", "A"), HasSubstr("@mutable"));
   std::string chain = "struct A0 { long x; };";

@@ -121,7 +121,7 @@ TEST(IdlSchemaTest, MistakesAreNamedWithLineAndColumn) {
   mistake("struct A { double x; }", "got the end of the text, want ;");
   mistake("struct A { double x[0]; };", "a length of at least 1");
   mistake("struct A { double x[9999999999]; };", "want a number of at most 32 bits");
-  mistake("struct A { A again; };", "got 'A', want a type that is defined before");
+  mistake("struct A { A again; };", "got 'A', want a type defined earlier");
   mistake("message Foo {}", "got 'message', want module, struct");
   mistake("module m { struct A { double x; };", "got the end of the text, want }");
   mistake("struct A { double 3x; };", "want a name");
@@ -156,7 +156,7 @@ TEST(IdlSchemaTest, CutAndChangedTextsEndInAnAnswerOrAnError) {
                 }(),
             "F");
       },
-      ThrowsMessage<ConfigError>(HasSubstr("fewer types in each other")));
+      ThrowsMessage<ConfigError>(HasSubstr("fewer nested types")));
 }
 
 }  // namespace

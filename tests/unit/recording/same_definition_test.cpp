@@ -30,10 +30,10 @@ TEST(SameDefinitionTest, EveryDifferenceThatMovesAByteIsNamed) {
   EXPECT_EQ(
       difference(head + in +
                  "struct P { unsigned long rig; K kind; In in; string<20> text; long z; }; };"),
-      "z is too much");
+      "z is additional");
   EXPECT_EQ(
       difference(head + in + "struct P { unsigned long rig; In in; K kind; string<20> text; }; };"),
-      "in stands where kind should");
+      "in is in the place of kind");
   EXPECT_EQ(difference(head + in + "struct P { long rig; K kind; In in; string<20> text; }; };"),
             "rig is of another type");
   EXPECT_EQ(
@@ -47,7 +47,8 @@ TEST(SameDefinitionTest, EveryDifferenceThatMovesAByteIsNamed) {
   EXPECT_EQ(difference("module m { enum K { A, B, C }; " + in +
                        "struct P { unsigned long rig; K kind; In in; string<20> text; }; };"),
             "kind has other values");
-  EXPECT_EQ(difference("module m { struct Q { long a; }; };"), "its schema does not define it");
+  EXPECT_EQ(difference("module m { struct Q { long a; }; };"),
+            "its schema does not define the type");
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(InfoTest, WhatIsNoRecordingIsRefusedInWords) {
   EXPECT_THAT(config_error_of([&] { OpenRecording recording(path("nowhere")); }),
               HasSubstr("nowhere: got No such file"));
   EXPECT_THAT(config_error_of([&] { OpenRecording recording(folder_.string()); }),
-              HasSubstr("no regular file"));
+              HasSubstr("not a regular file"));
 }
 
 // The header by itself: with its index the file is read without it.

@@ -6,7 +6,7 @@
 namespace stillhand::rig {
 namespace {
 
-TEST(InterlockReportTest, TellsTheOpeningAndTheForcesZeroOnceEach) {
+TEST(InterlockReportTest, ReportsTheOpeningAndTheZeroForceOnceEach) {
   InterlockReport sut;
   EXPECT_FALSE(sut.step(false, false, 9, 3.0).opened);
   const auto first = sut.step(true, false, 10, 3.0);
@@ -19,24 +19,24 @@ TEST(InterlockReportTest, TellsTheOpeningAndTheForcesZeroOnceEach) {
   EXPECT_FALSE(sut.step(true, false, 50, 0.0).force_zero);
 }
 
-TEST(InterlockReportTest, TellsAnOpeningOfTheNextTrialAnew) {
+TEST(InterlockReportTest, ReportsAnOpeningOfTheNextTrialAgain) {
   InterlockReport sut;
   sut.step(true, false, 10, 0.0);
   sut.step(false, false, 11, 0.0);
-  const auto told = sut.step(true, false, 20, 0.0);
-  EXPECT_TRUE(told.opened);
-  EXPECT_TRUE(told.force_zero);
-  EXPECT_EQ(told.after_ticks, 0);
+  const auto notice = sut.step(true, false, 20, 0.0);
+  EXPECT_TRUE(notice.opened);
+  EXPECT_TRUE(notice.force_zero);
+  EXPECT_EQ(notice.after_ticks, 0);
 }
 
 // Who pressed it waits for the answer, whatever had taken the force away before.
-TEST(InterlockReportTest, TellsAnEmergencyStopBehindAnotherOpening) {
+TEST(InterlockReportTest, ReportsAnEmergencyStopAfterAnotherOpening) {
   InterlockReport sut;
   sut.step(true, false, 10, 3.0);
   sut.step(true, false, 49, 0.0);
-  const auto told = sut.step(true, true, 60, 0.0);
-  EXPECT_TRUE(told.opened);
-  EXPECT_TRUE(told.force_zero);
+  const auto notice = sut.step(true, true, 60, 0.0);
+  EXPECT_TRUE(notice.opened);
+  EXPECT_TRUE(notice.force_zero);
   EXPECT_FALSE(sut.step(true, true, 61, 0.0).opened);
 }
 

@@ -109,13 +109,13 @@ TEST(LoadTest, NotANumberAndInfinityAreRefused) {
 
 TEST(LoadTest, ADuplicateKeyIsRefusedWithBothPlaces) {
   EXPECT_EQ(message_of("mass_kg: 1\nname: a\nmass_kg: 2\n"),
-            "rig.yaml:3:1: got a second \"mass_kg\", want each key once; the first stands at "
+            "rig.yaml:3:1: got a second \"mass_kg\", want each key once; the first is at "
             "rig.yaml:1:1");
 }
 
 // Not a crash, and not a machine that is busy for ever.
 TEST(LoadTest, AliasesWithoutEndAreRefused) {
-  EXPECT_THAT(message_of("body: &b [*b]\n"), HasSubstr("settings without end"));
+  EXPECT_THAT(message_of("body: &b [*b]\n"), HasSubstr("endless settings"));
   std::string laughs = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 10; ++i) {
     const std::string before = "*a" + std::to_string(i - 1);
@@ -123,7 +123,7 @@ TEST(LoadTest, AliasesWithoutEndAreRefused) {
     for (int k = 1; k < 10; ++k) laughs += ", " + before;
     laughs += "]\n";
   }
-  EXPECT_THAT(message_of(laughs), HasSubstr("settings without end"));
+  EXPECT_THAT(message_of(laughs), HasSubstr("endless settings"));
 }
 
 TEST(LoadTest, MalformedYamlIsRefusedWithItsPlace) {

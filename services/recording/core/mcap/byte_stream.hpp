@@ -9,24 +9,24 @@
 
 namespace stillhand::recording {
 
-/// Where a recording goes: bytes are appended, never changed.  Files are in recording/file_io.hpp,
-/// memory in memory_bytes.hpp.
+/// Target of a recording: bytes are appended, never changed.  recording/file_io.hpp has the sink on
+/// a file, memory_bytes.hpp the sink in memory.
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
-  /// Appends all bytes, or fails; after a failure part of them may have been appended.
+  /// Appends all bytes or fails; after a failure, a part of them may be appended.
   virtual Status write(std::span<const std::byte> bytes) = 0;
-  /// Makes what was written survive a loss of power.  May block for long.
+  /// After it, the written bytes survive a power failure.  May block for long.
   virtual Status flush() = 0;
   /// Bytes appended so far.
   [[nodiscard]] virtual std::uint64_t size() const = 0;
 };
 
-/// Where a recording comes from: random access to a fixed number of bytes.
+/// Source of a recording: random access to a fixed number of bytes.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
-  /// Fills `into` from `offset`; a range that does not lie inside size() is a failure.
+  /// Fills `into` from `offset`; fails if the range is not inside size().
   virtual Status read_at(std::uint64_t offset, std::span<std::byte> into) = 0;
   [[nodiscard]] virtual std::uint64_t size() const = 0;
 };

@@ -10,12 +10,12 @@
 namespace stillhand::recording {
 namespace {
 
-// Level 1 keeps a 1 kHz recorder far below one core; measured figures are in the README.
+// With level 1, a 1 kHz recorder needs far less than one core; the README has the measurements.
 constexpr int kZstdLevel = 1;
 
 Status damaged(const std::string& what) { return Status::failure(StatusKind::kDamaged, what); }
 
-// One step of a streaming decoder: advances `in` and reports how much it put into `room`.
+// One step of a streaming decoder: advances `in` and returns the number of bytes in `room`.
 struct Step {
   std::size_t consumed = 0;
   std::size_t produced = 0;
@@ -64,7 +64,7 @@ class Lz4Stream {
 template <typename Stream>
 Status unpack_stream(std::span<const std::byte> packed, std::uint64_t plain_bytes,
                      std::vector<std::byte>& plain) {
-  // First guess 16:1, then four times more each time: at most four times what is really there.
+  // The first estimate is 16:1, then four times more each time: at most four times the real size.
   const std::uint64_t first_guess = 16 * static_cast<std::uint64_t>(packed.size()) + 4096;
   plain.resize(static_cast<std::size_t>(std::min(plain_bytes, first_guess)));
   Stream stream;

@@ -14,12 +14,12 @@
 
 namespace stillhand::recording {
 
-/// The name that a Chunk record carries: "", "lz4" or "zstd".
+/// The name in a Chunk record: "", "lz4" or "zstd".
 std::string_view compression_name(Compression compression) noexcept;
-/// The reverse; nullopt for a name that Stillhand does not know.
+/// The reverse; nullopt for an unknown name.
 std::optional<Compression> compression_of(std::string_view name) noexcept;
 
-/// Packs the records of a chunk: zstd level 1 or one LZ4 frame.  Keeps its working memory, so that
+/// Compresses the records of a chunk: zstd level 1 or one LZ4 frame.  Keeps its working memory, so
 /// a steady stream of chunks does not allocate.  Thread-compatible.
 class Compressor {
  public:
@@ -28,7 +28,7 @@ class Compressor {
   Compressor(const Compressor&) = delete;
   Compressor& operator=(const Compressor&) = delete;
 
-  /// Appends the packed form of `plain` to `out`.
+  /// Appends the compressed form of `plain` to `out`.
   Status append(std::span<const std::byte> plain, std::vector<std::byte>& out);
 
  private:
@@ -37,9 +37,9 @@ class Compressor {
   std::unique_ptr<Contexts> contexts_;
 };
 
-/// Unpacks `packed` into `plain`, which must come out at exactly `plain_bytes`.  Memory grows with
-/// what is really there, so that a false `plain_bytes` costs no allocation of that size.
-/// @returns kDamaged, saying why, when it does not fit.
+/// Decompresses `packed` into `plain`; the result must have exactly `plain_bytes`.  Memory grows
+/// with the real data, so a false `plain_bytes` causes no allocation of that size.
+/// @returns kDamaged with the reason if the data do not fit.
 Status unpack(Compression compression, std::span<const std::byte> packed, std::uint64_t plain_bytes,
               std::vector<std::byte>& plain);
 

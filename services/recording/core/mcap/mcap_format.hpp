@@ -11,7 +11,7 @@
 namespace stillhand::recording {
 
 // The MCAP container, major version 0 (mcap.dev/spec).  services/recording/FORMAT.md has the
-// grammar of what Stillhand writes, a worked example byte by byte, and the rule of recovery.
+// grammar of Stillhand's files, a worked example byte by byte, and the rules of recovery.
 
 /// First and last eight bytes of every file.
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
@@ -41,7 +41,7 @@ inline constexpr std::uint64_t kChunkFixedBytes = 40;  ///< content of a Chunk w
 inline constexpr std::uint64_t kFooterContentBytes = 20;  ///< the Footer is never extended
 inline constexpr std::uint64_t kFooterAndMagicBytes = kRecordHeadBytes + kFooterContentBytes + 8;
 
-/// What Stillhand writes; readers of Stillhand take any value.
+/// Values that Stillhand writes; its reader accepts any value.
 inline constexpr const char* kProfile = "x-stillhand";
 inline constexpr const char* kMessageEncoding = "cdr";
 inline constexpr const char* kSchemaEncoding = "omgidl";
@@ -50,7 +50,7 @@ using TextMap = std::map<std::string, std::string>;
 using SchemaId = std::uint16_t;  ///< 0 means "no schema"
 using ChannelId = std::uint16_t;
 
-/// How the records of a chunk are packed.
+/// Compression of the records of a chunk.
 enum class Compression : std::uint8_t { kNone, kLz4, kZstd };
 
 /// Definition of a message type.

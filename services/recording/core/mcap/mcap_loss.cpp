@@ -8,7 +8,7 @@
 namespace stillhand::recording {
 namespace {
 
-// What only says that the file was not closed, not that anything is lost.
+// Findings that only show that the file was not closed; nothing is lost.
 bool is_harmless(const Damage& damage) {
   return damage.kind == DamageKind::kNoFooter && damage.lost_bytes == 0;
 }

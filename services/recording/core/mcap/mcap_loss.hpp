@@ -10,11 +10,11 @@
 
 namespace stillhand::recording {
 
-/// One line on what a recording has lost, or that it is still being written; empty: it is whole.
-/// For people, after everything was read.
+/// One line for a person that states the loss of a recording, or that it is still being written;
+/// empty: the recording is whole.  Call it after reading everything.
 /// @param path           the file
-/// @param damage         as its reader found it
-/// @param messages       [-] that were delivered, where they were counted
+/// @param damage         the findings of its reader
+/// @param messages       [-] delivered messages, if counted
 /// @param being_written  a recorder has the file open
 std::string loss_line(const std::string& path, const std::vector<Damage>& damage,
                       std::optional<std::uint64_t> messages, bool being_written);

@@ -15,7 +15,7 @@ McapReader::McapReader(ByteSource& source, McapReaderOptions options)
   if (open_by_summary()) {
     if (!sound_header) {
       add_damage(DamageKind::kBadRecord, kMagic.size(), 0,
-                 "the header cannot be read: profile and program are not known");
+                 "the header cannot be read: profile and program are unknown");
     }
   } else if (window_.status().ok()) {
     scan();
@@ -31,7 +31,7 @@ McapReader::McapReader(ByteSource& source, McapReaderOptions options)
   }
 }
 
-// The version that the magic at `offset` states, when it is a magic; its byte is a digit.
+// The version in the magic at `offset`, if it is a magic; its byte is a digit.
 std::optional<char> McapReader::version_at(std::uint64_t offset) {
   constexpr std::size_t kVersionByte = 5;
   const auto magic = window_.view(offset, kMagic.size());
@@ -43,7 +43,7 @@ std::optional<char> McapReader::version_at(std::uint64_t offset) {
   return version >= '0' && version <= '9' ? std::optional(version) : std::nullopt;
 }
 
-// Both ends say so: one of them alone may be a byte that changed.
+// Both ends must state it: at only one end, it can be a changed byte.
 bool McapReader::is_newer() {
   const std::uint64_t size = source_.size();
   if (size < 2 * kMagic.size()) return false;
@@ -55,11 +55,11 @@ bool McapReader::is_newer() {
   return true;
 }
 
-// False where a header should be and is none; a file that does not begin well is told of here.
+// False if the header is missing; also reports a file with a wrong first magic.
 bool McapReader::read_header() {
   const auto magic = window_.view(0, kMagic.size());
   if (!std::ranges::equal(magic, std::as_bytes(std::span(kMagic)))) {
-    add_damage(DamageKind::kNoMagic, 0, 0, "the file does not begin as an MCAP file");
+    add_damage(DamageKind::kNoMagic, 0, 0, "the file does not begin like an MCAP file");
     return true;
   }
   const std::uint64_t left = source_.size() - kMagic.size();
@@ -122,7 +122,7 @@ Status McapReader::verify(const std::function<void(const MessageView&)>& take) {
   const auto stored = in.take<std::uint32_t>();
   if (stored != 0 && stored != crc) {
     add_damage(DamageKind::kBadDataSection, 0, 0,
-               "the checksum of the data section differs: some byte in it has changed");
+               "the checksum of the data section differs: at least one byte has changed");
   }
   return window_.status();
 }

@@ -16,22 +16,22 @@
 
 namespace stillhand::recording {
 
-/// Bounds of what a file may make the reader allocate.
+/// Limits of the memory that a file can make the reader allocate.
 struct McapReaderOptions {
   std::uint64_t max_chunk_bytes = 256u << 20;  ///< [B] of one chunk (unpacked), record or summary
 };
 
-/// One message, valid during the call only.
+/// One message, valid only during the call.
 struct MessageView {
   const Channel& channel;
-  const Schema* schema;  ///< nullptr when the channel has none, or it is lost
+  const Schema* schema;  ///< nullptr if the channel has none or it is lost
   std::uint32_t sequence;
   std::uint64_t log_time_ns;
   std::uint64_t publish_time_ns;
   std::span<const std::byte> bytes;
 };
 
-/// Which messages are wanted; the default is all.
+/// Selection of messages; the default is all.
 struct MessageFilter {
   std::vector<std::string> topics;         ///< exact names; empty: every topic
   std::uint64_t start_time_ns = 0;         ///< first log time wanted
@@ -39,60 +39,58 @@ struct MessageFilter {
 };
 
 /// Reads an MCAP file, whole or damaged, ours or foreign.
-///
-/// With a valid footer the summary is used; without, the file is scanned from its start and every
-/// complete chunk with the right checksum is recovered (FORMAT.md, "Recovery").  Nothing is
-/// repaired by guessing, and nothing is dropped without an entry in damage().  Never allocates more
-/// than the options allow, whatever a length field says.
-/// The source outlives the reader.  Thread-compatible.  Throws only std::bad_alloc and what source
-/// and callback throw; after what they threw it is of no more use.
+/// With a valid footer, the reader uses the summary.  Otherwise it scans the file from its start
+/// and recovers every complete chunk with the right checksum (FORMAT.md, "Recovery").  It repairs
+/// nothing by guessing; damage() lists everything that it drops.  It never allocates more than the
+/// options allow, whatever a length field states.
+/// The source must outlive the reader.  Thread-compatible.  Throws only std::bad_alloc and the
+/// exceptions of source and callback; after such an exception the reader must not be used.
 class McapReader {
  public:
   explicit McapReader(ByteSource& source, McapReaderOptions options = {});
 
-  /// Not ok when the source failed, there is nothing of MCAP in it, or it is of a later version;
-  /// then everything is empty.
+  /// Not ok if the source failed, contains no MCAP, or has a later version; all else is then empty.
   [[nodiscard]] const Status& status() const noexcept { return status_; }
-  /// False when the file was scanned because it has no usable index.
+  /// False if the reader scanned the file because it has no usable index.
   [[nodiscard]] bool indexed() const noexcept { return indexed_; }
   [[nodiscard]] const std::string& profile() const noexcept { return profile_; }
   [[nodiscard]] const std::string& library() const noexcept { return library_; }
   [[nodiscard]] const std::map<SchemaId, Schema>& schemas() const noexcept { return schemas_; }
   [[nodiscard]] const std::map<ChannelId, Channel>& channels() const noexcept { return channels_; }
   [[nodiscard]] const std::vector<Metadata>& metadata() const noexcept { return metadata_; }
-  /// How the chunks read so far are packed.
+  /// Compressions of the chunks read so far.
   [[nodiscard]] const std::set<Compression>& compressions() const noexcept { return compressions_; }
   /// From the summary, or counted by the scan.
   [[nodiscard]] const Statistics& statistics() const noexcept { return statistics_; }
   /// First metadata record of that name, or nullptr.
   [[nodiscard]] const Metadata* find_metadata(std::string_view name) const noexcept;
 
-  /// Calls `take` for every message that passes, in the order of the file; `take` returns false to
-  /// stop.  A chunk that turns out damaged is skipped and entered in damage().
+  /// Calls `take` for every selected message, in the order of the file; `take` returns false to
+  /// stop.  Skips a damaged chunk and adds it to damage().
   Status for_each_message(const MessageFilter& filter,
                           const std::function<bool(const MessageView&)>& take);
 
-  /// Reads the whole file and checks every checksum; findings go to damage().
-  /// @param take  gets every message on the way, as from for_each_message(); empty: nobody does
+  /// Reads the whole file, checks every checksum and adds the findings to damage().
+  /// @param take  called for every message, as by for_each_message(); may be empty
   Status verify(const std::function<void(const MessageView&)>& take = {});
 
-  /// What was found so far: at opening, and by for_each_message() and verify().
+  /// Findings so far: of the opening, for_each_message() and verify().
   [[nodiscard]] const std::vector<Damage>& damage() const noexcept { return damage_; }
   /// Sum of lost_bytes.
   [[nodiscard]] std::uint64_t lost_bytes() const noexcept;
 
  private:
-  struct Piece {  // a chunk record, or a run of records outside chunks
+  struct Piece {  // a chunk record or a run of records outside chunks
     std::uint64_t offset;
     std::uint64_t length;
     bool is_chunk;
-    std::uint64_t start_time_ns;  // of a chunk in the index; otherwise all of time
+    std::uint64_t start_time_ns;  // of a chunk in the index; otherwise unlimited
     std::uint64_t end_time_ns;
   };
   struct Pass;     // one walk over messages
-  struct Summary;  // what is gathered from the summary and not kept
+  struct Summary;  // temporary data from the summary
 
-  // mcap_summary.cpp: opening by the index
+  // mcap_summary.cpp: opening with the index
   bool open_by_summary();
   bool take_summary(std::span<const std::byte> records, std::uint64_t summary_start);
   bool take_summary_record(Opcode opcode, std::span<const std::byte> content, Summary& summary);

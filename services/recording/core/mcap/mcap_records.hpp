@@ -9,9 +9,9 @@
 
 namespace stillhand::recording {
 
-// One record to bytes and back, without any state.  put_* append a whole record; parse_* take its
-// content, ignore fields that a later version may have added (`extra_bytes`), and give nullopt when
-// a field does not fit.
+// Encoding and decoding of one record, without state.  put_* append a whole record.  parse_* take
+// its content, ignore fields of a later version (`extra_bytes`) and return nullopt if a field does
+// not fit.
 
 void put_schema(Bytes& out, const Schema& schema);
 void put_channel(Bytes& out, const Channel& channel);
@@ -19,7 +19,7 @@ void put_metadata(Bytes& out, const std::string& name, const TextMap& texts);
 void put_chunk_index(Bytes& out, const ChunkIndex& index);
 void put_statistics(Bytes& out, const Statistics& statistics);
 
-/// A parsed record and how many bytes of its content were not understood.
+/// A parsed record and the number of unknown bytes at the end of its content.
 template <typename Record>
 struct Parsed {
   Record record;
@@ -41,16 +41,16 @@ struct ChunkHead {
   std::string compression;
   std::uint64_t packed_size = 0;
 
-  /// Content length that follows from the fields.
+  /// Length of the content, computed from the fields.
   [[nodiscard]] std::uint64_t content_bytes() const noexcept {
     return kChunkFixedBytes + compression.size() + packed_size;
   }
 };
 
-/// Longest prefix of a chunk's content that parse_chunk_head() looks at.
+/// Longest prefix of a chunk's content that parse_chunk_head() reads.
 inline constexpr std::uint64_t kChunkHeadBytes = kChunkFixedBytes + 32;
 
-/// @param prefix  start of the content, at least kChunkHeadBytes of it if there are so many
+/// @param prefix  start of the content, with at least kChunkHeadBytes if the content has them
 /// @param content_length  of the whole record; the packed records must lie inside.
 std::optional<ChunkHead> parse_chunk_head(std::span<const std::byte> prefix,
                                           std::uint64_t content_length);

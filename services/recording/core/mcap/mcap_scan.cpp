@@ -11,17 +11,18 @@ namespace stillhand::recording {
 namespace {
 
 constexpr std::uint64_t kLastKnownOpcode = 0x0F;
-// Fields that a later version may append to a record we know; more is taken for a false length.
+// Largest size of the fields that a later version may append to a known record; a larger remainder
+// counts as a false length.
 constexpr std::uint64_t kMaxExtraBytes = 4096;
 
 std::uint8_t value(Opcode opcode) { return static_cast<std::uint8_t>(opcode); }
 
-// Least content of each kind of record, by opcode; there is no kind 0.
+// Smallest content of each kind of record, by opcode; kind 0 does not exist.
 constexpr std::array<std::uint64_t, kLastKnownOpcode + 1> kLeastContentBytes = {
     0, 8, 20, 14, 16, kMessageHeadBytes, kChunkFixedBytes, 6, 68, 40, 48, 46, 8, 20, 17, 4};
 
-// A chunk record at the front of `bytes`, by the one test that chance does not pass: its length is
-// exactly what its own fields add up to.
+// A chunk record at the front of `bytes`.  Test: its length equals the sum of its fields, which
+// random bytes do not satisfy.
 bool begins_chunk(std::span<const std::byte> bytes, std::uint64_t left_in_file) {
   WireReader in(bytes);
   if (in.take<std::uint8_t>() != value(Opcode::kChunk)) return false;
@@ -31,7 +32,7 @@ bool begins_chunk(std::span<const std::byte> bytes, std::uint64_t left_in_file) 
   return head && head->content_bytes() == length && compression_of(head->compression);
 }
 
-// Its fields fill the content exactly.
+// True if its fields fill the content exactly.
 bool is_sound_summary_record(Opcode opcode, std::span<const std::byte> content) {
   WireReader in(content);
   switch (opcode) {
@@ -68,7 +69,7 @@ void McapReader::scan() {
   count_messages();
 }
 
-// Takes the record at `offset`, or notes the damage.  @returns where to go on; the size of the file
+// Reads the record at `offset` or adds the damage.  @returns the next offset; the size of the file
 // at its end.
 std::uint64_t McapReader::scan_record(std::uint64_t offset) {
   const std::uint64_t size = source_.size();
@@ -92,7 +93,7 @@ std::uint64_t McapReader::scan_record(std::uint64_t offset) {
   return next;
 }
 
-// True when the record is sound, as far as can be told without a checksum.
+// True if the record is valid, as far as this is visible without a checksum.
 bool McapReader::scan_content(Opcode opcode, std::uint64_t offset, std::uint64_t length) {
   const std::uint64_t begin = offset + kRecordHeadBytes;
   const std::uint64_t total = kRecordHeadBytes + length;
@@ -122,13 +123,13 @@ bool McapReader::scan_content(Opcode opcode, std::uint64_t offset, std::uint64_t
       ++statistics_.attachment_count;
       return true;
     default:
-      if (value(opcode) <= kLastKnownOpcode) {  // of the summary: the data end before it is lost
+      if (value(opcode) <= kLastKnownOpcode) {  // a record of the summary: the data end is lost
         return length <= options_.max_chunk_bytes &&
                is_sound_summary_record(opcode, window_.view(begin, length));
       }
       if (!may_follow(offset + total)) return false;
       add_damage(DamageKind::kUnknownRecord, offset, total,
-                 "a record of a kind unknown here was skipped");
+                 "a record of an unknown kind was skipped");
       return true;
   }
 }
@@ -141,7 +142,7 @@ bool McapReader::scan_header(std::uint64_t length) {
   return in.ok() && proves_length(kMagic.size(), length, in.left());
 }
 
-// The records that are loaded whole: definitions and messages outside chunks, and metadata.
+// Records that are loaded completely: definitions and messages outside chunks, and metadata.
 bool McapReader::scan_bounded(Opcode opcode, std::uint64_t offset, std::uint64_t length) {
   const std::uint64_t total = kRecordHeadBytes + length;
   const auto content = window_.view(offset + kRecordHeadBytes, length);
@@ -159,8 +160,8 @@ bool McapReader::scan_bounded(Opcode opcode, std::uint64_t offset, std::uint64_t
   }
   if (!extra_bytes || !proves_length(offset, length, *extra_bytes)) return false;
   if (opcode == Opcode::kMessage) {
-    // Its length is free: what follows is the only test of it.  Behind a chunk it is rather another
-    // record with a changed opcode, since nobody mixes the two ways in one file.
+    // The length is free, so the only test is the following record.  After a chunk, this is more
+    // likely another record with a changed opcode, because no file mixes the two forms.
     const bool chunk_seen = std::ranges::any_of(pieces_, &Piece::is_chunk);
     if (chunk_seen || !may_follow(offset + total)) return false;
   }
@@ -186,8 +187,8 @@ bool McapReader::scan_chunk(std::uint64_t offset, std::uint64_t length) {
   return true;
 }
 
-// Fields that fill a content prove its length.  Bytes left over may be fields of a later version,
-// if they are few, hide no chunk, and are followed by a record.
+// Fields that fill the content prove its length.  Additional bytes count as fields of a later
+// version if they are few, contain no chunk, and a record follows them.
 bool McapReader::proves_length(std::uint64_t offset, std::uint64_t length,
                                std::uint64_t extra_bytes) {
   if (extra_bytes == 0) return true;
@@ -196,8 +197,9 @@ bool McapReader::proves_length(std::uint64_t offset, std::uint64_t length,
          next_chunk(end - extra_bytes, end) >= end;
 }
 
-// What a false length would hardly hit: the end, or the head of a record with a bearable length.
-// A record that the end of the file cuts off counts, so that the one before it is not lost too.
+// True at places that a false length hardly reaches: the end of the file, or the head of a record
+// with a plausible length.  A record cut off by the end of the file also counts, so the record
+// before it is not lost.
 bool McapReader::may_follow(std::uint64_t offset) {
   const std::uint64_t size = source_.size();
   if (offset == size) return true;
@@ -212,7 +214,7 @@ bool McapReader::may_follow(std::uint64_t offset) {
   return length >= kLeastContentBytes[opcode] && (fits || length <= options_.max_chunk_bytes);
 }
 
-// First offset in [offset, end) where a chunk begins, or the size of the file.
+// First offset in [offset, end) at which a chunk begins, or the size of the file.
 std::uint64_t McapReader::next_chunk(std::uint64_t offset, std::uint64_t end) {
   constexpr std::uint64_t kBlockBytes = 64 * 1024;
   constexpr std::uint64_t kLookBytes = kRecordHeadBytes + kChunkHeadBytes;

@@ -14,8 +14,8 @@ struct McapReader::Summary {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> metadata_places = {};  // offset, length
 };
 
-// True when everything that reading needs came from the summary.  False leaves the file to scan():
-// with an entry in damage() if the summary is damaged, without if the file simply has none.
+// True if the summary contains everything that reading needs.  Otherwise scan() reads the file;
+// damage() has an entry if the summary is damaged, and none if the file has no summary.
 bool McapReader::open_by_summary() {
   const std::uint64_t size = source_.size();
   std::optional<Footer> footer;
@@ -31,7 +31,7 @@ bool McapReader::open_by_summary() {
   const std::uint64_t start = footer->summary_start;
   if (start == 0 && footer->summary_offset_start == 0) return false;
   const std::uint64_t footer_start = size - kFooterAndMagicBytes;
-  // The footer's checksum covers its own fields up to the checksum itself.
+  // The checksum of the footer covers its fields before the checksum.
   const std::uint64_t checked_end = size - kMagic.size() - 4;
   const char* trouble = nullptr;
   if (start < kMagic.size() || start > footer_start) {
@@ -58,7 +58,7 @@ bool McapReader::open_by_summary() {
   return indexed_;
 }
 
-// False when a record contradicts itself; indexed_ tells whether the index is complete.
+// False if a record contradicts itself; indexed_ states if the index is complete.
 bool McapReader::take_summary(std::span<const std::byte> records, std::uint64_t summary_start) {
   Summary summary{summary_start};
   RecordView record{};
@@ -68,7 +68,7 @@ bool McapReader::take_summary(std::span<const std::byte> records, std::uint64_t 
       return false;
     }
   }
-  // Without statistics, or with counts that the summary does not reach, only a scan tells all.
+  // Without statistics, or with counts that the summary does not reach, a scan is necessary.
   const auto& statistics = summary.statistics;
   indexed_ = statistics && statistics->chunk_count == pieces_.size() &&
              statistics->channel_count == channels_.size() &&
@@ -148,10 +148,10 @@ void McapReader::load_metadata(std::uint64_t offset, std::uint64_t length, std::
     }
   }
   add_damage(DamageKind::kBadRecord, offset, length,
-             "the index promises a metadata record here; it cannot be read");
+             "the index states a metadata record here; it cannot be read");
 }
 
-// Back to before the summary was tried.
+// Restores the state before the attempt to read the summary.
 void McapReader::forget() {
   indexed_ = false;
   schemas_.clear();

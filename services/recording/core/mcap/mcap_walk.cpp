@@ -8,7 +8,7 @@
 
 namespace stillhand::recording {
 
-// A walk over all pieces.  Channels are looked up once a pass, by number.
+// A walk over all pieces.  Each pass looks up a channel once, by number.
 struct McapReader::Pass {
   struct Topic {
     const Channel* channel = nullptr;
@@ -19,7 +19,7 @@ struct McapReader::Pass {
   const std::function<bool(const MessageView&)>& take;
   std::vector<Topic> topics = {};
   bool stopped = false;
-  std::uint64_t unknown_bytes = 0;  // of messages in this piece that have no channel
+  std::uint64_t unknown_bytes = 0;  // messages without a channel in this piece
 
   const Topic& topic(const McapReader& reader, ChannelId id) {
     if (id >= topics.size()) topics.resize(std::size_t{id} + 1);
@@ -39,7 +39,7 @@ struct McapReader::Pass {
   }
 };
 
-// Statistics that no summary gives; also takes every definition on the way.
+// Counts the statistics without a summary, and reads every definition.
 void McapReader::count_messages() {
   const MessageFilter everything;
   Statistics& counted = statistics_;
@@ -79,12 +79,12 @@ void McapReader::walk(Pass& pass) {
     piece.is_chunk ? walk_chunk(piece, pass) : walk_loose(piece, pass);
     if (pass.unknown_bytes > 0) {
       add_damage(DamageKind::kUnknownChannel, piece.offset, pass.unknown_bytes,
-                 "messages of a channel that is defined nowhere");
+                 "messages of an undefined channel");
     }
   }
 }
 
-// The records of a chunk, or nullopt with the damage noted.
+// The records of a chunk; nullopt adds a damage.
 std::optional<std::span<const std::byte>> McapReader::unpack_chunk(const Piece& piece) {
   const auto lost = [&](DamageKind kind, std::string text) {
     add_damage(kind, piece.offset, piece.length, "chunk lost: " + std::move(text));
@@ -102,12 +102,12 @@ std::optional<std::span<const std::byte>> McapReader::unpack_chunk(const Piece& 
   const bool contradicts = opcode != Opcode::kChunk || length != piece.length - kRecordHeadBytes;
   if (contradicts) {
     add_damage(DamageKind::kBadRecord, piece.offset, 0,
-               "head of a chunk contradicts the index; the index is used");
+               "the head of a chunk contradicts the index; the index is used");
   }
   const auto content = std::span<const std::byte>(packed_).subspan(kRecordHeadBytes);
   const auto head = parse_chunk_head(content, content.size());
   if (!head) return lost(DamageKind::kBadChunk, "its fields contradict its length");
-  // Zeros are a head too: of a chunk without a record, a packing or a checksum.
+  // Zeros are also a head: of a chunk without record, compression or checksum.
   if (head->uncompressed_crc == 0 && (contradicts || head->content_bytes() != content.size())) {
     return lost(DamageKind::kBadChunk,
                 "its fields contradict its length, and no checksum proves it");
@@ -116,7 +116,7 @@ std::optional<std::span<const std::byte>> McapReader::unpack_chunk(const Piece& 
     return lost(DamageKind::kTooLarge, "unpacks to more than the reader may load");
   }
   const auto compression = compression_of(head->compression);
-  if (!compression) return lost(DamageKind::kBadChunk, "packed in a way unknown here");
+  if (!compression) return lost(DamageKind::kBadChunk, "unknown compression");
   compressions_.insert(*compression);
   const auto packed = content.subspan(kChunkFixedBytes + head->compression.size(),
                                       static_cast<std::size_t>(head->packed_size));
@@ -142,7 +142,7 @@ void McapReader::walk_chunk(const Piece& piece, Pass& pass) {
   }
 }
 
-// The scan has made sure that the piece is whole records, each within bounds.
+// The scan has checked that the piece consists of whole records, each within the limits.
 void McapReader::walk_loose(const Piece& piece, Pass& pass) {
   std::uint64_t offset = piece.offset;
   const std::uint64_t end = piece.offset + piece.length;

@@ -11,7 +11,7 @@ namespace stillhand::recording {
 namespace {
 
 constexpr std::size_t kMaxIds = 65535;
-// A message index counts its bytes in 32 bits; this keeps a chunk of one message far below that.
+// A message index counts its bytes in 32 bits; this limit keeps a chunk of one message far below.
 constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 20;
 
 }  // namespace
@@ -62,8 +62,8 @@ ChannelId McapWriter::add_channel(std::string topic, SchemaId schema_id,
   return id;
 }
 
-// Channel records repeat in every chunk that needs them, so that a chunk can be read when all
-// others are lost; schemas are long and come once (and again in the summary).
+// Every chunk repeats the Channel records that it needs, so it can be read if all others are lost.
+// Schemas are long and occur once (and again in the summary).
 void McapWriter::define(ChannelState& state) {
   if (state.in_chunk) return;
   const SchemaId schema_id = state.channel.schema_id;
@@ -109,7 +109,7 @@ Status McapWriter::write(ChannelId channel, std::uint32_t sequence, std::uint64_
   return chunk_.size() >= options_.chunk_bytes ? flush_chunk() : Status{};
 }
 
-// After a chunk: one index of its messages a channel, in the order of the channels.
+// After a chunk: one message index for each channel, in the order of the channels.
 void McapWriter::put_message_indexes(ChunkIndex& index) {
   const std::size_t start = out_.size();
   for (ChannelState& state : channels_) {
@@ -148,7 +148,8 @@ Status McapWriter::flush_chunk() {
   put(out_, std::uint64_t{0});
   status_ = compressor_.append(chunk_, out_);
   if (!status_.ok()) return status_;
-  end_record(out_, size_mark);  // the length of the packed records lies as a record's length does
+  end_record(
+      out_, size_mark);  // the packed records have their length field at the same place as a record
   end_record(out_, mark);
   index.compressed_size = out_.size() - size_mark - 8;
   index.length = out_.size();
@@ -169,7 +170,7 @@ Status McapWriter::add_metadata(const std::string& name, const TextMap& texts) {
   return emit();
 }
 
-// Summary into out_: groups of one opcode each, then where each group is.
+// Writes the summary into out_: groups of one opcode each, then the place of each group.
 std::uint64_t McapWriter::put_summary() {
   std::vector<std::pair<Opcode, std::size_t>> groups;  // opcode, end in out_
   for (const Schema& schema : schemas_) put_schema(out_, schema);
@@ -206,7 +207,7 @@ std::uint64_t McapWriter::put_summary() {
 Status McapWriter::close() {
   if (closed_) return Status::failure(StatusKind::kClosed, "recording is closed");
   closed_ = true;
-  // A topic without a message, or a schema without a topic, is still part of this recording.
+  // A topic without a message and a schema without a topic are also part of the recording.
   for (const Schema& schema : schemas_) {
     if (!schema_in_file_[schema.id - 1U]) put_schema(chunk_, schema);
     schema_in_file_[schema.id - 1U] = true;

@@ -16,46 +16,45 @@ namespace stillhand::recording {
 /// Settings of a writer.
 struct McapWriterOptions {
   std::size_t chunk_bytes =
-      std::size_t{256} * 1024;  ///< [B] records gathered before a chunk is written
+      std::size_t{256} * 1024;  ///< [B] size of the uncompressed records of a chunk
   Compression compression = Compression::kZstd;
   std::string library = "stillhand";
   std::string profile = kProfile;
 };
 
-/// Writes one MCAP file as FORMAT.md describes: messages gather in a chunk, which goes to the sink
-/// in one piece with its checksum and index; close() appends the summary.
+/// Writes one MCAP file as FORMAT.md describes.  It collects messages in a chunk and writes the
+/// chunk to the sink at once, with checksum and index; close() appends the summary.
 ///
-/// What a crash can cost is the open chunk, never a finished one.  Trouble while running is a
-/// Status; the first failure of the sink is kept, and every later call returns it.  The destructor
-/// does not close: a file without close() is one that McapReader recovers. The sink outlives the
-/// writer.  Thread-compatible: one thread at a time.  Steady writing does not allocate.  Throws
-/// only std::bad_alloc.
+/// A crash loses at most the open chunk.  A failure while running is a Status; the writer keeps the
+/// first failure of the sink, and every later call returns it.  The destructor does not close the
+/// file; McapReader recovers a file without close().  The sink must outlive the writer.
+/// Thread-compatible: one thread at a time.  Steady writing does not allocate.  Throws only
+/// std::bad_alloc.
 class McapWriter {
  public:
-  /// Writes magic and header; a failure shows in status() and in every later call.
+  /// Writes magic and header; status() and every later call return a failure.
   explicit McapWriter(ByteSink& sink, McapWriterOptions options = {});
 
   /// Registers a definition; at most 65535.  @returns its number, from 1.
   SchemaId add_schema(std::string name, std::string encoding, std::span<const std::byte> bytes);
-  /// Same with the definition as text.
+  /// Registers a definition given as text.
   SchemaId add_schema(std::string name, std::string encoding, std::string_view text);
   /// Registers a topic; at most 65535.  @param schema_id from add_schema, or 0 for none.
   /// @returns its number, from 0.
   ChannelId add_channel(std::string topic, SchemaId schema_id, std::string message_encoding,
                         TextMap metadata = {});
 
-  /// Appends one message; `channel` is from add_channel.  Times in ns of one clock of the caller's.
+  /// Appends one message; `channel` is from add_channel.  Times in ns of one clock of the caller.
   Status write(ChannelId channel, std::uint32_t sequence, std::uint64_t log_time_ns,
                std::uint64_t publish_time_ns, std::span<const std::byte> message);
 
-  /// Writes the open chunk now, if it holds anything: after this, a crash costs nothing so far
-  /// written.
+  /// Writes the open chunk now, if it is not empty.  After this, a crash loses no earlier message.
   Status flush_chunk();
 
   /// Writes a metadata record now, outside the chunks; names need not be unique.
   Status add_metadata(const std::string& name, const TextMap& texts);
 
-  /// Writes the open chunk, data end, summary and footer, and flushes the sink.  Once only.
+  /// Writes the open chunk, data end, summary and footer, and flushes the sink.  Call it once.
   Status close();
 
   /// First failure so far, or ok.

@@ -8,8 +8,8 @@
 
 namespace stillhand::recording {
 
-/// Sink in memory.  `capacity_bytes` plays the full disk: a write beyond it keeps what fits and
-/// fails with kNoSpace.
+/// Sink in memory.  `capacity_bytes` simulates a full disk: a write beyond it keeps the bytes that
+/// fit and fails with kNoSpace.
 class MemorySink : public ByteSink {
  public:
   explicit MemorySink(std::uint64_t capacity_bytes = UINT64_MAX)
@@ -31,7 +31,7 @@ class MemorySink : public ByteSink {
   std::vector<std::byte> bytes_;
 };
 
-/// Source over memory that the caller keeps alive.
+/// Source on memory that must outlive it.
 class MemorySource : public ByteSource {
  public:
   explicit MemorySource(std::span<const std::byte> bytes) : bytes_(bytes) {}

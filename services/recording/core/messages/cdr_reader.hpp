@@ -11,10 +11,10 @@
 
 namespace stillhand::recording {
 
-/// Reads values from a CDR message: 4 bytes of encapsulation, then values aligned to their size
-/// counted from behind those (OMG DDS-XTypes 1.3, 7.4).  Plain CDR and plain XCDR2, either byte
-/// order.  Never reads outside: the first value that does not fit makes ok() false, and every value
-/// from then on is zero.
+/// Reads values from a CDR message: 4 bytes of encapsulation, then values aligned to their size,
+/// counted from the end of the encapsulation (OMG DDS-XTypes 1.3, 7.4).  Plain CDR and plain XCDR2,
+/// either byte order.  It never reads outside the message: after the first value that does not fit,
+/// ok() is false and every value is zero.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::byte> message) noexcept : bytes_(message) {
@@ -30,7 +30,7 @@ class CdrReader {
     at_ = kEncapsulationBytes;
   }
 
-  /// True for XCDR2: 64-bit values are aligned to 4, and a head stands before lists of structs.
+  /// True for XCDR2: 64-bit values are aligned to 4, and lists of structs have a head.
   [[nodiscard]] bool second_edition() const noexcept { return second_edition_; }
   [[nodiscard]] bool ok() const noexcept { return ok_; }
   [[nodiscard]] std::size_t left() const noexcept { return ok_ ? bytes_.size() - at_ : 0; }
@@ -54,7 +54,7 @@ class CdrReader {
     return value;
   }
 
-  /// Without its final zero; valid as long as the message.
+  /// A text without its final zero; valid as long as the message.
   std::string_view take_text() noexcept {
     const auto length = take<std::uint32_t>();
     if (!ok_ || length > bytes_.size() - at_) {

@@ -6,9 +6,9 @@
 namespace stillhand::recording {
 namespace {
 
-// A spreadsheet shows 16,384; a topic of more values is a picture or a cloud, no table.
+// A spreadsheet shows 16,384 columns; a topic with more values is an image or a point cloud.
 constexpr std::size_t kMostColumns = 4096;
-// Bounds the recursion, whatever chain of types a schema defines.
+// Limits the recursion for any chain of types in a schema.
 constexpr std::size_t kMostDepth = 64;
 
 Cell take_leaf(IdlKind kind, CdrReader& in) {
@@ -90,7 +90,7 @@ void MessageColumns::build(Node& node) {
     refuse("more than " + std::to_string(kMostColumns) + " values, or nested deeper than " +
            std::to_string(kMostDepth) + ", at '" + node.path + "'");
   } else if (node.type.kind == IdlKind::kUnsupported) {
-    refuse("'" + node.path + "' is of a kind that is not decoded: " + node.type.name);
+    refuse("'" + node.path + "' has a kind that is not decoded: " + node.type.name);
   } else if (node.type.kind == IdlKind::kSequence) {
     has_lists_ = true;
   } else if (node.type.kind == IdlKind::kArray) {
@@ -111,7 +111,7 @@ void MessageColumns::add_element(Node& list) {
   add_part(list, list.type.of, list.path + "." + std::to_string(list.parts.size()), list.unit);
 }
 
-// XCDR2 says the bytes of a list of anything but primitives before the list.
+// In XCDR2, a byte count precedes every list of non-primitive values.
 bool MessageColumns::skip_head(const Node& list, CdrReader& in) const {
   const IdlKind element = schema_.types[list.type.of].kind;
   const bool primitive =
@@ -129,10 +129,10 @@ bool MessageColumns::grow(Node& node, CdrReader& in) {
   if (node.type.kind != IdlKind::kStruct && !skip_head(node, in)) return false;
   if (node.type.kind == IdlKind::kSequence) {
     count = in.take<std::uint32_t>();
-    // An element has at least one byte: no count is believed beyond the message.
+    // An element has at least one byte, so a count larger than the message is false.
     if (count > in.left()) return false;
     while (node.parts.size() < count && trouble_.empty()) add_element(node);
-    if (!trouble_.empty()) return true;  // no row will be read
+    if (!trouble_.empty()) return true;  // the caller reads no row
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!grow(node.parts[i], in)) return false;

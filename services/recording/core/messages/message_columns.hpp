@@ -14,7 +14,7 @@
 
 namespace stillhand::recording {
 
-/// What a column holds.
+/// Kind of the values of a column.
 enum class CellKind : std::uint8_t { kInteger, kUnsigned, kReal, kText };
 
 /// One value of a message, flat.
@@ -23,37 +23,37 @@ struct MessageColumn {
                      ///< "a" and "a.name"
   std::string unit;  ///< empty: none stated
   CellKind kind = CellKind::kReal;
-  bool in_list = false;  ///< empty where a list is shorter
+  bool in_list = false;  ///< empty if a list is shorter
 };
 
-/// Nothing (behind the end of a list), or a value of the column's kind.  Texts point into the
+/// Nothing (after the end of a list), or a value of the column's kind.  Texts point into the
 /// message or the schema.
 using Cell = std::variant<std::monostate, std::int64_t, std::uint64_t, double, std::string_view>;
 
-/// The messages of one type as rows of a table.  Lists of free length become as many columns as the
-/// longest one seen: learn() every message first, then settle(), then read().
+/// The messages of one type as rows of a table.  A list of free length has as many columns as the
+/// longest list in the messages.  Call learn() for every message, then settle(), then read().
 ///
-/// The schema outlives it.  Thread-compatible.
+/// The schema must outlive it.  Thread-compatible.
 class MessageColumns {
  public:
   /// @param type  struct of `schema`
   MessageColumns(const IdlSchema& schema, const IdlStruct& type);
 
-  /// Why these messages cannot be decoded, or become too many columns; empty: they can.
+  /// Reason why these messages cannot be decoded or have too many columns; empty: none.
   [[nodiscard]] const std::string& trouble() const noexcept { return trouble_; }
-  /// False where every message has the same columns: nothing to learn.
+  /// False if every message has the same columns; learn() is then not necessary.
   [[nodiscard]] bool has_lists() const noexcept { return has_lists_; }
-  /// Takes note of the lengths of lists.  @returns false when it is no message of this type.
+  /// Notes the lengths of the lists.  @returns false if it is not a message of this type.
   bool learn(std::span<const std::byte> message);
   /// Numbers the columns.
   void settle();
   [[nodiscard]] const std::vector<MessageColumn>& columns() const noexcept { return columns_; }
-  /// Fills `row`, one cell a column.  @returns false when it is no message of this type, or a list
-  /// is longer than learned.
+  /// Fills `row` with one cell for each column.  @returns false if it is not a message of this type
+  /// or a list is longer than learned.
   bool read(std::span<const std::byte> message, std::vector<Cell>& row) const;
 
  private:
-  struct Node {  // a value, and what it consists of
+  struct Node {  // a value and its parts
     IdlType type;
     std::string path;
     std::string unit;

@@ -14,7 +14,7 @@ namespace stillhand::recording {
 namespace {
 
 constexpr std::int64_t kMaxLength = UINT32_MAX;
-// Nested sequences and modules: more is no schema but an attack on the stack.
+// Limit of nested sequences and modules; a deeper text would exhaust the stack.
 constexpr int kMaxDepth = 64;
 
 struct Primitive {
@@ -34,7 +34,7 @@ constexpr std::array<Primitive, 22> kPrimitives{
      {"double", IdlKind::kFloat64},    {"long double", IdlKind::kUnsupported},
      {"wchar", IdlKind::kUnsupported}, {"any", IdlKind::kUnsupported}}};
 
-// What annotations in front of a definition say.
+// Annotations of a definition.
 struct Marks {
   bool key = false;
   bool optional = false;
@@ -43,7 +43,7 @@ struct Marks {
   std::string unit = {};
 };
 
-// Recursive descent over the tokens; one method a rule of the grammar.
+// Recursive descent over the tokens, with one method for each rule of the grammar.
 class Parser {
  public:
   Parser(std::string_view text, const std::string& source) : in_(text, source) {}
@@ -92,7 +92,7 @@ class Parser {
     return value;
   }
   std::int64_t factor(int depth) {
-    if (depth > kMaxDepth) in_.refuse("fewer brackets in each other");
+    if (depth > kMaxDepth) in_.refuse("fewer nested brackets");
     if (in_.accept("-")) return -factor(depth + 1);
     if (in_.accept("(")) {
       const std::int64_t value = sum(depth + 1);
@@ -105,7 +105,7 @@ class Parser {
       const std::int64_t* value = look_up(constants_, in_.scoped_name());
       if (value == nullptr) {
         in_.go_to(start);
-        in_.refuse("a whole number or a constant that is known");
+        in_.refuse("a whole number or a known constant");
       }
       return *value;
     }
@@ -132,7 +132,7 @@ class Parser {
 
   // Types
   std::uint32_t type(int depth) {
-    if (depth > kMaxDepth) in_.refuse("fewer types in each other");
+    if (depth > kMaxDepth) in_.refuse("fewer nested types");
     if (in_.accept("string") || in_.accept("wstring")) {
       const bool wide = in_.peek(-1) == "wstring";
       if (in_.accept("<")) {
@@ -158,7 +158,7 @@ class Parser {
     return primitive_or_name();
   }
   std::uint32_t primitive_or_name() {
-    // The longest run of words that is a primitive: "unsigned long long".
+    // The longest run of words that names a primitive type: "unsigned long long".
     std::string words;
     const Primitive* best = nullptr;
     std::size_t end = in_.place();
@@ -178,7 +178,7 @@ class Parser {
     const std::uint32_t* named = look_up(named_, in_.scoped_name());
     if (named == nullptr) {
       in_.go_to(start);
-      in_.refuse("a type that is defined before");
+      in_.refuse("a type defined earlier");
     }
     return *named;
   }
@@ -222,7 +222,7 @@ class Parser {
     return marks;
   }
   void definition(int depth) {
-    if (depth > kMaxDepth) in_.refuse("fewer modules in each other");
+    if (depth > kMaxDepth) in_.refuse("fewer nested modules");
     if (in_.accept(";")) return;
     if (in_.peek() == "@" && in_.peek(1) == "annotation") {
       in_.go_to(in_.place() + 2);
@@ -271,7 +271,7 @@ class Parser {
       const std::int64_t value = sum(0);
       if (in_.peek() == ";") constants_[constant] = value;
     } catch (const ConfigError&) {
-      in_.go_to(start);  // a text or a fraction: no length needs it
+      in_.go_to(start);  // a text or a fraction; no length uses it
     }
     in_.skip_definition();
   }
@@ -293,13 +293,13 @@ class Parser {
   }
   void structure(const Marks& in_front) {
     IdlStruct found{scoped(in_.name()), {}, in_front.is_mutable};
-    if (in_.accept(";")) return;  // a promise only
+    if (in_.accept(";")) return;  // a forward declaration
     if (in_.accept(":")) {
       const std::size_t start = in_.place();
       const std::uint32_t* base = look_up(named_, in_.scoped_name());
       if (base == nullptr || schema_.types[*base].kind != IdlKind::kStruct) {
         in_.go_to(start);
-        in_.refuse("a struct that is defined before");
+        in_.refuse("a struct defined earlier");
       }
       found.members = schema_.structs[schema_.types[*base].of].members;
     }
@@ -322,7 +322,7 @@ class Parser {
     in_.expect(";");
     for (std::size_t i = first; i < into.members.size(); ++i) into.members[i].unit = unit;
   }
-  // Kinds of definition that no message here has: their names are kept, to say so.
+  // Unsupported kinds of definition: their names are kept for messages.
   void beyond() {
     constexpr std::array<std::string_view, 8> kKinds{
         "union", "bitmask", "bitset", "interface", "native", "exception", "valuetype", "abstract"};

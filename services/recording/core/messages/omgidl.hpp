@@ -9,7 +9,7 @@
 
 namespace stillhand::recording {
 
-/// What a value of an IDL type is on the wire.
+/// Encoding of a value of an IDL type.
 enum class IdlKind : std::uint8_t {
   kBoolean,
   kOctet,
@@ -28,20 +28,20 @@ enum class IdlKind : std::uint8_t {
   kStruct,
   kSequence,
   kArray,
-  kUnsupported  ///< union, map, wide text, ...: known by name, not decoded
+  kUnsupported  ///< union, map, wide text, ...: only the name is known; not decoded
 };
 
 struct IdlType {
   IdlKind kind = IdlKind::kUnsupported;
   std::uint32_t of = 0;      ///< number of the struct or enum, or of the element's type
   std::uint32_t length = 0;  ///< [-] elements of an array
-  std::string name = {};     ///< of what is not supported
+  std::string name = {};     ///< name of an unsupported type
 };
 
 struct IdlMember {
   std::string name;
   std::uint32_t type = 0;  ///< number in IdlSchema::types
-  std::string unit;        ///< from "// [unit] ..." behind the member, or @unit; empty: none
+  std::string unit;        ///< from "// [unit] ..." after the member, or @unit; empty: none
   bool key = false;
   bool optional = false;  ///< not decoded
 };
@@ -58,15 +58,15 @@ struct IdlEnum {
 };
 
 /// The types of an IDL text (OMG IDL 4.2, the part that DDS topics use): modules, structs with
-/// inheritance, enums, typedefs, arrays, sequences, strings, integer constants, annotations.
-/// What is beyond (unions, maps, bit sets, wide characters) is read over, and refused only where
+/// inheritance, enums, typedefs, arrays, sequences, strings, integer constants, annotations.  The
+/// parser skips everything else (unions, maps, bit sets, wide characters); an error occurs only if
 /// a message needs it.
 struct IdlSchema {
   std::vector<IdlType> types;
   std::vector<IdlStruct> structs;
   std::vector<IdlEnum> enums;
 
-  /// Struct of that scoped name ("a::B", or "a/B" as some write it), or nullptr.
+  /// Struct of that scoped name ("a::B", or "a/B" as in some files), or nullptr.
   [[nodiscard]] const IdlStruct* find(std::string_view name) const;
 };
 

@@ -9,31 +9,32 @@
 
 namespace stillhand::recording {
 
-/// A place in an IDL text, moved from token to token.  The text and `source` outlive it.
+/// A position in an IDL text that moves from token to token.  The text and `source` must outlive
+/// it.
 class IdlCursor {
  public:
   /// @param source  name for messages
   IdlCursor(std::string_view text, const std::string& source)
       : cut_(cut_idl(text)), source_(source) {}
 
-  /// Token that many places ahead, or behind; empty at the end of the text.
+  /// Token at that distance, ahead or behind; empty at the end of the text.
   [[nodiscard]] std::string_view peek(std::ptrdiff_t ahead = 0) const;
   std::string_view take();
   bool accept(std::string_view text);
   void expect(std::string_view text);
-  /// @throws stillhand::ConfigError with line and column of the token that comes next.
+  /// @throws stillhand::ConfigError with line and column of the next token.
   [[noreturn]] void refuse(const std::string& want) const;
   std::string name();
   /// "a::b", with or without :: in front.
   std::string scoped_name();
-  /// From an opening bracket to behind its end.
+  /// Skips from an opening bracket to after its closing bracket.
   void skip_balanced();
-  /// To behind the definition's semicolon.
+  /// Skips to after the semicolon of the definition.
   void skip_definition();
 
   [[nodiscard]] std::size_t place() const noexcept { return at_; }
   void go_to(std::size_t place) noexcept { at_ = place; }
-  /// Comment on the line of the token that comes next; empty: none.
+  /// Comment on the line of the next token; empty: none.
   [[nodiscard]] std::string_view comment_here() const;
 
  private:

@@ -15,7 +15,7 @@ bool is_word(char c) {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-// Walks over the text and knows where it is.
+// Walks over the text and tracks its position.
 class Cutter {
  public:
   explicit Cutter(std::string_view text) : text_(text) {}

@@ -16,17 +16,17 @@ struct IdlToken {
   std::size_t column = 1;
 };
 
-/// An IDL text cut up: comments and preprocessor lines are no tokens.  The text outlives it.
+/// The tokens of an IDL text, without comments and preprocessor lines.  The text must outlive it.
 struct IdlTokens {
   std::vector<IdlToken> tokens;                      ///< the last one is empty
   std::map<std::size_t, std::string_view> comments;  ///< first comment that begins on a line
 };
 
-/// Pure; takes every text, also one that is no IDL.
+/// Pure; accepts every text.
 IdlTokens cut_idl(std::string_view text);
 
-/// Unit in a comment: what the first brackets hold, unless that is a number or longer than a unit
-/// is; empty: none.
+/// Unit in a comment: the content of the first brackets, unless it is a number or too long for a
+/// unit; empty: none.
 std::string unit_in(std::string_view comment);
 
 }  // namespace stillhand::recording

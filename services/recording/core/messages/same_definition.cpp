@@ -32,9 +32,9 @@ struct Comparison {
                       int level) const {
     for (std::size_t i = 0; i < std::max(a.members.size(), b.members.size()); ++i) {
       if (i >= a.members.size()) return path + b.members[i].name + " is missing";
-      if (i >= b.members.size()) return path + a.members[i].name + " is too much";
+      if (i >= b.members.size()) return path + a.members[i].name + " is additional";
       if (a.members[i].name != b.members[i].name) {
-        return path + a.members[i].name + " stands where " + b.members[i].name + " should";
+        return path + a.members[i].name + " is in the place of " + b.members[i].name;
       }
       std::string difference =
           types(recorded.types[a.members[i].type], known.types[b.members[i].type],
@@ -51,8 +51,8 @@ std::string definition_difference(const IdlSchema& recorded, const IdlSchema& kn
                                   std::string_view type) {
   const IdlStruct* a = recorded.find(type);
   const IdlStruct* b = known.find(type);
-  if (a == nullptr) return "its schema does not define it";
-  if (b == nullptr) return "it is not known here";
+  if (a == nullptr) return "its schema does not define the type";
+  if (b == nullptr) return "the type is unknown";
   return Comparison{recorded, known}.structs(*a, *b, "", 0);
 }
 

@@ -8,9 +8,9 @@
 
 namespace stillhand::recording {
 
-/// Why messages of `type` by one schema are not messages of it by another: names, order and types
-/// of the members, all the way down, and the values of enumerations.  Empty: they are the same.
-/// Units and comments do not count.  Pure.
+/// The difference between the definitions of `type` in two schemas.  It compares names, order and
+/// types of the members at all levels, and the values of enumerations.  Empty: the definitions are
+/// the same.  Units and comments do not count.  Pure.
 std::string definition_difference(const IdlSchema& recorded, const IdlSchema& known,
                                   std::string_view type);
 

@@ -15,7 +15,7 @@ namespace stillhand::recording {
 
 using Bytes = std::vector<std::byte>;
 
-// Encoding: little-endian integers, texts with a 32-bit length before them.
+// Encoding: little-endian integers; a 32-bit length precedes each text.
 template <std::unsigned_integral T>
 void put(Bytes& out, T value) {
   std::byte raw[sizeof(T)];
@@ -27,12 +27,12 @@ void put(Bytes& out, T value) {
 void put_bytes(Bytes& out, std::span<const std::byte> bytes);
 void put_text(Bytes& out, std::string_view text);
 void put_map(Bytes& out, const TextMap& texts);
-/// Opcode and a length to be filled in.  @returns the mark for end_record().
+/// Writes the opcode and a placeholder for the length.  @returns the mark for end_record().
 std::size_t begin_record(Bytes& out, Opcode opcode);
 void end_record(Bytes& out, std::size_t mark);
 
-/// Decodes from a span and never reads outside it: the first field that does not fit makes ok()
-/// false, and every field from then on is zero or empty.
+/// Decodes from a span and never reads outside it: after the first field that does not fit, ok() is
+/// false and every field is zero or empty.
 class WireReader {
  public:
   explicit WireReader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
@@ -64,7 +64,7 @@ struct RecordView {
   std::span<const std::byte> content;
 };
 
-/// Takes the next record off the front of `records`; false when what is left is no whole record.
+/// Removes the next record from the front of `records`; false if the rest is not a whole record.
 bool take_record(std::span<const std::byte>& records, RecordView& record) noexcept;
 
 }  // namespace stillhand::recording

@@ -12,12 +12,12 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 using Spring = ChainEffect::Spring;
 
-/// A force on the arm whose reaction the trunk bears.
+/// A force on the arm, with its reaction on the trunk.
 ChainForces at_shoulder(double on_arm_n) noexcept {
   return {.trunk_n = -on_arm_n, .arm_n = on_arm_n};
 }
 
-/// A force on the hand whose reaction the arm bears.
+/// A force on the hand, with its reaction on the arm.
 ChainForces at_grip(double on_hand_n) noexcept {
   return {.arm_n = -on_hand_n, .hand_n = on_hand_n};
 }
@@ -37,7 +37,7 @@ RestMode::RestMode(const ChainEffect& effect, double period_s)
 void RestMode::step(double arm_m, double acceleration_m_s2) noexcept {
   const double towards_m = (pad_n_m_ * arm_m - mass_kg_ * acceleration_m_s2) / stiffness_n_m_;
   lag_.step(towards_m);
-  // A step tells where the tick began; a copy's next one where it ends.
+  // A step gives the position at the start of the tick; the next step of a copy gives its end.
   position_m_ = signal::SecondOrderLag(lag_).step(towards_m).x;
 }
 

@@ -8,14 +8,14 @@
 
 namespace stillhand::rig {
 
-/// Where the chain is, relative to the platform.
+/// Positions and velocities of the chain, relative to the platform.
 struct ChainPlace {
   double trunk_m, trunk_m_s;
   double arm_m, arm_m_s;
   double stick_m, stick_m_s;
 };
 
-/// Forces besides those of Eq. RG-3 and RG-4, + right.
+/// Forces in addition to those of Eq. RG-3 and RG-4, + right.
 struct ChainForces {
   double trunk_n = 0.0;
   double arm_n = 0.0;
@@ -23,10 +23,10 @@ struct ChainForces {
   double stick_n = 0.0;  ///< on the stick, below it
 };
 
-/// What the chain Eq. RG-3 lacks, as a difference force, README Eq. RG-12 to RG-20.  d = x_a - x_t
-/// is the stretch of the shoulder, s = x_a - x_j that of the grip, p the muscles' present
-/// parameters.  Plain numbers; which of them count goes with `spring`.
-/// Pure: no clock, no I/O; never allocates or throws.
+/// Parameters of an effect that the chain of Eq. RG-3 lacks, as a difference force.  d = x_a - x_t
+/// is the stretch of the shoulder, s = x_a - x_j that of the grip.  `spring` determines which
+/// numbers are used.
+/// Source: README Eq. RG-12 to RG-21.
 struct ChainEffect {
   enum class Spring : std::uint8_t {
     kNone,
@@ -51,15 +51,15 @@ struct ChainEffect {
   double ripple_n = 0.0;         ///< RG-20
   double ripple_period_m = 1.0;  ///< at the hand
   double ripple_phase_rad = 0.0;
-  double friction_n = 0.0;  ///< besides F_c of Eq. RG-4
+  double friction_n = 0.0;  ///< in addition to F_c of Eq. RG-4, RG-21
 };
 
-/// A further mass beside the arm, Eq. RG-19: its own motion, driven by arm and platform.
+/// A further mass next to the arm; arm and platform drive its motion.  Source: README Eq. RG-19.
 class RestMode {
  public:
   RestMode(const ChainEffect& effect, double period_s);
   [[nodiscard]] double position_m() const noexcept { return position_m_; }
-  /// One tick; arm and acceleration as their means over it.
+  /// Advances one tick; both inputs are means over the tick.
   void step(double arm_m, double acceleration_m_s2) noexcept;
 
  private:
@@ -70,17 +70,18 @@ class RestMode {
   double position_m_ = 0.0;
 };
 
-/// The effect on one chain (that of the stick as it moves, or that of a stick held at 0).
+/// The effect on one chain: that of the moving stick or that of a stick held at 0.
+/// Pure: no clock, no I/O; never allocates or throws.
 class EffectOnChain {
  public:
   EffectOnChain(const ChainEffect& effect, double period_s);
 
   [[nodiscard]] bool acts() const noexcept { return effect_.spring != ChainEffect::Spring::kNone; }
-  /// Time goes on by a tick: Eq. RG-18.
+  /// Advances the time by one tick, Eq. RG-18.
   void age() noexcept { slack_left_ *= keep_; }
-  /// Forces with the chain at `at`.
+  /// Forces for the chain at `at`, with the present parameters `p` of the muscles.
   [[nodiscard]] ChainForces forces(const ChainPlace& at, const ChainParameters& p) const noexcept;
-  /// What moves with the effect, Eq. RG-19, over the tick from `from` to `to`.
+  /// Moves the mass of Eq. RG-19 over the tick in which the chain goes from `from` to `to`.
   void move(const ChainPlace& from, const ChainPlace& to, double mean_acceleration_m_s2) noexcept;
 
  private:

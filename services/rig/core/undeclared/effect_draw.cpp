@@ -59,10 +59,10 @@ class Draw {
     plan_.facts.channel = channel;
     plan_.facts.place = place;
   }
-  void tell(const char* what, const char* unit, double value) {
+  void note(const char* what, const char* unit, double value) {
     plan_.facts.parameters.push_back({what, unit, value});
   }
-  /// Sets a number of the chain's effect so that Eq. RG-12 gives `wanted`, and tells both.
+  /// Sets a number of the chain's effect so that Eq. RG-12 gives `wanted`, and notes both.
   void size_chain(double ChainEffect::*number, Range range, double wanted, const char* what,
                   const char* unit) {
     const auto share = [&](double value) {
@@ -71,22 +71,22 @@ class Draw {
       return pegged().share(effect);
     };
     plan_.chain.*number = sized(range.min, range.max, wanted, share);
-    tell(what, unit, plan_.chain.*number);
-    tell("share_of_force_rms", "-", pegged().share(plan_.chain));
+    note(what, unit, plan_.chain.*number);
+    note("share_of_force_rms", "-", pegged().share(plan_.chain));
   }
 
   void softening_shoulder() {
     name("nonlinear_stiffness", "", "shoulder");
     plan_.chain.spring = Spring::kSofteningShoulder;
     plan_.chain.factor = between(0.5, 0.7);
-    tell("softer_by", "-", plan_.chain.factor);
+    note("softer_by", "-", plan_.chain.factor);
     size_chain(&ChainEffect::threshold_m, {0.003, 0.06}, between(0.12, 0.28), "threshold", "m");
   }
   void hardening_grip() {
     name("nonlinear_stiffness", "", "grip");
     plan_.chain.spring = Spring::kHardeningGrip;
     plan_.chain.factor = between(2.0, 4.0);
-    tell("stiffer_by", "-", plan_.chain.factor);
+    note("stiffer_by", "-", plan_.chain.factor);
     size_chain(&ChainEffect::threshold_m, {0.0005, 0.02}, between(0.08, 0.2), "threshold", "m");
   }
   void one_way_shoulder() {
@@ -99,7 +99,7 @@ class Draw {
     const bool slack = coin();
     plan_.chain.spring = slack ? Spring::kSlackHarness : Spring::kBumpStop;
     plan_.chain.factor = slack ? between(0.4, 0.7) : between(0.5, 1.5);
-    tell(slack ? "slack_share_of_seat_stiffness" : "stop_stiffness_over_seat", "-",
+    note(slack ? "slack_share_of_seat_stiffness" : "stop_stiffness_over_seat", "-",
          plan_.chain.factor);
     size_chain(&ChainEffect::threshold_m, {0.0005, 0.03}, between(0.12, 0.28), "half_width", "m");
   }
@@ -107,7 +107,7 @@ class Draw {
     name("time_varying_gain", "", "shoulder and grip");
     plan_.chain.spring = Spring::kTighteningArm;
     plan_.chain.time_s = between(30.0, 90.0);
-    tell("time_constant", "s", plan_.chain.time_s);
+    note("time_constant", "s", plan_.chain.time_s);
     size_chain(&ChainEffect::factor, {0.1, 2.5}, between(0.15, 0.3), "stiffer_by", "-");
   }
   void arm_rest() {
@@ -117,10 +117,10 @@ class Draw {
     chain.rest_frequency_hz = between(1.5, 4.0);
     chain.rest_damping = between(0.02, 0.06);
     chain.rest_mass_kg = between(1.0, 3.0);
-    tell("frequency", "Hz", chain.rest_frequency_hz);
-    tell("damping_ratio", "-", chain.rest_damping);
-    tell("mass", "kg", chain.rest_mass_kg);
-    // Above 0.7 of the mode's own stiffness the pad would be what holds the mass.
+    note("frequency", "Hz", chain.rest_frequency_hz);
+    note("damping_ratio", "-", chain.rest_damping);
+    note("mass", "kg", chain.rest_mass_kg);
+    // Above 0.7 of the stiffness of the mode, the pad itself would hold the mass.
     const double own_n_m = chain.rest_mass_kg * std::pow(kTwoPi * chain.rest_frequency_hz, 2);
     size_chain(&ChainEffect::pad_stiffness_n_m, {1.0, 0.7 * own_n_m}, between(0.1, 0.28),
                "pad_stiffness", "N/m");
@@ -134,23 +134,23 @@ class Draw {
     plan_.chain.ripple_period_m = period_rad * rig_.stick.lever_m;
     plan_.chain.ripple_phase_rad = between(0.0, kTwoPi);
     plan_.chain.ripple_n = share * std::numbers::sqrt2 * tracking_force_rms(rig_.body, rig_.stick);
-    tell("amplitude", "N", plan_.chain.ripple_n);
-    tell("period", "rad", period_rad);
-    tell("phase", "rad", plan_.chain.ripple_phase_rad);
-    tell("share_of_tracking_force_rms", "-", share);
+    note("amplitude", "N", plan_.chain.ripple_n);
+    note("period", "rad", period_rad);
+    note("phase", "rad", plan_.chain.ripple_phase_rad);
+    note("share_of_tracking_force_rms", "-", share);
   }
   void friction() {
     name("coulomb_friction", "omega", "drive");
     const double share = between(0.1, 0.3);
     plan_.chain.friction_n = share * tracking_force_rms(rig_.body, rig_.stick);
-    tell("friction", "N", plan_.chain.friction_n);
-    tell("share_of_tracking_force_rms", "-", share);
+    note("friction", "N", plan_.chain.friction_n);
+    note("share_of_tracking_force_rms", "-", share);
   }
   void fore_aft() {
     name("coupled_input", "a_x", "platform and hand");
     plan_.fore_aft_rms_m_s2 = between(0.8, 1.5);
     plan_.fore_aft_lag_s = coin() ? 0.0 : between(0.02, 0.1);
-    // Of a first-order lag over the band of the shaking, whose density is even.
+    // Gain of a first-order lag over the band of the shaking, which has a flat density.
     constexpr int kLines = 26;
     double passed = 0.0;
     for (int k = 0; k < kLines; ++k) {
@@ -160,10 +160,10 @@ class Draw {
     const double share = between(0.1, 0.28);
     plan_.fore_aft_mass_kg = (coin() ? 1.0 : -1.0) * share * pegged().plain_rms_n() /
                              (plan_.fore_aft_rms_m_s2 * std::sqrt(passed));
-    tell("acceleration_rms", "m/s^2", plan_.fore_aft_rms_m_s2);
-    tell("force_per_acceleration", "N/(m/s^2)", plan_.fore_aft_mass_kg);
-    tell("lag", "s", plan_.fore_aft_lag_s);
-    tell("share_of_force_rms", "-", share);
+    note("acceleration_rms", "m/s^2", plan_.fore_aft_rms_m_s2);
+    note("force_per_acceleration", "N/(m/s^2)", plan_.fore_aft_mass_kg);
+    note("lag", "s", plan_.fore_aft_lag_s);
+    note("share_of_force_rms", "-", share);
   }
   void roll() {
     name("coupled_input", "roll", "platform and arm");
@@ -172,9 +172,9 @@ class Draw {
     const double wanted = between(0.1, 0.28);
     plan_.borne_mass_kg =
         std::clamp(wanted * pegged().plain_rms_n() / pull_m_s2, 0.5, kWholeArm_kg);
-    tell("roll_rms", "rad", plan_.roll_rms_rad);
-    tell("borne_mass", "kg", plan_.borne_mass_kg);
-    tell("share_of_force_rms", "-", plan_.borne_mass_kg * pull_m_s2 / pegged().plain_rms_n());
+    note("roll_rms", "rad", plan_.roll_rms_rad);
+    note("borne_mass", "kg", plan_.borne_mass_kg);
+    note("share_of_force_rms", "-", plan_.borne_mass_kg * pull_m_s2 / pegged().plain_rms_n());
   }
   void tone() {
     name("tone", "", "hand");
@@ -182,20 +182,20 @@ class Draw {
     plan_.tone_n = share * std::numbers::sqrt2 * pegged().plain_rms_n();
     plan_.tone_hz = between(6.0, 16.0);
     plan_.tone_phase_rad = between(0.0, kTwoPi);
-    tell("amplitude", "N", plan_.tone_n);
-    tell("frequency", "Hz", plan_.tone_hz);
-    tell("phase_at_start", "rad", plan_.tone_phase_rad);
-    tell("share_of_force_rms", "-", share);
+    note("amplitude", "N", plan_.tone_n);
+    note("frequency", "Hz", plan_.tone_hz);
+    note("phase_at_start", "rad", plan_.tone_phase_rad);
+    note("share_of_force_rms", "-", share);
   }
   void delay() {
     const bool motor = coin();
     name("delay", "", motor ? "motor path" : "load cell");
     const auto ticks = static_cast<std::size_t>(std::floor(between(10.0, 61.0)));
     (motor ? plan_.motor_delay_ticks : plan_.cell_delay_ticks) = ticks;
-    tell("delay", "s", static_cast<double>(ticks) * kControlPeriod_s);
+    note("delay", "s", static_cast<double>(ticks) * kControlPeriod_s);
     std::vector<double> late(pegged().plain_n());
     std::rotate(late.begin(), late.end() - static_cast<std::ptrdiff_t>(ticks), late.end());
-    tell("share_of_force_rms", "-", pegged().share(late));
+    note("share_of_force_rms", "-", pegged().share(late));
   }
   void cell_limit() {
     name("output_saturation", "", "load cell");
@@ -206,8 +206,8 @@ class Draw {
     };
     plan_.cell_limit_n = sized(0.3 * pegged().plain_rms_n(), 4.0 * pegged().plain_rms_n(),
                                between(0.12, 0.24), share);
-    tell("limit", "N", plan_.cell_limit_n);
-    tell("share_of_force_rms", "-", share(plan_.cell_limit_n));
+    note("limit", "N", plan_.cell_limit_n);
+    note("share_of_force_rms", "-", share(plan_.cell_limit_n));
   }
 
   /// 0.05 of a body mass of 75 kg: Winter (2009), table 4.1, total arm.

@@ -9,11 +9,12 @@ namespace stillhand::rig {
 
 struct RigConfig;
 
-/// Kind and size of the effect of a seed: README "The undeclared effect", which has the table of
-/// kinds, ranges and sources.  One seed in ten has none, the others every kind alike.
+/// Draws kind and size of the effect of a seed.  One seed in ten has no effect; the others draw
+/// each row of the table with equal probability.
+/// Source: README, "The undeclared effect" (kinds, ranges, sources).
 /// @param seed       not 0
-/// @param sized_for  the rig against whose force the sizes are measured, Eq. RG-12
-/// @throws ConfigError when one of its fields is out of range.
+/// @param sized_for  the rig whose force is the reference of the sizes, Eq. RG-12
+/// @throws ConfigError if one of its fields is out of range.
 EffectPlan draw_effect(std::uint64_t seed, const RigConfig& sized_for);
 
 }  // namespace stillhand::rig

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kSettle = 1000;
 constexpr std::size_t kTicks = 40000;
-// Any will do: every effect is sized against the same motion.
+// An arbitrary seed; the size of every effect refers to the same motion.
 constexpr std::uint64_t kMotionSeed = 1;
 constexpr std::uint64_t kMotionStream = 0x66610003;
 constexpr double kIdentification_m_s2 = 0.75 * kGravity_m_s2 / 3.8;

@@ -9,17 +9,18 @@
 
 namespace stillhand::rig {
 
-/// A pegged identification trial in small, against which an effect is sized: README Eq. RG-12.
-/// Noise of 0.7 to 4 Hz (order 4 at each edge), 0.75 g / 3.8 RMS as the identification of paper
-/// III-A, 40 s, always the same.  Pure.
+/// A short pegged identification trial, the reference for the size of an effect.  The motion is
+/// noise of 0.7 to 4 Hz (order 4 at each edge) with an RMS of 0.75 g / 3.8, as in the
+/// identification of paper III-A.  It lasts 40 s and is always the same.
+/// Source: README Eq. RG-12.  Pure.
 class PeggedTrial {
  public:
-  /// @throws ConfigError when a field is out of range.
+  /// @throws ConfigError if a field is out of range.
   PeggedTrial(const BodyConfig& body, const StickConfig& stick);
 
   /// Load-cell force with the effect [N], 1 kHz, without the first second.
   [[nodiscard]] std::vector<double> force_n(const ChainEffect& effect) const;
-  /// The same without one.
+  /// The same force without the effect [N].
   [[nodiscard]] const std::vector<double>& plain_n() const noexcept { return plain_n_; }
   [[nodiscard]] double plain_rms_n() const noexcept { return plain_rms_n_; }
   /// Eq. RG-12: RMS(f_with - f_without) / RMS(f_without).
@@ -34,8 +35,8 @@ class PeggedTrial {
   double plain_rms_n_;
 };
 
-/// The value between `low` and `high` (positive) at which share(value), monotonic, is `wanted`; the
-/// nearer end where it isn't reached.  Bisection of the logarithm to 1 part in 1000.
+/// The value between `low` and `high` (positive) at which the monotonic share(value) is `wanted`;
+/// the nearer end if no value gives it.  Bisection of the logarithm to 1 part in 1000.
 double sized(double low, double high, double wanted, const std::function<double(double)>& share);
 
 /// RMS of the feedthrough force while tracking (paper III-C: 0.7 to 2 Hz, 1.6 m/s^2 RMS) [N].

@@ -11,7 +11,7 @@ namespace stillhand::rig {
 struct RigConfig;
 class UndeclaredEffect;
 
-/// What a sealed effect was, once it is opened.
+/// Facts of an opened effect.
 struct OpenedEffect {
   struct Parameter {
     std::string name;
@@ -19,29 +19,30 @@ struct OpenedEffect {
     double value;
   };
   std::uint64_t seed = 0;
-  std::string kind = "none";  ///< as the residual engine names it, or "none"
-  std::string channel;        ///< the channel that goes with it; empty: none does
-  std::string place;          ///< where in the rig it acts
+  std::string kind = "none";  ///< a kind of the residual engine, or "none"
+  std::string channel;        ///< channel of the effect; empty: none
+  std::string place;          ///< place in the rig at which it acts
   std::vector<Parameter> parameters;
 };
 
-/// An effect that the rig holds and nothing else is told of, README "The undeclared effect".  It is
-/// drawn from its seed, moves into a Rig, and can be opened once; a rig whose effect was opened
-/// steps no more.  What it is can't be asked in any other way: its type is known to the rig's core
-/// alone.  The same seed and settings give the same effect.
+/// An effect that only the rig knows; README, "The undeclared effect".  The constructor draws it
+/// from the seed.  It moves into a Rig and can be opened once; a rig with an opened effect must not
+/// step again.  There is no other access: only the core of the rig knows the type.  The same seed
+/// and settings give the same effect.
 class SealedEffect {
  public:
-  /// Nothing in it.
+  /// No effect.
   SealedEffect() noexcept;
-  /// @param seed       0: nothing in it
-  /// @param sized_for  the rig whose feedthrough its size is a share of; it may act in another
-  /// @throws ConfigError when a field of `sized_for` is out of range.
+  /// @param seed       0: no effect
+  /// @param sized_for  the rig whose feedthrough is the reference of the size; the effect may act
+  ///                   in another rig
+  /// @throws ConfigError if a field of `sized_for` is out of range.
   SealedEffect(std::uint64_t seed, const RigConfig& sized_for);
   ~SealedEffect();
   SealedEffect(SealedEffect&&) noexcept;
   SealedEffect& operator=(SealedEffect&&) noexcept;
 
-  /// What it was; the effect is gone.
+  /// Returns the facts and removes the effect.
   [[nodiscard]] OpenedEffect open() &&;
 
  private:

@@ -16,11 +16,11 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::uint64_t kForeAftStream = 0x66610001;
 constexpr std::uint64_t kRollStream = 0x66610002;
 
-// Slower and gentler than this for a second the platform counts as standing.
+// Below these limits for one second, the platform counts as standing still.
 constexpr double kStill_m_s = 1e-3;
 constexpr double kStill_m_s2 = 1e-2;
 constexpr int kStillTicks = 1000;
-// The shaking comes and goes with this lag, within a trial's ramps of two seconds.
+// The shaking fades in and out with this lag, within the trial's ramps of two seconds.
 constexpr double kGateLag_s = 0.5;
 
 }  // namespace
@@ -70,7 +70,7 @@ UndeclaredEffect::Shaken UndeclaredEffect::step(const PlatformState& platform) n
 double UndeclaredEffect::motor_force(double wanted_n, bool usable) noexcept {
   if (plan_.motor_delay_ticks == 0) return wanted_n;
   if (!usable) {
-    // What was under way is void: after the gap the delay starts from nothing.
+    // After a gap the delay line starts empty.
     motor_delay_.reset();
     return wanted_n;
   }

@@ -12,17 +12,17 @@
 
 namespace stillhand::rig {
 
-/// An effect's numbers, as drawn; those at their defaults do nothing.
+/// Numbers of a drawn effect; a number at its default has no effect.
 struct EffectPlan {
   OpenedEffect facts;
   ChainEffect chain;  ///< Eq. RG-14 to RG-20, and friction RG-21
 
   double fore_aft_rms_m_s2 = 0.0;  ///< RG-22: the platform's own shaking in x
   double fore_aft_mass_kg = 0.0;   ///< force on the hand per a_x, signed
-  double fore_aft_lag_s = 0.0;     ///< of that force; 0: none
+  double fore_aft_lag_s = 0.0;     ///< lag of that force; 0: none
 
   double roll_rms_rad = 0.0;   ///< RG-23
-  double borne_mass_kg = 0.0;  ///< of the arm, borne by the handle when the platform rolls
+  double borne_mass_kg = 0.0;  ///< mass of the arm that the handle bears when the platform rolls
 
   double tone_n = 0.0;  ///< RG-24, amplitude
   double tone_hz = 0.0;
@@ -33,19 +33,20 @@ struct EffectPlan {
   double cell_limit_n = std::numeric_limits<double>::infinity();  ///< RG-26
 };
 
-/// Bands of the platform's own shaking, Eq. RG-22 and RG-23.
+/// Bands of the additional platform motion, Eq. RG-22 and RG-23.
 inline constexpr double kForeAftLow_hz = 0.5;
 inline constexpr double kForeAftHigh_hz = 3.0;
 inline constexpr double kRollLow_hz = 0.05;
 inline constexpr double kRollHigh_hz = 0.3;
 
-/// A drawn effect, stepped at 1 kHz beside the rig it acts in: README Eq. RG-12 to RG-26.  What
-/// acts within the chain is on_chain(), which the Body steps.  It moves nothing past a limit: the
-/// motor's envelope, the stops and the board's range come behind it.
+/// A drawn effect at 1 kHz.  It advances with the rig in which it acts.  The Body applies the part
+/// inside the chain, on_chain().  The effect exceeds no limit: the motor envelope, the stops and
+/// the range of the board act after it.
+/// Source: README Eq. RG-12 to RG-26.
 /// Pure: no clock, no I/O; never allocates, locks or throws after construction.
 class UndeclaredEffect {
  public:
-  /// What it adds in a tick.
+  /// Contribution of the effect in one tick.
   struct Shaken {
     double accel_x_m_s2;  ///< of the platform, + forward
     double roll_rad;      ///< of the platform, + right side down
@@ -58,9 +59,9 @@ class UndeclaredEffect {
   [[nodiscard]] const ChainEffect& on_chain() const noexcept { return plan_.chain; }
 
   Shaken step(const PlatformState& platform) noexcept;
-  /// The command's way to the drive, Eq. RG-25.  @param usable  a finite command is there
+  /// The motor force after the delay of Eq. RG-25.  @param usable  a finite command is present
   double motor_force(double wanted_n, bool usable) noexcept;
-  /// The force as the load cell gives it, Eq. RG-25 and RG-26.
+  /// The reading of the load cell, Eq. RG-25 and RG-26.
   double cell_force(double force_n) noexcept;
 
  private:
