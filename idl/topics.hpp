@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "idl/processes.hpp"
+
 namespace stillhand::topics {
 
 /// Communication pattern of a topic; selects its QoS profile in qos/profiles.xml.
@@ -34,11 +36,6 @@ constexpr std::string_view profile_of(Pattern pattern) {
   }
   return "";
 }
-
-/// Every process of a session.  "recorder" reads every topic, "experiment" conducts the session.
-inline constexpr std::array<std::string_view, 9> kServices{
-    "motion",         "rig",      "sensing",   "cancellation", "display", "human_operator",
-    "identification", "recorder", "experiment"};
 
 /// Identity of a listener on a secured bus that is outside of a session (deploy/security).
 inline constexpr std::string_view kTap = "tap";
@@ -77,15 +74,9 @@ inline constexpr std::string_view kSensedReaders[]{"motion", "cancellation", "di
 inline constexpr std::string_view kRigAndRecorder[]{"rig", "recorder"};
 inline constexpr std::string_view kSensingAndRecorder[]{"sensing", "recorder"};
 inline constexpr std::string_view kOperatorAndRecorder[]{"human_operator", "recorder"};
-inline constexpr std::string_view kTrialReaders[]{"motion",         "rig",     "sensing",
-                                                  "cancellation",   "display", "human_operator",
-                                                  "identification", "recorder"};
 inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};
 inline constexpr std::string_view kModelReaders[]{"cancellation", "experiment", "recorder"};
 inline constexpr std::string_view kAugmentedModelReaders[]{"cancellation", "recorder"};
-inline constexpr std::string_view kAllButExperiment[]{"motion",         "rig",     "sensing",
-                                                      "cancellation",   "display", "human_operator",
-                                                      "identification", "recorder"};
 inline constexpr std::string_view kDashboards[]{kDashboard};
 inline constexpr std::string_view kCommandReaders[]{"rig", "experiment", "recorder"};
 inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
@@ -128,7 +119,7 @@ inline constexpr Topic kPointer{"stillhand/pointer",  "stillhand_msgs::Pointer",
                                 who::kDisplay,        who::kOperatorAndRecorder};
 inline constexpr Topic kTrialControl{"stillhand/trial_control", "stillhand_msgs::TrialControl",
                                      Pattern::kStateLatched,    0.0,
-                                     who::kExperiment,          who::kTrialReaders};
+                                     who::kExperiment,          kLaunched};
 inline constexpr Topic kTrialAssignment{"stillhand/trial_assignment",
                                         "stillhand_msgs::TrialAssignment",
                                         Pattern::kStateLatched,
@@ -156,13 +147,13 @@ inline constexpr Topic kServiceStatus{"stillhand/service_status",
 
 inline constexpr Topic kClockQuestion{"stillhand/clock_question", "stillhand_msgs::ClockQuestion",
                                       Pattern::kExchange,         4.0,
-                                      who::kExperiment,           who::kAllButExperiment};
-inline constexpr Topic kClockAnswer{"stillhand/clock_answer", "stillhand_msgs::ClockAnswer",
-                                    Pattern::kExchange,       4.0,
-                                    who::kAllButExperiment,   who::kEventReaders};
+                                      who::kExperiment,           kLaunched};
+inline constexpr Topic kClockAnswer{
+    "stillhand/clock_answer", "stillhand_msgs::ClockAnswer", Pattern::kExchange, 4.0, kLaunched,
+    who::kEventReaders};
 inline constexpr Topic kClockOffset{"stillhand/clock_offset", "stillhand_msgs::ClockOffset",
                                     Pattern::kExchange,       1.0,
-                                    who::kExperiment,         who::kAllButExperiment};
+                                    who::kExperiment,         kLaunched};
 
 inline constexpr Topic kHostStatus{
     "stillhand/host_status", "stillhand_msgs::HostStatus", Pattern::kExchange, 1.0, kServices,

@@ -10,6 +10,7 @@
 #include "apps/close_the_loop/output.hpp"
 #include "apps/diagnose/on_all_cores.hpp"
 #include "apps/lab/lab.hpp"
+#include "apps/lab/undeclared_effect.hpp"
 #include "apps/report/command_line.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"

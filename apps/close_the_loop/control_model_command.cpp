@@ -9,7 +9,7 @@
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/drive.hpp"
-#include "apps/lab/lab.hpp"
+#include "apps/lab/lab_options.hpp"
 #include "apps/measurement/read.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/cancellation/model_file.hpp"

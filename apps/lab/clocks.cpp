@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/clocks.hpp"
 
-#include <algorithm>
-#include <array>
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "idl/topics.hpp"
 #include "services/contract/time_difference.hpp"
@@ -17,7 +16,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kEvery{250};
 constexpr std::int64_t kPublishEvery = 4;  // questions
-// A system clock is read together with the monotonic one: what differs by more has jumped.
+// A system clock is read together with the monotonic one: a larger difference is a jump.
 constexpr std::int64_t kSystemStep_ns = 1'000'000;
 
 }  // namespace
@@ -56,7 +55,7 @@ void Clocks::work(const std::stop_token& stop) {
 
 void Clocks::take(const stillhand_msgs::ClockAnswer& answer, const runtime::Arrival& arrival) {
   const std::string who = answer.service().c_str();
-  if (std::ranges::find(topics::kServices, who) == topics::kServices.end()) return;  // a stranger
+  if (!topics::is_service(who)) return;  // a stranger
   const std::lock_guard lock(mutex_);
   Other& other = others_[who];
   other.same_clock = identity_ == answer.clock().c_str();
@@ -66,15 +65,17 @@ void Clocks::take(const stillhand_msgs::ClockAnswer& answer, const runtime::Arri
   const std::int64_t moved_ns = difference_ns(system_ahead_ns, other.system_ahead_ns);
   if (other.answered && std::abs(moved_ns) > kSystemStep_ns) {
     ++other.system_steps;
-    tell(stillhand_msgs::EVENT_CLOCK_STEPPED, who, "its system clock jumped by %+.1f ms",
-         1e-6 * static_cast<double>(moved_ns));
+    report(
+        stillhand_msgs::EVENT_CLOCK_STEPPED, who,
+        fmt::format("its system clock jumped by {:+.1f} ms", 1e-6 * static_cast<double>(moved_ns)));
   }
   other.system_ahead_ns = system_ahead_ns;
   other.answered = true;
   if (const auto step_ns = other.comparison.take(
           {answer.asked_ns(), answer.received_ns(), answer.stamp_ns(), arrival.received_ns})) {
-    tell(stillhand_msgs::EVENT_CLOCK_STEPPED, who, "its monotonic clock jumped by %+.1f ms",
-         1e-6 * static_cast<double>(*step_ns));
+    report(stillhand_msgs::EVENT_CLOCK_STEPPED, who,
+           fmt::format("its monotonic clock jumped by {:+.1f} ms",
+                       1e-6 * static_cast<double>(*step_ns)));
   }
 }
 
@@ -96,19 +97,17 @@ void Clocks::publish() {
     message.steps(static_cast<std::int32_t>(offset->steps + other.system_steps));
     offsets_.write(message);
     service_.bus().set_clock_offset(who, message.offset_ns());
-    if (offset->drifts() && !other.told_drift) {
-      other.told_drift = true;
-      tell(stillhand_msgs::EVENT_CLOCK_DRIFTS, who, "its clock drifts by %+.0f ppm",
-           offset->drift_ppm);
+    if (offset->drifts() && !other.drift_reported) {
+      other.drift_reported = true;
+      report(stillhand_msgs::EVENT_CLOCK_DRIFTS, who,
+             fmt::format("its clock drifts by {:+.0f} ppm", offset->drift_ppm));
     }
   }
 }
 
-void Clocks::tell(stillhand_msgs::EventKind kind, const std::string& who, const char* format,
-                  double value) {
-  std::array<char, 64> what{};
-  std::snprintf(what.data(), what.size(), format, value);
-  service_.note_event(kind, (who + ": " + what.data()).c_str());
+void Clocks::report(stillhand_msgs::EventKind kind, const std::string& who,
+                    const std::string& what) {
+  service_.note_event(kind, fmt::format("{}: {}", who, what).c_str());
 }
 
 }  // namespace stillhand::lab

@@ -13,8 +13,8 @@
 
 namespace stillhand::lab {
 
-/// Compares every process's clock with this one's over the bus (services/clock), publishes what
-/// came of it each second, and tells jumps and drifts as events.  Endpoints are made here, so
+/// Compares every process's clock with this one's over the bus (services/clock), publishes the
+/// offsets each second, and reports jumps and drifts as events.  Makes its endpoints: construct it
 /// before the bus starts.
 class Clocks {
  public:
@@ -34,14 +34,13 @@ class Clocks {
     std::int64_t system_steps = 0;
     bool answered = false;
     bool same_clock = false;
-    bool told_drift = false;
+    bool drift_reported = false;
   };
 
   void work(const std::stop_token& stop);
   void take(const stillhand_msgs::ClockAnswer& answer, const runtime::Arrival& arrival);
   void publish();
-  void tell(stillhand_msgs::EventKind kind, const std::string& who, const char* format,
-            double value);
+  void report(stillhand_msgs::EventKind kind, const std::string& who, const std::string& what);
 
   runtime::Service& service_;
   runtime::Publisher<stillhand_msgs::ClockQuestion> questions_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/hosts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <stdexcept>
@@ -9,7 +11,7 @@
 #include "apps/deploy/machine.hpp"
 #include "apps/deploy/profiles.hpp"
 #include "apps/lab/keys.hpp"
-#include "apps/lab/lab.hpp"
+#include "apps/lab/lab_options.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
@@ -17,7 +19,7 @@
 namespace stillhand::lab {
 namespace {
 
-// Where a host has the keys of its services, for its units as for a session.
+// Folder of a host with the keys of its services, for its units and for a session.
 std::filesystem::path installed_keys(const deploy::Inventory& inventory) {
   return std::filesystem::path(deploy::installed_folder(inventory)) / "security";
 }
@@ -36,27 +38,27 @@ Hosts::Hosts(const LabOptions& options)
     local_.security = inventory_->security;
     check(options);
   }
-  // Of services that run already each has looked at its own.
+  // A service that runs already has checked its own keys.
   check_keys(local_.security, domain_,
              attach_ ? std::vector<std::string>{"experiment"} : services_on(host_of("experiment")));
 }
 
-// What an inventory allows and a session over it cannot do.
+// Refuses what an inventory allows but a session over it cannot do.
 void Hosts::check(const LabOptions& options) const {
   const std::string file = options.inventory.string();
   if (std::ranges::find(inventory_->rigs, rig_, &deploy::Rig::number) == inventory_->rigs.end()) {
-    throw ConfigError("--rig", std::to_string(rig_), "the number of a rig of " + file);
+    throw ConfigError("--rig", fmt::to_string(rig_), "the number of a rig of " + file);
   }
   const deploy::Host* here = host_of("experiment");
   if (!here->start.empty()) {
-    throw ConfigError(here->place + ": host " + here->name,
-                      "experiment on a host that is reached from elsewhere",
-                      "experiment on the host without \"start\", where `stillhand lab` runs");
+    throw ConfigError(
+        here->place + ": host " + here->name, "experiment on a host with \"start\"",
+        "experiment on the host where `stillhand lab` runs, the one without \"start\"");
   }
   const auto own = deploy::own_addresses();
   if (std::ranges::find(own, here->address) == own.end()) {
     throw ConfigError(here->place + ": host " + here->name,
-                      here->address + ", which is on no interface of this machine",
+                      here->address + ", which no interface of this machine has",
                       "the address of the machine where `stillhand lab` runs");
   }
   const auto want_here = [&](std::string_view service, const std::string& option,
@@ -67,11 +69,11 @@ void Hosts::check(const LabOptions& options) const {
                       std::string(service) + " on this machine: " + why);
   };
   if (options.undeclared_effect != 0) {
-    want_here("rig", "--undeclared-effect", "what is sealed travels over no network");
+    want_here("rig", "--undeclared-effect", "the sealed effect must not travel over a network");
   }
-  if (!options.ride.empty()) want_here("motion", "--ride", "the file is here");
+  if (!options.ride.empty()) want_here("motion", "--ride", "the ride is a file of this machine");
   if (options.who == Operator::kMouse && host_of("display") != host_of("human_operator")) {
-    throw ConfigError("--operator", "mouse, with display and human_operator on two hosts",
+    throw ConfigError("--operator", "mouse with display and human_operator on two hosts",
                       "both on the host with the mouse");
   }
 }
@@ -160,8 +162,9 @@ void Hosts::bring_back() noexcept {
       if (video_ && host == host_of("display")) fetch("display", "screen.avi");
       remote->close();
     } catch (const std::exception& error) {
-      std::cerr << "stillhand lab: host " << host->name << ": what was written in "
-                << remote->folder() << " stays there: " << error.what() << '\n';
+      std::cerr << fmt::format(
+          "stillhand lab: host {}: the files in {} could not be brought here: {}\n", host->name,
+          remote->folder(), error.what());
     }
   }
   remotes_.clear();
@@ -171,16 +174,16 @@ void Hosts::bring_recording(const std::filesystem::path& file) noexcept {
   const std::filesystem::path to = local_.out / "session.mcap";
   const deploy::Host* host = host_of("recorder");
   try {
-    if (file.empty()) throw std::runtime_error("the recorder named no file");
+    if (file.empty()) throw std::runtime_error("the recorder did not report its file");
     if (host == nullptr || host->start.empty()) {
       std::filesystem::copy_file(file, to);
     } else {
       RemoteHost(*host, local_.out / "logs" / ("host_" + host->name + ".log")).fetch(file, to);
     }
   } catch (const std::exception& error) {
-    std::cerr << "stillhand lab: the recording stays "
-              << (host == nullptr ? "where it is" : "on host " + host->name) << ", " << file << ": "
-              << error.what() << '\n';
+    std::cerr << fmt::format("stillhand lab: the recording stays {}, \"{}\": {}\n",
+                             host == nullptr ? "where it is" : "on host " + host->name,
+                             file.string(), error.what());
   }
 }
 

@@ -17,7 +17,7 @@ namespace stillhand::lab {
 
 struct LabOptions;
 
-/// Where a service finds its files, and leaves what it writes.
+/// Where a service reads its files and writes its own.
 struct Place {
   std::filesystem::path profiles;
   std::filesystem::path config;
@@ -29,7 +29,7 @@ struct Place {
 class Hosts {
  public:
   /// Reads the inventory, if one is given.
-  /// @throws ConfigError what is wrong with it, or with the options beside it
+  /// @throws ConfigError for an inventory that is wrong or does not fit the options
   explicit Hosts(const LabOptions& options);
   ~Hosts() { clear(); }
   Hosts(const Hosts&) = delete;
@@ -43,12 +43,12 @@ class Hosts {
   [[nodiscard]] Place of(std::string_view service) const;
   /// The process as it is started from here, on the host of its service.
   [[nodiscard]] Launch placed(const Launch& local) const;
-  /// Brings what services wrote elsewhere into the folder of the session, and clears the hosts.
-  /// What stays behind is told on standard error.
+  /// Copies the files that services wrote on other hosts into the folder of the session, and clears
+  /// those hosts.  Reports on standard error which files it could not copy.
   void bring_back() noexcept;
-  /// The same for a recorder that somebody else has started.  @param file  where it says it wrote
+  /// The same for a recorder that ran already.  @param file  path that it reported
   void bring_recording(const std::filesystem::path& file) noexcept;
-  /// Clears the hosts of what was not brought back.
+  /// Removes from the hosts what bring_back() did not.
   void clear() noexcept;
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/keys.hpp"
 
+#include <fmt/format.h>
+
 #include <iostream>
 
 #include "apps/lab/remote.hpp"
@@ -19,21 +21,24 @@ void check_keys(const std::filesystem::path& folder, std::uint32_t domain,
   }
 }
 
-// The private keys stay there, so each service looks at its own itself, when it starts.
+// The private keys stay on their host: each service checks its own when it starts.
 std::string keys_script(const std::filesystem::path& folder, const std::string& authority,
                         const std::vector<std::string>& services) {
-  std::string script = "cd " + shell_word(folder.string()) + " || exit 1\n";
   std::string files = "authority.pem governance.p7s";
   for (const std::string& service : services) {
     for (const char* file : {"/certificate.pem", "/key.pem", "/permissions.p7s"}) {
-      files += " " + service + file;
+      files += fmt::format(" {}{}", service, file);
     }
   }
-  script += "for file in " + files + "; do\n" +
-            "  [ -r $file ] || { echo \"no $PWD/$file to read\"; exit 1; }\n" + "done\n";
-  // Between $( and ), which leave out the ends of lines at the end: a copy may lack its last.
-  return script + "[ \"$(cat authority.pem)\" = \"$(cat " + here_document(authority) +
-         ")\" ] || { echo \"$PWD/authority.pem is another\"; exit 1; }\n";
+  // $( ) drops newlines at the end: a copy of the certificate may lack its last one.
+  return fmt::format(
+      "cd {} || exit 1\n"
+      "for file in {}; do\n"
+      "  [ -r $file ] || {{ echo \"no $PWD/$file to read\"; exit 1; }}\n"
+      "done\n"
+      "[ \"$(cat authority.pem)\" = \"$(cat {})\" ] || "
+      "{{ echo \"$PWD/authority.pem is another\"; exit 1; }}\n",
+      shell_word(folder.string()), files, here_document(authority));
 }
 
 }  // namespace stillhand::lab

@@ -13,12 +13,12 @@
 
 namespace stillhand::lab {
 
-/// Looks for a service whose life sign is gone for good: it hangs, or ended where nobody here is
-/// its parent.  One thread.
+/// Looks for a service whose life sign is gone for good: the service hangs, or it ended and is no
+/// child of this process.  One thread.
 class LostService {
  public:
-  /// @param patience_s  between trials nothing asks for an unbroken life sign
-  /// @param only        the one that is looked for; empty: all
+  /// @param patience_s  [s] how long a life sign may be absent
+  /// @param only        the service to look for; empty: every service
   LostService(const runtime::Bus& bus, double patience_s, std::string only = "")
       : bus_(bus),
         patience_ns_(static_cast<std::int64_t>(patience_s * 1e9)),

@@ -15,8 +15,8 @@
 namespace stillhand::lab {
 namespace {
 
-// Everything that a session writes, logs aside, and what the closed loop adds: a report of another
-// session beside a new recording would be believed.
+// Everything that a session or the closed loop writes, except logs: a reader would take a report
+// of an earlier session for one of the new recording.
 constexpr const char* kResults[]{"session.mcap",
                                  "summary.json",
                                  "model.json",
@@ -41,7 +41,7 @@ std::vector<std::filesystem::path> session_files(const std::filesystem::path& fo
   for (const std::string_view service : topics::kServices) {
     files.push_back(folder / "logs" / (std::string(service) + ".log"));
   }
-  // Of a session over several machines: the profiles here, and what each host said.
+  // Of a session over several machines: the profiles, and the lines of each host.
   files.push_back(folder / "logs" / "profiles.xml");
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "logs", error)) {
@@ -97,7 +97,8 @@ void OutputFolder::make() {
 void OutputFolder::prove_writable() const {
   const std::filesystem::path probe = path_ / ".stillhand-probe";
   std::error_code error;
-  std::filesystem::remove(probe, error);  // a link of that name leads to somebody else's file
+  std::filesystem::remove(probe,
+                          error);  // a link of that name may lead to a file of another program
   std::ofstream file(probe);
   file << "probe";
   file.close();  // a full disk shows here at the latest

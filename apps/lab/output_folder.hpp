@@ -6,9 +6,9 @@
 
 namespace stillhand::lab {
 
-/// The folder of a session's results: made if need be, proved writable, held against other labs,
-/// and cleared of what an earlier session left in it.  Only files that a session writes are ever
-/// taken away.
+/// The folder of a session's results: it is made if need be, proved writable, locked against other
+/// labs, and cleared of the files of an earlier session.  It removes only files that a session
+/// writes.
 class OutputFolder {
  public:
   /// @param inputs  files that the session reads; empty ones don't count
@@ -19,7 +19,7 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Takes away what a session writes, and the folder if it was made here.
+  /// Removes the files of the session, and the folder if it was made here.
   void discard() const;
 
  private:

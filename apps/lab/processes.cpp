@@ -2,6 +2,7 @@
 #include "apps/lab/processes.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sched.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -52,7 +53,8 @@ class SpawnSettings {
     sigemptyset(&none);
     posix_spawnattr_setsigmask(&attributes_, &none);
     posix_spawnattr_setpgroup(&attributes_, 0);
-    // Nor with its priority: a service asks for its own, a copy over the network needs none.
+    // They do not inherit its priority: a service asks for its own, a copy over a network needs
+    // none.
     const sched_param ordinary{};
     posix_spawnattr_setschedpolicy(&attributes_, SCHED_OTHER);
     posix_spawnattr_setschedparam(&attributes_, &ordinary);
@@ -75,8 +77,8 @@ class SpawnSettings {
   posix_spawnattr_t attributes_;
 };
 
-/// A pipe that gives a text and then ends: unlike arguments and environment it shows in no listing
-/// of processes, and once read it is nowhere.
+/// A pipe that gives a text and then ends.  Unlike arguments and environment, the text appears in
+/// no listing of processes, and it is gone once it is read.
 class TextToRead {
  public:
   explicit TextToRead(const std::string& text) {
@@ -105,7 +107,7 @@ class TextToRead {
   TextToRead& operator=(const TextToRead&) = delete;
 
   [[nodiscard]] int end() const { return end_; }
-  /// The end that we hold: what reads the text sees no end of it before that is closed.
+  /// The end that this process holds: the reader sees the end of the text once it is closed.
   [[nodiscard]] int take_far_end() { return std::exchange(far_end_, -1); }
 
  private:
@@ -116,11 +118,9 @@ class TextToRead {
 }  // namespace
 
 std::string describe(const Ended& ended) {
-  std::string text = ended.name;
-  if (ended.pid > 0) text += " (pid " + std::to_string(ended.pid) + ")";
-  text += " ended: " + ended.how;
-  if (!ended.said.empty()) text += "; it said: " + ended.said;
-  return text;
+  return fmt::format("{}{} ended: {}{}", ended.name,
+                     ended.pid > 0 ? fmt::format(" (pid {})", ended.pid) : "", ended.how,
+                     ended.said.empty() ? "" : "; it said: " + ended.said);
 }
 
 Processes::~Processes() {
@@ -134,7 +134,7 @@ Processes::~Processes() {
 void Processes::start(const Launch& launch) {
   if (launch.executable.has_parent_path() && access(launch.executable.c_str(), X_OK) != 0) {
     throw ConfigError("executable of " + launch.name, "no program " + launch.executable.string(),
-                      "a complete build: every stillhand-* beside stillhand");
+                      "a complete build: every stillhand-* in the folder of stillhand");
   }
   std::vector<std::string> words{launch.executable.string()};
   words.insert(words.end(), launch.arguments.begin(), launch.arguments.end());
@@ -160,10 +160,10 @@ Ended Processes::ended(const Child& child, int wait_status) const {
               last_line(child.launch.log)};
   if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
-    ended.how = "signal " + std::to_string(signal) + " (" + sigdescr_np(signal) + ")";
+    ended.how = fmt::format("signal {} ({})", signal, sigdescr_np(signal));
   } else {
     ended.exit_status = WEXITSTATUS(wait_status);
-    ended.how = "exit status " + std::to_string(ended.exit_status);
+    ended.how = fmt::format("exit status {}", ended.exit_status);
   }
   return ended;
 }
@@ -181,7 +181,7 @@ std::optional<Ended> Processes::reap() {
   return std::nullopt;
 }
 
-// A signal to whatever reaches a process on another host ends the way to it, not the process.
+// A signal would end the connection to a process on another host, not the process.
 void Processes::ask_to_end(Child& child) {
   if (child.input >= 0) {
     close(std::exchange(child.input, -1));

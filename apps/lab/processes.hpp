@@ -17,15 +17,15 @@ struct Launch {
   std::vector<std::string> arguments;  ///< without the program's name
   std::filesystem::path log;           ///< standard output and error go here
   std::filesystem::path output;        ///< standard output alone; empty: to the log too
-  std::string standard_input;          ///< what it reads there; then it ends
+  std::string standard_input;          ///< text that it reads there, before the end of file
   std::string host;                    ///< where it runs; empty: this machine
-  bool ends_with_input = false;        ///< it stays open, and its end asks the process to end
+  bool ends_with_input = false;        ///< it stays open; its closing asks the process to end
 };
 
 /// How a process ended.
 struct Ended {
   std::string name;  ///< "rig", "rig on desk"
-  pid_t pid;         ///< 0: none that is known here
+  pid_t pid;         ///< 0: not known on this machine
   std::string how;   ///< "exit status 2", "signal 9 (Killed)"
   int exit_status;   ///< -1 after a signal
   std::string said;  ///< last line of its log
@@ -35,11 +35,11 @@ struct Ended {
 std::string describe(const Ended& ended);
 
 /// The processes of a session: each in a process group of its own (Ctrl-C reaches the lab alone),
-/// told to end when the lab does.  One thread.
+/// and each ends when the lab does.  One thread.
 class Processes {
  public:
   Processes() = default;
-  /// Ends whatever still runs.
+  /// Kills every process that still runs.
   ~Processes();
   Processes(const Processes&) = delete;
   Processes& operator=(const Processes&) = delete;

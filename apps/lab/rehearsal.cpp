@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/rehearsal.hpp"
 
+#include <fmt/format.h>
+
 #include <optional>
-#include <sstream>
 
 #include "services/contract/config_error.hpp"
 #include "services/display/core/tracking_display.hpp"
@@ -26,19 +27,21 @@ motion::MotionProfile profile_of(const session::PlannedTrial& planned,
 // What the user can change about a motion that the platform cannot follow.
 ConfigError refusal(const session::PlannedTrial& planned, const session::ProtocolOptions& options,
                     const motion::RideRecord& ride, const std::string& why) {
-  std::ostringstream got;
   switch (planned.motion) {
     case session::Motion::kBandNoise:
-      got << "the noise of trial " << planned.trial.number << " (" << planned.label << ")";
-      return {"motion.yaml", got.str(), "limits that allow it (" + why + ")"};
+      return {"motion.yaml",
+              fmt::format("the noise of trial {} ({})", planned.trial.number, planned.label),
+              fmt::format("limits that allow it ({})", why)};
     case session::Motion::kRoad:
-      got << options.road_class << " at " << options.road_speed_m_s << " m/s";
-      return {"--road-class", got.str(),
-              "a better road or less speed, which the platform can follow (" + why + ")"};
+      return {
+          "--road-class",
+          fmt::format("{} at {:.6g} m/s", options.road_class, options.road_speed_m_s),
+          fmt::format("a better road or less speed, so that the platform can follow ({})", why)};
     case session::Motion::kRide:
       break;
   }
-  return {ride.source, "a ride that the platform cannot follow", "another (" + why + ")"};
+  return {ride.source, "a ride that the platform cannot follow",
+          fmt::format("another ride ({})", why)};
 }
 
 }  // namespace
@@ -57,7 +60,7 @@ AskedMotions rehearse(const session::ProtocolOptions& options, const motion::Rid
       display::reference_on_screen(screen, trial.duration_ticks, planned.reference_seed);
     }
     if (!planned.moving) continue;
-    // A ride has no seed: every trial gets the same one, and an hour of it takes seconds.
+    // A ride has no seed, so every trial has the same motion; an hour of it takes seconds to make.
     if (planned.motion == session::Motion::kRide && followed_ride) {
       asked[trial.number] = *followed_ride;
       continue;

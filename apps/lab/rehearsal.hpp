@@ -12,14 +12,15 @@
 
 namespace stillhand::lab {
 
-/// What is asked of the platform, by the number of the trial; of those that move.
+/// What each trial with motion asks of the platform, by the trial's number.
 using AskedMotions = std::map<std::int64_t, motion::MotionReport>;
 
 /// Makes the motion and the target of every trial once, before any process starts, as motion and
-/// display will make them: what cannot be followed or shown is known before a subject sits there.
+/// display will make them.  A motion that the platform cannot follow, or a target that the screen
+/// cannot show, is refused before a subject sits there.
 /// @param ride    for Motion::kRide, otherwise empty
 /// @param config  folder of motion.yaml and display.yaml
-/// @throws ConfigError naming what the user asked for, with what the platform would have needed.
+/// @throws ConfigError naming the option or setting, and what the platform would need
 AskedMotions rehearse(const session::ProtocolOptions& options, const motion::RideRecord& ride,
                       const std::filesystem::path& config);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/remote.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -36,7 +38,7 @@ std::vector<std::string> to_shell(const deploy::Host& host) {
   return words;
 }
 
-// The first end mark that no line of the text is.
+// The first end mark that is no line of the text.
 std::string end_mark(const std::string& text) {
   std::string mark = "END";
   while (("\n" + text + "\n").find("\n" + mark + "\n") != std::string::npos) mark += "_";
@@ -60,10 +62,10 @@ std::string shell_word(const std::string& word) {
 std::string here_document(const std::string& text) {
   const std::string end = end_mark(text);
   const bool whole = text.empty() || text.ends_with('\n');
-  return "<<'" + end + "'\n" + text + (whole ? "" : "\n") + end + "\n";
+  return fmt::format("<<'{0}'\n{1}{2}{0}\n", end, text, whole ? "" : "\n");
 }
 
-std::string folder_told(const std::string& printed) {
+std::string folder_made(const std::string& printed) {
   const std::size_t line = printed.rfind(kMade);
   if (line == std::string::npos) return "";
   const std::size_t from = line + kMade.size();
@@ -98,7 +100,7 @@ void RemoteHost::run(const std::string& script, const std::filesystem::path& out
     }
     if (stop != nullptr && stop->requested()) throw Interrupted();
     if (runtime::monotonic_ns() > limit_ns) {
-      throw std::runtime_error("host " + host_.name + " did not answer within 30 s");
+      throw std::runtime_error(fmt::format("host {} did not answer within 30 s", host_.name));
     }
     runtime::sleep_until_ns(runtime::monotonic_ns() + kPoll_ns);
   }
@@ -108,19 +110,19 @@ void RemoteHost::run(const std::string& script, const std::filesystem::path& out
 void RemoteHost::open(const runtime::Stop& stop) {
   std::string made;
   try {
-    // The log also has what ssh says, and what a login prints.
-    run("folder=$(mktemp -d " + std::string(kFolder) + "XXXXXXXX) || exit 1\n" +
-            "printf '\\nstillhand made %s\\n' \"$folder\"\n",
+    // The log also holds the lines of ssh and of the login.
+    run(fmt::format("folder=$(mktemp -d {}XXXXXXXX) || exit 1\n"
+                    "printf '\\nstillhand made %s\\n' \"$folder\"\n",
+                    kFolder),
         {}, &stop);
-    made = folder_told(text_of(log_));
+    made = folder_made(text_of(log_));
     if (made.empty()) throw std::runtime_error("no folder was made in /tmp");
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
-    std::string words;
-    for (const std::string& word : host_.start) words += word + " ";
-    throw ConfigError(host_.place + ": host " + host_.name, error.what(),
-                      "a host that answers to: " + words + "bash -s");
+    throw ConfigError(
+        fmt::format("{}: host {}", host_.place, host_.name), error.what(),
+        fmt::format("a host that answers to: {} bash -s", fmt::join(host_.start, " ")));
   }
   folder_ = made;
 }
@@ -129,7 +131,7 @@ void RemoteHost::check(const std::string& script, const std::string& want) {
   try {
     run(script);
   } catch (const std::exception& error) {
-    throw ConfigError(host_.place + ": host " + host_.name, error.what(), want);
+    throw ConfigError(fmt::format("{}: host {}", host_.place, host_.name), error.what(), want);
   }
 }
 
@@ -140,11 +142,11 @@ void RemoteHost::close() {
 }
 
 void RemoteHost::put(const std::map<std::string, std::string>& files) {
-  std::string script = "set -e\numask 077\ncd " + shell_word(folder_) + "\n";
+  std::string script = fmt::format("set -e\numask 077\ncd {}\n", shell_word(folder_));
   for (const auto& [name, text] : files) {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
-    if (!folder.empty()) script += "mkdir -p " + shell_word(folder.string()) + "\n";
-    script += "cat > " + shell_word(name) + " " + here_document(text);
+    if (!folder.empty()) script += fmt::format("mkdir -p {}\n", shell_word(folder.string()));
+    script += fmt::format("cat > {} {}", shell_word(name), here_document(text));
   }
   run(script);
 }
@@ -169,8 +171,9 @@ Launch RemoteHost::on_it(const Launch& local) const {
   launch.host = host_.name;
   launch.executable = host_.start.front();
   launch.arguments = to_shell(host_);
-  // The process's own standard input is empty; the shell's end is the lab's, and the process's.
-  // In braces, so that the shell has read all of it before anything else reads on.
+  // The process's own standard input is empty; the process ends when the shell's input, which the
+  // lab holds, is closed.  In braces, so that the shell has read the whole script before another
+  // command reads on.
   launch.standard_input = "{\n" + command +
                           " < /dev/null &\n"
                           "child=$!\n"

@@ -12,31 +12,32 @@
 
 namespace stillhand::lab {
 
-/// Somebody asked for the end before there was anything to keep.
+/// The user interrupted the session before there was anything to keep.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted before the first trial") {}
 };
 
-/// Another machine of the lab, reached by the words that its inventory gives (`ssh rig-pc`): a
-/// shell there reads what to do from its standard input, so that nothing has to be quoted twice and
-/// nothing but bash has to be there.
+/// Another machine of the lab, reached by the words that the inventory gives (`ssh rig-pc`).  A
+/// shell there reads its script from its standard input: nothing has to be quoted twice, and the
+/// machine needs only bash.
 class RemoteHost {
  public:
   /// @param host  one with start words; outlives this
-  /// @param log   what it says when something goes wrong there
+  /// @param log   gets the lines that its shell prints
   RemoteHost(const deploy::Host& host, std::filesystem::path log);
 
   /// Makes a folder there, for as long as the session lasts.
   /// @throws ConfigError when the host cannot be reached, Interrupted on a stop meanwhile
   void open(const runtime::Stop& stop);
-  /// Takes the folder away again.  @throws std::runtime_error
+  /// Removes that folder.  @throws std::runtime_error
   void close();
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
   [[nodiscard]] const deploy::Host& host() const noexcept { return host_; }
 
-  /// Runs a script there that says what is wrong, if anything is, and fails.
-  /// @throws ConfigError with its last line, and with what would be right
+  /// Runs a script there that prints what is wrong and fails, or succeeds.
+  /// @param want  what would be right
+  /// @throws ConfigError with the script's last line
   void check(const std::string& script, const std::string& want);
   /// Writes text files into its folder.  @param files  path below the folder, text
   void put(const std::map<std::string, std::string>& files);
@@ -44,14 +45,14 @@ class RemoteHost {
   /// @throws std::runtime_error
   void fetch(const std::string& name, const std::filesystem::path& to);
 
-  /// The same process there.  It ends when its standard input does: when the lab closes it, dies,
-  /// or can no longer be reached.
+  /// The same process on this host.  It ends when its standard input does: when the lab closes it,
+  /// dies, or can no longer be reached.
   [[nodiscard]] Launch on_it(const Launch& local) const;
 
  private:
-  /// Runs a script there, and gives it as long as it goes on printing.
-  /// @param output  file for what it prints; empty: the log
-  /// @param stop    ends it, too; none where what it does is to be done in any case
+  /// Runs a script there, for as long as it prints something every 30 s.
+  /// @param output  file for its standard output; empty: the log
+  /// @param stop    also ends it; nullptr: the script runs to its end in any case
   void run(const std::string& script, const std::filesystem::path& output = {},
            const runtime::Stop* stop = nullptr);
 
@@ -60,14 +61,14 @@ class RemoteHost {
   std::string folder_;
 };
 
-/// A word as a POSIX shell reads it back.
+/// Quotes a word for a POSIX shell.
 std::string shell_word(const std::string& word);
 
-/// `<<'END'` and what follows, by which a command reads this text; a last line without an end gets
-/// one.
+/// A here document (`<<'END'`) by which a command reads this text.  A last line without a newline
+/// gets one.
 std::string here_document(const std::string& text);
 
-/// The folder that open()'s script has made, of all that a host printed; empty: none.
-std::string folder_told(const std::string& printed);
+/// The folder that open()'s script made, from everything that the host printed; empty: none.
+std::string folder_made(const std::string& printed);
 
 }  // namespace stillhand::lab

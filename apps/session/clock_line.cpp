@@ -17,7 +17,7 @@ ClockLine::ClockLine(const std::vector<stillhand_msgs::ClockOffset>& offsets,
 
 std::int64_t ClockLine::on_experiments_clock(std::int64_t stamp_ns) const {
   if (known_.empty()) return stamp_ns;
-  // Before the first offset was known it was no other.
+  // Before the first offset was known, the first one holds.
   const auto after = std::ranges::upper_bound(known_, stamp_ns, {}, &Known::from_ns);
   return stamp_ns - (after == known_.begin() ? *after : *(after - 1)).offset_ns;
 }

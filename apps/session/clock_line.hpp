@@ -9,14 +9,14 @@
 
 namespace stillhand::session {
 
-/// A process's monotonic clock beside the experiment's, as a recording tells it: what was known at
-/// each moment (services/clock).
+/// Offset of a process's monotonic clock from the experiment's, as it was known at each moment of a
+/// recording (services/clock).
 class ClockLine {
  public:
   /// @param offsets  of every process, in the order they were published
   ClockLine(const std::vector<stillhand_msgs::ClockOffset>& offsets, std::string_view service);
 
-  /// A stamp [ns] of the process on the experiment's clock; as it is when nothing is known.
+  /// Converts a stamp [ns] of the process to the experiment's clock; unchanged without an offset.
   [[nodiscard]] std::int64_t on_experiments_clock(std::int64_t stamp_ns) const;
   /// Half width [ns] of the worst offset.
   [[nodiscard]] double uncertainty_ns() const noexcept { return uncertainty_ns_; }

@@ -25,7 +25,7 @@ sensing::DeviceSample device_sample(const rig::RawSample& raw, Tick tick) {
           raw.roll_rad};
 }
 
-// design.md section 3.
+// The signals of a recorded trial; README, "The table of a trial".
 recording::Recording empty_table(TrialPhase phase) {
   recording::Recording rows;
   rows.rate_hz = kControlRateHz;

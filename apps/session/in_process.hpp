@@ -38,17 +38,17 @@ struct TrialSignals {
   identification::TrackingRecord tracking;
   std::vector<double> feedthrough_n;                      ///< true f'_b
   std::vector<double> motor_n;                            ///< motor force applied
-  std::vector<cancellation::AdaptiveGain::Pair> weights;  ///< gain and phase, as they are followed
+  std::vector<cancellation::AdaptiveGain::Pair> weights;  ///< gain and phase over time
   recording::Recording measured;  ///< every channel that a session's recording has, 1 kHz
 };
 
-/// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f').
+/// Share of the feedthrough force that the motor cancelled: 1 - RMS(f' + f_m) / RMS(f').
 double cancelled_share(const std::vector<double>& feedthrough_n,
                        const std::vector<double>& motor_n);
 
-/// [s] By how much the motor's force comes behind the feedthrough force that it opposes, negative:
-/// ahead.  tau in arg S_xy = -2 pi f tau, x = f', y = -f_m, least squares over the lines from 0.5
-/// to 4 Hz weighted by |S_xy|; NaN when the motor did nothing.
+/// [s] Delay of the motor's force after the feedthrough force that it opposes; negative: ahead. tau
+/// in arg S_xy = -2 pi f tau, x = f', y = -f_m, least squares over the lines from 0.5 to 4 Hz
+/// weighted by |S_xy|; NaN when the motor did nothing.
 /// @param rate_hz  [Hz] of both
 double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vector<double> motor_n,
                             double rate_hz);
@@ -60,7 +60,7 @@ class InProcessLoop {
  public:
   /// @param seed        session seed, used as the processes use theirs
   /// @param keep_every  ticks between two kept samples; 10 is the paper's recording rate
-  /// @param effect      what nothing but the rig is told of; nothing by default
+  /// @param effect      known to the rig alone; none by default
   /// @throws ConfigError as the cores do.
   InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tick keep_every = 1,
                 rig::SealedEffect effect = {});
@@ -72,7 +72,7 @@ class InProcessLoop {
   /// The model the canceller uses from now on.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
   cancellation::Refusal use_model(const cancellation::AugmentedModel& model);
-  /// What the rig held, once the verdict on it is out: no trial runs after it.
+  /// The effect of the rig, once the verdict on it is written: no trial runs after this call.
   [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/session/marks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace stillhand::session {
@@ -47,10 +49,10 @@ bool same(const Mark& a, const Mark& b) {
 }  // namespace
 
 std::string line_of(const Mark& mark) {
-  std::string line = mark.source + ": " + mark.what;
-  if (!mark.topic.empty()) line += " on " + mark.topic;
-  if (!mark.peer.empty()) line += " of " + mark.peer;
-  if (!mark.text.empty()) line += " (" + mark.text + ")";
+  std::string line = fmt::format("{}: {}", mark.source, mark.what);
+  if (!mark.topic.empty()) line += fmt::format(" on {}", mark.topic);
+  if (!mark.peer.empty()) line += fmt::format(" of {}", mark.peer);
+  if (!mark.text.empty()) line += fmt::format(" ({})", mark.text);
   return line;
 }
 

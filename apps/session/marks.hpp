@@ -9,22 +9,22 @@
 
 namespace stillhand::session {
 
-/// What happened during a trial, events of one kind, topic, process and peer as one.
+/// Events during a trial: those of one kind, topic, process and peer are one mark.
 struct Mark {
   std::string what;         ///< "deadline missed", ...
-  std::string source;       ///< process that said so
+  std::string source;       ///< process that reported it
   std::string topic;        ///< or empty
   std::string peer;         ///< or empty
-  std::string text;         ///< of the first
+  std::string text;         ///< of the first event
   std::int64_t first_tick;  ///< -1: not known
   std::int64_t count;       ///< events; each may stand for several within a tenth of a second
   double worst_us;          ///< [us], or [ticks] of "ticks lost"
 };
 
 Mark mark_of(const stillhand_msgs::Event& event);
-/// As a line for a person.
+/// One line for a person.
 std::string line_of(const Mark& mark);
-/// One that is there already counts once more.
+/// Adds a mark, or counts it with the one that is the same.
 void add_mark(std::vector<Mark>& marks, const Mark& mark);
 
 }  // namespace stillhand::session

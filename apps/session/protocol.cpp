@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/session/protocol.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -13,7 +15,7 @@
 namespace stillhand::session {
 namespace {
 
-// Streams of the session's seed; each use has its own.
+// Every use of the session's seed has a stream of its own.
 enum class SeedUse : std::uint32_t { kOrder = 1, kReference = 2, kMotion = 3 };
 
 std::uint64_t derived_seed(std::uint64_t seed, SeedUse use, std::int64_t trial) {
@@ -26,9 +28,7 @@ std::uint64_t derived_seed(std::uint64_t seed, SeedUse use, std::int64_t trial) 
 
 void check_duration(const char* key, double value_s) {
   if (!(value_s >= 5.0 && value_s <= 3600.0)) {
-    std::ostringstream got;
-    got << value_s;
-    throw ConfigError(key, got.str(), "5 to 3600 seconds");
+    throw ConfigError(key, fmt::format("{:.6g}", value_s), "5 to 3600 seconds");
   }
 }
 
@@ -40,12 +40,12 @@ constexpr double kHighest_hz = 6.0;
 void check_road(const ProtocolOptions& options) {
   if (options.road_class.size() != 1 || options.road_class[0] < 'A' ||
       options.road_class[0] > 'H') {
-    throw ConfigError("--road-class", "\"" + options.road_class + "\"", "A (very good) to H");
+    throw ConfigError("--road-class", fmt::format("\"{}\"", options.road_class),
+                      "A (very good) to H");
   }
   if (!(options.road_speed_m_s >= 0.5 && options.road_speed_m_s <= 70.0)) {
-    std::ostringstream got;
-    got << options.road_speed_m_s;
-    throw ConfigError("--speed-m-s", got.str(), "0.5 to 70 m/s");
+    throw ConfigError("--speed-m-s", fmt::format("{:.6g}", options.road_speed_m_s),
+                      "0.5 to 70 m/s");
   }
 }
 
@@ -60,7 +60,8 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
       planned.rms_m_s2 = 1.6;
       return;
     case Motion::kRoad: {
-      // A slow vehicle makes nothing fast of a road, and a fast one nothing slow.
+      // The speed turns the road's wavelengths into frequencies: a slow vehicle meets no high ones,
+      // a fast one no low ones.
       const Range described_hz = motion::road_band_hz(options.road_speed_m_s);
       planned.band_low_hz = std::max(kLowest_hz, described_hz.min);
       planned.band_high_hz = std::min(kHighest_hz, described_hz.max);
@@ -71,7 +72,7 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
       planned.band_high_hz = kHighest_hz;
       break;
   }
-  planned.rms_m_s2 = 0.0;  // they keep their own
+  planned.rms_m_s2 = 0.0;  // a road and a ride keep their own
 }
 
 PlannedTrial identification(const ProtocolOptions& options) {
@@ -103,8 +104,8 @@ std::string check_seed(const std::string& word) {
   const char* end = word.data() + word.size();
   const auto [rest, error] = std::from_chars(word.data(), end, seed);
   if (error == std::errc() && rest == end && seed >= 0) return {};
-  return "got " + word + ", want a whole number from 0 to " +
-         std::to_string(std::numeric_limits<std::int64_t>::max());
+  return fmt::format("got {}, want a whole number from 0 to {}", word,
+                     std::numeric_limits<std::int64_t>::max());
 }
 
 const char* condition_name(Condition condition) {
@@ -126,16 +127,16 @@ const char* condition_name(Condition condition) {
 }
 
 std::vector<Condition> parse_conditions(const std::string& text, const std::string& allowed) {
-  std::string known;
+  std::vector<std::string> known;
   for (const char letter : allowed) {
-    known += (known.empty() ? "" : ", ") + std::string(1, letter) + " (" +
-             condition_name(static_cast<Condition>(letter)) + ")";
+    known.push_back(fmt::format("{} ({})", letter, condition_name(static_cast<Condition>(letter))));
   }
   std::vector<Condition> conditions;
   std::istringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
     if (word.size() != 1 || allowed.find(word) == std::string::npos) {
-      throw ConfigError("--conditions", "\"" + word + "\"", "a list of " + known);
+      throw ConfigError("--conditions", fmt::format("\"{}\"", word),
+                        fmt::format("a list of {}", fmt::join(known, ", ")));
     }
     const auto condition = static_cast<Condition>(word[0]);
     if (std::find(conditions.begin(), conditions.end(), condition) != conditions.end()) {

@@ -10,8 +10,8 @@
 
 namespace stillhand::session {
 
-/// A to C are the conditions of the paper, section III-C; D to F, all with the motor off, are what
-/// its section V wants to compare the motor with.
+/// A to C are the conditions of the paper, section III-C.  D to F, all with the motor off, are the
+/// alternatives that its section V proposes to compare with the motor.
 enum class Condition : char {
   kStationary = 'A',       ///< platform still, motor off
   kMoving = 'B',           ///< platform moves, motor off
@@ -40,7 +40,7 @@ struct ProtocolOptions {
   double road_speed_m_s = 20.0;  ///< [m/s] Motion::kRoad: speed of the vehicle
 };
 
-/// One trial of the session: what everybody may know, and what stays blinded.
+/// One trial of the session: the part that every process may know, and the part that stays blinded.
 struct PlannedTrial {
   Trial trial;                   ///< start_tick is set when it runs
   std::uint64_t reference_seed;  ///< phases of the target
@@ -55,11 +55,11 @@ struct PlannedTrial {
   bool command_filter;  ///< in process only
 };
 
-/// For CLI11: what is wrong with the word of a --seed, or nothing.  (CLI11 itself would take a
-/// larger number for the largest there is.)
+/// For CLI11: the error in the word of a --seed, or an empty text.  (CLI11 itself would take a
+/// number that is too large for the largest one.)
 std::string check_seed(const std::string& word);
 
-/// In a few words, as reports say it.
+/// Name in reports.
 const char* condition_name(Condition condition);
 
 /// "A,B,C" to conditions.  @param allowed  their letters
@@ -69,12 +69,11 @@ std::vector<Condition> parse_conditions(const std::string& text,
 
 /// Identification first, then the conditions in an order shuffled by the seed; every seed of a
 /// trial follows from the session's.
-/// @throws ConfigError for durations out of range (5 s to 3600 s), and for a road that ISO 8608
-/// does
-///         not know or a speed out of range (0.5 to 70 m/s).
+/// @throws ConfigError for durations out of range (5 s to 3600 s), a road class that ISO 8608 does
+///         not define, or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
-/// What a planned trial asks of the platform; road and ride want their own data besides.
+/// Motion that a planned trial asks of the platform; the caller adds the data of a road or ride.
 motion::MotionProfile motion_profile(const PlannedTrial& planned);
 
 }  // namespace stillhand::session

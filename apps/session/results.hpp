@@ -18,7 +18,7 @@ struct TrialResult {
   char label;  ///< condition
   identification::TrackingMetrics metrics;
   std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
-  /// Share of the feedthrough force that the motor took away: 1 - RMS(f' + f_m) / RMS(f'), f' the
+  /// Share of the feedthrough force that the motor cancelled: 1 - RMS(f' + f_m) / RMS(f'), f' the
   /// force the body would exert with the stick held, f_m the motor's; only where the platform
   /// moves.
   std::optional<double> cancelled_share;
@@ -30,7 +30,7 @@ struct TrialResult {
     double p50_us = 0.0;
     double p99_us = 0.0;
     double max_us = 0.0;
-    double uncertainty_us = 0.0;  ///< of the clocks beside each other; 0: it is one clock
+    double uncertainty_us = 0.0;  ///< of the offset between the two clocks; 0: one clock
   };
   std::optional<Latency> sensor_to_command;
 };
@@ -43,7 +43,7 @@ struct RateConversionCost {
   double zero_order_hold = 0.0;
 };
 
-/// Everything a session's summary says that is computed from the recording.
+/// The part of a session's summary that is computed from the recording.
 struct SessionResult {
   std::vector<TrialResult> trials;
   std::optional<stillhand_msgs::FeedthroughModel> model;

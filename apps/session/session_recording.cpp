@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/session/session_recording.hpp"
 
+#include <fmt/format.h>
+
 #include <functional>
 
 #include "idl/cdr.hpp"
@@ -24,7 +26,7 @@ Store into(std::vector<Message>& list) {
   };
 }
 
-// Counted, and looked whether it is of its type; nothing reads it.
+// Checks the type and counts the message; nothing reads it.
 template <typename Message>
 Store counted() {
   return [](std::span<const std::byte> bytes) {
@@ -78,7 +80,8 @@ SessionRecording read_session(const std::string& path) {
         if (store->second(message.bytes)) {
           ++session.messages[message.channel.topic];
         } else {
-          session.damage.push_back("a message of " + message.channel.topic + " is not of its type");
+          session.damage.push_back(
+              fmt::format("a message of {} is not of its type", message.channel.topic));
         }
         return true;
       });

@@ -14,7 +14,7 @@
 namespace stillhand::session {
 
 /// Everything of a recorded session, decoded, each topic in the order of arrival.  Streams are in
-/// tick order as long as nothing was lost or swapped; `lost_ticks` tells.
+/// tick order as long as nothing was lost or swapped; `lost_ticks` counts the gaps.
 struct SessionRecording {
   std::vector<stillhand_msgs::PlatformCommand> platform_commands;
   std::vector<stillhand_msgs::RawSample> raw_samples;
@@ -34,11 +34,11 @@ struct SessionRecording {
 
   std::map<std::string, std::int64_t> messages;    ///< by topic
   std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic: gaps in its tick numbers
-  std::vector<std::string> damage;                 ///< what of the file could not be read
+  std::vector<std::string> damage;                 ///< parts of the file that could not be read
 };
 
 /// Reads an MCAP file of a session.
-/// @throws ConfigError when it cannot be opened or is no recording of Stillhand.
+/// @throws ConfigError when the file cannot be opened or is no recording of Stillhand.
 SessionRecording read_session(const std::string& path);
 
 }  // namespace stillhand::session

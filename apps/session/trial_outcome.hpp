@@ -19,11 +19,11 @@ struct MissCounts {
   std::int64_t lost_ticks = 0;
 };
 
-/// How a trial went.
+/// How a trial ended.
 struct TrialOutcome {
   PlannedTrial planned;
   bool completed = false;
-  bool stopped = false;                       ///< somebody asked for its end: it is run again
+  bool stopped = false;                       ///< a request ended it: it is run again
   std::string aborted;                        ///< why it was not completed, or empty
   std::vector<Mark> marks;                    ///< events during the trial, in order of their first
   MissCounts misses;                          ///< during the trial, all readers together

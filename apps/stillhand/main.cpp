@@ -21,11 +21,12 @@
 
 namespace {
 
-// What could not be printed was not told.
-int told(int status) {
+// A verb whose output could not be written has failed.
+int flushed(int status) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0) return status;
-  std::cerr << "stillhand: standard output: it cannot be written, want one that can\n";
+  std::cerr << "stillhand: standard output cannot be written; redirect it to a file or terminal "
+               "with room\n";
   return status == 0 ? 1 : status;
 }
 
@@ -34,7 +35,7 @@ int run(int argc, char** argv) {
   cli.name("stillhand");
   cli.set_version_flag("--version", stillhand::kVersion);
   cli.require_subcommand(1);
-  // A script's defaults come first, a user's words after them.
+  // A script gives its defaults first and the user's words after them: the last word counts.
   cli.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int status = 0;
   try {
@@ -51,10 +52,10 @@ int run(int argc, char** argv) {
     stillhand::dashboard::add_dashboard_command(cli, status);
     stillhand::deploy::add_deploy_command(cli, status);
     cli.parse(argc, argv);
-    return told(status);
+    return flushed(status);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return told(cli.exit(error));  // --help, --version
-    std::cerr << "stillhand: " << error.what() << "; `stillhand <verb> --help` tells\n";
+    if (error.get_exit_code() == 0) return flushed(cli.exit(error));  // --help, --version
+    std::cerr << "stillhand: " << error.what() << "; see `stillhand <verb> --help`\n";
     return 2;
   } catch (const stillhand::ConfigError& error) {
     std::cerr << "stillhand: " << error.what() << '\n';
@@ -74,6 +75,6 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (...) {
-    return 1;  // nothing is left that could be told
+    return 1;  // there is no text to print
   }
 }

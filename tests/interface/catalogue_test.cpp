@@ -50,6 +50,19 @@ std::map<std::string, std::vector<std::string>> readme_rows() {
   return rows;
 }
 
+TEST(ProcessesTest, TheRecorderStartsFirstAndEndsLast) {
+  EXPECT_EQ(kLaunchOrder.front(), "recorder");
+  EXPECT_EQ(kEndsLast, "recorder");
+}
+
+TEST(ProcessesTest, EveryProcessButTheConductorIsLaunchedOnce) {
+  const std::set<std::string_view> launched(kLaunchOrder.begin(), kLaunchOrder.end());
+  std::set<std::string_view> others(kServices.begin(), kServices.end());
+  others.erase("experiment");
+  EXPECT_EQ(launched, others);
+  EXPECT_EQ(launched, (std::set<std::string_view>{kLaunched.begin(), kLaunched.end()}));
+}
+
 TEST(CatalogueTest, TheReadmeHasTheSameTopics) {
   const auto rows = readme_rows();
   std::set<std::string> in_readme;

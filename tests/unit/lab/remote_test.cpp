@@ -82,14 +82,14 @@ TEST(HereDocumentTest, AShellReadsTheTextBackWhateverItsLinesAre) {
 }
 
 TEST(FolderToldTest, IsThatOfTheLineWhichTheScriptAlonePrints) {
-  EXPECT_EQ(folder_told("\nstillhand made /tmp/stillhand-a1\n"), "/tmp/stillhand-a1");
-  EXPECT_EQ(folder_told("Permanently added 'rig-pc'.\n/tmp/stillhand-of-a-banner\n"
+  EXPECT_EQ(folder_made("\nstillhand made /tmp/stillhand-a1\n"), "/tmp/stillhand-a1");
+  EXPECT_EQ(folder_made("Permanently added 'rig-pc'.\n/tmp/stillhand-of-a-banner\n"
                         "\nstillhand made /tmp/stillhand-a1\nbye\n"),
             "/tmp/stillhand-a1");
-  EXPECT_EQ(folder_told("/tmp/stillhand-of-a-banner\n"), "");
-  EXPECT_EQ(folder_told("\nstillhand made /tmp/stillhand-a1"), "");  // not the whole line
-  EXPECT_EQ(folder_told("\nstillhand made \n"), "");
-  EXPECT_EQ(folder_told(""), "");
+  EXPECT_EQ(folder_made("/tmp/stillhand-of-a-banner\n"), "");
+  EXPECT_EQ(folder_made("\nstillhand made /tmp/stillhand-a1"), "");  // not the whole line
+  EXPECT_EQ(folder_made("\nstillhand made \n"), "");
+  EXPECT_EQ(folder_made(""), "");
 }
 
 TEST(RemoteHostTest, AFolderIsMadeFilledReadAndTakenAwayWhateverALoginPrints) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/lab/requests.hpp"
+#include "apps/lab/core/requests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,30 +11,24 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-stillhand_msgs::SessionCommand command(stillhand_msgs::SessionAction action, std::uint64_t request,
-                                       const char* asker = "desk") {
-  stillhand_msgs::SessionCommand message;
-  message.action(action);
-  message.request(request);
-  message.asker(asker);
-  return message;
+Command command(Action action, std::uint64_t request, const char* asker = "desk") {
+  return {action, request, asker, ""};
 }
 
 TEST(RequestsTest, APauseHoldsUntilAStart) {
   Requests sut;
   EXPECT_FALSE(sut.paused());
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_PAUSE, 1), true),
+  EXPECT_THAT(sut.take(command(Action::kPause, 1), true),
               StartsWith("pause, asked by desk: after this trial"));
   EXPECT_TRUE(sut.paused());
   EXPECT_THAT(sut.trial_stopped(), IsEmpty());
-  EXPECT_EQ(sut.take(command(stillhand_msgs::SESSION_START, 2), false), "start, asked by desk");
+  EXPECT_EQ(sut.take(command(Action::kStart, 2), false), "start, asked by desk");
   EXPECT_FALSE(sut.paused());
 }
 
 TEST(RequestsTest, AStopEndsTheTrialThatRunsAndPauses) {
   Requests sut;
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_STOP, 1), true),
-              HasSubstr("the trial ends"));
+  EXPECT_THAT(sut.take(command(Action::kStop, 1), true), HasSubstr("the trial ends"));
   EXPECT_EQ(sut.trial_stopped(), "stopped, asked by desk");
   EXPECT_TRUE(sut.paused());
   sut.begin_trial();
@@ -43,37 +37,34 @@ TEST(RequestsTest, AStopEndsTheTrialThatRunsAndPauses) {
 
 TEST(RequestsTest, AStopBetweenTrialsStopsNone) {
   Requests sut;
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_STOP, 1), false),
-              HasSubstr("no trial runs"));
+  EXPECT_THAT(sut.take(command(Action::kStop, 1), false), HasSubstr("no trial runs"));
   EXPECT_THAT(sut.trial_stopped(), IsEmpty());
   EXPECT_TRUE(sut.paused());
 }
 
 TEST(RequestsTest, TheSameRequestAndAnOlderOneAreHeardOnce) {
   Requests sut;
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_PAUSE, 7), false), Not(IsEmpty()));
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_START, 8), false), Not(IsEmpty()));
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_PAUSE, 7), false), IsEmpty());
+  EXPECT_THAT(sut.take(command(Action::kPause, 7), false), Not(IsEmpty()));
+  EXPECT_THAT(sut.take(command(Action::kStart, 8), false), Not(IsEmpty()));
+  EXPECT_THAT(sut.take(command(Action::kPause, 7), false), IsEmpty());
   EXPECT_FALSE(sut.paused());
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_PAUSE, 7, "another"), false),
-              Not(IsEmpty()));
+  EXPECT_THAT(sut.take(command(Action::kPause, 7, "another"), false), Not(IsEmpty()));
 }
 
 TEST(RequestsTest, AnEmergencyStopIsHeardWhateverItsNumberAndNeverTakenBack) {
   Requests sut;
-  sut.take(command(stillhand_msgs::SESSION_PAUSE, 100), true);
-  EXPECT_EQ(sut.take(command(stillhand_msgs::SESSION_EMERGENCY_STOP, 1), true),
-            "emergency stop, asked by desk");
-  EXPECT_THAT(sut.take(command(stillhand_msgs::SESSION_EMERGENCY_STOP, 2), true), IsEmpty());
-  sut.take(command(stillhand_msgs::SESSION_START, 101), false);
+  sut.take(command(Action::kPause, 100), true);
+  EXPECT_EQ(sut.take(command(Action::kEmergencyStop, 1), true), "emergency stop, asked by desk");
+  EXPECT_THAT(sut.take(command(Action::kEmergencyStop, 2), true), IsEmpty());
+  sut.take(command(Action::kStart, 101), false);
   sut.begin_trial();
   EXPECT_EQ(sut.emergency(), "emergency stop, asked by desk");
 }
 
 TEST(RequestsTest, ANoteChangesNothing) {
   Requests sut;
-  auto note = command(stillhand_msgs::SESSION_NOTE, 1);
-  note.text("alarms acknowledged");
+  auto note = command(Action::kNote, 1);
+  note.text = "alarms acknowledged";
   EXPECT_EQ(sut.take(note, true), "desk: alarms acknowledged");
   EXPECT_FALSE(sut.paused());
 }
@@ -81,13 +72,11 @@ TEST(RequestsTest, ANoteChangesNothing) {
 // They come from the network and go to terminals.
 TEST(RequestsTest, NamesAndActionsOfAnySortAreOneHarmlessLine) {
   Requests sut;
-  EXPECT_EQ(sut.take(command(stillhand_msgs::SESSION_START, 1, "\x1b[2J\nroot"), false),
+  EXPECT_EQ(sut.take(command(Action::kStart, 1, "\x1b[2J\nroot"), false),
             "start, asked by [2Jroot: nothing was paused");
-  EXPECT_THAT(sut.take(command(static_cast<stillhand_msgs::SessionAction>(99), 2), true),
-              HasSubstr("not done"));
+  EXPECT_THAT(sut.take(command(Action::kUnknown, 2), true), HasSubstr("not done"));
   for (std::uint64_t i = 1; i < 1000; ++i) {
-    const std::string name = "stranger " + std::to_string(i);
-    sut.take(command(stillhand_msgs::SESSION_NOTE, i, name.c_str()), true);
+    sut.take(command(Action::kNote, i, ("stranger " + std::to_string(i)).c_str()), true);
   }
   EXPECT_FALSE(sut.paused());
 }

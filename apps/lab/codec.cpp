@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/codec.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+EventKind kind_of(stillhand_msgs::EventKind kind) {
+  switch (kind) {
+    case stillhand_msgs::EVENT_INTERLOCK_OPENED:
+      return EventKind::kInterlockOpened;
+    case stillhand_msgs::EVENT_FORCE_ZERO:
+      return EventKind::kForceZero;
+    case stillhand_msgs::EVENT_MODEL_REFUSED:
+      return EventKind::kModelRefused;
+    case stillhand_msgs::EVENT_MODEL_LOADED:
+      return EventKind::kModelLoaded;
+    case stillhand_msgs::EVENT_NOTE:
+      return EventKind::kNote;
+    default:
+      return EventKind::kOther;
+  }
+}
+
+Action action_of(stillhand_msgs::SessionAction action) {
+  switch (action) {
+    case stillhand_msgs::SESSION_START:
+      return Action::kStart;
+    case stillhand_msgs::SESSION_PAUSE:
+      return Action::kPause;
+    case stillhand_msgs::SESSION_STOP:
+      return Action::kStop;
+    case stillhand_msgs::SESSION_EMERGENCY_STOP:
+      return Action::kEmergencyStop;
+    case stillhand_msgs::SESSION_NOTE:
+      return Action::kNote;
+  }
+  return Action::kUnknown;  // from another version
+}
+
+stillhand_msgs::MotionKind motion_of(const session::PlannedTrial& planned) {
+  if (!planned.moving) return stillhand_msgs::MOTION_STILL;
+  switch (planned.motion) {
+    case session::Motion::kBandNoise:
+      return stillhand_msgs::MOTION_BAND_NOISE;
+    case session::Motion::kRoad:
+      return stillhand_msgs::MOTION_ROAD;
+    case session::Motion::kRide:
+      return stillhand_msgs::MOTION_RIDE;
+  }
+  return stillhand_msgs::MOTION_STILL;
+}
+
+}  // namespace
+
+ProcessSeen from_idl(const stillhand_msgs::ServiceStatus& status) {
+  ProcessSeen seen;
+  seen.matched = status.state() != stillhand_msgs::SERVICE_STARTING;
+  seen.missing = status.missing().c_str();
+  seen.tick = status.tick();
+  seen.armed_trial = status.armed_trial();
+  for (const stillhand_msgs::TopicStatus& topic : status.topics()) {
+    if (topic.written()) continue;
+    seen.misses.deadline += static_cast<std::int64_t>(topic.deadline_misses());
+    seen.misses.cycle += static_cast<std::int64_t>(topic.cycle_misses());
+    seen.misses.lost_ticks += static_cast<std::int64_t>(topic.lost_ticks());
+  }
+  return seen;
+}
+
+EventSeen from_idl(const stillhand_msgs::Event& event) {
+  const session::Mark mark = session::mark_of(event);
+  return {kind_of(event.kind()),  mark.what,       mark.source,  mark.topic, mark.peer, mark.text,
+          session::line_of(mark), mark.first_tick, mark.worst_us};
+}
+
+session::Mark mark_of(const EventSeen& event) {
+  return {event.what, event.source, event.topic, event.peer,
+          event.text, event.tick,   1,           event.by_us};
+}
+
+Command from_idl(const stillhand_msgs::SessionCommand& command) {
+  return {action_of(command.action()), command.request(), command.asker().c_str(),
+          command.text().c_str()};
+}
+
+ModelSeen from_idl(const stillhand_msgs::FeedthroughModel& model) {
+  return {model.trial(), model.usable(), model.text().c_str()};
+}
+
+stillhand_msgs::SessionState to_idl(SessionState state) {
+  switch (state) {
+    case SessionState::kRunning:
+      return stillhand_msgs::SESSION_RUNNING;
+    case SessionState::kPaused:
+      return stillhand_msgs::SESSION_PAUSED;
+    case SessionState::kEnding:
+      return stillhand_msgs::SESSION_ENDING;
+  }
+  return stillhand_msgs::SESSION_ENDING;
+}
+
+stillhand_msgs::TrialControl to_idl(const Announcement& announcement,
+                                    std::uint64_t reference_seed) {
+  stillhand_msgs::TrialControl message;
+  message.session(to_idl(announcement.session));
+  message.trial(-1);
+  message.phase(stillhand_msgs::PHASE_IDLE);
+  if (announcement.trial) {
+    const Trial& trial = *announcement.trial;
+    message.trial(static_cast<std::int32_t>(trial.number));
+    message.phase(trial.phase == TrialPhase::kPegged ? stillhand_msgs::PHASE_PEGGED
+                                                     : stillhand_msgs::PHASE_TRACKING);
+    message.start_tick(trial.start_tick);
+    message.duration_ticks(trial.duration_ticks);
+    message.ramp_ticks(trial.ramp_ticks);
+    message.reference_seed(reference_seed);
+  }
+  return message;
+}
+
+stillhand_msgs::TrialAssignment assignment_of(const session::PlannedTrial& planned) {
+  stillhand_msgs::TrialAssignment message;
+  message.trial(static_cast<std::int32_t>(planned.trial.number));
+  message.motion(motion_of(planned));
+  message.band_low_hz(planned.band_low_hz);
+  message.band_high_hz(planned.band_high_hz);
+  message.band_order(planned.band_order);
+  message.rms_m_s2(planned.rms_m_s2);
+  message.peak_m_s2(planned.peak_m_s2);
+  message.motion_seed(planned.motion_seed);
+  message.cancellation(planned.cancellation);
+  return message;
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/conducted_trials.hpp"
+
+#include "apps/lab/lost_service.hpp"
+#include "services/identification/codec.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+// The end of a child process is seen at once, with its last line.  A process that hangs is reported
+// by the rig, whose interlock opens; a rig that hangs is noticed because it falls silent.  A
+// network may delay a life sign for longer than this machine does.
+Conductor::Watch watch_of(const runtime::Bus& bus, Processes& processes,
+                          const LabOptions& options) {
+  constexpr double kGone_s = 0.5;
+  constexpr double kHangs_s = 3.0;
+  constexpr double kHangsElsewhere_s = 10.0;
+  if (options.attach) return LostService(bus, kGone_s);
+  const double patience_s = options.inventory.empty() ? kHangs_s : kHangsElsewhere_s;
+  return [&processes, lost = LostService(bus, patience_s, std::string(kSampleClock))]() mutable {
+    const auto ended = processes.reap();
+    return ended ? ended : lost();
+  };
+}
+
+}  // namespace
+
+ConductedTrials::ConductedTrials(const LabOptions& options, const AskedMotions& asked,
+                                 runtime::Service& service, Processes& processes,
+                                 std::vector<session::TrialOutcome>& outcomes)
+    : options_(options),
+      asked_(asked),
+      outcomes_(outcomes),
+      clocks_(service),
+      conductor_(
+          service, watch_of(service.bus(), processes, options),
+          [this](const Progress& progress) { progress_.show(progress.what, progress.done); }) {}
+
+void ConductedTrials::run(const Script& script) {
+  conductor_.await_everybody(options_.match_s);
+  if (conductor_.interrupted()) return;
+  clocks_.start();
+  conductor_.begin_session();
+  script(*this);
+  progress_.finish();
+}
+
+const session::TrialOutcome& ConductedTrials::run(const session::PlannedTrial& planned) {
+  if (options_.wait_for_start) conductor_.pause();
+  session::PlannedTrial numbered = planned;
+  for (;;) {
+    // A number is used once: the trial that had it is over.
+    numbered.trial.number = planned.trial.number + stopped_;
+    outcomes_.push_back(conductor_.run(numbered));
+    if (const auto motion = asked_.find(planned.trial.number); motion != asked_.end()) {
+      outcomes_.back().asked = motion->second;
+    }
+    if (!outcomes_.back().stopped) break;
+    ++stopped_;
+  }
+  session::TrialOutcome& outcome = outcomes_.back();
+  if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) take_model(outcome);
+  return outcome;
+}
+
+// Without a model there is nothing to cancel with: the session ends here.
+void ConductedTrials::take_model(session::TrialOutcome& outcome) {
+  const Conductor::AwaitedModel awaited = conductor_.await_model(outcome.planned.trial.number);
+  if (awaited.failure.empty()) {
+    model_ = identification::from_idl(awaited.model);
+    return;
+  }
+  outcome.completed = false;
+  outcome.aborted = awaited.failure;
+}
+
+}  // namespace stillhand::lab

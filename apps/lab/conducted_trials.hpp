@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/lab/clocks.hpp"
+#include "apps/lab/conductor.hpp"
+#include "apps/lab/lab_options.hpp"
+#include "apps/lab/live_trials.hpp"
+#include "apps/lab/processes.hpp"
+#include "apps/lab/rehearsal.hpp"
+#include "apps/report/progress.hpp"
+#include "services/runtime/service.hpp"
+
+namespace stillhand::lab {
+
+/// The trials of a session while every process runs.  One thread.
+class ConductedTrials final : public LiveTrials {
+ public:
+  /// @param asked     what each trial asks of the platform
+  /// @param outcomes  gets every trial that ran
+  ConductedTrials(const LabOptions& options, const AskedMotions& asked, runtime::Service& service,
+                  Processes& processes, std::vector<session::TrialOutcome>& outcomes);
+
+  /// Waits for every process, begins the session and runs the script.
+  /// @throws RefusedByProcess, std::runtime_error; what the script throws
+  void run(const Script& script);
+  /// Announces the end of the session.
+  void end() { conductor_.end_session(); }
+  /// Path of the recording on the recorder's own host; empty: the recorder did not report it.
+  [[nodiscard]] std::string recording() { return conductor_.recording(); }
+
+  const session::TrialOutcome& run(const session::PlannedTrial& planned) override;
+  [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
+  std::string use(const cancellation::AugmentedModel& model) override {
+    return conductor_.use(model);
+  }
+  [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }
+
+ private:
+  void take_model(session::TrialOutcome& outcome);
+
+  const LabOptions& options_;
+  const AskedMotions& asked_;
+  std::vector<session::TrialOutcome>& outcomes_;
+  identification::FeedthroughModel model_;
+  std::int64_t stopped_ = 0;  ///< trials that a request stopped so far
+  report::ProgressLine progress_;
+  Clocks clocks_;
+  Conductor conductor_;
+};
+
+}  // namespace stillhand::lab

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/lab/core/stage.hpp"
+#include "apps/lab/core/trouble.hpp"
+
+namespace stillhand::lab {
+
+/// Waits for the model that identification makes of a pegged trial, at most 60 s.
+class ModelWait final : public Stage {
+ public:
+  ModelWait(std::int64_t trial, Trouble& trouble) : trial_(trial), trouble_(trouble) {}
+
+  Actions step(Seen& seen, std::int64_t now_ns) override;
+  /// Why there is no usable model; empty: there is one.
+  [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+
+ private:
+  std::int64_t trial_;
+  Trouble& trouble_;
+  std::int64_t limit_ns_ = -1;  // -1: before the first step
+  std::string failure_;
+};
+
+/// Gives the canceller a model and waits for its answer, at most 5 s.
+class ModelUse final : public Stage {
+ public:
+  explicit ModelUse(Trouble& trouble) : trouble_(trouble) {}
+
+  Actions step(Seen& seen, std::int64_t now_ns) override;
+  /// Why the canceller did not take the model; empty: it took it.
+  [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+
+ private:
+  Trouble& trouble_;
+  std::int64_t limit_ns_ = -1;  // -1: before the first step
+  std::string failure_;
+};
+
+}  // namespace stillhand::lab

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace stillhand::lab {
+
+/// What a dashboard can ask of a session.
+enum class Action : std::uint8_t { kStart, kPause, kStop, kEmergencyStop, kNote, kUnknown };
+
+/// One request of a dashboard, as it came from the bus.
+struct Command {
+  Action action = Action::kUnknown;
+  std::uint64_t request = 0;  ///< number of the request, larger than the asker's last
+  std::string asker;          ///< a name for a person; any bytes
+  std::string text;           ///< of a note; any bytes
+};
+
+/// The requests of dashboards and their effect on the session.  Pure; one thread at a time.
+class Requests {
+ public:
+  /// @param trial_runs  a trial is under way
+  /// @return one line for the event: who asked, for what, and the effect; empty: a repetition
+  std::string take(const Command& command, bool trial_runs);
+
+  /// No trial begins.
+  [[nodiscard]] bool paused() const noexcept { return paused_; }
+  /// The same as a request for a pause.
+  void pause() noexcept { paused_ = true; }
+  /// Why the trial that runs has to end now; empty: it goes on.
+  [[nodiscard]] const std::string& trial_stopped() const noexcept { return trial_stopped_; }
+  /// A trial begins.
+  void begin_trial() noexcept { trial_stopped_.clear(); }
+  /// Why the session has to end; empty: it goes on.  Never taken back.
+  [[nodiscard]] const std::string& emergency() const noexcept { return emergency_; }
+
+ private:
+  bool paused_ = false;
+  std::string trial_stopped_, emergency_;
+  std::map<std::string, std::uint64_t> newest_;  // by asker; requests are written several times
+};
+
+}  // namespace stillhand::lab

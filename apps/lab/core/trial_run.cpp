@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/core/trial_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace stillhand::lab {
+namespace {
+
+// From the announcement to the first tick of the ramp: time to compute a trial's motion and target.
+constexpr double kLead_s = 1.0;
+constexpr std::int64_t kArmLimit_ns = 10'000'000'000;
+constexpr std::int64_t kNsPerTick = 1'000'000;
+constexpr std::int64_t kForEver_ns = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+TrialRun::TrialRun(const Trial& planned, const Roster& roster, Trouble& trouble)
+    : roster_(roster), trouble_(trouble), limit_ns_(kForEver_ns) {
+  result_.trial = planned;
+}
+
+Actions TrialRun::step(Seen& seen, std::int64_t now_ns) {
+  Actions actions;
+  while (!over() && advance(seen, now_ns, actions)) {
+  }
+  return actions;
+}
+
+bool TrialRun::advance(Seen& seen, std::int64_t now_ns, Actions& actions) {
+  switch (at_) {
+    case At::kPaused:
+      return await_start(seen, now_ns, actions);
+    case At::kArming:
+      return await_armed(seen, now_ns);
+    case At::kRunning:
+      return follow(seen, now_ns, actions);
+    case At::kForceZero:
+      return await_force_zero(seen, now_ns);
+    case At::kAfterwards:
+      return await_afterwards(seen, now_ns);
+    case At::kDeath:
+      return await_death(seen, now_ns);
+  }
+  return false;
+}
+
+bool TrialRun::move_on(At at, std::int64_t limit_ns) {
+  at_ = at;
+  limit_ns_ = limit_ns;
+  return true;
+}
+
+Tick TrialRun::last_tick() const {
+  const Trial& trial = result_.trial;
+  return trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
+}
+
+bool TrialRun::await_start(Seen& seen, std::int64_t now_ns, Actions& actions) {
+  const bool start = !seen.requests.paused() && seen.requests.emergency().empty();
+  const Wait wait = trouble_.wait(start, seen, limit_ns_, now_ns);
+  if (wait == Wait::kOver) {
+    begin(seen, now_ns, actions);
+    return true;
+  }
+  if (!start) {
+    if (!announced_pause_) actions.announce = {SessionState::kPaused, std::nullopt};
+    announced_pause_ = true;
+    actions.progress = {
+        fmt::format("paused before trial {}, for a start from the dashboard", result_.trial.number),
+        0.0};
+  }
+  if (wait == Wait::kGoesOn) return false;
+  // Nothing of it ran: the trial has no events and no misses.
+  result_.aborted = trouble_.why_stopped(seen, "");
+  finish();
+  return true;
+}
+
+// A request from here on is a request to this trial.
+void TrialRun::begin(Seen& seen, std::int64_t now_ns, Actions& actions) {
+  seen.events.clear();
+  seen.requests.begin_trial();
+  seen.trial_runs = true;
+  before_ = seen.misses();
+  Trial& trial = result_.trial;
+  trial.start_tick = seen.newest_tick() + ticks_in(kLead_s) + trial.ramp_ticks;
+  actions.assign = trial;
+  actions.announce = {SessionState::kRunning, trial};
+  move_on(At::kArming, now_ns + kArmLimit_ns);
+}
+
+bool TrialRun::armed(const Seen& seen, const Member& member) const {
+  return !member.prepares || seen.process(member.name).armed_trial == result_.trial.number;
+}
+
+bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
+  const bool all =
+      std::ranges::all_of(roster_, [&](const Member& member) { return armed(seen, member); });
+  switch (trouble_.wait(all, seen, limit_ns_, now_ns)) {
+    case Wait::kGoesOn:
+      return false;
+    case Wait::kOver:
+      // Twice the time that is left, and 10 s.
+      return move_on(At::kRunning,
+                     now_ns + 2 * (last_tick() - seen.newest_tick()) * kNsPerTick + 10'000'000'000);
+    case Wait::kStopped:
+      result_.aborted = trouble_.why_stopped(seen, "");
+      break;
+    case Wait::kTooLong:
+      result_.aborted = why_not_armed(seen);
+      break;
+  }
+  return end(seen);
+}
+
+std::string TrialRun::why_not_armed(const Seen& seen) const {
+  std::vector<std::string> reasons;
+  for (const Member& member : roster_) {
+    if (armed(seen, member)) continue;
+    std::string why = fmt::format("{} was not prepared within 10 s", member.name);
+    for (const EventSeen& event : seen.events) {
+      if (event.kind == EventKind::kNote && event.source == member.name) {
+        why += fmt::format(" ({})", event.text);
+      }
+    }
+    reasons.push_back(why);
+  }
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+Progress TrialRun::progress(Tick now) const {
+  const Trial& trial = result_.trial;
+  return {trial.phase == TrialPhase::kPegged ? "identification, stick pegged"
+                                             : fmt::format("trial {}, tracking", trial.number),
+          std::clamp(static_cast<double>(now - trial.start_tick) /
+                         static_cast<double>(trial.duration_ticks),
+                     0.0, 1.0)};
+}
+
+bool TrialRun::follow(Seen& seen, std::int64_t now_ns, Actions& actions) {
+  bool stopped = false;
+  bool over = false;
+  if (!trouble_.settles()) {
+    const Tick now = seen.newest_tick();
+    actions.progress = progress(now);
+    stopped = !seen.requests.trial_stopped().empty() && now < last_tick();
+    over = stopped || now >= last_tick() || seen.has(EventKind::kInterlockOpened);
+    // A stop that is asked for from now on comes too late.
+    seen.trial_runs = !over;
+  }
+  const Wait wait = trouble_.wait(over, seen, limit_ns_, now_ns);
+  if (wait == Wait::kGoesOn) return false;
+  result_.completed = wait == Wait::kOver && !stopped;
+  if (wait != Wait::kOver) {
+    result_.aborted = trouble_.why_stopped(seen, "the trial did not end in time");
+  }
+  return end_motion(seen, now_ns, actions);
+}
+
+// After something broke, the rig gets the time to bring the force to zero, and the recorder the
+// time to record it.
+bool TrialRun::end_motion(Seen& seen, std::int64_t now_ns, Actions& actions) {
+  constexpr std::int64_t kLimit_ns = 1'500'000'000;
+  const bool opened = seen.has(EventKind::kInterlockOpened);
+  stopped_ = !result_.completed &&
+             (!seen.requests.trial_stopped().empty() || (trouble_.silent() && !opened) ||
+              (trouble_.why().empty() && seen.interrupted));
+  if (stopped_ || !seen.requests.emergency().empty()) {
+    actions.announce = {SessionState::kRunning, std::nullopt};
+  }
+  if (result_.completed && !opened) return look_for_death(seen, now_ns);
+  return move_on(At::kForceZero, now_ns + kLimit_ns);
+}
+
+bool TrialRun::await_force_zero(const Seen& seen, std::int64_t now_ns) {
+  constexpr std::int64_t kAfterwards_ns = 300'000'000;
+  if (!stopped_ && !seen.has(EventKind::kForceZero) && now_ns < limit_ns_) return false;
+  afterwards_ = seen.newest_tick() + kAfterwards_ns / kNsPerTick;
+  return move_on(At::kAfterwards, now_ns + kAfterwards_ns);
+}
+
+bool TrialRun::await_afterwards(Seen& seen, std::int64_t now_ns) {
+  if (seen.newest_tick() < afterwards_ && now_ns < limit_ns_) return false;
+  return look_for_death(seen, now_ns);
+}
+
+// A process that ends opens the interlock first, and its end is seen a little later.  Its own last
+// line is the better reason.
+bool TrialRun::look_for_death(Seen& seen, std::int64_t now_ns) {
+  constexpr std::int64_t kLimit_ns = 1'000'000'000;
+  if (!result_.aborted.empty() || !seen.has(EventKind::kInterlockOpened)) return end(seen);
+  return move_on(At::kDeath, now_ns + kLimit_ns);
+}
+
+bool TrialRun::await_death(Seen& seen, std::int64_t now_ns) {
+  if (trouble_.wait(false, seen, limit_ns_, now_ns) == Wait::kGoesOn) return false;
+  result_.aborted = trouble_.why_stopped(seen, "");
+  return end(seen);
+}
+
+bool TrialRun::end(Seen& seen) {
+  seen.trial_runs = false;
+  result_.stopped = !result_.completed && !seen.requests.trial_stopped().empty();
+  if (result_.stopped) result_.aborted = seen.requests.trial_stopped();
+  const auto opened = std::ranges::find(seen.events, EventKind::kInterlockOpened, &EventSeen::kind);
+  if (opened != seen.events.end()) {
+    result_.completed = false;
+    if (result_.aborted.empty()) result_.aborted = opened->line;
+  }
+  const Misses now = seen.misses();
+  result_.misses = {now.deadline - before_.deadline, now.cycle - before_.cycle,
+                    now.lost_ticks - before_.lost_ticks};
+  result_.events = seen.events;
+  finish();
+  return true;
+}
+
+}  // namespace stillhand::lab

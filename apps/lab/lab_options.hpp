@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "apps/session/protocol.hpp"
+#include "services/recording/keep_options.hpp"
+
+namespace stillhand::lab {
+
+/// Who tracks the target.
+enum class Operator : std::uint8_t { kSimulated, kMouse };
+
+/// The command line of `stillhand lab`.
+struct LabOptions {
+  session::ProtocolOptions protocol;
+  std::filesystem::path out;       ///< folder of the results
+  std::filesystem::path ride;      ///< recorded ride, for Motion::kRide
+  std::filesystem::path programs;  ///< folder of the stillhand-* executables
+  std::filesystem::path profiles;  ///< qos/profiles.xml
+  std::filesystem::path config;    ///< folder of the services' settings
+  std::uint32_t domain = 0;
+  std::uint32_t rig = 1;
+  bool headless = false;
+  bool video = false;     ///< headless display writes DIR/screen.avi
+  bool real_time = true;  ///< ask for a real-time scheduling policy
+  Operator who = Operator::kSimulated;
+  std::filesystem::path security;       ///< folder of keys; empty: none, or the inventory's
+  std::filesystem::path inventory;      ///< the lab's machines; empty: this one
+  std::filesystem::path model;          ///< control model for C; empty: the session's own
+  std::uint64_t undeclared_effect = 0;  ///< seed of the effect that only the rig knows; 0: none
+  double match_s = 20.0;                ///< [s] patience until every endpoint has matched
+  bool attach = false;                  ///< use services that run already
+  bool wait_for_start = false;          ///< each trial waits for a start from the dashboard
+  recording::KeepOptions keep;          ///< of the session's recording
+};
+
+/// Sets programs, profiles and config: those of the build tree or of an installed prefix.
+void set_places(LabOptions& options);
+
+}  // namespace stillhand::lab

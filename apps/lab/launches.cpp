@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/launches.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "idl/processes.hpp"
+#include "services/recording/keep_options.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words shared_words(const LabOptions& options, const Hosts& hosts, const Place& place) {
+  Words words{"--domain",
+              fmt::to_string(hosts.domain()),
+              "--rig",
+              fmt::to_string(options.rig),
+              "--seed",
+              fmt::to_string(options.protocol.seed),
+              "--profiles",
+              place.profiles.string(),
+              "--config",
+              place.config.string(),
+              "--end-with-parent"};
+  if (options.real_time) words.push_back("--real-time");
+  if (!place.security.empty()) words.insert(words.end(), {"--security", place.security.string()});
+  return words;
+}
+
+Words recorder_words(const LabOptions& options, const Place& place) {
+  Words words{"--out", (place.out / "session.mcap").string()};
+  const Words keep = recording::keep_words(options.keep);
+  words.insert(words.end(), keep.begin(), keep.end());
+  return words;
+}
+
+// What the assignment on the bus does not say.
+Words motion_words(const LabOptions& options) {
+  const session::ProtocolOptions& protocol = options.protocol;
+  switch (protocol.motion) {
+    case session::Motion::kRide:
+      return {"--ride", options.ride.string()};
+    case session::Motion::kRoad:
+      // Every bit of the double.
+      return {"--road-class", protocol.road_class, "--speed-m-s",
+              fmt::format("{:.17g}", protocol.road_speed_m_s)};
+    case session::Motion::kBandNoise:
+      break;
+  }
+  return {};
+}
+
+Words display_words(const LabOptions& options, const Place& place) {
+  Words words;
+  if (options.headless) words.push_back("--headless");
+  if (options.video) words.insert(words.end(), {"--video", (place.out / "screen.avi").string()});
+  if (options.who == Operator::kMouse) words.push_back("--pointer");
+  return words;
+}
+
+// Most services need none.
+Words own_words(std::string_view service, const LabOptions& options, const Place& place) {
+  if (service == "recorder") return recorder_words(options, place);
+  if (service == "motion") return motion_words(options);
+  if (service == "display") return display_words(options, place);
+  if (service == "human_operator" && options.who == Operator::kMouse) return {"--pointer"};
+  return {};
+}
+
+}  // namespace
+
+std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
+                             const std::string& sealed) {
+  std::vector<Launch> list;
+  for (const std::string_view service : topics::kLaunchOrder) {
+    const Place place = hosts.of(service);
+    Launch launch;
+    launch.name = service;
+    launch.executable = options.programs / ("stillhand-" + launch.name);
+    launch.log = options.out / "logs" / (launch.name + ".log");
+    launch.arguments = shared_words(options, hosts, place);
+    const Words own = own_words(service, options, place);
+    launch.arguments.insert(launch.arguments.end(), own.begin(), own.end());
+    if (service == "rig" && !sealed.empty()) {
+      launch.arguments.insert(launch.arguments.end(),
+                              {"--undeclared-effect", "--out", options.out.string()});
+      launch.standard_input = sealed;
+    }
+    list.push_back(hosts.placed(launch));
+  }
+  return list;
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "apps/session/trial_outcome.hpp"
+#include "services/cancellation/core/augmented_model.hpp"
+#include "services/identification/core/identifier.hpp"
+
+namespace stillhand::lab {
+
+/// A session over DDS while its processes run: trial by trial.
+class LiveTrials {
+ public:
+  virtual ~LiveTrials() = default;
+  /// Runs one trial; a pegged one lasts until its model is there.  A trial that a request stopped
+  /// is run again after a request for a start, under the next number: the outcome's.  A trial that
+  /// is not completed ends the session: run nothing after it.
+  virtual const session::TrialOutcome& run(const session::PlannedTrial& planned) = 0;
+  /// The model identified last.
+  [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
+  /// Gives the canceller a model.  @return why it was refused, or empty
+  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
+  [[nodiscard]] virtual bool interrupted() const = 0;
+};
+
+/// What happens in a session, between the processes' start and their end.
+using Script = std::function<void(LiveTrials& trials)>;
+
+}  // namespace stillhand::lab

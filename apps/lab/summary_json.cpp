@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/summary_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/session/paper_table.hpp"
+#include "version.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using nlohmann::ordered_json;
+
+// JSON has no NaN: what could not be computed is null.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+// The study's shape with one subject: a standard deviation needs two.
+ordered_json condition_json(const session::TrialResult& trial) {
+  ordered_json condition;
+  for (const session::Metric& metric : session::kMetrics) {
+    const double value = value_of(trial, metric);
+    condition[metric.key] = {{"mean", number(value)},
+                             {"std", nullptr},
+                             {"per_subject", ordered_json::array({number(value)})}};
+  }
+  condition["crossover_reference_hz"] = number(trial.metrics.crossover_reference_hz);
+  condition["cancelled_share"] =
+      trial.cancelled_share ? number(*trial.cancelled_share) : ordered_json(nullptr);
+  if (trial.counterforce_delay_s) {
+    condition["counterforce_delay_ms"] = number(1e3 * *trial.counterforce_delay_s);
+  }
+  if (const auto& latency = trial.sensor_to_command) {
+    condition["sensor_to_command_us"] = {{"p50", latency->p50_us},
+                                         {"p99", latency->p99_us},
+                                         {"max", latency->max_us},
+                                         {"uncertainty", latency->uncertainty_us}};
+  }
+  return condition;
+}
+
+ordered_json clocks_json(const session::SessionResult& result) {
+  ordered_json clocks = ordered_json::object();
+  for (const auto& [service, offset] : result.clocks) {
+    clocks[service] = {{"same_clock", offset.same_clock()},
+                       {"offset_s", 1e-9 * static_cast<double>(offset.offset_ns())},
+                       {"uncertainty_us", 1e-3 * offset.uncertainty_ns()},
+                       {"drift_ppm", number(offset.drift_ppm())},
+                       {"drift_sigma_ppm", number(offset.drift_sigma_ppm())},
+                       {"round_trip_us", 1e-3 * static_cast<double>(offset.round_trip_ns())},
+                       {"steps", offset.steps()}};
+  }
+  return clocks;
+}
+
+ordered_json restoration_json(const session::SessionResult& result) {
+  ordered_json restoration;
+  for (const session::Metric& metric : session::kMetrics) {
+    const std::optional<double> share = restoration_of(result, metric);
+    restoration[metric.restoration_key] = share ? number(*share) : ordered_json(nullptr);
+  }
+  return restoration;
+}
+
+// Motion that the trial asked of the platform; null: none.
+ordered_json motion_json(const session::TrialOutcome& outcome,
+                         const session::ProtocolOptions& protocol) {
+  if (!outcome.asked) return nullptr;
+  const motion::MotionReport& asked = *outcome.asked;
+  ordered_json json{{"kind", "noise"},
+                    {"rms_m_s2", asked.rms_m_s2},
+                    {"peak_m_s2", asked.peak_m_s2},
+                    {"peak_position_m", asked.peak_position_m}};
+  if (outcome.planned.motion == session::Motion::kRoad) {
+    json["kind"] = "road";
+    json["road_class"] = protocol.road_class;
+    json["speed_m_s"] = protocol.road_speed_m_s;
+  } else if (outcome.planned.motion == session::Motion::kRide) {
+    json["kind"] = "ride";
+    json["corner_hz"] = asked.corner_hz;
+    json["removed_share"] = asked.removed_share;
+    json["removed_slow_share"] = asked.removed_slow_share;
+  }
+  return json;
+}
+
+ordered_json trial_json(const session::TrialOutcome& outcome,
+                        const session::ProtocolOptions& protocol) {
+  ordered_json marks = ordered_json::array();
+  for (const session::Mark& mark : outcome.marks) {
+    marks.push_back({{"what", mark.what},
+                     {"source", mark.source},
+                     {"topic", mark.topic},
+                     {"peer", mark.peer},
+                     {"text", mark.text},
+                     {"first_tick", mark.first_tick},
+                     {"count", mark.count},
+                     {"worst_us", mark.worst_us}});
+  }
+  const Trial& trial = outcome.planned.trial;
+  return {
+      {"number", trial.number},
+      {"condition", std::string(1, outcome.planned.label)},
+      {"start_tick", trial.start_tick},
+      {"duration_ticks", trial.duration_ticks},
+      {"motion", motion_json(outcome, protocol)},
+      {"completed", outcome.completed},
+      {"aborted", outcome.aborted.empty() ? ordered_json(nullptr) : ordered_json(outcome.aborted)},
+      {"deadline_misses", outcome.misses.deadline},
+      {"cycle_misses", outcome.misses.cycle},
+      {"lost_ticks", outcome.misses.lost_ticks},
+      {"marks", marks}};
+}
+
+ordered_json identification_json(const session::SessionResult& result) {
+  if (!result.model) return nullptr;
+  const auto& model = *result.model;
+  ordered_json json{{"usable", model.usable()},
+                    {"text", model.text().c_str()},
+                    {"heldout_vaf_percent", number(model.heldout_vaf_percent())},
+                    {"heldout_rmse_n", number(model.heldout_rmse_n())},
+                    {"conversion_error", number(model.conversion_error())}};
+  if (result.conversion) {
+    json["residual_share"] = {
+        {"filter_at_1_khz", number(result.conversion->control_filter)},
+        {"zero_order_hold_of_50_hz", number(result.conversion->zero_order_hold)}};
+  }
+  return json;
+}
+
+}  // namespace
+
+const session::TrialResult* trial_of(const session::SessionResult& result, char label) {
+  const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
+  return trial == result.trials.end() ? nullptr : &*trial;
+}
+
+double value_of(const session::TrialResult& trial, const session::Metric& metric) {
+  return metric.of(trial.metrics);
+}
+
+std::optional<double> restoration_of(const session::SessionResult& result,
+                                     const session::Metric& metric) {
+  const session::TrialResult* a = trial_of(result, 'A');
+  const session::TrialResult* b = trial_of(result, 'B');
+  const session::TrialResult* c = trial_of(result, 'C');
+  if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
+  return (value_of(*b, metric) - value_of(*c, metric)) /
+         (value_of(*b, metric) - value_of(*a, metric));
+}
+
+ordered_json summary_json(const LabOptions& options,
+                          const std::vector<session::TrialOutcome>& outcomes,
+                          const session::SessionResult& result, bool interrupted) {
+  ordered_json summary;
+  summary["conditions"] = ordered_json::object();
+  for (const char label : {'A', 'B', 'C'}) {
+    if (const session::TrialResult* trial = trial_of(result, label)) {
+      summary["conditions"][std::string(1, label)] = condition_json(*trial);
+    }
+  }
+  // Tests over subjects need subjects; a lab session has one.
+  summary["t_tests"] = nullptr;
+  summary["manova"] = nullptr;
+  summary["restoration"] = restoration_json(result);
+  summary["identification"] = identification_json(result);
+  summary["control_model"] =
+      options.model.empty() ? ordered_json(nullptr) : ordered_json(options.model.string());
+  summary["trials"] = ordered_json::array();
+  for (const session::TrialOutcome& outcome : outcomes) {
+    summary["trials"].push_back(trial_json(outcome, options.protocol));
+  }
+  summary["lost_ticks"] = result.lost_ticks;
+  summary["clocks"] = clocks_json(result);
+  summary["recording_damage"] = result.damage;
+  summary["interrupted"] = interrupted;
+  summary["seed"] = options.protocol.seed;
+  summary["trial_seconds"] = options.protocol.trial_s;
+  summary["identify_seconds"] = options.protocol.identify_s;
+  summary["reference_note"] =
+      options.protocol.trial_s == 180.0
+          ? "harmonics of 1/180 Hz as printed in the paper"
+          : "the fifteen frequencies sit on harmonics of the trial's own length";
+  summary["version"] = kVersion;
+  return summary;
+}
+
+}  // namespace stillhand::lab

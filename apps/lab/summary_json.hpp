@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "apps/lab/lab_options.hpp"
+#include "apps/session/paper_table.hpp"
+#include "apps/session/results.hpp"
+#include "apps/session/trial_outcome.hpp"
+
+namespace stillhand::lab {
+
+/// The trial of a condition; nullptr: none was completed.
+const session::TrialResult* trial_of(const session::SessionResult& result, char label);
+double value_of(const session::TrialResult& trial, const session::Metric& metric);
+/// (B - C) / (B - A) of a metric; nothing without all three conditions.
+std::optional<double> restoration_of(const session::SessionResult& result,
+                                     const session::Metric& metric);
+
+/// Contents of summary.json (README, "summary.json").
+nlohmann::ordered_json summary_json(const LabOptions& options,
+                                    const std::vector<session::TrialOutcome>& outcomes,
+                                    const session::SessionResult& result, bool interrupted);
+
+}  // namespace stillhand::lab

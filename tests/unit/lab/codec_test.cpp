@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/codec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace stillhand::lab {
+namespace {
+
+stillhand_msgs::TopicStatus topic(bool written, std::uint64_t deadline, std::uint64_t cycle,
+                                  std::uint64_t lost) {
+  stillhand_msgs::TopicStatus status;
+  status.written(written);
+  status.deadline_misses(deadline);
+  status.cycle_misses(cycle);
+  status.lost_ticks(lost);
+  return status;
+}
+
+TEST(LabCodecTest, AStatusCountsTheMissesOfTheTopicsThatAreRead) {
+  stillhand_msgs::ServiceStatus status;
+  status.state(stillhand_msgs::SERVICE_STARTING);
+  status.missing("rig (stillhand/event)");
+  status.tick(17);
+  status.armed_trial(3);
+  status.topics({topic(false, 1, 2, 3), topic(true, 100, 100, 100), topic(false, 10, 20, 30)});
+  const ProcessSeen seen = from_idl(status);
+  EXPECT_FALSE(seen.matched);
+  EXPECT_EQ(seen.missing, "rig (stillhand/event)");
+  EXPECT_EQ(seen.tick, 17);
+  EXPECT_EQ(seen.armed_trial, 3);
+  EXPECT_EQ(seen.misses.deadline, 11);
+  EXPECT_EQ(seen.misses.cycle, 22);
+  EXPECT_EQ(seen.misses.lost_ticks, 33);
+  status.state(stillhand_msgs::SERVICE_READY);
+  EXPECT_TRUE(from_idl(status).matched);
+}
+
+TEST(LabCodecTest, AnEventBecomesTheSameMarkAndLineAsInARecording) {
+  stillhand_msgs::Event event;
+  event.kind(stillhand_msgs::EVENT_INTERLOCK_OPENED);
+  event.source("rig");
+  event.topic("stillhand/service_status");
+  event.peer("motion");
+  event.text("its life sign is gone");
+  event.tick(5000);
+  event.by_us(12.5);
+  const EventSeen seen = from_idl(event);
+  EXPECT_EQ(seen.kind, EventKind::kInterlockOpened);
+  const session::Mark mark = mark_of(seen);
+  const session::Mark want = session::mark_of(event);
+  EXPECT_EQ(seen.line, session::line_of(want));
+  EXPECT_EQ(session::line_of(mark), session::line_of(want));
+  EXPECT_EQ(mark.first_tick, 5000);
+  EXPECT_EQ(mark.count, 1);
+  EXPECT_EQ(mark.worst_us, 12.5);
+}
+
+TEST(LabCodecTest, AnActionOfAnotherVersionIsUnknown) {
+  stillhand_msgs::SessionCommand command;
+  command.action(static_cast<stillhand_msgs::SessionAction>(99));
+  command.request(7);
+  command.asker("desk");
+  EXPECT_EQ(from_idl(command).action, Action::kUnknown);
+  command.action(stillhand_msgs::SESSION_STOP);
+  EXPECT_EQ(from_idl(command).action, Action::kStop);
+  EXPECT_EQ(from_idl(command).request, 7u);
+  EXPECT_EQ(from_idl(command).asker, "desk");
+}
+
+TEST(LabCodecTest, AnAnnouncementWithoutATrialIsIdle) {
+  const auto idle = to_idl({SessionState::kPaused, std::nullopt}, 9);
+  EXPECT_EQ(idle.session(), stillhand_msgs::SESSION_PAUSED);
+  EXPECT_EQ(idle.trial(), -1);
+  EXPECT_EQ(idle.phase(), stillhand_msgs::PHASE_IDLE);
+  EXPECT_EQ(idle.reference_seed(), 0u);
+}
+
+TEST(LabCodecTest, AnAnnouncementOfATrialHasItsTicksAndTheSeedOfItsTarget) {
+  const Trial trial{4, TrialPhase::kPegged, 3100, 5000, 2000};
+  const auto message = to_idl({SessionState::kRunning, trial}, 9);
+  EXPECT_EQ(message.session(), stillhand_msgs::SESSION_RUNNING);
+  EXPECT_EQ(message.trial(), 4);
+  EXPECT_EQ(message.phase(), stillhand_msgs::PHASE_PEGGED);
+  EXPECT_EQ(message.start_tick(), 3100);
+  EXPECT_EQ(message.duration_ticks(), 5000);
+  EXPECT_EQ(message.ramp_ticks(), 2000);
+  EXPECT_EQ(message.reference_seed(), 9u);
+}
+
+TEST(LabCodecTest, TheAssignmentHoldsTheBlindedPart) {
+  session::PlannedTrial planned{};
+  planned.trial.number = 4;
+  planned.motion = session::Motion::kRoad;
+  planned.cancellation = true;
+  planned.motion_seed = 5;
+  EXPECT_EQ(assignment_of(planned).motion(), stillhand_msgs::MOTION_STILL);
+  planned.moving = true;
+  const auto message = assignment_of(planned);
+  EXPECT_EQ(message.trial(), 4);
+  EXPECT_EQ(message.motion(), stillhand_msgs::MOTION_ROAD);
+  EXPECT_EQ(message.motion_seed(), 5u);
+  EXPECT_TRUE(message.cancellation());
+}
+
+}  // namespace
+}  // namespace stillhand::lab

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/core/trial_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "tests/unit/lab/stage_fixture.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// Number 2, 5 s of tracking, ramps of 2 s.  The rig is at tick 100 when it begins: the ramp begins
+// 1000 ticks later, the measured part at 3100, the last ramp ends at 10100.
+class TrialRunTest : public StageTest {
+ protected:
+  static constexpr Tick kStart = 3100, kEnd = 10100;
+
+  TrialRunTest() { sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_); }
+
+  void arm(std::int64_t trial) {
+    for (const char* name : {"rig", "cancellation", "human_operator"}) {
+      seen_.processes[name].armed_trial = trial;
+    }
+  }
+  Actions step(std::int64_t after_ns = 50 * kMs) { return StageTest::step(*sut_, after_ns); }
+  /// To the middle of the trial.
+  void follow() {
+    step();
+    arm(2);
+    rig_at(5000);
+    step();
+    ASSERT_FALSE(sut_->over());
+  }
+  /// The 300 ms after the force's end.
+  void pass_afterwards() {
+    step();
+    step(301 * kMs);
+  }
+  [[nodiscard]] const TrialResult& result() const { return sut_->result(); }
+
+  Trial planned_{2, TrialPhase::kTracking, 0, 5000, 2000};
+  std::unique_ptr<TrialRun> sut_;
+};
+
+TEST_F(TrialRunTest, IsAssignedAndAnnouncedASecondAheadAndCompletedAtItsLastTick) {
+  const Actions first = step();
+  ASSERT_TRUE(first.assign && first.announce && first.announce->trial);
+  EXPECT_EQ(first.assign->start_tick, kStart);
+  EXPECT_EQ(first.announce->session, SessionState::kRunning);
+  EXPECT_EQ(first.announce->trial->start_tick, kStart);
+  EXPECT_TRUE(seen_.trial_runs);
+  arm(2);
+  rig_at(kStart + 2500);
+  const Actions halfway = step();
+  EXPECT_EQ(halfway.progress->what, "trial 2, tracking");
+  EXPECT_EQ(halfway.progress->done, 0.5);
+  rig_at(kEnd - 1);
+  step();
+  EXPECT_FALSE(sut_->over());
+  rig_at(kEnd);
+  EXPECT_FALSE(step().announce.has_value());
+  ASSERT_TRUE(sut_->over());
+  EXPECT_TRUE(result().completed);
+  EXPECT_FALSE(result().stopped);
+  EXPECT_THAT(result().aborted, IsEmpty());
+  EXPECT_EQ(result().trial.start_tick, kStart);
+  EXPECT_FALSE(seen_.trial_runs);
+}
+
+TEST_F(TrialRunTest, APeggedTrialIsCalledIdentification) {
+  planned_.phase = TrialPhase::kPegged;
+  sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_);
+  step();
+  arm(2);
+  EXPECT_EQ(step().progress->what, "identification, stick pegged");
+}
+
+TEST_F(TrialRunTest, CollectsTheEventsAndMissesOfItsOwnTimeAlone) {
+  event(EventKind::kOther, "rig", "before");
+  seen_.processes["rig"].misses = {1, 2, 3};
+  seen_.processes["recorder"].misses = {10, 20, 30};
+  step();
+  arm(2);
+  event(EventKind::kOther, "rig", "during");
+  seen_.processes["rig"].misses = {2, 4, 6};
+  rig_at(kEnd);
+  step();
+  ASSERT_TRUE(sut_->over());
+  ASSERT_THAT(result().events, SizeIs(1));
+  EXPECT_EQ(result().events[0].text, "during");
+  EXPECT_EQ(result().misses.deadline, 1);
+  EXPECT_EQ(result().misses.cycle, 2);
+  EXPECT_EQ(result().misses.lost_ticks, 3);
+}
+
+TEST_F(TrialRunTest, WaitsOutAPauseThatIsAnnouncedOnce) {
+  ask(Action::kPause);
+  const Actions paused = step();
+  ASSERT_TRUE(paused.announce.has_value());
+  EXPECT_EQ(paused.announce->session, SessionState::kPaused);
+  EXPECT_EQ(paused.progress->what, "paused before trial 2, for a start from the dashboard");
+  EXPECT_FALSE(step(3600 * kSecond).announce.has_value());
+  EXPECT_FALSE(seen_.trial_runs);
+  ask(Action::kStart);
+  EXPECT_TRUE(step().assign.has_value());
+  EXPECT_TRUE(seen_.trial_runs);
+}
+
+TEST_F(TrialRunTest, AnInterruptionEndsAPauseBeforeTheTrial) {
+  ask(Action::kPause);
+  step();
+  event(EventKind::kOther, "rig");
+  seen_.interrupted = true;
+  step();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "interrupted");
+  EXPECT_FALSE(result().completed);
+  EXPECT_THAT(result().events, IsEmpty());
+}
+
+TEST_F(TrialRunTest, AnEmergencyStopBeforeTheTrialKeepsItFromBeginning) {
+  ask(Action::kEmergencyStop);
+  EXPECT_FALSE(step().assign.has_value());
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "emergency stop, asked by desk");
+}
+
+TEST_F(TrialRunTest, AProcessThatIsNotPreparedInTimeIsNamedWithItsNotes) {
+  step();
+  arm(2);
+  seen_.processes["cancellation"].armed_trial = 1;
+  seen_.processes["human_operator"].armed_trial = -1;
+  event(EventKind::kNote, "cancellation", "model gain is above the bound");
+  event(EventKind::kNote, "rig", "of no interest");
+  step(10 * kSecond - 50 * kMs);
+  EXPECT_FALSE(sut_->over());
+  step(51 * kMs);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(result().aborted,
+            "cancellation was not prepared within 10 s (model gain is above the bound); "
+            "human_operator was not prepared within 10 s");
+}
+
+TEST_F(TrialRunTest, AProcessThatIsPreparedLateButInTimeIsWaitedFor) {
+  step();
+  arm(2);
+  seen_.processes["rig"].armed_trial = 1;
+  step(9 * kSecond);
+  EXPECT_FALSE(sut_->over());
+  arm(2);
+  EXPECT_EQ(step().progress->what, "trial 2, tracking");
+}
+
+TEST_F(TrialRunTest, AProcessThatIsNotOnTheBusIsNotPrepared) {
+  planned_.number = 0;
+  sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_);
+  step();
+  arm(0);
+  seen_.processes.erase("cancellation");
+  step(10 * kSecond + 1);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "cancellation was not prepared within 10 s");
+}
+
+TEST_F(TrialRunTest, AProcessThatEndsWhileOthersPrepareIsTheReason) {
+  step();
+  end_of_process({"display (pid 7) ended: signal 9 (Killed)", false, false}, *sut_);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "display (pid 7) ended: signal 9 (Killed)");
+}
+
+TEST_F(TrialRunTest, AnOpenInterlockEndsTheTrialOnceTheForceIsZeroAndRecorded) {
+  follow();
+  event(EventKind::kInterlockOpened, "rig", "peer gone");
+  EXPECT_FALSE(step().announce.has_value());
+  EXPECT_FALSE(seen_.trial_runs);
+  step(1 * kSecond);
+  EXPECT_FALSE(sut_->over());
+  event(EventKind::kForceZero, "rig");
+  step();
+  EXPECT_FALSE(sut_->over());
+  rig_at(5300);
+  step();  // recorded; a process that ended may be the better reason
+  EXPECT_FALSE(sut_->over());
+  step(1 * kSecond + 1);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(result().aborted, "rig: peer gone");
+}
+
+TEST_F(TrialRunTest, AProcessWhoseEndIsSeenAfterTheInterlockIsTheReason) {
+  follow();
+  event(EventKind::kInterlockOpened, "rig", "motion gone");
+  event(EventKind::kForceZero, "rig");
+  pass_afterwards();
+  ASSERT_FALSE(sut_->over());
+  end_of_process({"motion (pid 7) ended: exit status 1; it said: disk full", false, false}, *sut_);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "motion (pid 7) ended: exit status 1; it said: disk full");
+}
+
+TEST_F(TrialRunTest, AForceWhoseEndIsNotReportedIsWaitedForNoLongerThanItsLimit) {
+  follow();
+  event(EventKind::kInterlockOpened, "rig", "peer gone");
+  step();
+  step(1500 * kMs);
+  step(300 * kMs);
+  step(1 * kSecond + 1);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "rig: peer gone");
+}
+
+TEST_F(TrialRunTest, AStopEndsTheTrialAtOnceAndAsksForItAgain) {
+  follow();
+  EXPECT_EQ(ask(Action::kStop), "stop, asked by desk: the trial ends, a start runs it again");
+  const Actions stopped = step();
+  ASSERT_TRUE(stopped.announce.has_value());
+  EXPECT_FALSE(stopped.announce->trial.has_value());
+  EXPECT_EQ(stopped.announce->session, SessionState::kRunning);
+  step(300 * kMs);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_TRUE(result().stopped);
+  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(result().aborted, "stopped, asked by desk");
+  EXPECT_TRUE(seen_.requests.paused());
+
+  // The next run waits for a start, and the old stop is not its own.
+  planned_.number = 3;
+  sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_);
+  EXPECT_EQ(step().announce->session, SessionState::kPaused);
+  ask(Action::kStart);
+  rig_at(20000);
+  EXPECT_EQ(step().assign->start_tick, 23000);
+  arm(3);
+  rig_at(30000);
+  step();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_TRUE(result().completed);
+}
+
+TEST_F(TrialRunTest, AStopWhileTheProcessesPrepareCountsOnceTheyAre) {
+  step();
+  ask(Action::kStop);
+  step();
+  EXPECT_FALSE(sut_->over());
+  arm(2);
+  EXPECT_FALSE(step().announce->trial.has_value());
+  step(300 * kMs);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_TRUE(result().stopped);
+}
+
+TEST_F(TrialRunTest, AStopBehindTheLastTickIsTooLate) {
+  follow();
+  rig_at(kEnd);
+  ask(Action::kStop);
+  step();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_TRUE(result().completed);
+  EXPECT_FALSE(result().stopped);
+}
+
+TEST_F(TrialRunTest, AnEmergencyStopEndsTheTrialAndAnnouncesThatNoneRuns) {
+  follow();
+  ask(Action::kEmergencyStop);
+  const Actions stopped = step();
+  ASSERT_TRUE(stopped.announce.has_value());
+  EXPECT_FALSE(stopped.announce->trial.has_value());
+  event(EventKind::kInterlockOpened, "rig", "emergency stop");
+  event(EventKind::kForceZero, "rig");
+  pass_afterwards();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_FALSE(result().stopped);
+  EXPECT_EQ(result().aborted, "emergency stop, asked by desk");
+}
+
+TEST_F(TrialRunTest, AnInterruptionEndsTheMotionAndTheTrial) {
+  follow();
+  seen_.interrupted = true;
+  EXPECT_FALSE(step().announce->trial.has_value());
+  step(300 * kMs);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "interrupted");
+}
+
+// Nobody reports that the force of a silent rig is zero.
+TEST_F(TrialRunTest, ASilentRigEndsTheTrialAndTheMotion) {
+  follow();
+  seen_.ended = Death{"rig ended: its life sign is gone", false, true};
+  EXPECT_FALSE(step().announce.has_value());
+  EXPECT_FALSE(step().announce->trial.has_value());
+  step(300 * kMs);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "rig ended: its life sign is gone");
+}
+
+// The rig ends the force by itself: the trial stays announced, so that its end is recorded as such.
+TEST_F(TrialRunTest, AProcessThatEndsIsTheReasonAndTheRigOpensItsInterlock) {
+  follow();
+  seen_.ended = Death{"motion (pid 7) ended: signal 9 (Killed)", false, false};
+  step();
+  EXPECT_FALSE(step().announce.has_value());
+  EXPECT_FALSE(sut_->over());
+  event(EventKind::kInterlockOpened, "rig", "motion gone");
+  event(EventKind::kForceZero, "rig");
+  pass_afterwards();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted, "motion (pid 7) ended: signal 9 (Killed)");
+}
+
+// Twice what is left, 2 * 10 s, and 10 s.
+TEST_F(TrialRunTest, ATrialWhoseTicksStandStillEnds) {
+  step();
+  arm(2);
+  step();
+  step(30 * kSecond);
+  EXPECT_FALSE(sut_->over());
+  step();
+  step(1500 * kMs);
+  step(300 * kMs);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(result().aborted, "the trial did not end in time");
+}
+
+}  // namespace
+}  // namespace stillhand::lab
