@@ -54,7 +54,7 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Progress progress)
       control_(service.bus().publisher<stillhand_msgs::TrialControl>(topics::kTrialControl)),
       assignment_(
           service.bus().publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment)),
-      augmented_model_(
+      control_model_(
           service.bus().publisher<stillhand_msgs::AugmentedModel>(topics::kAugmentedModel)) {
   const auto stored = [this](auto store) {
     {
@@ -396,15 +396,15 @@ std::optional<stillhand_msgs::FeedthroughModel> Conductor::await_model(std::int6
   return model;
 }
 
-std::string Conductor::use(const cancellation::AugmentedModel& model) {
+std::string Conductor::use(const cancellation::ControlModel& model) {
   constexpr double kLimit_s = 5.0;
   {
     const std::lock_guard lock(mutex_);
     seen_.events.clear();
   }
-  auto message = cancellation::to_idl(model, cancellation::kFirstAugmentedModel + models_++);
+  auto message = cancellation::to_idl(model, cancellation::kFirstControlModel + models_++);
   message.from_tick(newest_tick() + kModelNotice_ticks);
-  augmented_model_.write(message);
+  control_model_.write(message);
   std::string refused;
   const bool answered = wait_for(kLimit_s, [&](Seen& seen) {
     return std::ranges::any_of(seen.events, [&](const stillhand_msgs::Event& event) {

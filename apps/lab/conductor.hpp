@@ -16,7 +16,7 @@
 #include "apps/session/trial_outcome.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::lab {
@@ -50,7 +50,7 @@ class Conductor {
   /// The model identified from a trial, or nothing when none comes within `limit_s` [s].
   std::optional<stillhand_msgs::FeedthroughModel> await_model(std::int64_t trial, double limit_s);
   /// Gives the canceller a model and waits for its answer.  @return why it wasn't taken, or empty
-  std::string use(const cancellation::AugmentedModel& model);
+  std::string use(const cancellation::ControlModel& model);
   /// A process that ended, an emergency stop, "interrupted", or else `otherwise`.
   [[nodiscard]] std::string why_stopped(const std::string& otherwise) const;
   /// Where the recorder says that its file is, on its own host; empty: it did not.
@@ -95,8 +95,8 @@ class Conductor {
   Progress progress_;
   runtime::Publisher<stillhand_msgs::TrialControl> control_;
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
-  runtime::Publisher<stillhand_msgs::AugmentedModel> augmented_model_;
-  std::int32_t models_ = 0;  ///< augmented ones given
+  runtime::Publisher<stillhand_msgs::AugmentedModel> control_model_;
+  std::int32_t models_ = 0;  ///< control models published
   std::mutex mutex_;
   std::condition_variable news_;
   Seen seen_;

@@ -22,7 +22,7 @@
 #include "apps/lab/rehearsal.hpp"
 #include "apps/lab/summary.hpp"
 #include "apps/report/progress.hpp"
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/identification/codec.hpp"
 #include "services/recording/file_io.hpp"
@@ -217,7 +217,7 @@ class Session final : public LiveTrials {
     return outcome;
   }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
-  std::string use(const cancellation::AugmentedModel& model) override {
+  std::string use(const cancellation::ControlModel& model) override {
     return conductor_.use(model);
   }
   [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }
@@ -322,8 +322,8 @@ void set_places(LabOptions& options) {
   options.config = runtime::shipped("deploy/config");
 }
 
-cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
-                                           const std::filesystem::path& config) {
+cancellation::ControlModel control_model(const std::filesystem::path& file, std::uint32_t rig,
+                                         const std::filesystem::path& config) {
   auto model =
       cancellation::parse_control_model(recording::read_file(file.string()), file.string(), rig);
   cancellation::require_sound(
@@ -402,7 +402,7 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
 }
 
 int run_lab(const LabOptions& options, runtime::Stop& stop) {
-  std::optional<cancellation::AugmentedModel> model;
+  std::optional<cancellation::ControlModel> model;
   if (!options.model.empty()) model = control_model(options.model, options.rig, options.config);
   const LiveSession live = run_session(options, stop, [&](LiveTrials& trials) {
     for (const session::PlannedTrial& planned : session::plan(options.protocol)) {

@@ -9,7 +9,7 @@
 
 #include "apps/lab/conductor.hpp"
 #include "apps/session/protocol.hpp"
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/identification/core/identifier.hpp"
 #include "services/recording/keep_options.hpp"
 #include "services/runtime/process/stop.hpp"
@@ -49,8 +49,8 @@ void set_places(LabOptions& options);
 /// A control model from a file, as the canceller would take it.
 /// @param config  folder of the services' settings
 /// @throws ConfigError when it isn't one, is of another rig, or the canceller would refuse it
-cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
-                                           const std::filesystem::path& config);
+cancellation::ControlModel control_model(const std::filesystem::path& file, std::uint32_t rig,
+                                         const std::filesystem::path& config);
 
 /// A session over DDS while its processes run: trial by trial.
 class LiveTrials {
@@ -63,7 +63,7 @@ class LiveTrials {
   /// The model identified last.
   [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
   /// Gives the canceller a model.  @return why it wasn't taken, or empty
-  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
+  virtual std::string use(const cancellation::ControlModel& model) = 0;
   [[nodiscard]] virtual bool interrupted() const = 0;
 };
 

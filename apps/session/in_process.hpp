@@ -71,7 +71,7 @@ class InProcessLoop {
   TrialSignals run(PlannedTrial planned);
   /// The model the canceller uses from now on.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
-  cancellation::Refusal use_model(const cancellation::AugmentedModel& model);
+  cancellation::Refusal use_model(const cancellation::ControlModel& model);
   /// What the rig held, once the verdict on it is out: no trial runs after it.
   [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
 

@@ -19,7 +19,7 @@ Shell::Shell(runtime::Service& service)
   bus.subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
         if (!message.usable()) return;
-        on_model(augmented(from_idl(message)), message.model(), message.from_tick());
+        on_model(control_model(from_idl(message)), message.model(), message.from_tick());
       });
   bus.subscribe<stillhand_msgs::AugmentedModel>(
       topics::kAugmentedModel, [this](const auto& message, const auto&) {
@@ -44,7 +44,7 @@ void Shell::note_when_armed() {
   service_.note_armed(service_.trial().number);
 }
 
-void Shell::on_model(const AugmentedModel& model, std::int32_t number, Tick from_tick) {
+void Shell::on_model(const ControlModel& model, std::int32_t number, Tick from_tick) {
   const Refusal refusal = core_.make_ready(model);
   if (refusal == Refusal::kNone) {
     ready_ = ReadyModel{number, from_tick};

@@ -22,7 +22,7 @@ class Shell {
   void on_sensed(const stillhand_msgs::Sensed& sensed);
   /// @param number     of the model
   /// @param from_tick  first tick that it is used at
-  void on_model(const AugmentedModel& model, std::int32_t number, Tick from_tick);
+  void on_model(const ControlModel& model, std::int32_t number, Tick from_tick);
   void take_model_when_due(Tick tick);
   void note_when_armed();
 

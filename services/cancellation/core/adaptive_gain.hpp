@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/signal/biquad.hpp"
 #include "services/signal/butterworth.hpp"
 #include "services/signal/second_order_lag.hpp"

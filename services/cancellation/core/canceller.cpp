@@ -16,10 +16,10 @@ const Config& checked(const Config& config) {
 
 Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {}
 
-Refusal Canceller::make_ready(const AugmentedModel& model) noexcept {
+Refusal Canceller::make_ready(const ControlModel& model) noexcept {
   const ModelCheck check = check_model(model, bounds(config_));
   if (check.refusal != Refusal::kNone) return check.refusal;
-  ready_ = {ModelFilter(model, check.settle_ticks),
+  ready_ = {ControlModelFilter(model, check.settle_ticks),
             model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()};
   return Refusal::kNone;
 }
@@ -38,7 +38,7 @@ void Canceller::take_ready_model() noexcept {
   ready_ = Law();
 }
 
-Refusal Canceller::load_model(const AugmentedModel& model) noexcept {
+Refusal Canceller::load_model(const ControlModel& model) noexcept {
   const Refusal refusal = make_ready(model);
   if (refusal == Refusal::kNone) take_ready_model();
   return refusal;

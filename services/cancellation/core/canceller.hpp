@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "services/cancellation/core/adaptive_gain.hpp"
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/model_check.hpp"
-#include "services/cancellation/core/model_filter.hpp"
 #include "services/contract/config_field.hpp"
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
@@ -62,7 +62,7 @@ inline ModelBounds bounds(const Config& config) noexcept {
 ///
 ///   f_hat = H a_y,   wanted = -gain f_hat,   force = ForceEnvelope(wanted)   (Eq. SG-6)
 ///
-/// H may be an augmented model (Eq. CC-6 to CC-9) that reads further channels, and gain and phase
+/// H may be a control model (Eq. CC-6 to CC-9) that reads further channels, and gain and phase
 /// are followed where the model says so (Eq. CC-10).
 /// The force leaves zero only while enabled, permitted, with a model and a sound sample.  A lost or
 /// unsound sample holds the last acceleration (Eq. CC-2); a run longer than max_hold_ticks starts
@@ -79,11 +79,11 @@ class Canceller {
   /// Never throws; a refused model leaves the one ready and the one in use as they are.  Takes tens
   /// of microseconds (gain scan), milliseconds with a spring inside the body (trial run): keep it
   /// out of a deadline.
-  Refusal make_ready(const AugmentedModel& model) noexcept;
+  Refusal make_ready(const ControlModel& model) noexcept;
   /// The model that is ready is used from the next step on; nothing if none is.
   void take_ready_model() noexcept;
   /// Both at once.
-  Refusal load_model(const AugmentedModel& model) noexcept;
+  Refusal load_model(const ControlModel& model) noexcept;
 
   /// True once a model was taken, even while it still settles; not yet when one is only ready.
   [[nodiscard]] bool has_model() const noexcept {
@@ -100,7 +100,7 @@ class Canceller {
  private:
   /// A model with what is followed of it.
   struct Law {
-    ModelFilter filter;
+    ControlModelFilter filter;
     AdaptiveGain adaptive;
   };
   struct Predicted {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "services/cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
@@ -24,7 +24,7 @@ bool finite(const ValueMap& map) {
   return std::isfinite(map.low) && std::isfinite(map.high) && finite(map.values);
 }
 
-bool finite(const AugmentedModel& model) {
+bool finite(const ControlModel& model) {
   const auto input = [](const InputPath& each) {
     return finite(each.map) && finite(each.numerator);
   };
@@ -52,7 +52,7 @@ bool is_table(const ValueMap& map) {
 
 bool is_channel(Channel channel) { return static_cast<std::size_t>(channel) < kChannels; }
 
-bool well_formed(const AugmentedModel& model) {
+bool well_formed(const ControlModel& model) {
   const std::size_t taps = model.denominator.size();
   if (taps == 0 || model.denominator[0] != 1.0 || model.inputs.empty()) return false;
   if (!is_table(model.output)) return false;
@@ -77,20 +77,21 @@ bool well_formed(const AugmentedModel& model) {
          (!model.loop || loop(*model.loop));
 }
 
-bool fits(const AugmentedModel& model) {
+bool fits(const ControlModel& model) {
   const auto small = [](const ValueMap& map) {
     return map.values.size() <= ValueTable::kMostValues;
   };
-  return small(model.output) && model.inputs.size() <= ModelFilter::kMostInputs &&
-         model.paths.size() <= ModelFilter::kMostPaths &&
-         model.waves.size() <= ModelFilter::kMostWaves &&
+  return small(model.output) && model.inputs.size() <= ControlModelFilter::kMostInputs &&
+         model.paths.size() <= ControlModelFilter::kMostPaths &&
+         model.waves.size() <= ControlModelFilter::kMostWaves &&
          std::ranges::all_of(model.inputs, [&](const auto& each) { return small(each.map); }) &&
          std::ranges::all_of(model.paths, [&](const auto& each) { return small(each.map); }) &&
          (!model.loop || small(model.loop->phi));
 }
 
 // Largest |H| found; NaN when any value isn't finite.
-double peak_gain(const ControlRateModel& model, const std::vector<std::complex<double>>& poles) {
+double peak_gain(const signal::DifferenceModel& model,
+                 const std::vector<std::complex<double>>& poles) {
   double peak = 0.0;
   const auto look = [&](double frequency_hz) {
     const double gain = std::abs(signal::response_at(model, frequency_hz));
@@ -174,7 +175,7 @@ double gain_of(const DirectPath& path) {
 }
 
 // Paths of one channel add up, and so do waves: what each may not ask for, all together may not.
-Refusal check_strength(const AugmentedModel& model, const std::vector<std::complex<double>>& poles,
+Refusal check_strength(const ControlModel& model, const std::vector<std::complex<double>>& poles,
                        const ModelBounds& bounds) {
   const double behind = slopes_of(model.output).steepest();
   std::array<double, kChannels> gains{};
@@ -197,35 +198,35 @@ Refusal check_strength(const AugmentedModel& model, const std::vector<std::compl
 }
 
 // What the model asks for while nothing moves, once it has settled; waves are bounded elsewhere.
-bool rests(const AugmentedModel& model, std::int64_t settle) {
-  AugmentedModel still = model;
+bool rests(const ControlModel& model, std::int64_t settle) {
+  ControlModel still = model;
   still.waves.clear();
-  ModelFilter filter(still, settle);
-  ModelFilter::Force force{};
+  ControlModelFilter filter(still, settle);
+  ControlModelFilter::Force force{};
   for (Tick tick = 0; tick < 2 * settle + 10; ++tick) force = filter.step(ChannelSample{}, tick);
   return std::abs(force.feedthrough_n) + std::abs(force.beside_n) <= kMaxRest_n;
 }
 
 // 1 + sum (d_i - slope * path_i) q^-i.
-ControlRateModel closed(const AugmentedModel& model, double slope) {
+signal::DifferenceModel closed(const ControlModel& model, double slope) {
   const LoopPath& loop = *model.loop;
   const std::vector<double>& path = loop.n.empty() ? loop.e : loop.m;
-  ControlRateModel out{model.rate_hz, model.denominator, model.denominator};
+  signal::DifferenceModel out{model.rate_hz, model.denominator, model.denominator};
   for (std::size_t i = 1; i < path.size(); ++i) out.denominator[i] -= slope * path[i];
   return out;
 }
 
 // A swept sinusoid of the motion's greatest acceleration (paper III-C), then nothing.
-bool trial_run_dies_away(const AugmentedModel& model, std::int64_t settle,
+bool trial_run_dies_away(const ControlModel& model, std::int64_t settle,
                          const ModelBounds& bounds) {
   constexpr double kAccel_m_s2 = 7.5;
   constexpr double kLow_hz = 0.3;
   constexpr double kHigh_hz = 12.0;
   constexpr Tick kSwept = 10'000;
-  AugmentedModel alone = model;
+  ControlModel alone = model;
   alone.paths.clear();
   alone.waves.clear();
-  ModelFilter filter(alone, settle);
+  ControlModelFilter filter(alone, settle);
   const double bound_n = 2.0 * bounds.max_gain_n_s2_m * kAccel_m_s2;
   double turn = 0.0;
   double most_n = 0.0;
@@ -246,11 +247,11 @@ bool trial_run_dies_away(const AugmentedModel& model, std::int64_t settle,
   return last_n <= 0.05 * most_n;
 }
 
-Refusal check_loop(const AugmentedModel& model, std::int64_t settle, const ModelBounds& bounds) {
+Refusal check_loop(const ControlModel& model, std::int64_t settle, const ModelBounds& bounds) {
   if (!model.loop) return Refusal::kNone;
   const Slopes slopes = slopes_of(model.loop->phi);
   for (const double slope : {slopes.least, 0.5 * (slopes.least + slopes.most), slopes.most}) {
-    const ControlRateModel with = closed(model, slope);
+    const signal::DifferenceModel with = closed(model, slope);
     if (!finite(with.denominator) || !signal::is_stable(with)) return Refusal::kLoop;
     for (const std::complex<double>& pole : signal::poles(with)) {
       if (!(std::abs(pole) < 1.0)) return Refusal::kLoop;
@@ -266,14 +267,14 @@ bool is_hand(const HandCompliance& hand) {
          hand.damping_n_s_m < critical && hand.lever_m >= 0.02 && hand.lever_m <= 0.5;
 }
 
-ModelCheck checked(const AugmentedModel& model, const ModelBounds& bounds) {
+ModelCheck checked(const ControlModel& model, const ModelBounds& bounds) {
   const auto refused = [](Refusal why) { return ModelCheck{why, 0}; };
   if (!fits(model)) return refused(Refusal::kTooMany);
   if (!finite(model)) return refused(Refusal::kNotFinite);
   if (!well_formed(model)) return refused(Refusal::kMalformed);
   if (model.rate_hz != kControlRateHz) return refused(Refusal::kWrongRate);
-  if (model.denominator.size() - 1 > ModelFilter::kMaxOrder) return refused(Refusal::kOrder);
-  const ControlRateModel first = path_model(model, model.inputs[0]);
+  if (model.denominator.size() - 1 > ControlModelFilter::kMaxOrder) return refused(Refusal::kOrder);
+  const signal::DifferenceModel first = path_model(model, model.inputs[0]);
   if (!signal::is_stable(first)) return refused(Refusal::kUnstable);
   const std::vector<std::complex<double>> poles = signal::poles(first);
   for (const std::complex<double>& pole : poles) {
@@ -327,7 +328,7 @@ std::string_view describe(Refusal refusal) noexcept {
   return "unknown";
 }
 
-ModelCheck check_model(const AugmentedModel& model, const ModelBounds& bounds) noexcept {
+ModelCheck check_model(const ControlModel& model, const ModelBounds& bounds) noexcept {
   try {
     return checked(model, bounds);
   } catch (const std::exception&) {

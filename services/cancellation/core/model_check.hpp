@@ -4,13 +4,10 @@
 #include <cstdint>
 #include <string_view>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/signal/difference_model.hpp"
 
 namespace stillhand::cancellation {
-
-/// The paper's feedthrough model at the control rate.
-using ControlRateModel = signal::DifferenceModel;
 
 /// Why a model was not taken.
 enum class Refusal : std::uint8_t {
@@ -18,11 +15,11 @@ enum class Refusal : std::uint8_t {
   kMalformed,   ///< sizes differ, empty, d_0 not 1, a table that isn't one
   kNotFinite,   ///< a number is NaN or infinite
   kWrongRate,   ///< not exactly 1000 Hz
-  kOrder,       ///< above ModelFilter::kMaxOrder
+  kOrder,       ///< above ControlModelFilter::kMaxOrder
   kUnstable,    ///< a pole on or outside the unit circle
   kSettling,    ///< slower than kMaxSettle_ticks to settle to 1 %
   kGain,        ///< |H| above the bound at some frequency
-  kTooMany,     ///< more inputs, paths, waves or table values than ModelFilter has room for
+  kTooMany,     ///< more inputs, paths, waves or table values than ControlModelFilter has room for
   kPath,        ///< a further channel, a path beside the body or a wave above its bound
   kLoop,        ///< the spring inside the body: unstable at one of its slopes, or in a trial run
   kRest,        ///< a force above kMaxRest_n while nothing moves
@@ -54,6 +51,6 @@ struct ModelCheck {
 /// 0 Hz, at 500 Hz, on 400 frequencies between and at each pole's own, so that no narrow peak is
 /// missed.  A spring inside the body: stable with each of its slopes, and a trial run through the
 /// motion's band stays bounded and dies away.  Never throws.  Takes up to some milliseconds.
-ModelCheck check_model(const AugmentedModel& model, const ModelBounds& bounds) noexcept;
+ModelCheck check_model(const ControlModel& model, const ModelBounds& bounds) noexcept;
 
 }  // namespace stillhand::cancellation

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 
 namespace stillhand::cancellation {
 

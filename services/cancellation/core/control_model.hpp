@@ -83,7 +83,7 @@ struct HandCompliance {
 
 /// The feedthrough force as a function of what is sensed, at the control rate: a linear body with
 /// several inputs, one spring inside it that isn't linear, and what acts beside it.
-struct AugmentedModel {
+struct ControlModel {
   double rate_hz = 0.0;
   std::vector<double> denominator;  ///< 1, d_1 .. d_p
   std::vector<InputPath> inputs;
@@ -95,9 +95,9 @@ struct AugmentedModel {
 };
 
 /// The paper's model: a_y alone.
-AugmentedModel augmented(const signal::DifferenceModel& model);
+ControlModel control_model(const signal::DifferenceModel& model);
 
 /// The linear part from one input, as a difference model [N a unit of the channel].
-signal::DifferenceModel path_model(const AugmentedModel& model, const InputPath& input);
+signal::DifferenceModel path_model(const ControlModel& model, const InputPath& input);
 
 }  // namespace stillhand::cancellation

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 
 #include <algorithm>
 
-#include "services/cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/value_table.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/settings/json_entry.hpp"
@@ -15,7 +15,7 @@ using Json = settings::JsonEntry::Json;
 using Entry = settings::JsonEntry;
 
 constexpr const char* kFormat = "stillhand control model";
-constexpr std::size_t kMostNumbers = ModelFilter::kMaxOrder + 1;
+constexpr std::size_t kMostNumbers = ControlModelFilter::kMaxOrder + 1;
 // More than the filter has room for is check_model()'s to refuse; this keeps a file's size bounded.
 constexpr std::size_t kMostParts = 64;
 
@@ -72,7 +72,7 @@ HandCompliance hand_of(const Entry& entry) {
 
 }  // namespace
 
-std::string control_model_json(const AugmentedModel& model, std::uint32_t rig) {
+std::string control_model_json(const ControlModel& model, std::uint32_t rig) {
   Json inputs = Json::array();
   for (const InputPath& input : model.inputs) {
     inputs.push_back({{"channel", name_of(input.channel)},
@@ -110,8 +110,8 @@ std::string control_model_json(const AugmentedModel& model, std::uint32_t rig) {
   return text;
 }
 
-AugmentedModel parse_control_model(std::string_view json, const std::string& origin,
-                                   std::uint32_t rig) {
+ControlModel parse_control_model(std::string_view json, const std::string& origin,
+                                 std::uint32_t rig) {
   const Json whole = settings::parsed_json(json, origin, "JSON of a stillhand control model");
   const Entry top(whole, origin);
   if (top.at("format").text() != kFormat) {
@@ -128,7 +128,7 @@ AugmentedModel parse_control_model(std::string_view json, const std::string& ori
   if (top.at("rig").count() != rig) {
     top.at("rig").refuse("rig " + std::to_string(rig) + ", which the model is wanted for");
   }
-  AugmentedModel model;
+  ControlModel model;
   model.rate_hz = top.at("rate_hz").number();
   model.denominator = top.at("denominator").numbers(1, kMostNumbers);
   for (const Entry& input : top.at("inputs").entries(1, kMostParts)) {
@@ -159,7 +159,7 @@ AugmentedModel parse_control_model(std::string_view json, const std::string& ori
   return model;
 }
 
-void require_sound(const AugmentedModel& model, const Config& settings, const std::string& origin) {
+void require_sound(const ControlModel& model, const Config& settings, const std::string& origin) {
   const Refusal refusal = check_model(model, bounds(settings)).refusal;
   if (refusal == Refusal::kNone) return;
   throw ConfigError(origin, std::string(describe(refusal)), "a model that the canceller takes");
