@@ -37,6 +37,10 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
   return input;
 }
 
+Assignment from_idl(const stillhand_msgs::TrialAssignment& message) {
+  return {message.trial(), message.cancellation()};
+}
+
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message) {
   return {message.control_rate_hz(), message.control_numerator(), message.control_denominator()};
 }

@@ -3,11 +3,15 @@
 
 #include "idl/control_loop.h"
 #include "idl/model.h"
+#include "idl/session.h"
 #include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/trial_arming.hpp"
 
 namespace stillhand::cancellation {
 
 CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted);
+
+Assignment from_idl(const stillhand_msgs::TrialAssignment& message);
 
 /// The filter for the control rate; whether it is sound is for the canceller to judge.
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message);

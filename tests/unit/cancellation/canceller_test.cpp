@@ -156,24 +156,26 @@ TEST(CancellerTest, SwappingModelsIsBumpless) {
   EXPECT_LE(largest, 8.0 / 250.0 + 1e-12);
 }
 
-TEST(CancellerTest, AReadyModelWaitsUntilItIsTaken) {
-  Canceller ready{Config{}};
+TEST(CancellerTest, APreparedModelIsTakenAsALoadedOne) {
+  Canceller prepared{Config{}};
   Canceller loaded{Config{}};
   const auto same = [&](Tick tick) {
-    const auto a = ready.step(sample(tick, 2.0));
+    const auto a = prepared.step(sample(tick, 2.0));
     const auto b = loaded.step(sample(tick, 2.0));
     return a.force_n == b.force_n && a.predicted_force_n == b.predicted_force_n &&
            a.flags == b.flags;
   };
-  ASSERT_EQ(ready.make_ready(control_model(body())), Refusal::kNone);
-  EXPECT_EQ(ready.make_ready(control_model({})), Refusal::kMalformed);  // the sound one stays ready
-  EXPECT_FALSE(ready.has_model());
+  const Preparation sound = prepare(control_model(body()), bounds(Config{}));
+  const Preparation refused = prepare(control_model({}), bounds(Config{}));
+  ASSERT_EQ(sound.refusal, Refusal::kNone);
+  EXPECT_EQ(refused.refusal, Refusal::kMalformed);
+  EXPECT_FALSE(prepared.has_model());
   for (Tick tick = 0; tick < 100; ++tick) ASSERT_TRUE(same(tick)) << tick;  // both without a model
-  ready.take_ready_model();
+  prepared.take(sound.model);
   ASSERT_EQ(loaded.load_model(control_model(body())), Refusal::kNone);
-  EXPECT_TRUE(ready.has_model());
+  EXPECT_TRUE(prepared.has_model());
   for (Tick tick = 100; tick < 3000; ++tick) ASSERT_TRUE(same(tick)) << tick;
-  ready.take_ready_model();  // none: nothing happens
+  prepared.take(refused.model);  // empty: nothing happens
   for (Tick tick = 3000; tick < 3100; ++tick) ASSERT_TRUE(same(tick)) << tick;
 }
 
