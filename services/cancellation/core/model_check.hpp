@@ -46,11 +46,12 @@ struct ModelCheck {
   std::int64_t settle_ticks;  ///< slowest pole's time to 1 %; 0 when refused
 };
 
-/// README Eq. CC-4 and CC-14.  Stability by the reflection coefficients (Eq. SG-13) and by the
-/// poles, which fail differently when coefficients are ill conditioned; both must agree.  Gain at
-/// 0 Hz, at 500 Hz, on 400 frequencies between and at each pole's own, so that no narrow peak is
-/// missed.  A spring inside the body: stable with each of its slopes, and a trial run through the
-/// motion's band stays bounded and dies away.  Never throws.  Takes up to some milliseconds.
+/// Checks a control model, README Eq. CC-4 and CC-14.  Stability is judged by the reflection
+/// coefficients (services/signal, Eq. SG-13) and by the poles, which fail differently when
+/// coefficients are ill conditioned; both must agree.  The gain is judged at 0 Hz, at 500 Hz, on
+/// 400 frequencies between and at each pole's own, so that no narrow peak is missed.  A spring
+/// inside the body must be stable with each of its slopes, and a trial run through the motion's
+/// band must stay bounded and die away.  Never throws.  Takes up to some milliseconds.
 ModelCheck check_model(const ControlModel& model, const ModelBounds& bounds) noexcept;
 
 }  // namespace stillhand::cancellation
