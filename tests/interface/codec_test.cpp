@@ -351,7 +351,8 @@ TEST(IdentificationCodecTest, TheCancellerGetsTheControlRateFilter) {
 }
 
 TEST(IdentificationCodecTest, AFailureSaysWhyWithinTheRoomOfTheIdl) {
-  const auto fields = fields_of(identification::failure_to_idl(std::string(500, 'x'), 11, 12));
+  const identification::Identification failed{std::nullopt, std::string(500, 'x')};
+  const auto fields = fields_of(identification::to_idl(failed, 11, 12));
   const auto has = [&fields](const char* name, const std::string& value) {
     return std::find(fields.begin(), fields.end(), Fields::value_type{name, value}) != fields.end();
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/identification/core/identifier.hpp"
 
+#include <utility>
+
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
 
@@ -61,6 +63,15 @@ FeedthroughModel identify(const Record& recorded, const Config& config) {
   out.control = steps.control.model;
   out.conversion_error = steps.control.max_error;
   return out;
+}
+
+Identification identify(const PeggedTrial& trial, const Config& config) {
+  if (std::string why = why_unusable(trial); !why.empty()) return {std::nullopt, std::move(why)};
+  try {
+    return {identify(trial.record, config), {}};
+  } catch (const ConfigError& error) {
+    return {std::nullopt, error.what()};
+  }
 }
 
 }  // namespace stillhand::identification
