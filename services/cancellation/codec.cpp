@@ -4,7 +4,7 @@
 namespace stillhand::cancellation {
 namespace {
 
-// The channels of core and bus have one order; a number that is none stays none, and is refused.
+// Channels of core and bus have one order.  A number that is no channel stays one, and is refused.
 Channel from_idl(stillhand_msgs::ModelChannel channel) { return static_cast<Channel>(channel); }
 stillhand_msgs::ModelChannel to_idl(Channel channel) {
   return static_cast<stillhand_msgs::ModelChannel>(channel);

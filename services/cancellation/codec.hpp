@@ -13,16 +13,16 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
 
 Assignment from_idl(const stillhand_msgs::TrialAssignment& message);
 
-/// The filter for the control rate; whether it is sound is for the canceller to judge.
+/// The filter for the control rate; check_model() judges whether it is sound.
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message);
 
 /// Models of the topic stillhand/augmented_model are numbered from here on, so that the number in a
 /// motor command distinguishes them from identified ones.
 inline constexpr std::int32_t kFirstControlModel = 1000;
 
-/// As sent; whether it is sound is for the canceller to judge.
+/// As sent; check_model() judges whether it is sound.
 ControlModel from_idl(const stillhand_msgs::AugmentedModel& message);
-/// @param model  within the sizes that a canceller takes; longer lists are cut off at the message's
+/// @param model  within the sizes that the canceller takes
 stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t number);
 
 /// @param sensed  the sample answered: its tick and acquisition stamp travel on

@@ -16,7 +16,7 @@ using Entry = settings::JsonEntry;
 
 constexpr const char* kFormat = "stillhand control model";
 constexpr std::size_t kMostNumbers = ControlModelFilter::kMaxOrder + 1;
-// More than the filter has room for is check_model()'s to refuse; this keeps a file's size bounded.
+// This bounds a file's size; check_model() refuses what the filter has no room for.
 constexpr std::size_t kMostParts = 64;
 
 std::string_view name_of(Channel channel) {
@@ -105,7 +105,7 @@ std::string control_model_json(const ControlModel& model, std::uint32_t rig) {
                   {"waves", waves},
                   {"adapts", json_of(model.adapts)}};
   std::string text = json.dump(2) + "\n";
-  // A number that isn't finite would be written as null: what can't be read isn't written.
+  // A number that is not finite would be written as null: nothing is written that cannot be read.
   static_cast<void>(parse_control_model(text, "model", rig));
   return text;
 }
@@ -122,7 +122,7 @@ ControlModel parse_control_model(std::string_view json, const std::string& origi
   if (top.at("version").count() != kModelFormatVersion) {
     top.at("version").refuse("1: a newer stillhand wrote this file");
   }
-  // Whoever adds a limit to the file shall not believe that it counts.
+  // A limit in the file has no effect: it is refused, so that nobody relies on it.
   top.allow_only({"format", "version", "rig", "rate_hz", "denominator", "inputs", "loop", "output",
                   "paths", "waves", "adapts"});
   if (top.at("rig").count() != rig) {

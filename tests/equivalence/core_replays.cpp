@@ -24,7 +24,7 @@ std::int64_t core_seed(const SessionSettings& settings) {
   return static_cast<std::int64_t>(settings.seed & 0xffffffffu);
 }
 
-/// For cores whose every step is told by its input alone.
+/// For cores whose steps depend on their input alone.
 constexpr auto kAlways = [](const auto&, const auto&) { return true; };
 constexpr auto kSameTrial = [](const auto& a, const auto& b) { return a.trial() == b.trial(); };
 

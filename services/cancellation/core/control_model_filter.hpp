@@ -12,13 +12,13 @@
 namespace stillhand::cancellation {
 
 /// A control model as a running filter of fixed size, README Eq. CC-6 to CC-9, transposed direct
-/// form II of Eq. SG-12 with further inputs:
+/// form II of services/signal Eq. SG-12 with further inputs:
 ///
 ///   z = n_0 v_1 + t_1,   t_i = n_i v_1 + m_i phi(z) - d_i z + t_{i+1}
 ///   y = sum_k c_k0 v_k + e_0 phi(z) + s_1,
 ///   s_i = sum_k c_ki v_k + e_i phi(z) - d_i y + s_{i+1}
 ///
-/// Trusts its model: Canceller::load_model() checks it first.  step() allocates nothing.
+/// It trusts its model: prepare() checks it first.  Pure; step() allocates nothing.
 class ControlModelFilter {
  public:
   static constexpr std::size_t kMaxOrder = 12;
@@ -36,7 +36,8 @@ class ControlModelFilter {
 
   struct Force {
     double feedthrough_n = 0.0;  ///< of the body and the paths from the platform
-    double beside_n = 0.0;       ///< of paths from the stick and of waves: the arm has no say in it
+    double beside_n =
+        0.0;  ///< of paths from the stick and of waves; the arm has no influence on it
   };
   /// f^ at this tick.
   Force step(const ChannelSample& sample, Tick tick) noexcept;

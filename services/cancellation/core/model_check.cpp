@@ -145,7 +145,7 @@ std::string_view describe(Refusal refusal) noexcept {
     case Refusal::kNone:
       return "model taken";
     case Refusal::kMalformed:
-      return "model is empty, its sizes differ, its denominator doesn't start with 1, or a lag, a "
+      return "model is empty, its sizes differ, its denominator does not start with 1, or a lag, a "
              "frequency or a table's ends are out of order";
     case Refusal::kNotFinite:
       return "a coefficient is not a finite number";
@@ -162,9 +162,10 @@ std::string_view describe(Refusal refusal) noexcept {
     case Refusal::kTooMany:
       return "more than 4 inputs, 6 paths, 6 waves or 129 values in a table";
     case Refusal::kPath:
-      return "a further channel, a path beside the body or a wave is stronger than its bound";
+      return "a further channel, a path next to the body or a wave is stronger than its bound";
     case Refusal::kLoop:
-      return "the spring inside the body isn't stable at all its slopes, or doesn't die away";
+      return "the spring inside the body is not stable at each of its slopes, or its motion does "
+             "not die away";
     case Refusal::kRest:
       return "model asks for a force while nothing moves";
     case Refusal::kCompliance:
@@ -177,7 +178,7 @@ ModelCheck check_model(const ControlModel& model, const ModelBounds& bounds) noe
   try {
     return checked(model, bounds);
   } catch (const std::exception&) {
-    // Only memory can run out in there; the live path must not end for a model.
+    // Memory alone can run out in there; a model must not end the process.
     return {Refusal::kMalformed, 0};
   }
 }

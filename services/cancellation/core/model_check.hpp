@@ -12,7 +12,7 @@ namespace stillhand::cancellation {
 /// Why a model was not taken.
 enum class Refusal : std::uint8_t {
   kNone,        ///< taken
-  kMalformed,   ///< sizes differ, empty, d_0 not 1, a table that isn't one
+  kMalformed,   ///< sizes differ, empty, d_0 not 1, a table out of order
   kNotFinite,   ///< a number is NaN or infinite
   kWrongRate,   ///< not exactly 1000 Hz
   kOrder,       ///< above ControlModelFilter::kMaxOrder
@@ -20,10 +20,10 @@ enum class Refusal : std::uint8_t {
   kSettling,    ///< slower than kMaxSettle_ticks to settle to 1 %
   kGain,        ///< |H| above the bound at some frequency
   kTooMany,     ///< more inputs, paths, waves or table values than ControlModelFilter has room for
-  kPath,        ///< a further channel, a path beside the body or a wave above its bound
+  kPath,        ///< a further channel, a path next to the body or a wave above its bound
   kLoop,        ///< the spring inside the body: unstable at one of its slopes, or in a trial run
   kRest,        ///< a force above kMaxRest_n while nothing moves
-  kCompliance,  ///< the hand that the adaptation counts on is none
+  kCompliance,  ///< mass, damping, stiffness or lever of the hand out of range
 };
 /// One line for a person.
 std::string_view describe(Refusal refusal) noexcept;
@@ -32,7 +32,7 @@ std::string_view describe(Refusal refusal) noexcept;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.
 inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
-/// [N] Feedthrough is what motion does: a model that pushes without any is none.
+/// [N] Feedthrough comes from motion: a model that pushes without motion is refused.
 inline constexpr double kMaxRest_n = 1.0;
 
 /// What a model may ask for at most; from the process's own settings.

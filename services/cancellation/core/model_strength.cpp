@@ -37,7 +37,7 @@ double full_scale(Channel channel) {
   return kChannelFacts[static_cast<std::size_t>(channel)].full_scale;
 }
 
-// Largest force of a path beside the body, on its channel's whole range.
+// Largest force of a path next to the body, on its channel's whole range.
 double greatest(const DirectPath& path) {
   const ValueTable map(path.map);
   constexpr int kPoints = 1000;

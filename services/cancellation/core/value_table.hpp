@@ -9,7 +9,8 @@
 
 namespace stillhand::cancellation {
 
-/// A ValueMap of fixed size for the control path.  Trusts its map: check_model() comes first.
+/// A ValueMap of fixed size for the control path: the memoryless maps m_k of README Eq. CC-6.
+/// It trusts its map: check_model() comes first.
 class ValueTable {
  public:
   static constexpr std::size_t kMostValues = 129;

@@ -10,8 +10,8 @@ namespace stillhand::identification {
 
 namespace {
 
-// A disturbance that isn't in the acceleration, a tone say, draws a pole beside itself that no
-// filter at 1 kHz gets right: with fewer poles there is none to spare.
+// A disturbance that is not in the acceleration, such as a tone, attracts a pole that no filter at
+// 1 kHz reproduces: with fewer poles none is left for it.
 void convert_refined(IdentificationSteps& steps, int order, const ConversionBand& band) {
   constexpr int kLeastOrder = 2;
   while (true) {

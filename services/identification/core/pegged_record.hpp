@@ -16,14 +16,14 @@ struct PeggedTrial {
   std::int64_t number = -1;  ///< of the trial
 };
 
-/// Why a trial cannot be identified from, one line for a person; empty: it can.  More than 1 % of
-/// lost ticks and the interpolation begins to colour the fit.
+/// Why no model can come of a trial, one line for a person; empty: one can.  With more than 1 % of
+/// lost ticks the interpolation begins to colour the fit.
 std::string why_unusable(const PeggedTrial& trial);
 
-/// Collects the measured ticks of one pegged trial.  Ticks lost between two samples are
-/// interpolated on a straight line, those lost at the start repeat the first sample, those lost at
-/// the end shorten the record.  A tick that does not increase is ignored.
-/// Pure; one thread.  begin() reserves the room for the whole trial; take() does not allocate.
+/// Collects the measured ticks of one pegged trial, README Eq. ID-20.  Ticks lost between two
+/// samples are interpolated on a straight line, those lost at the start repeat the first sample,
+/// those lost at the end shorten the record.  A tick that does not increase is ignored. Pure; one
+/// thread.  begin() reserves the room for the whole trial; take() does not allocate.
 class PeggedRecord {
  public:
   /// Forgets what was collected, and collects this trial.

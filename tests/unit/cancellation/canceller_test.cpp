@@ -284,7 +284,7 @@ TEST(CancellerTest, ASampleThatIsNotNewMakesNoForce) {
   for (int i = 0; i < 40; ++i) out = sut.step(sample(1999, 2.0));  // a writer that is stuck
   EXPECT_EQ(out.force_n, 0.0);
   EXPECT_EQ(out.flags & kInputInvalid, Flags{kInputInvalid});
-  // A clock that began anew: one sample lost, then a fresh start.
+  // A clock that began again: one sample lost, then a fresh start.
   sut.step(sample(0, 2.0));
   for (Tick n = 1; n < 1000; ++n) out = sut.step(sample(n, 2.0));
   EXPECT_DOUBLE_EQ(out.force_n, 6.4);

@@ -44,7 +44,7 @@ double total(const ControlModelFilter::Force& force) {
   return force.feedthrough_n + force.beside_n;
 }
 
-TEST(ModelFilterTest, ASecondInputAddsItsOwnResponse) {
+TEST(ControlModelFilterTest, ASecondInputAddsItsOwnResponse) {
   ControlModel model = oscillator();
   model.inputs.push_back({Channel::kRoll, {}, {0.0, 1e-3, 1e-3}});
   ControlModelFilter both(model, 1);
@@ -59,7 +59,7 @@ TEST(ModelFilterTest, ASecondInputAddsItsOwnResponse) {
   }
 }
 
-TEST(ModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
+TEST(ControlModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
   const ValueTable table({-1.0, 1.0, {2.0, 0.0, 4.0}});
   EXPECT_DOUBLE_EQ(table(-1.0), 2.0);
   EXPECT_DOUBLE_EQ(table(-0.5), 1.0);
@@ -69,7 +69,7 @@ TEST(ModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
   EXPECT_DOUBLE_EQ(ValueTable()(0.3), 0.3);
 }
 
-TEST(ModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
+TEST(ControlModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
   // Against the plain difference equations A z = N v + M phi(z), A y = C v + E phi(z).
   ControlModel model = oscillator();
   const auto cube = [](double z) { return z * z * z; };
@@ -97,7 +97,7 @@ TEST(ModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
   EXPECT_GT(std::abs(p1) + std::abs(p2), 0.0);
 }
 
-TEST(ModelFilterTest, PathsAndWavesActBesideTheBody) {
+TEST(ControlModelFilterTest, PathsAndWavesActBesideTheBody) {
   ControlModel model = control_model({1000.0, {0.0}, {1.0}});
   model.paths = {{Channel::kRoll, 0.5, {}, 4.0}};
   model.waves = {{std::nullopt, 10.0, 0.3, 0.4}, {Channel::kTheta, 14.0, 0.0, 1.0}};
