@@ -130,6 +130,7 @@ inline constexpr Topic kFeedthroughModel{
     "stillhand/feedthrough_model", "stillhand_msgs::FeedthroughModel",
     Pattern::kStateLatched,        0.0,
     who::kIdentification,          who::kModelReaders};
+// The control model; the topic keeps its first name, by which recordings refer to it.
 inline constexpr Topic kAugmentedModel{"stillhand/augmented_model",
                                        "stillhand_msgs::AugmentedModel",
                                        Pattern::kStateLatched,

@@ -10,7 +10,7 @@
 namespace stillhand::close_the_loop {
 namespace {
 
-using cancellation::AugmentedModel;
+using cancellation::ControlModel;
 
 class Loop {
  public:
@@ -44,7 +44,7 @@ void Loop::paper_trials() {
     result_.trials.push_back(session_.run(planned, label));
     if (planned.trial.phase == TrialPhase::kPegged) {
       result_.paper_model = session_.identify(result_.trials.back());
-      result_.control_model = cancellation::augmented(result_.paper_model.control);
+      result_.control_model = cancellation::control_model(result_.paper_model.control);
     }
     last_number_ = planned.trial.number;
     if (planned.cancellation) {
@@ -56,11 +56,11 @@ void Loop::paper_trials() {
 
 // The same trial again: same motion, same target, another model.
 void Loop::try_model(Round& round, std::string why_not) {
-  const auto followed = [&](AugmentedModel model) {
+  const auto followed = [&](ControlModel model) {
     model.adapts = options_.hand;
     return model;
   };
-  AugmentedModel model = followed(round.verdict.control.model);
+  ControlModel model = followed(round.verdict.control.model);
   if (why_not.empty()) {
     const std::string refused = session_.use(model);
     round.augmented = refused.empty();
@@ -69,7 +69,7 @@ void Loop::try_model(Round& round, std::string why_not) {
   // What can't be carried or explained isn't put into a motor: gain and phase are followed, no
   // more.
   if (!round.augmented) {
-    model = followed(cancellation::augmented(result_.paper_model.control));
+    model = followed(cancellation::control_model(result_.paper_model.control));
     if (const std::string refused = session_.use(model); !refused.empty()) {
       throw ConfigError("the paper's model", refused, "one that the canceller takes");
     }

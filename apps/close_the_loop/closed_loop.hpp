@@ -35,10 +35,10 @@ struct Round {
 
 struct LoopResult {
   identification::FeedthroughModel paper_model;
-  std::vector<TrialRun> trials;                ///< I, then A, B, C in the order in which they ran
-  std::vector<Round> rounds;                   ///< at least one
-  std::size_t final_round = 0;                 ///< whose C+ counts: the best that ran
-  cancellation::AugmentedModel control_model;  ///< that the best trial ran with
+  std::vector<TrialRun> trials;              ///< I, then A, B, C in the order in which they ran
+  std::vector<Round> rounds;                 ///< at least one
+  std::size_t final_round = 0;               ///< whose C+ counts: the best that ran
+  cancellation::ControlModel control_model;  ///< that the best trial ran with
 
   [[nodiscard]] const TrialRun& trial(const std::string& label) const;
   /// C+ of the final round, whether or not it was better than C.

@@ -15,7 +15,7 @@
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
 #include "apps/report/staged_folder.hpp"
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/file_io.hpp"

@@ -24,8 +24,8 @@
 namespace stillhand::close_the_loop {
 namespace {
 
-using cancellation::AugmentedModel;
 using cancellation::Channel;
+using cancellation::ControlModel;
 using diagnosis::Effect;
 using diagnosis::Stage;
 using Complex = std::complex<double>;
@@ -70,7 +70,7 @@ cancellation::DirectPath friction_path(const Effect& effect, Channel channel, do
 }
 
 void add_waves(const Effect& effect, std::optional<Channel> channel, double sign,
-               AugmentedModel& model) {
+               ControlModel& model) {
   for (std::size_t h = 0; 2 * h + 1 < effect.coefficients.size(); ++h) {
     model.waves.push_back({channel, static_cast<double>(h + 1) * effect.value(0),
                            sign * effect.coefficients[2 * h],
@@ -84,7 +84,7 @@ class Conversion {
              const ControlOptions& options)
       : model_(model), signals_(signals), options_(options) {}
 
-  ControlModel run(const std::vector<double>& denominator);
+  ConvertedModel run(const std::vector<double>& denominator);
 
  private:
   void convert_inputs();
@@ -107,7 +107,7 @@ class Conversion {
   const diagnosis::Signals& signals_;
   const ControlOptions& options_;
   double gain_ = last_gain();  ///< of the body alone: modes and paths lie beside it
-  ControlModel out_;
+  ConvertedModel out_;
 };
 
 // Eq. CL-1: z' = z^(rate/1000 Hz).
@@ -375,7 +375,7 @@ void Conversion::convert_term(const Effect& effect) {
   treat(effect, false, "no law of the canceller has this form: left alone");
 }
 
-ControlModel Conversion::run(const std::vector<double>& denominator) {
+ConvertedModel Conversion::run(const std::vector<double>& denominator) {
   out_.model.rate_hz = kControlRateHz;
   out_.model.denominator = denominator;
   convert_inputs();
@@ -414,7 +414,7 @@ cancellation::HandCompliance average_hand() {
   return {average.mass_kg, average.damping_n_s_m, average.stiffness_n_m, average.lever_m};
 }
 
-void add_drive_effect(const Effect& effect, double share, ControlModel& to) {
+void add_drive_effect(const Effect& effect, double share, ConvertedModel& to) {
   const auto channel = channel_of(effect.channels.empty() ? "" : effect.channels.front());
   if (effect.kind == "coulomb_friction" && channel == Channel::kOmega) {
     // The motor's force is minus the model's: it pushes with the motion.
@@ -429,12 +429,12 @@ void add_drive_effect(const Effect& effect, double share, ControlModel& to) {
   }
 }
 
-ControlModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
-                              const ControlOptions& options) {
+ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
+                                const ControlOptions& options) {
   constexpr double kGood = 0.01;
-  std::optional<ControlModel> best;
+  std::optional<ConvertedModel> best;
   for (const std::vector<double>& denominator : possible_denominators(model)) {
-    ControlModel next = Conversion(model, signals, options).run(denominator);
+    ConvertedModel next = Conversion(model, signals, options).run(denominator);
     if (!best || next.conversion_error < best->conversion_error) best = std::move(next);
     if (best->conversion_error < kGood) break;
   }

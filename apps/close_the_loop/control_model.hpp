@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/diagnosis/core/model/model.hpp"
 #include "services/diagnosis/core/signals.hpp"
 
@@ -18,8 +18,8 @@ struct Treatment {
 };
 
 /// A diagnosed model as the canceller runs it.
-struct ControlModel {
-  cancellation::AugmentedModel model;
+struct ConvertedModel {
+  cancellation::ControlModel model;
   double conversion_error = 0.0;      ///< Eq. CL-2, worst of its paths [-]
   std::vector<Treatment> treatments;  ///< one an effect
 };
@@ -43,12 +43,12 @@ cancellation::HandCompliance average_hand();
 /// stays out too.
 /// @param signals  what the model was fitted to: ranges of its tables
 /// @throws stillhand::ConfigError when an error exceeds options.max_error.
-ControlModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
-                              const ControlOptions& options = {});
+ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
+                                const ControlOptions& options = {});
 
 /// The same without a diagnosis, for what the drive does: friction against the sign of omega and
 /// ripple of theta, as found in the force that the hand needs to move the stick.
 /// @param share  [-] of the friction that the motor takes over: more than all of it would hunt
-void add_drive_effect(const diagnosis::Effect& effect, double share, ControlModel& to);
+void add_drive_effect(const diagnosis::Effect& effect, double share, ConvertedModel& to);
 
 }  // namespace stillhand::close_the_loop

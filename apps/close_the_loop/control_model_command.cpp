@@ -12,7 +12,7 @@
 #include "apps/lab/lab_options.hpp"
 #include "apps/measurement/read.hpp"
 #include "apps/report/result_files.hpp"
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/file_io.hpp"
@@ -43,7 +43,7 @@ int run(const Words& words) {
                                    model.inputs, model.output);
   ControlOptions options;
   options.lead_s = 1e-3 * words.lead_ms;
-  ControlModel control = to_control_model(model, signals, options);
+  ConvertedModel control = to_control_model(model, signals, options);
   if (!words.as_it_is) control.model.adapts = average_hand();
   cancellation::require_sound(
       control.model,

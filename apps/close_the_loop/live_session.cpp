@@ -94,7 +94,7 @@ identification::FeedthroughModel LiveTrialSession::identify(const TrialRun& /*pe
   return trials_.model();  // the identification's process has given it to the canceller already
 }
 
-std::string LiveTrialSession::use(const cancellation::AugmentedModel& model) {
+std::string LiveTrialSession::use(const cancellation::ControlModel& model) {
   return trials_.use(model);
 }
 

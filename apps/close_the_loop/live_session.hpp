@@ -20,7 +20,7 @@ class LiveTrialSession final : public Session {
   /// @throws std::runtime_error when the trial isn't completed, or the recording doesn't hold it
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
   identification::FeedthroughModel identify(const TrialRun& pegged) override;
-  std::string use(const cancellation::AugmentedModel& model) override;
+  std::string use(const cancellation::ControlModel& model) override;
 
  private:
   lab::LiveTrials& trials_;

@@ -63,7 +63,7 @@ report::Figure tracking_figure(const LoopResult& result) {
   figure.name = "tracking";
   figure.caption =
       "The paper's three metrics: A platform still, B moving, C cancelled by the paper's model, C+ "
-      "by the augmented one whose gain and phase are followed.";
+      "by the control model whose gain and phase are followed.";
   figure.columns = 3;
   for (std::size_t k = 0; k < kMetrics.size(); ++k) {
     figure.panels.push_back(metric_panel(result, k));
@@ -125,12 +125,12 @@ report::Figure force_figure(const LoopRecord& record) {
   report::Panel top;
   top.y.label = "force [N]";
   top.series = {line("measured", Colour::kMeasured, time, part(force, from, count, 1, 1.0)),
-                line("augmented model", Colour::kAccent, time, part(after, from, count, 1, 1.0))};
+                line("diagnosed model", Colour::kAccent, time, part(after, from, count, 1, 1.0))};
   report::Panel bottom;
   bottom.x.label = "time [s]";
   bottom.y.label = "left [N]";
   bottom.series = {line("linear model", Colour::kWarning, time, left(before)),
-                   line("augmented model", Colour::kAccent, time, left(after))};
+                   line("diagnosed model", Colour::kAccent, time, left(after))};
   figure.panels = {top, bottom};
   return figure;
 }

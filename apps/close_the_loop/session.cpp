@@ -56,7 +56,7 @@ identification::FeedthroughModel InProcessSession::identify(const TrialRun& pegg
   return model;
 }
 
-std::string InProcessSession::use(const cancellation::AugmentedModel& model) {
+std::string InProcessSession::use(const cancellation::ControlModel& model) {
   const auto refusal = loop_.use_model(model);
   return refusal == cancellation::Refusal::kNone ? std::string()
                                                  : std::string(cancellation::describe(refusal));

@@ -41,7 +41,7 @@ class Session {
   /// @throws ConfigError when no usable one comes out
   virtual identification::FeedthroughModel identify(const TrialRun& pegged) = 0;
   /// The model that the canceller uses from the next trial on.  @return why not, or empty
-  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
+  virtual std::string use(const cancellation::ControlModel& model) = 0;
 };
 
 /// RMS error and the rest, from target and cursor as measured.
@@ -56,7 +56,7 @@ class InProcessSession final : public Session {
 
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
   identification::FeedthroughModel identify(const TrialRun& pegged) override;
-  std::string use(const cancellation::AugmentedModel& model) override;
+  std::string use(const cancellation::ControlModel& model) override;
   /// undeclared_effect.json, once the verdict is out.
   [[nodiscard]] const std::string& open_effect() const noexcept { return sealed_; }
   /// Digest of what open_effect() will give.

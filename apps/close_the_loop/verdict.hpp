@@ -39,7 +39,7 @@ struct Verdict {
   diagnosis::Diagnosis drive;  ///< of the stick's own equation
   std::optional<Latency> latency;
   std::vector<Finding> findings;  ///< strongest first
-  ControlModel control;
+  ConvertedModel control;
   std::string not_carried;  ///< why there is no control model, or empty
 
   /// Kind of the strongest, or "none".

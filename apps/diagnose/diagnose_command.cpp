@@ -129,7 +129,9 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--trial", words->read.trial,
                    "of a session's recording: number of the trial, or its condition's letter");
-  verb->add_option("--save", words->save, "file for the augmented model, for `stillhand predict`")
+  verb->add_option(
+          "--save", words->save,
+          "file for the diagnosed model, for `stillhand predict` and `stillhand control-model`")
       ->check(settings::check_name);
   verb->add_option("--json", words->json, "file for the verdict")->check(settings::check_name);
   verb->add_option("--report", words->report, "folder for a page with figures")

@@ -34,7 +34,7 @@ class ConductedTrials final : public LiveTrials {
 
   const session::TrialOutcome& run(const session::PlannedTrial& planned) override;
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
-  std::string use(const cancellation::AugmentedModel& model) override {
+  std::string use(const cancellation::ControlModel& model) override {
     return conductor_.use(model);
   }
   [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }

@@ -45,7 +45,7 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Show show)
       control_(service.bus().publisher<stillhand_msgs::TrialControl>(topics::kTrialControl)),
       assignment_(
           service.bus().publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment)),
-      augmented_model_(
+      control_model_(
           service.bus().publisher<stillhand_msgs::AugmentedModel>(topics::kAugmentedModel)) {
   subscribe();
 }
@@ -135,7 +135,7 @@ void Conductor::perform(const Actions& actions) {
   if (actions.announce) announce(*actions.announce);
   if (actions.give_model_from) {
     given_.from_tick(*actions.give_model_from);
-    augmented_model_.write(given_);
+    control_model_.write(given_);
   }
   if (actions.progress) show_(*actions.progress);
 }
@@ -195,8 +195,8 @@ Conductor::AwaitedModel Conductor::await_model(std::int64_t trial) {
   return {model_, wait.failure()};
 }
 
-std::string Conductor::use(const cancellation::AugmentedModel& model) {
-  given_ = cancellation::to_idl(model, cancellation::kFirstAugmentedModel + models_++);
+std::string Conductor::use(const cancellation::ControlModel& model) {
+  given_ = cancellation::to_idl(model, cancellation::kFirstControlModel + models_++);
   ModelUse use(trouble_);
   drive(use);
   return use.failure();

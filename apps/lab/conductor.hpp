@@ -17,7 +17,7 @@
 #include "apps/session/trial_outcome.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::lab {
@@ -61,7 +61,7 @@ class Conductor {
   };
   AwaitedModel await_model(std::int64_t trial);
   /// Gives the canceller a model and waits for its answer.  @return why it was refused, or empty
-  std::string use(const cancellation::AugmentedModel& model);
+  std::string use(const cancellation::ControlModel& model);
   /// Path of the recording on the recorder's own host; empty: the recorder did not report it.
   [[nodiscard]] std::string recording();
   /// Misses no longer count; processes may leave.
@@ -85,10 +85,10 @@ class Conductor {
   Roster roster_;
   runtime::Publisher<stillhand_msgs::TrialControl> control_;
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
-  runtime::Publisher<stillhand_msgs::AugmentedModel> augmented_model_;
+  runtime::Publisher<stillhand_msgs::AugmentedModel> control_model_;
   std::optional<session::PlannedTrial> planned_;  ///< the trial that runs
   stillhand_msgs::AugmentedModel given_;          ///< the model that the canceller gets
-  std::int32_t models_ = 0;                       ///< augmented models given so far
+  std::int32_t models_ = 0;                       ///< control models given so far
   Trouble trouble_;
 
   std::mutex mutex_;  ///< guards what follows

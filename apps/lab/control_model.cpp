@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/control_model.hpp"
 
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::lab {
 
-cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
-                                           const std::filesystem::path& config) {
+cancellation::ControlModel control_model(const std::filesystem::path& file, std::uint32_t rig,
+                                         const std::filesystem::path& config) {
   auto model =
       cancellation::parse_control_model(recording::read_file(file.string()), file.string(), rig);
   cancellation::require_sound(

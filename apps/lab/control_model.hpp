@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 
 namespace stillhand::lab {
 
@@ -12,7 +12,7 @@ namespace stillhand::lab {
 /// @param config  folder of the services' settings
 /// @throws ConfigError when it is no control model, is of another rig, or the canceller would
 ///         refuse it
-cancellation::AugmentedModel control_model(const std::filesystem::path& file, std::uint32_t rig,
-                                           const std::filesystem::path& config);
+cancellation::ControlModel control_model(const std::filesystem::path& file, std::uint32_t rig,
+                                         const std::filesystem::path& config);
 
 }  // namespace stillhand::lab

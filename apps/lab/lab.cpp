@@ -122,7 +122,7 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
 }
 
 int run_lab(const LabOptions& options, runtime::Stop& stop) {
-  std::optional<cancellation::AugmentedModel> model;
+  std::optional<cancellation::ControlModel> model;
   if (!options.model.empty()) model = control_model(options.model, options.rig, options.config);
   const LiveSession live = run_session(options, stop, [&](LiveTrials& trials) {
     for (const session::PlannedTrial& planned : session::plan(options.protocol)) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/session/trial_outcome.hpp"
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/identification/core/identifier.hpp"
 
 namespace stillhand::lab {
@@ -21,7 +21,7 @@ class LiveTrials {
   /// The model identified last.
   [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
   /// Gives the canceller a model.  @return why it was refused, or empty
-  virtual std::string use(const cancellation::AugmentedModel& model) = 0;
+  virtual std::string use(const cancellation::ControlModel& model) = 0;
   [[nodiscard]] virtual bool interrupted() const = 0;
 };
 

@@ -85,10 +85,10 @@ InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tic
       keep_every_(keep_every) {}
 
 cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
-  return canceller_.load_model(cancellation::augmented(model.control));
+  return canceller_.load_model(cancellation::control_model(model.control));
 }
 
-cancellation::Refusal InProcessLoop::use_model(const cancellation::AugmentedModel& model) {
+cancellation::Refusal InProcessLoop::use_model(const cancellation::ControlModel& model) {
   return canceller_.load_model(model);
 }
 

@@ -71,7 +71,7 @@ class InProcessLoop {
   TrialSignals run(PlannedTrial planned);
   /// The model the canceller uses from now on.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
-  cancellation::Refusal use_model(const cancellation::AugmentedModel& model);
+  cancellation::Refusal use_model(const cancellation::ControlModel& model);
   /// The effect of the rig, once the verdict on it is written: no trial runs after this call.
   [[nodiscard]] rig::OpenedEffect open_effect() { return rig_.open_effect(); }
 

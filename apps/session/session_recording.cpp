@@ -65,7 +65,7 @@ SessionRecording read_session(const std::string& path) {
       {topics::kTrialControl.name, into(session.trial_controls)},
       {topics::kTrialAssignment.name, into(session.trial_assignments)},
       {topics::kFeedthroughModel.name, into(session.models)},
-      {topics::kAugmentedModel.name, into(session.augmented_models)},
+      {topics::kAugmentedModel.name, into(session.control_models)},
       {topics::kEvent.name, into(session.events)},
       {topics::kServiceStatus.name, into(session.statuses)},
       {topics::kClockQuestion.name, counted<stillhand_msgs::ClockQuestion>()},

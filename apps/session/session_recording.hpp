@@ -27,7 +27,7 @@ struct SessionRecording {
   std::vector<stillhand_msgs::TrialControl> trial_controls;
   std::vector<stillhand_msgs::TrialAssignment> trial_assignments;
   std::vector<stillhand_msgs::FeedthroughModel> models;
-  std::vector<stillhand_msgs::AugmentedModel> augmented_models;
+  std::vector<stillhand_msgs::AugmentedModel> control_models;
   std::vector<stillhand_msgs::Event> events;
   std::vector<stillhand_msgs::ServiceStatus> statuses;
   std::vector<stillhand_msgs::ClockOffset> clock_offsets;

@@ -4,7 +4,7 @@
 namespace stillhand::cancellation {
 namespace {
 
-// The channels of core and bus have one order; a number that is none stays none, and is refused.
+// Channels of core and bus have one order.  A number that is no channel stays one, and is refused.
 Channel from_idl(stillhand_msgs::ModelChannel channel) { return static_cast<Channel>(channel); }
 stillhand_msgs::ModelChannel to_idl(Channel channel) {
   return static_cast<stillhand_msgs::ModelChannel>(channel);
@@ -37,12 +37,16 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
   return input;
 }
 
-ControlRateModel from_idl(const stillhand_msgs::FeedthroughModel& message) {
+Assignment from_idl(const stillhand_msgs::TrialAssignment& message) {
+  return {message.trial(), message.cancellation()};
+}
+
+signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message) {
   return {message.control_rate_hz(), message.control_numerator(), message.control_denominator()};
 }
 
-AugmentedModel from_idl(const stillhand_msgs::AugmentedModel& message) {
-  AugmentedModel model;
+ControlModel from_idl(const stillhand_msgs::AugmentedModel& message) {
+  ControlModel model;
   model.rate_hz = message.rate_hz();
   model.denominator = message.denominator();
   for (const auto& input : message.inputs()) {
@@ -71,7 +75,7 @@ AugmentedModel from_idl(const stillhand_msgs::AugmentedModel& message) {
   return model;
 }
 
-stillhand_msgs::AugmentedModel to_idl(const AugmentedModel& model, std::int32_t number) {
+stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t number) {
   stillhand_msgs::AugmentedModel message;
   message.model(number);
   message.rate_hz(model.rate_hz);

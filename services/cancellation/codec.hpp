@@ -3,23 +3,27 @@
 
 #include "idl/control_loop.h"
 #include "idl/model.h"
+#include "idl/session.h"
 #include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/trial_arming.hpp"
 
 namespace stillhand::cancellation {
 
 CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted);
 
-/// The filter for the control rate; whether it is sound is for the canceller to judge.
-ControlRateModel from_idl(const stillhand_msgs::FeedthroughModel& message);
+Assignment from_idl(const stillhand_msgs::TrialAssignment& message);
 
-/// Augmented models are numbered from here on, so that a motor command tells them from identified
-/// ones.
-inline constexpr std::int32_t kFirstAugmentedModel = 1000;
+/// The filter for the control rate; check_model() judges whether it is sound.
+signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message);
 
-/// As sent; whether it is sound is for the canceller to judge.
-AugmentedModel from_idl(const stillhand_msgs::AugmentedModel& message);
-/// @param model  within the sizes that a canceller takes; longer lists are cut off at the message's
-stillhand_msgs::AugmentedModel to_idl(const AugmentedModel& model, std::int32_t number);
+/// Models of the topic stillhand/augmented_model are numbered from here on, so that the number in a
+/// motor command distinguishes them from identified ones.
+inline constexpr std::int32_t kFirstControlModel = 1000;
+
+/// As sent; check_model() judges whether it is sound.
+ControlModel from_idl(const stillhand_msgs::AugmentedModel& message);
+/// @param model  within the sizes that the canceller takes
+stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t number);
 
 /// @param sensed  the sample answered: its tick and acquisition stamp travel on
 /// @param model   number of the model in use, -1 none

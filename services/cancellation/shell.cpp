@@ -1,31 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/cancellation/shell.hpp"
 
-#include <string>
+#include <array>
+#include <cstdio>
+#include <utility>
 
 namespace stillhand::cancellation {
 
 Shell::Shell(runtime::Service& service)
     : service_(service),
-      core_(service.config<Config>()),
+      config_(service.config<Config>()),
+      core_(config_),
       command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)) {
   runtime::Bus& bus = service.bus();
-  service.on_trial([this](const Trial&, const auto&) { note_when_armed(); });
+  service.on_trial([this](const Trial& trial, const auto&) {
+    arming_.announce(trial);
+    note_when_armed();
+  });
   bus.subscribe<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment,
                                                  [this](const auto& message, const auto&) {
-                                                   assignment_ = message;
+                                                   arming_.assign(from_idl(message));
                                                    note_when_armed();
                                                  });
   bus.subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
         if (!message.usable()) return;
-        on_model(augmented(from_idl(message)), message.model(), message.from_tick());
+        on_model({control_model(from_idl(message)), message.model(), message.from_tick()});
       });
   bus.subscribe<stillhand_msgs::AugmentedModel>(
       topics::kAugmentedModel, [this](const auto& message, const auto&) {
-        on_model(from_idl(message), message.model(), message.from_tick());
+        on_model({from_idl(message), message.model(), message.from_tick()});
       });
-  // The canceller watches everybody's life sign through this topic; its content is not used.
+  // The canceller watches every process's life sign through this topic; its content is not used.
   bus.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
                                                [](const auto&, const auto&) {});
   bus.subscribe<stillhand_msgs::Sensed>(
@@ -33,55 +39,89 @@ Shell::Shell(runtime::Service& service)
 }
 
 void Shell::note_when_armed() {
-  if (!assignment_ || assignment_->trial() != service_.trial().number) return;
-  // A trial that is to be cancelled and is not would pass for one that was.
-  const bool in_time = ready_ && ready_->from_tick <= service_.trial().start_tick;
-  if (assignment_->cancellation() && !core_.has_model() && !in_time) {
-    service_.note_event(stillhand_msgs::EVENT_NOTE,
-                        ready_ ? "the model is for later than the trial" : why_no_model_);
-    return;
+  switch (arming_.readiness(core_.has_model(), schedule_.waits_for())) {
+    case Readiness::kUnassigned:
+      return;
+    case Readiness::kArmed:
+      service_.note_armed(service_.trial().number);
+      return;
+    case Readiness::kNoModel:
+      service_.note_event(stillhand_msgs::EVENT_NOTE, why_no_model_.load());
+      return;
+    case Readiness::kModelTooLate:
+      service_.note_event(stillhand_msgs::EVENT_NOTE, "the model is for later than the trial");
+      return;
   }
-  service_.note_armed(service_.trial().number);
 }
 
-void Shell::on_model(const AugmentedModel& model, std::int32_t number, Tick from_tick) {
-  const Refusal refusal = core_.make_ready(model);
-  if (refusal == Refusal::kNone) {
-    ready_ = ReadyModel{number, from_tick};
+void Shell::on_model(Received received) {
+  why_no_model_.store("the model is being prepared");
+  {
+    const std::lock_guard lock(mutex_);
+    received_.push_back(std::move(received));
+  }
+  // The handover replaces a request that it has not begun; the list keeps that request's model.
+  handover_.prepare([this] { return prepare_received(); });
+}
+
+std::unique_ptr<Shell::Ready> Shell::prepare_received() {
+  std::vector<Received> all;
+  {
+    const std::lock_guard lock(mutex_);
+    all.swap(received_);
+  }
+  std::unique_ptr<Ready> newest;
+  for (const Received& received : all) {
+    Preparation preparation = prepare(received.model, bounds(config_));
+    if (preparation.refusal == Refusal::kNone) {
+      newest =
+          std::make_unique<Ready>(Ready{preparation.model, received.number, received.from_tick});
+      continue;
+    }
+    const char* const why =
+        describe(preparation.refusal).data();  // a literal: it outlives the note
+    why_no_model_.store(why);
+    service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, why);
+  }
+  return newest;
+}
+
+void Shell::follow_models(Tick tick) {
+  const Ready* const newest = handover_.current();
+  const bool became_ready = newest != ready_;
+  if (became_ready) {
+    ready_ = newest;
+    schedule_.offer(ready_->number, ready_->from_tick);
     service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");
-    note_when_armed();
-  } else {
-    // The texts are literals: they outlive the note.
-    why_no_model_ = describe(refusal).data();
-    service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, why_no_model_);
   }
+  const ModelSchedule::Due due = schedule_.step(tick);
+  if (due.take) core_.take(ready_->model);
+  if (due.late_ticks > 0) {
+    std::array<char, 100> text{};
+    std::snprintf(text.data(), text.size(),
+                  "model %d was ready %lld ticks after it could have been used", ready_->number,
+                  static_cast<long long>(due.late_ticks));
+    service_.note_event(stillhand_msgs::EVENT_NOTE, text.data());
+  }
+  if (became_ready) note_when_armed();
 }
 
-// At a tick that was told beforehand, so that a replay takes it at the same one.
-void Shell::take_model_when_due(Tick tick) {
-  if (!ready_ || tick < ready_->from_tick) return;
-  core_.take_ready_model();
-  model_ = ready_->number;
-  ready_.reset();
+void Shell::note_interlock(const Trial& trial) {
+  if (interlock_.latched(trial) == reported_latch_) return;
+  reported_latch_ = !reported_latch_;
+  if (!reported_latch_) return;
+  service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().replay_present()
+                                                                  ? "a replay is on the bus"
+                                                                  : "a process is missing");
 }
 
 void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
-  take_model_when_due(sensed.tick());
+  follow_models(sensed.tick());
   const Trial& trial = service_.trial();
   const bool permitted = interlock_.step(trial, sensed.tick(), service_.bus().peers_alive());
-  if (interlock_.latched(trial) != told_latch_) {
-    told_latch_ = !told_latch_;
-    if (told_latch_) {
-      service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().replay_present()
-                                                                      ? "a replay is on the bus"
-                                                                      : "a process is missing");
-    }
-  }
-  const bool enabled = assignment_ && assignment_->trial() == trial.number &&
-                       assignment_->cancellation() && trial.phase == TrialPhase::kTracking &&
-                       trial.covers(sensed.tick());
-  const CancellerInput input = from_idl(sensed, enabled, permitted);
-  auto message = to_idl(core_.step(input), input, sensed, model_);
+  note_interlock(trial);
+  const CancellerInput input = from_idl(sensed, arming_.cancels(sensed.tick()), permitted);
+  auto message = to_idl(core_.step(input), input, sensed, schedule_.in_use());
   command_.write(message);
   service_.note_tick(sensed.tick());
 }

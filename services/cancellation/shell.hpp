@@ -1,44 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
 
 #include "idl/model.h"
 #include "idl/session.h"
 #include "services/cancellation/codec.hpp"
 #include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/model_schedule.hpp"
+#include "services/cancellation/core/trial_arming.hpp"
+#include "services/runtime/process/handover.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::cancellation {
 
 /// The canceller's process: one motor command for each sensed sample, in the receiving thread.
+/// Models are prepared in another thread and taken by the sample that ModelSchedule names.
 class Shell {
  public:
   explicit Shell(runtime::Service& service);
   void run() { service_.run(); }
 
  private:
-  void on_sensed(const stillhand_msgs::Sensed& sensed);
-  /// @param number     of the model
-  /// @param from_tick  first tick that it is used at
-  void on_model(const AugmentedModel& model, std::int32_t number, Tick from_tick);
-  void take_model_when_due(Tick tick);
-  void note_when_armed();
-
-  runtime::Service& service_;
-  Canceller core_;
-  runtime::Interlock interlock_;
-  bool told_latch_ = false;
-  struct ReadyModel {
+  /// A model as it came.
+  struct Received {
+    ControlModel model;
     std::int32_t number;
     Tick from_tick;
   };
-  std::optional<ReadyModel> ready_;
-  std::int32_t model_ = -1;                         ///< in use
-  const char* why_no_model_ = "no model has come";  ///< a literal
-  std::optional<stillhand_msgs::TrialAssignment> assignment_;
+  /// A sound one, ready for the canceller.
+  struct Ready {
+    PreparedModel model;
+    std::int32_t number;
+    Tick from_tick;
+  };
+
+  void on_sensed(const stillhand_msgs::Sensed& sensed);
+  void on_model(Received received);
+  /// In the preparing thread: every model that has come since, in order.
+  /// @return the newest sound one, or nullptr
+  std::unique_ptr<Ready> prepare_received();
+  /// Offers a model that has become ready, and hands the canceller the one that is due.
+  void follow_models(Tick tick);
+  void note_when_armed();
+  void note_interlock(const Trial& trial);
+
+  runtime::Service& service_;
+  const Config config_;
+  Canceller core_;
+  ModelSchedule schedule_;
+  TrialArming arming_;
+  runtime::Interlock interlock_;
+  bool reported_latch_ = false;
+  const Ready* ready_ = nullptr;  ///< the newest; the handover owns it
+  std::atomic<const char*> why_no_model_{"no model has come"};  ///< a literal
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
+  std::mutex mutex_;
+  std::vector<Received> received_;     ///< not yet prepared
+  runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };
 
 }  // namespace stillhand::cancellation

@@ -18,6 +18,7 @@ namespace {
 using Json = settings::JsonEntry::Json;
 using Entry = settings::JsonEntry;
 
+// The name that the first files carry.
 constexpr const char* kFormat = "stillhand augmented model";
 constexpr std::size_t kMostOrder = 12;
 constexpr std::size_t kMostInputs = 16;
@@ -170,7 +171,8 @@ std::string model_json(const Model& model) {
 }
 
 Model parse_model(std::string_view json, const std::string& origin) {
-  const Json whole = settings::parsed_json(json, origin, "JSON of a stillhand augmented model");
+  const Json whole = settings::parsed_json(
+      json, origin, "JSON of a diagnosed model, as `stillhand diagnose --save` writes");
   const Entry top(whole, origin);
   if (top.at("format").text() != kFormat) {
     top.at("format").refuse("\"stillhand augmented model\", as `stillhand diagnose --save` writes");

@@ -8,7 +8,8 @@
 
 namespace stillhand::diagnosis {
 
-/// Newest "stillhand augmented model" format that this program writes and reads.
+/// Newest format of a diagnosed model ("stillhand augmented model" in the file) that this program
+/// writes and reads.
 inline constexpr int kModelFormatVersion = 1;
 
 /// JSON text of a model; README "Model file".  Numbers keep every bit.

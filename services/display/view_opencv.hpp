@@ -11,14 +11,15 @@
 
 namespace stillhand::display {
 
-/// What the subject is told besides the task.
+/// What the screen shows the subject in addition to the task.
 enum class Notice : std::uint8_t {
   kNone,
   kHold,      ///< a trial is about to start or has ended: hold the stick, nothing to track
   kLinkLost,  ///< no fresh samples: what is drawn is old
 };
 
-/// The line of text on the screen.  Holds nothing that tells the condition: the subject is blinded.
+/// The line of text on the screen.  Holds nothing that reveals the condition: the subject is
+/// blinded.
 struct ViewStatus {
   std::int64_t trial_number = -1;  ///< counted from 0, shown from 1; -1: none
   double time_left_s = 0.0;        ///< [s] of the measured part

@@ -62,9 +62,8 @@ void check_display() {
   }
 }
 
-/// Whether a display lets this program in is known to Qt alone, which aborts when it does not:
-/// while this lives, an abort is told as the refusal that it is, with the exit status of a
-/// ConfigError.
+/// Qt alone knows whether a display admits this program, and aborts where it does not.  While this
+/// lives, an abort is reported as a refusal, with the exit status of a ConfigError.
 class AbortAsRefusal {
  public:
   AbortAsRefusal() {

@@ -21,14 +21,15 @@ stillhand_msgs::FeedthroughModel to_idl(const FeedthroughModel& model, std::int3
   return message;
 }
 
-stillhand_msgs::FeedthroughModel failure_to_idl(const std::string& why, std::int32_t number,
-                                                std::int32_t trial) {
+stillhand_msgs::FeedthroughModel to_idl(const Identification& outcome, std::int32_t number,
+                                        std::int32_t trial) {
+  if (outcome.model) return to_idl(*outcome.model, number, trial);
   stillhand_msgs::FeedthroughModel message;
   message.model(number);
   message.trial(trial);
   message.usable(false);
   constexpr std::size_t kRoom = 199;  // string<200> in idl/model.idl
-  message.text(why.substr(0, kRoom));
+  message.text(outcome.why_not.substr(0, kRoom));
   return message;
 }
 

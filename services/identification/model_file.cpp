@@ -15,7 +15,7 @@ constexpr std::size_t kMostCoefficients = 13;
 void check(const DifferenceModel& model, const std::string& path) {
   if (model.numerator.size() != model.denominator.size()) {
     throw ConfigError(path + ".denominator", std::to_string(model.denominator.size()) + " numbers",
-                      std::to_string(model.numerator.size()) + " as the numerator");
+                      std::to_string(model.numerator.size()) + ", as many as in the numerator");
   }
   if (!signal::well_formed(model)) {
     throw ConfigError(path, "a malformed model",

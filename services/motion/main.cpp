@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.add_option("--ride", way.ride,
-                       "recorded ride to follow: CSV with a_y [m/s^2], or .mcap")
+                       "recorded ride that the platform follows: CSV with a_y [m/s^2], or .mcap")
             ->check(settings::check_name);
         cli.add_option("--road-class", way.road_class, "ISO 8608 road, A (very good) to H")
             ->capture_default_str();

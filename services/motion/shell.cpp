@@ -45,7 +45,7 @@ void Shell::prepare_when_complete() {
     try {
       auto prepared =
           std::make_unique<Prepared>(Prepared{MotionTrajectory(profile, config_.limits), trial});
-      tell_motion(profile, prepared->trajectory.report());
+      report_motion(profile, prepared->trajectory.report());
       return prepared;
     } catch (const ConfigError& error) {
       service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
@@ -64,7 +64,7 @@ void Shell::complete(MotionProfile& profile) const {
 }
 
 // Into the recording: neither the ride nor the road is on the bus.
-void Shell::tell_motion(const MotionProfile& profile, const MotionReport& report) const {
+void Shell::report_motion(const MotionProfile& profile, const MotionReport& report) const {
   char text[128];
   if (profile.kind == MotionKind::kRide) {
     std::snprintf(text, sizeof(text),

@@ -42,7 +42,7 @@ class Shell {
   void on_sensed(Tick tick);
   void prepare_when_complete();
   void complete(MotionProfile& profile) const;
-  void tell_motion(const MotionProfile& profile, const MotionReport& report) const;
+  void report_motion(const MotionProfile& profile, const MotionReport& report) const;
 
   runtime::Service& service_;
   MotionGenerator::Config config_;

@@ -7,7 +7,8 @@ namespace stillhand::signal {
 ///
 ///   x'' = w^2 (u - x) - 2 z w x',   lag at low frequency 2 z / w
 ///
-/// A mass on spring and damper, or a subject's arm and muscle.  Unit of u in, same unit out.  Pure.
+/// A mass on spring and damper, or a subject's arm and muscle: the closed solution of the damped
+/// oscillator over one tick.  Unit of u in, same unit out.  Pure.
 class SecondOrderLag {
  public:
   struct State {

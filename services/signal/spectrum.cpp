@@ -53,7 +53,7 @@ void check(const std::vector<double>& x, const std::vector<double>& y, double ra
            std::size_t segment_samples) {
   if (x.size() != y.size()) {
     throw ConfigError("spectrum.y", std::to_string(y.size()) + " samples",
-                      std::to_string(x.size()) + " as x");
+                      std::to_string(x.size()) + ", as many as of x");
   }
   if (segment_samples < 8 || segment_samples % 2 != 0 || segment_samples > x.size()) {
     throw ConfigError("spectrum.segment_samples", std::to_string(segment_samples),

@@ -158,7 +158,7 @@ class ErrorMetric {
       : scale_(error.colwise().norm()), qr_((error * scale_.cwiseInverse().asDiagonal()).eval()) {
     if (std::abs(qr_.matrixR()(error.cols() - 1, error.cols() - 1)) < kDependent) {
       throw ConfigError("manova.observations", "metrics with linearly dependent residuals",
-                        "metrics that are not sums of one another");
+                        "metrics of which none is a linear combination of the others");
     }
   }
 

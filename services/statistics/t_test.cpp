@@ -67,7 +67,7 @@ TTest paired_t_test(const std::vector<double>& first, const std::vector<double>&
   require_inside_unit_interval(confidence, "t_test.confidence");
   if (first.size() != second.size()) {
     throw ConfigError("t_test.second", std::to_string(second.size()) + " values",
-                      std::to_string(first.size()) + " as the first sample");
+                      std::to_string(first.size()) + ", as many as in the first sample");
   }
   std::vector<double> differences(first.size());
   std::transform(first.begin(), first.end(), second.begin(), differences.begin(),

@@ -24,7 +24,7 @@ std::int64_t core_seed(const SessionSettings& settings) {
   return static_cast<std::int64_t>(settings.seed & 0xffffffffu);
 }
 
-/// For cores whose every step is told by its input alone.
+/// For cores whose steps depend on their input alone.
 constexpr auto kAlways = [](const auto&, const auto&) { return true; };
 constexpr auto kSameTrial = [](const auto& a, const auto& b) { return a.trial() == b.trial(); };
 
@@ -64,30 +64,31 @@ Replay replay_cancellation(const SessionRecording& session, const SessionSetting
   cancellation::Canceller core(settings.of<cancellation::Config>("cancellation"));
   const ByTick sensed("sensed", session.sensed);
   std::int32_t offered = -1;
-  std::int32_t augmented = -1;
+  std::int32_t control_model = -1;
   // The canceller's model by its number; one that was refused is never named.
-  const auto load_augmented = [&](std::int32_t number) {
-    if (number < cancellation::kFirstAugmentedModel || number == augmented) return;
+  const auto load_control_model = [&](std::int32_t number) {
+    if (number < cancellation::kFirstControlModel || number == control_model) return;
     const auto model =
-        std::find_if(session.augmented_models.begin(), session.augmented_models.end(),
+        std::find_if(session.control_models.begin(), session.control_models.end(),
                      [&](const auto& candidate) { return candidate.model() == number; });
-    if (model == session.augmented_models.end()) {
+    if (model == session.control_models.end()) {
       throw NotRecorded("model " + std::to_string(number) + " is not in the recording");
     }
     core.load_model(cancellation::from_idl(*model));
-    augmented = number;
+    control_model = number;
   };
   const auto step = [&](Tick tick, const msgs::MotorCommand& like) {
-    load_augmented(like.model());
+    load_control_model(like.model());
     // A model changes the core in the step that names it; one that was refused is never named.
-    for (; like.model() < cancellation::kFirstAugmentedModel && offered < like.model(); ++offered) {
+    for (; like.model() < cancellation::kFirstControlModel && offered < like.model(); ++offered) {
       const auto model =
           std::find_if(session.models.begin(), session.models.end(),
                        [&](const auto& candidate) { return candidate.model() == offered + 1; });
       if (model == session.models.end()) {
         throw NotRecorded("model " + std::to_string(offered + 1) + " is not in the recording");
       }
-      if (model->usable()) core.load_model(cancellation::augmented(cancellation::from_idl(*model)));
+      if (model->usable())
+        core.load_model(cancellation::control_model(cancellation::from_idl(*model)));
     }
     const msgs::Sensed& sample = sensed.at(tick);
     const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());

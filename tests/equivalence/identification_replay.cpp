@@ -2,9 +2,8 @@
 #include <algorithm>
 #include <set>
 
-#include "services/contract/config_error.hpp"
 #include "services/identification/codec.hpp"
-#include "services/identification/shell.hpp"
+#include "services/identification/core/pegged_record.hpp"
 #include "services/runtime/trial_codec.hpp"
 #include "tests/equivalence/core_replays.hpp"
 #include "tests/equivalence/recorded_trial.hpp"
@@ -37,22 +36,6 @@ std::set<Tick> lost_by_identification(const SessionRecording& session, Tick firs
   return lost;
 }
 
-/// As the identification's shell answers a finished record.
-msgs::FeedthroughModel fitted(const identification::PeggedRecord& pegged,
-                              const identification::Config& config, std::int32_t number) {
-  const auto trial = static_cast<std::int32_t>(pegged.trial());
-  const identification::Record record = pegged.record();
-  if (static_cast<double>(pegged.lost()) > 0.01 * static_cast<double>(record.size())) {
-    return identification::failure_to_idl(
-        std::to_string(pegged.lost()) + " ticks of the pegged trial were lost", number, trial);
-  }
-  try {
-    return identification::to_idl(identification::identify(record, config), number, trial);
-  } catch (const ConfigError& error) {
-    return identification::failure_to_idl(error.what(), number, trial);
-  }
-}
-
 }  // namespace
 
 Replay replay_identification(const SessionRecording& session, const SessionSettings& settings) {
@@ -76,7 +59,9 @@ Replay replay_identification(const SessionRecording& session, const SessionSetti
         const msgs::Sensed& sample = sensed.at(tick);
         pegged.take(tick, sample.accel_y_m_s2(), sample.force_n());
       }
-      auto answer = fitted(pegged, config, model.model());
+      const identification::PeggedTrial collected = pegged.release();
+      auto answer = identification::to_idl(identification::identify(collected, config),
+                                           model.model(), static_cast<std::int32_t>(model.trial()));
       // When the fit was done is the machine's doing, as the stamp is.
       answer.from_tick(model.from_tick());
       compare(answer, model, trial.start_tick, result);

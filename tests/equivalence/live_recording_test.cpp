@@ -191,7 +191,7 @@ TEST_F(LiveRecordingTest, AnotherReferenceSeedShowsInTheDisplay) {
   EXPECT_GT(replay_display(session, settings_).different, 0);
 }
 
-// ---- Losses of the recorder are told apart from those of a core.
+// ---- Losses of the recorder are distinguished from those of a core.
 
 TEST_F(LiveRecordingTest, OutputsThatOnlyTheRecorderLostAreSteppedThrough) {
   SessionRecording session = *session_;

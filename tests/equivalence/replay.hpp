@@ -76,7 +76,7 @@ void compare(Output replayed, const Output& recorded, Tick tick, Replay& replay)
 /// them: the core steps, and nothing is compared.
 ///
 /// @param step   Output(tick, like): steps the core at a tick with the settings that the recorded
-///               output `like` tells (permitted, trial, ...); throws NotRecorded
+///               output `like` holds (permitted, trial, ...); throws NotRecorded
 /// @param agree  bool(before, after): the settings of two outputs are the same, and then also of
 ///               those lost between them
 template <typename Output, typename Step, typename Agree>

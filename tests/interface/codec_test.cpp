@@ -199,9 +199,9 @@ TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
   EXPECT_EQ(std::tuple(enabled, permitted), std::tuple(true, false));
 }
 
-TEST(CancellationCodecTest, AnAugmentedModelComesBackAsItWasSent) {
+TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
   using namespace cancellation;
-  AugmentedModel model;
+  ControlModel model;
   model.rate_hz = 1000.0;
   model.denominator = {1.0, 0.5};
   model.inputs = {{Channel::kAccelY, {-1.0, 2.0, {3.0, 4.0}}, {5.0, 6.0}},
@@ -213,7 +213,7 @@ TEST(CancellationCodecTest, AnAugmentedModelComesBackAsItWasSent) {
   model.adapts = HandCompliance{23.0, 24.0, 25.0, 26.0};
   const auto message = to_idl(model, 1003);
   EXPECT_EQ(message.model(), 1003);
-  const AugmentedModel back = from_idl(message);
+  const ControlModel back = from_idl(message);
   const auto same_map = [](const ValueMap& a, const ValueMap& b) {
     return a.low == b.low && a.high == b.high && a.values == b.values;
   };
@@ -351,7 +351,8 @@ TEST(IdentificationCodecTest, TheCancellerGetsTheControlRateFilter) {
 }
 
 TEST(IdentificationCodecTest, AFailureSaysWhyWithinTheRoomOfTheIdl) {
-  const auto fields = fields_of(identification::failure_to_idl(std::string(500, 'x'), 11, 12));
+  const identification::Identification failed{std::nullopt, std::string(500, 'x')};
+  const auto fields = fields_of(identification::to_idl(failed, 11, 12));
   const auto has = [&fields](const char* name, const std::string& value) {
     return std::find(fields.begin(), fields.end(), Fields::value_type{name, value}) != fields.end();
   };

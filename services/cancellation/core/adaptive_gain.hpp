@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/signal/biquad.hpp"
 #include "services/signal/butterworth.hpp"
 #include "services/signal/second_order_lag.hpp"
@@ -17,14 +17,14 @@ namespace stillhand::cancellation {
 ///   r_i = F P (f^, f^'/Omega),  e = F x              x = lever theta
 ///   dw/dt = R^-1 r e / T,       dR/dt = (r r' - R)/T_R
 ///
-/// P is how the hand gives way to a force (HandCompliance), F a band-pass about the motion.  What
-/// the operator does on his own has nothing to do with a_y, so that on average only the part of the
-/// motion that f^ explains moves w.  w stops where no more of it is explained: the least motion
-/// that these two weights can reach, less than with none (w = 0), as long as the true P differs
-/// from this one by less than 90 degrees in the band.  Where it doesn't, motion exceeds what it
-/// would be without a motor, and the weights go to zero (Eq. CC-13). Source: Widrow and Stearns,
-/// Adaptive Signal Processing, 1985 (filtered-x, LMS-Newton). Pure; step() neither allocates nor
-/// throws.
+/// P is the hand's compliance (HandCompliance), F a band-pass around the motion.  The operator's
+/// own motion is not correlated with a_y, so that on average only the part of the motion that f^
+/// explains moves w.  w stops where f^ explains no more of it: at the least motion that these two
+/// weights can reach.  That is less than the motion with w = 0 as long as the true P differs from
+/// this one by less than 90 degrees in the band.  Where it differs by more, the motion exceeds that
+/// without a motor, and the weights go to zero (Eq. CC-13).
+/// Source: Widrow and Stearns, Adaptive Signal Processing, 1985 (filtered-x, LMS-Newton).
+/// Pure; step() neither allocates nor throws.
 class AdaptiveGain {
  public:
   using Pair = std::array<double, 2>;

@@ -16,38 +16,29 @@ const Config& checked(const Config& config) {
 
 Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {}
 
-Refusal Canceller::make_ready(const AugmentedModel& model) noexcept {
-  const ModelCheck check = check_model(model, bounds(config_));
-  if (check.refusal != Refusal::kNone) return check.refusal;
-  ready_ = {ModelFilter(model, check.settle_ticks),
-            model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()};
-  return Refusal::kNone;
-}
-
-void Canceller::take_ready_model() noexcept {
-  if (!ready_.filter.loaded()) return;
+void Canceller::take(const PreparedModel& model) noexcept {
+  if (!model.filter.loaded()) return;
   const bool fading = incoming_.filter.loaded() && settle_left_ == 0;
   if (fading) {
     // Replacing a filter that already drives would be a step in the force.
-    pending_ = ready_;
+    pending_ = model;
   } else {
-    incoming_ = ready_;
+    incoming_ = model;
     settle_left_ = incoming_.filter.settle_ticks();
     fade_done_ = 0;
   }
-  ready_ = Law();
 }
 
-Refusal Canceller::load_model(const AugmentedModel& model) noexcept {
-  const Refusal refusal = make_ready(model);
-  if (refusal == Refusal::kNone) take_ready_model();
-  return refusal;
+Refusal Canceller::load_model(const ControlModel& model) noexcept {
+  const Preparation preparation = prepare(model, bounds(config_));
+  if (preparation.refusal == Refusal::kNone) take(preparation.model);
+  return preparation.refusal;
 }
 
 void Canceller::restart() noexcept {
   if (pending_.filter.loaded()) incoming_ = pending_;
   if (incoming_.filter.loaded()) active_ = incoming_;
-  incoming_ = pending_ = Law();
+  incoming_ = pending_ = PreparedModel();
   held_.fill(0.0);
   engaged_ = 0;
   fade_done_ = 0;
@@ -57,7 +48,7 @@ void Canceller::restart() noexcept {
     incoming_ = active_;
     incoming_.filter.reset();
     incoming_.adaptive.reset();
-    active_ = Law();
+    active_ = PreparedModel();
     settle_left_ = incoming_.filter.settle_ticks();
   }
 }
@@ -75,7 +66,7 @@ bool Canceller::catch_up(Tick tick, Flags& flags) noexcept {
   }
   if (tick <= last_tick_) {
     flags |= kInputInvalid;
-    // The sample clock began anew.
+    // The sample clock began again.
     if (tick < last_tick_) restart();
     last_tick_ = tick;
     return false;
@@ -118,9 +109,9 @@ const ChannelSample& Canceller::sound_sample(const CancellerInput& input, Flags&
 
 Canceller::Predicted Canceller::predict(const ChannelSample& sample, Tick tick) noexcept {
   const double theta_rad = sample[static_cast<std::size_t>(Channel::kTheta)];
-  // What moves the hand while a force comes or goes isn't the model's doing.
+  // Motion of the hand while a force comes or goes is not caused by the model.
   const bool adapts = engaged_ == config_.fade_ticks && !incoming_.filter.loaded();
-  const auto ask = [&](Law& law) {
+  const auto ask = [&](PreparedModel& law) {
     const auto force = law.filter.step(sample, tick);
     const double against_n = law.adaptive.step(force.feedthrough_n, theta_rad, adapts);
     return Predicted{force.feedthrough_n + force.beside_n, against_n + force.beside_n};
@@ -142,7 +133,7 @@ void Canceller::advance_fade() noexcept {
   } else {
     active_ = incoming_;
     incoming_ = pending_;
-    pending_ = Law();
+    pending_ = PreparedModel();
     settle_left_ = incoming_.filter.settle_ticks();
     fade_done_ = 0;
   }

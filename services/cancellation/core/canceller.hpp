@@ -3,9 +3,7 @@
 
 #include <cstdint>
 
-#include "services/cancellation/core/adaptive_gain.hpp"
-#include "services/cancellation/core/model_check.hpp"
-#include "services/cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/prepared_model.hpp"
 #include "services/contract/config_field.hpp"
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
@@ -48,8 +46,9 @@ struct Config {
           "[m/s^2] a larger magnitude is no platform motion (paper III-C: peak 7.5) but a fault");
     visit("fade_ticks", self.fade_ticks, Range{50.0, 5000.0},
           "[ticks] fade from zero or from the model before, after the new one has settled");
-    visit("max_hold_ticks", self.max_hold_ticks, Range{1.0, 200.0},
-          "[ticks] longest run of missing samples bridged by holding the last; then start anew");
+    visit(
+        "max_hold_ticks", self.max_hold_ticks, Range{1.0, 200.0},
+        "[ticks] longest run of missing samples bridged by holding the last; then start from rest");
   }
 };
 
@@ -62,30 +61,27 @@ inline ModelBounds bounds(const Config& config) noexcept {
 ///
 ///   f_hat = H a_y,   wanted = -gain f_hat,   force = ForceEnvelope(wanted)   (Eq. SG-6)
 ///
-/// H may be an augmented model (Eq. CC-6 to CC-9) that reads further channels, and gain and phase
+/// H may be a control model (Eq. CC-6 to CC-9) that reads further channels, and gain and phase
 /// are followed where the model says so (Eq. CC-10).
 /// The force leaves zero only while enabled, permitted, with a model and a sound sample.  A lost or
 /// unsound sample holds the last acceleration (Eq. CC-2); a run longer than max_hold_ticks starts
-/// the filter anew.  After an interruption the force fades in again; a new model settles beside the
-/// old one and is faded over (Eq. CC-3).
-/// One thread: models come between two steps.  step() neither allocates nor throws; its
-/// cost is bounded by max_hold_ticks + 2 filter steps.
+/// the filter from rest.  After an interruption the force fades in again; a new model settles next
+/// to the old one and is faded over (Eq. CC-3).
+/// One thread: models come between two steps.  take() and step() neither allocate nor throw; the
+/// cost of a step is bounded by max_hold_ticks + 2 filter steps.
 class Canceller {
  public:
   /// @throws stillhand::ConfigError when a setting is outside its range.
   explicit Canceller(const Config& config);
 
-  /// Checks a model and, if sound, keeps it ready for take_ready_model(); of several the newest.
-  /// Never throws; a refused model leaves the one ready and the one in use as they are.  Takes tens
-  /// of microseconds (gain scan), milliseconds with a spring inside the body (trial run): keep it
-  /// out of a deadline.
-  Refusal make_ready(const AugmentedModel& model) noexcept;
-  /// The model that is ready is used from the next step on; nothing if none is.
-  void take_ready_model() noexcept;
-  /// Both at once.
-  Refusal load_model(const AugmentedModel& model) noexcept;
+  /// The model is used from the next step on: it settles next to the one in use, then is faded over
+  /// (Eq. CC-3).  Copies without allocation, for the control path; prepare() made the model before,
+  /// in another thread.  Nothing happens where the model is empty.
+  void take(const PreparedModel& model) noexcept;
+  /// prepare() and take() at once, where no deadline waits: in one process, in tests.
+  Refusal load_model(const ControlModel& model) noexcept;
 
-  /// True once a model was taken, even while it still settles; not yet when one is only ready.
+  /// True once a model was taken, even while it still settles.
   [[nodiscard]] bool has_model() const noexcept {
     return active_.filter.loaded() || incoming_.filter.loaded();
   }
@@ -98,11 +94,6 @@ class Canceller {
   }
 
  private:
-  /// A model with what is followed of it.
-  struct Law {
-    ModelFilter filter;
-    AdaptiveGain adaptive;
-  };
   struct Predicted {
     double force_n = 0.0;    ///< f_hat
     double against_n = 0.0;  ///< what the motor should take away, Eq. CC-10
@@ -123,10 +114,9 @@ class Canceller {
 
   Config config_;
   signal::ForceEnvelope envelope_;
-  Law ready_;
-  Law active_;
-  Law incoming_;  ///< settles, then is faded in
-  Law pending_;   ///< came while another was fading in
+  PreparedModel active_;
+  PreparedModel incoming_;  ///< settles, then is faded in
+  PreparedModel pending_;   ///< came while another was fading in
   std::int64_t settle_left_ = 0;
   std::int64_t fade_done_ = 0;
   std::int64_t engaged_ = 0;  ///< ticks that the force has been acting, up to fade_ticks

@@ -17,7 +17,8 @@ struct CommandFilterConfig {
 ///
 ///   M x'' + B x' + K x = f_hat,   theta_clean = theta - x / r
 ///
-/// The hand is shaken as before; what the machine is told is not.  No force, so nothing to bound.
+/// The hand is shaken as before; the command that the machine gets is not.  No force acts, so
+/// there is nothing to bound.
 /// Source: paper section V, "a model-based filter rather than controller acting through a motor".
 /// Pure; step() never allocates or throws.
 class CommandFilter {

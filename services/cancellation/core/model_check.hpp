@@ -4,29 +4,26 @@
 #include <cstdint>
 #include <string_view>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/signal/difference_model.hpp"
 
 namespace stillhand::cancellation {
 
-/// The paper's feedthrough model at the control rate.
-using ControlRateModel = signal::DifferenceModel;
-
 /// Why a model was not taken.
 enum class Refusal : std::uint8_t {
   kNone,        ///< taken
-  kMalformed,   ///< sizes differ, empty, d_0 not 1, a table that isn't one
+  kMalformed,   ///< sizes differ, empty, d_0 not 1, a table out of order
   kNotFinite,   ///< a number is NaN or infinite
   kWrongRate,   ///< not exactly 1000 Hz
-  kOrder,       ///< above ModelFilter::kMaxOrder
+  kOrder,       ///< above ControlModelFilter::kMaxOrder
   kUnstable,    ///< a pole on or outside the unit circle
   kSettling,    ///< slower than kMaxSettle_ticks to settle to 1 %
   kGain,        ///< |H| above the bound at some frequency
-  kTooMany,     ///< more inputs, paths, waves or table values than ModelFilter has room for
-  kPath,        ///< a further channel, a path beside the body or a wave above its bound
+  kTooMany,     ///< more inputs, paths, waves or table values than ControlModelFilter has room for
+  kPath,        ///< a further channel, a path next to the body or a wave above its bound
   kLoop,        ///< the spring inside the body: unstable at one of its slopes, or in a trial run
   kRest,        ///< a force above kMaxRest_n while nothing moves
-  kCompliance,  ///< the hand that the adaptation counts on is none
+  kCompliance,  ///< mass, damping, stiffness or lever of the hand out of range
 };
 /// One line for a person.
 std::string_view describe(Refusal refusal) noexcept;
@@ -35,7 +32,7 @@ std::string_view describe(Refusal refusal) noexcept;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.
 inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
-/// [N] Feedthrough is what motion does: a model that pushes without any is none.
+/// [N] Feedthrough comes from motion: a model that pushes without motion is refused.
 inline constexpr double kMaxRest_n = 1.0;
 
 /// What a model may ask for at most; from the process's own settings.
@@ -49,11 +46,12 @@ struct ModelCheck {
   std::int64_t settle_ticks;  ///< slowest pole's time to 1 %; 0 when refused
 };
 
-/// README Eq. CC-4 and CC-14.  Stability by the reflection coefficients (Eq. SG-13) and by the
-/// poles, which fail differently when coefficients are ill conditioned; both must agree.  Gain at
-/// 0 Hz, at 500 Hz, on 400 frequencies between and at each pole's own, so that no narrow peak is
-/// missed.  A spring inside the body: stable with each of its slopes, and a trial run through the
-/// motion's band stays bounded and dies away.  Never throws.  Takes up to some milliseconds.
-ModelCheck check_model(const AugmentedModel& model, const ModelBounds& bounds) noexcept;
+/// Checks a control model, README Eq. CC-4 and CC-14.  Stability is judged by the reflection
+/// coefficients (services/signal, Eq. SG-13) and by the poles, which fail differently when
+/// coefficients are ill conditioned; both must agree.  The gain is judged at 0 Hz, at 500 Hz, on
+/// 400 frequencies between and at each pole's own, so that no narrow peak is missed.  A spring
+/// inside the body must be stable with each of its slopes, and a trial run through the motion's
+/// band must stay bounded and die away.  Never throws.  Takes up to some milliseconds.
+ModelCheck check_model(const ControlModel& model, const ModelBounds& bounds) noexcept;
 
 }  // namespace stillhand::cancellation

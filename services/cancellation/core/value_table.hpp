@@ -5,11 +5,12 @@
 #include <array>
 #include <cstddef>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 
 namespace stillhand::cancellation {
 
-/// A ValueMap of fixed size for the control path.  Trusts its map: check_model() comes first.
+/// A ValueMap of fixed size for the control path: the memoryless maps m_k of README Eq. CC-6.
+/// It trusts its map: check_model() comes first.
 class ValueTable {
  public:
   static constexpr std::size_t kMostValues = 129;

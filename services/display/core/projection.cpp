@@ -9,7 +9,7 @@
 namespace stillhand::display {
 namespace {
 
-// Below this no line can be told from another; above, an image no longer fits memory.
+// Below this no line can be distinguished from another; above, an image no longer fits memory.
 constexpr int kFewest_px = 16;
 constexpr int kMost_px = 16384;
 

@@ -58,8 +58,9 @@ signal::ReferenceSignal reference_on_screen(const TrackingDisplay::Config& confi
     signal::ReferenceSignal reference(design, duration_ticks, seed, scale_m);
     if (peak(reference, duration_ticks) <= limit_m) return reference;
   }
-  throw ConfigError("display.reference_scale_m", std::to_string(config.reference_scale_m),
-                    "a smaller scale: the target's box leaves the screen whatever the phases");
+  throw ConfigError(
+      "display.reference_scale_m", std::to_string(config.reference_scale_m),
+      "a smaller scale: with every draw of phases the target's box leaves the screen");
 }
 
 TrackingDisplay::TrackingDisplay(const Config& config) : config_(checked(config)) {}

@@ -14,7 +14,8 @@ struct ResponsePoint {
   double phase_deg;     ///< [deg] in (-180, 180]
 };
 
-/// Response of a model at the given frequencies [Hz], each from 0 to rate / 2 (Fig. 4 and 6).
+/// Response of a model (services/signal Eq. SG-12) at the given frequencies [Hz], each from 0 to
+/// rate / 2; the paper's Figs 4 and 6 show it.  Pure.
 std::vector<ResponsePoint> frequency_response(const DifferenceModel& model,
                                               const std::vector<double>& frequencies_hz);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/identification/core/identifier.hpp"
 
+#include <utility>
+
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
 
@@ -8,8 +10,8 @@ namespace stillhand::identification {
 
 namespace {
 
-// A disturbance that isn't in the acceleration, a tone say, draws a pole beside itself that no
-// filter at 1 kHz gets right: with fewer poles there is none to spare.
+// A disturbance that is not in the acceleration, such as a tone, attracts a pole that no filter at
+// 1 kHz reproduces: with fewer poles none is left for it.
 void convert_refined(IdentificationSteps& steps, int order, const ConversionBand& band) {
   constexpr int kLeastOrder = 2;
   while (true) {
@@ -61,6 +63,15 @@ FeedthroughModel identify(const Record& recorded, const Config& config) {
   out.control = steps.control.model;
   out.conversion_error = steps.control.max_error;
   return out;
+}
+
+Identification identify(const PeggedTrial& trial, const Config& config) {
+  if (std::string why = why_unusable(trial); !why.empty()) return {std::nullopt, std::move(why)};
+  try {
+    return {identify(trial.record, config), {}};
+  } catch (const ConfigError& error) {
+    return {std::nullopt, error.what()};
+  }
 }
 
 }  // namespace stillhand::identification

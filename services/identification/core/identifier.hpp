@@ -8,6 +8,7 @@
 #include "services/contract/config_field.hpp"
 #include "services/identification/core/arx.hpp"
 #include "services/identification/core/output_error.hpp"
+#include "services/identification/core/pegged_record.hpp"
 #include "services/identification/core/rate_conversion.hpp"
 #include "services/identification/core/record.hpp"
 
@@ -62,5 +63,14 @@ IdentificationSteps identify_stepwise(const Record& recorded, const Config& conf
 /// @param recorded  at 100 Hz or more
 /// @throws stillhand::ConfigError with the reason when no usable model comes out.
 FeedthroughModel identify(const Record& recorded, const Config& config = {});
+
+/// What came of a pegged trial: a model, or why there is none.
+struct Identification {
+  std::optional<FeedthroughModel> model;
+  std::string why_not;  ///< one line for a person where there is no model
+};
+
+/// identify() of a collected trial, or why_unusable(); a ConfigError becomes its text.
+Identification identify(const PeggedTrial& trial, const Config& config);
 
 }  // namespace stillhand::identification

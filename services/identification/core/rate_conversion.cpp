@@ -95,18 +95,18 @@ Polynomial next_denominator(const Target& want, const Polynomial& before, Eigen:
   return denominator;
 }
 
-// Longest transient of a pole, to 1 % [s]: a body settles within a second.  A slower pole is one
-// that the fit left beside a zero, or above its band where nothing held it.
+// Longest transient of a pole, to 1 % [s]: a body settles within a second.  The fit leaves a slower
+// pole only next to a zero, or above its band, where no data constrain it.
 constexpr double kSlowestSettle_s = 4.0;
 
-// Distance of such a pole from the imaginary axis of v: |z| = exp(2 warp Re v) beside z = 1, and up
+// Distance of such a pole from the imaginary axis of v: |z| = exp(2 warp Re v) near z = 1, and up
 // to twice as slow at a quarter of the rate.
 double least_decay(double warp) {
   return std::log(100.0) / kSlowestSettle_s / (2.0 * kControlRateHz * warp);
 }
 
-// Poles of the left half plane, none faster than a quarter of the control rate, where it would
-// come to lie beside z = -1 and ring there, none slower than kSlowestSettle_s.
+// Poles of the left half plane.  None is faster than a quarter of the control rate, where it would
+// lie next to z = -1 and ring; none is slower than kSlowestSettle_s.
 std::vector<Complex> admissible_poles(const Polynomial& denominator, std::size_t order, double warp,
                                       int& reflected) {
   const double fastest = 1.0 / warp;

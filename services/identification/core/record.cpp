@@ -58,8 +58,9 @@ void check(const Record& record) {
     throw ConfigError("record.rate_hz", std::to_string(record.rate_hz), "a positive finite value");
   }
   if (record.acceleration_m_s2.size() != record.force_n.size()) {
-    throw ConfigError("record.force_n", std::to_string(record.force_n.size()) + " samples",
-                      std::to_string(record.acceleration_m_s2.size()) + " as the acceleration");
+    throw ConfigError(
+        "record.force_n", std::to_string(record.force_n.size()) + " samples",
+        std::to_string(record.acceleration_m_s2.size()) + ", as many as of the acceleration");
   }
   check_finite(record.acceleration_m_s2, "acceleration_m_s2");
   check_finite(record.force_n, "force_n");

@@ -15,7 +15,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Unexcited harmonics that measure the remnant beside a line.
+// Unexcited harmonics that measure the remnant next to a line.
 constexpr int kNeighbours = 6;
 // Rate below which samples aren't averaged any further [Hz]; the fastest line is at 4 Hz.
 constexpr double kLeastRateHz = 100.0;
@@ -29,8 +29,9 @@ std::vector<double> difference(const std::vector<double>& left, const std::vecto
 void check(const TrackingRecord& record, const signal::ReferenceDesign& design,
            const TrackingMetricsConfig& config) {
   if (!(record.rate_hz > 0.0) || record.target_m.size() != record.cursor_m.size()) {
-    throw ConfigError("tracking.cursor_m", std::to_string(record.cursor_m.size()) + " samples",
-                      std::to_string(record.target_m.size()) + " as the target, at a rate above 0");
+    throw ConfigError(
+        "tracking.cursor_m", std::to_string(record.cursor_m.size()) + " samples",
+        std::to_string(record.target_m.size()) + ", as many as of the target, at a rate above 0");
   }
   const auto most = static_cast<std::int64_t>(record.target_m.size()) / 2;
   // Neighbours of the highest line need room as well.
@@ -150,7 +151,7 @@ void add_open_loop(TrackingMetrics& out, const TrackingRecord& record,
   out.crossover_reference_hz = pooled_fit_hz(out.lines.data(), errors, fitted_lines);
 }
 
-// Eq. ID-17 by a sliding sum, made anew every window so that rounding can't build up.
+// Eq. ID-17 by a sliding sum, summed again every window so that rounding cannot build up.
 std::vector<double> moving_mean(const std::vector<double>& values, std::size_t window) {
   std::vector<double> out;
   if (window > values.size()) return out;

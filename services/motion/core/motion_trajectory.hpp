@@ -26,7 +26,7 @@ struct MotionReport {
 
 /// The motion of one trial, synthesised whole when the trial is armed: position, velocity and
 /// acceleration at 1 kHz, exact derivatives of each other, ramps included.  A quintic ramp w
-/// multiplies the position, Eq. MO-6, and the other two follow as exact products, Eq. MO-7:
+/// multiplies the position, README Eq. MO-6, and the other two follow as exact products, Eq. MO-7:
 ///
 ///   w(s) = 10 s^3 - 15 s^4 + 6 s^5
 ///   x = w p,   v = w p' + w' p,   a = w p'' + 2 w' p' + w'' p

@@ -43,7 +43,7 @@ void take_phases(MotionSpectrum& spectrum, const MotionGrid& grid, const PeakBou
   const double per_point = 2.0 / static_cast<double>(size);
   for (std::size_t i = 0; i < spectrum.accel_m_s2.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(spectrum.first) + i;
-    // The two real signals of one complex transform, told apart by symmetry.
+    // The two real signals of one complex transform, separated by symmetry.
     const Complex accel = 0.5 * per_point * (lines[k] + std::conj(lines[size - k]));
     const Complex position =
         Complex{0.0, -0.5 * per_point} * (lines[k] - std::conj(lines[size - k]));
@@ -76,8 +76,8 @@ int limit_peaks(MotionSpectrum& spectrum, const PeakBounds& bounds) {
   throw ConfigError("motion.peak_m_s2",
                     std::to_string(bounds.accel_m_s2) + " m/s^2 within " +
                         std::to_string(bounds.position_m) + " m of travel",
-                    "bounds this motion can keep: it comes down to " + std::to_string(best_m_s2) +
-                        " m/s^2 and " + std::to_string(best_m) +
+                    "bounds that this motion can keep; its least peaks are " +
+                        std::to_string(best_m_s2) + " m/s^2 and " + std::to_string(best_m) +
                         " m; lower rms_m_s2 or raise band_low_hz");
 }
 

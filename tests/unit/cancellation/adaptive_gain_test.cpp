@@ -101,7 +101,7 @@ TEST(AdaptiveGainTest, IsNeverWorseThanNoCancellation) {
                                   {3.0, 30.0, 844.0, 0.1},
                                   {0.7, 20.0, 1700.0, 0.1}};
   for (const HandCompliance& hand : hands) {
-    // Eq. CC-11: a stiff hand tells of an error more slowly.
+    // Eq. CC-11: a stiff hand shows an error more slowly.
     const double seconds = 120.0 * std::max(1.0, hand.stiffness_n_m / kHand.stiffness_n_m);
     for (const double gain : {-1.0, 0.0, 0.3, 1.0, 3.0}) {
       for (const int late : {0, 60, 200, 400}) {

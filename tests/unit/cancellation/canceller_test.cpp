@@ -20,19 +20,20 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-ControlRateModel body() {
+signal::DifferenceModel body() {
   return identification::to_control_rate(support::body_like_model()).model;
 }
 // A gain and nothing else: settles in one tick, so that timing is plain.
-ControlRateModel pure_gain(double gain_n_s2_m) { return {1000.0, {gain_n_s2_m}, {1.0}}; }
+signal::DifferenceModel pure_gain(double gain_n_s2_m) { return {1000.0, {gain_n_s2_m}, {1.0}}; }
 
 CancellerInput sample(Tick tick, double accel_m_s2) {
   return {tick, {0.0, accel_m_s2, 9.81, 0.0, 0.0, 0.0}, kGood, true, true};
 }
 // A canceller that has run at a steady acceleration until all fading is over; next tick is 2000.
-Canceller steady(const ControlRateModel& model, double accel_m_s2, const Config& config = {}) {
+Canceller steady(const signal::DifferenceModel& model, double accel_m_s2,
+                 const Config& config = {}) {
   Canceller sut(config);
-  EXPECT_EQ(sut.load_model(augmented(model)), Refusal::kNone);
+  EXPECT_EQ(sut.load_model(control_model(model)), Refusal::kNone);
   for (Tick n = 0; n < 2000; ++n) sut.step(sample(n, accel_m_s2));
   return sut;
 }
@@ -59,7 +60,7 @@ TEST(CancellerTest, PredictsAsTheModelDoes) {
   const auto a = support::band_noise(8000, 1000.0, 0.7, 2.0, 1.6, 1);
   const auto expected = signal::simulated(body(), a);
   Canceller sut{Config{}};
-  ASSERT_EQ(sut.load_model(augmented(body())), Refusal::kNone);
+  ASSERT_EQ(sut.load_model(control_model(body())), Refusal::kNone);
   for (std::size_t n = 0; n < a.size(); ++n) {
     const auto out = sut.step(sample(static_cast<Tick>(n), a[n]));
     if (n > 4000) {
@@ -80,30 +81,32 @@ TEST(CancellerTest, WithoutAModelThereIsNoForce) {
 TEST(CancellerTest, RefusesEveryBadModelWithItsReason) {
   Canceller sut{Config{}};
   const auto body_at = [](double rate_hz) {
-    ControlRateModel model = body();
+    signal::DifferenceModel model = body();
     model.rate_hz = rate_hz;
     return model;
   };
-  EXPECT_EQ(sut.load_model(augmented({})), Refusal::kMalformed);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0, 2.0}, {1.0}})), Refusal::kMalformed);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0}, {2.0}})), Refusal::kMalformed);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {kNan}, {1.0}})), Refusal::kNotFinite);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0, 0.0}, {1.0, kInfinity}})), Refusal::kNotFinite);
-  EXPECT_EQ(sut.load_model(augmented(body_at(50.0))), Refusal::kWrongRate);
-  EXPECT_EQ(sut.load_model(augmented(body_at(1000.0000001))), Refusal::kWrongRate);
-  EXPECT_EQ(sut.load_model(augmented(body_at(kNan))), Refusal::kWrongRate);
+  EXPECT_EQ(sut.load_model(control_model({})), Refusal::kMalformed);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0, 2.0}, {1.0}})), Refusal::kMalformed);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0}, {2.0}})), Refusal::kMalformed);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {kNan}, {1.0}})), Refusal::kNotFinite);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0, 0.0}, {1.0, kInfinity}})),
+            Refusal::kNotFinite);
+  EXPECT_EQ(sut.load_model(control_model(body_at(50.0))), Refusal::kWrongRate);
+  EXPECT_EQ(sut.load_model(control_model(body_at(1000.0000001))), Refusal::kWrongRate);
+  EXPECT_EQ(sut.load_model(control_model(body_at(kNan))), Refusal::kWrongRate);
   std::vector<double> long_one(14, 0.0);
   long_one[0] = 1.0;
-  EXPECT_EQ(sut.load_model(augmented({1000.0, long_one, long_one})), Refusal::kOrder);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0, 0.0}, {1.0, -1.0}})), Refusal::kUnstable);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0, 0.0}, {1.0, -1.01}})), Refusal::kUnstable);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0, 0.0, 0.0}, {1.0, 0.0, 1.0}})),
+  EXPECT_EQ(sut.load_model(control_model({1000.0, long_one, long_one})), Refusal::kOrder);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0, 0.0}, {1.0, -1.0}})), Refusal::kUnstable);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0, 0.0}, {1.0, -1.01}})), Refusal::kUnstable);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0, 0.0, 0.0}, {1.0, 0.0, 1.0}})),
             Refusal::kUnstable);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1e-7, 0.0}, {1.0, -0.9999}})), Refusal::kSettling);
-  EXPECT_EQ(sut.load_model(augmented(pure_gain(61.0))), Refusal::kGain);
-  EXPECT_EQ(sut.load_model(augmented(pure_gain(-1e308))), Refusal::kGain);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1e-7, 0.0}, {1.0, -0.9999}})),
+            Refusal::kSettling);
+  EXPECT_EQ(sut.load_model(control_model(pure_gain(61.0))), Refusal::kGain);
+  EXPECT_EQ(sut.load_model(control_model(pure_gain(-1e308))), Refusal::kGain);
   EXPECT_FALSE(sut.has_model());
-  EXPECT_EQ(sut.load_model(augmented(body())), Refusal::kNone);
+  EXPECT_EQ(sut.load_model(control_model(body())), Refusal::kNone);
   EXPECT_TRUE(sut.has_model());
 }
 
@@ -112,15 +115,15 @@ TEST(CancellerTest, ANarrowPeakOfGainIsSeen) {
   const double radius = 0.9995;
   const double angle_rad = 2.0 * 3.14159265358979 * 137.13 / 1000.0;
   const double d1 = -2.0 * radius * std::cos(angle_rad);
-  ControlRateModel model{1000.0, {0.0, 0.0, 0.0}, {1.0, d1, radius * radius}};
+  signal::DifferenceModel model{1000.0, {0.0, 0.0, 0.0}, {1.0, d1, radius * radius}};
   model.numerator[0] = 100.0 * 2.0 * (1.0 - radius) * std::sin(angle_rad);
-  EXPECT_EQ(check_model(augmented(model), {60.0, 10.0}).refusal, Refusal::kGain);
-  EXPECT_EQ(check_model(augmented(model), {150.0, 10.0}).refusal, Refusal::kNone);
+  EXPECT_EQ(check_model(control_model(model), {60.0, 10.0}).refusal, Refusal::kGain);
+  EXPECT_EQ(check_model(control_model(model), {150.0, 10.0}).refusal, Refusal::kNone);
 }
 
 TEST(CancellerTest, ARefusedModelLeavesTheOneInUse) {
   Canceller sut = steady(pure_gain(-3.2), 1.0);
-  EXPECT_EQ(sut.load_model(augmented({1000.0, {1.0, 0.0}, {1.0, -2.0}})), Refusal::kUnstable);
+  EXPECT_EQ(sut.load_model(control_model({1000.0, {1.0, 0.0}, {1.0, -2.0}})), Refusal::kUnstable);
   EXPECT_DOUBLE_EQ(sut.step(sample(2000, 1.0)).force_n, 3.2);
 }
 
@@ -143,34 +146,36 @@ TEST(CancellerTest, SwappingModelsIsBumpless) {
       last = force_n;
     }
   };
-  ASSERT_EQ(sut.load_model(augmented(pure_gain(-5.0))), Refusal::kNone);
+  ASSERT_EQ(sut.load_model(control_model(pure_gain(-5.0))), Refusal::kNone);
   run(100);  // in the middle of the fade two more arrive; the newest is to win
-  ASSERT_EQ(sut.load_model(augmented(pure_gain(4.0))), Refusal::kNone);
-  ASSERT_EQ(sut.load_model(augmented(pure_gain(-1.0))), Refusal::kNone);
+  ASSERT_EQ(sut.load_model(control_model(pure_gain(4.0))), Refusal::kNone);
+  ASSERT_EQ(sut.load_model(control_model(pure_gain(-1.0))), Refusal::kNone);
   run(1000);
   EXPECT_DOUBLE_EQ(last, 2.0);
   // 250 ticks from 10 N to 2 N at the most: 8/250 N a tick.
   EXPECT_LE(largest, 8.0 / 250.0 + 1e-12);
 }
 
-TEST(CancellerTest, AReadyModelWaitsUntilItIsTaken) {
-  Canceller ready{Config{}};
+TEST(CancellerTest, APreparedModelIsTakenAsALoadedOne) {
+  Canceller prepared{Config{}};
   Canceller loaded{Config{}};
   const auto same = [&](Tick tick) {
-    const auto a = ready.step(sample(tick, 2.0));
+    const auto a = prepared.step(sample(tick, 2.0));
     const auto b = loaded.step(sample(tick, 2.0));
     return a.force_n == b.force_n && a.predicted_force_n == b.predicted_force_n &&
            a.flags == b.flags;
   };
-  ASSERT_EQ(ready.make_ready(augmented(body())), Refusal::kNone);
-  EXPECT_EQ(ready.make_ready(augmented({})), Refusal::kMalformed);  // the sound one stays ready
-  EXPECT_FALSE(ready.has_model());
+  const Preparation sound = prepare(control_model(body()), bounds(Config{}));
+  const Preparation refused = prepare(control_model({}), bounds(Config{}));
+  ASSERT_EQ(sound.refusal, Refusal::kNone);
+  EXPECT_EQ(refused.refusal, Refusal::kMalformed);
+  EXPECT_FALSE(prepared.has_model());
   for (Tick tick = 0; tick < 100; ++tick) ASSERT_TRUE(same(tick)) << tick;  // both without a model
-  ready.take_ready_model();
-  ASSERT_EQ(loaded.load_model(augmented(body())), Refusal::kNone);
-  EXPECT_TRUE(ready.has_model());
+  prepared.take(sound.model);
+  ASSERT_EQ(loaded.load_model(control_model(body())), Refusal::kNone);
+  EXPECT_TRUE(prepared.has_model());
   for (Tick tick = 100; tick < 3000; ++tick) ASSERT_TRUE(same(tick)) << tick;
-  ready.take_ready_model();  // none: nothing happens
+  prepared.take(refused.model);  // empty: nothing happens
   for (Tick tick = 3000; tick < 3100; ++tick) ASSERT_TRUE(same(tick)) << tick;
 }
 
@@ -179,7 +184,7 @@ TEST(CancellerTest, FirstModelFadesInFromZero) {
   // and engagement adding its slope; the filter's own transient is still to come while it settles.
   Canceller sut{Config{}};
   for (Tick n = 0; n < 500; ++n) sut.step(sample(n, 2.0));
-  ASSERT_EQ(sut.load_model(augmented(body())), Refusal::kNone);
+  ASSERT_EQ(sut.load_model(control_model(body())), Refusal::kNone);
   double last = 0.0;
   for (Tick n = 500; n < 4000; ++n) {
     const double force_n = sut.step(sample(n, 2.0)).force_n;
@@ -250,7 +255,7 @@ TEST(CancellerTest, AShortGapIsBridgedByTheHeldSample) {
   for (std::size_t n = 5001; n <= 5020; ++n) held[n] = a[5000];
   const auto expected = signal::simulated(body(), held);
   Canceller sut{Config{}};
-  ASSERT_EQ(sut.load_model(augmented(body())), Refusal::kNone);
+  ASSERT_EQ(sut.load_model(control_model(body())), Refusal::kNone);
   for (std::size_t n = 0; n < a.size(); ++n) {
     if (n > 5000 && n <= 5020) continue;
     const auto out = sut.step(sample(static_cast<Tick>(n), a[n]));
@@ -279,7 +284,7 @@ TEST(CancellerTest, ASampleThatIsNotNewMakesNoForce) {
   for (int i = 0; i < 40; ++i) out = sut.step(sample(1999, 2.0));  // a writer that is stuck
   EXPECT_EQ(out.force_n, 0.0);
   EXPECT_EQ(out.flags & kInputInvalid, Flags{kInputInvalid});
-  // A clock that began anew: one sample lost, then a fresh start.
+  // A clock that began again: one sample lost, then a fresh start.
   sut.step(sample(0, 2.0));
   for (Tick n = 1; n < 1000; ++n) out = sut.step(sample(n, 2.0));
   EXPECT_DOUBLE_EQ(out.force_n, 6.4);
@@ -296,8 +301,8 @@ TEST(CancellerTest, ForceIsBoundedWhateverComes) {
   for (int i = 0; i < 1'000'000; ++i) {
     const double u = draw.uniform();
     if (i % 5000 == 100)
-      sut.load_model(augmented(u < 0.5 ? body() : pure_gain(59.0 * draw.uniform())));
-    if (i % 5000 == 150) sut.load_model(augmented({1000.0, {draw()}, {draw()}}));
+      sut.load_model(control_model(u < 0.5 ? body() : pure_gain(59.0 * draw.uniform())));
+    if (i % 5000 == 150) sut.load_model(control_model({1000.0, {draw()}, {draw()}}));
     tick += u < 0.9 ? 1 : u < 0.95 ? static_cast<Tick>(80.0 * draw.uniform()) : 0;
     if (u > 0.9999)
       tick = draw.uniform() < 0.5 ? std::numeric_limits<Tick>::max()
@@ -320,8 +325,8 @@ TEST(CancellerTest, IsDeterministic) {
   const auto a = support::band_noise(5000, 1000.0, 0.7, 2.0, 1.6, 4);
   Canceller first{Config{}};
   Canceller second{Config{}};
-  first.load_model(augmented(body()));
-  second.load_model(augmented(body()));
+  first.load_model(control_model(body()));
+  second.load_model(control_model(body()));
   for (std::size_t n = 0; n < a.size(); ++n) {
     const auto left = first.step(sample(static_cast<Tick>(n), a[n]));
     const auto right = second.step(sample(static_cast<Tick>(n), a[n]));

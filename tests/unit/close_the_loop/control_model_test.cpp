@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/model_check.hpp"
-#include "services/cancellation/core/model_filter.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "tests/support/feedthrough_records.hpp"
@@ -64,10 +64,10 @@ diagnosis::Model two_modes() {
 }
 
 // RMS difference of the filter at 1 kHz from the model at 100 Hz, over the model's RMS.
-double difference(const diagnosis::Model& model, const cancellation::AugmentedModel& control,
+double difference(const diagnosis::Model& model, const cancellation::ControlModel& control,
                   const Motion& motion, double late_s = 0.0) {
   const std::vector<double> expected = diagnosis::free_run(model, motion.signals()).prediction;
-  cancellation::ModelFilter filter(control, 1);
+  cancellation::ControlModelFilter filter(control, 1);
   const auto shift = static_cast<std::size_t>(std::lround(late_s * 1000.0));
   double square = 0.0;
   double all = 0.0;
@@ -90,7 +90,7 @@ double difference(const diagnosis::Model& model, const cancellation::AugmentedMo
 TEST(ControlModelTest, ALinearBodyGivesTheSameForce) {
   const Motion motion;
   const diagnosis::Model model = two_modes();
-  const ControlModel control = to_control_model(model, motion.signals());
+  const ConvertedModel control = to_control_model(model, motion.signals());
   EXPECT_LT(difference(model, control.model, motion), 0.005);
   EXPECT_LT(control.conversion_error, 0.005);
   EXPECT_EQ(cancellation::check_model(control.model, {60.0, 25.0}).refusal,
@@ -102,7 +102,7 @@ TEST(ControlModelTest, WithALeadItComesSooner) {
   const diagnosis::Model model = two_modes();
   ControlOptions options;
   options.lead_s = 0.02;
-  const ControlModel control = to_control_model(model, motion.signals(), options);
+  const ConvertedModel control = to_control_model(model, motion.signals(), options);
   EXPECT_LT(difference(model, control.model, motion, 0.02), 0.03);
   EXPECT_GT(difference(model, control.model, motion), 0.1);
 }
@@ -122,7 +122,7 @@ TEST(ControlModelTest, ASpringInsideTheBodyGivesTheSameForce) {
   spring.coefficients[2 * p + 2] = -0.02;
   const diagnosis::Model linear = model;
   model.effects.push_back(spring);
-  const ControlModel control = to_control_model(model, motion.signals());
+  const ConvertedModel control = to_control_model(model, motion.signals());
   ASSERT_TRUE(control.model.loop);
   EXPECT_LT(difference(model, control.model, motion), 0.02);
   EXPECT_GT(difference(linear, control.model, motion), 0.05);
@@ -135,7 +135,7 @@ TEST(ControlModelTest, EffectsBesideTheBodyGiveTheSameForce) {
       {"coupled_input", "lagged", {"a_x"}, {{"lag", "s", 0.05, 0.0, 1.0}}, {1.2}});
   model.effects.push_back(
       {"tone", "beside the body", {}, {{"frequency", "Hz", 9.3, 9.0, 9.6}}, {0.4, 0.7}});
-  const ControlModel control = to_control_model(model, motion.signals());
+  const ConvertedModel control = to_control_model(model, motion.signals());
   // The lag of 50 ms at 100 Hz is half a sample later than at 1 kHz.
   EXPECT_LT(difference(model, control.model, motion), 0.02);
   EXPECT_EQ(control.treatments.size(), 2u);
@@ -153,7 +153,7 @@ TEST(ControlModelTest, AGainIsThatOfTheBodyAtTheRecordsEndAndNotOfTheModesBeside
        {"a_y"},
        {{"frequency", "Hz", 3.2, 0.5, 45.0}, {"damping_ratio", "-", 0.3, 0.0, 1.0}},
        {-0.06, 0.05}});
-  const ControlModel control = to_control_model(model, motion.signals());
+  const ConvertedModel control = to_control_model(model, motion.signals());
   // What the gain is on average over the last tenth of the record.
   diagnosis::Model at_the_end = model;
   at_the_end.effects.erase(at_the_end.effects.begin());
@@ -168,7 +168,7 @@ TEST(ControlModelTest, WhatCantBeCancelledIsSaid) {
   diagnosis::Model model = two_modes();
   model.effects.push_back(
       {"hysteresis", "smooth, of a channel", {"a_x"}, {{"yield", "m/s^2", 0.5, 0.0, 1.0}}, {0.5}});
-  const ControlModel control = to_control_model(model, motion.signals());
+  const ConvertedModel control = to_control_model(model, motion.signals());
   ASSERT_EQ(control.treatments.size(), 1u);
   EXPECT_FALSE(control.treatments[0].cancelled);
   EXPECT_LT(difference(two_modes(), control.model, motion), 0.005);

@@ -29,11 +29,11 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
   protocol.trial_s = 120.0;
   session::CoreConfigs configs;
   // Identified on the average hand; another one tracks.
-  cancellation::AugmentedModel model;
+  cancellation::ControlModel model;
   {
     InProcessSession average(configs, protocol.seed, 0);
     const TrialRun pegged = average.run(session::plan(protocol)[0], "I");
-    model = cancellation::augmented(average.identify(pegged).control);
+    model = cancellation::control_model(average.identify(pegged).control);
   }
   for (double& c : model.inputs[0].numerator) c *= model_gain;
   configs.rig.body = tracking_hand;
@@ -47,7 +47,7 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
     if (planned.label != 'C') continue;
     EXPECT_EQ(session.use(model), "");
     out.paper = error_mm();
-    cancellation::AugmentedModel followed = model;
+    cancellation::ControlModel followed = model;
     followed.adapts = kAverage;
     EXPECT_EQ(session.use(followed), "");
     out.followed = error_mm();

@@ -66,5 +66,26 @@ TEST(IdentifierTest, SettingsOutsideTheirRangeAreRefused) {
   EXPECT_THROW(identify(pegged_trial(0.0), config), ConfigError);
 }
 
+TEST(IdentifierTest, AnUnusableTrialStatesTheReason) {
+  PeggedTrial trial;
+  trial.record = {1000.0, std::vector<double>(20'000), std::vector<double>(20'000)};
+  trial.lost = 201;
+  const Identification lost = identify(trial, {});
+  EXPECT_FALSE(lost.model);
+  EXPECT_EQ(lost.why_not, "201 ticks of the pegged trial were lost");
+  trial.lost = 0;
+  const Identification still = identify(trial, {});  // nothing moved
+  EXPECT_FALSE(still.model);
+  EXPECT_FALSE(still.why_not.empty());
+}
+
+TEST(IdentifierTest, ACollectedTrialGivesTheModelOfItsRecord) {
+  PeggedTrial trial{pegged_trial(0.05), 1200, 4};  // 1 % of 120 000 ticks
+  const Identification outcome = identify(trial, {});
+  ASSERT_TRUE(outcome.model);
+  EXPECT_EQ(outcome.why_not, "");
+  EXPECT_EQ(outcome.model->control.numerator, identify(trial.record).control.numerator);
+}
+
 }  // namespace
 }  // namespace stillhand::identification

@@ -53,7 +53,7 @@ TEST(ForceEnvelopeTest, IsExactlyZeroWithinTheRampFromEveryState) {
     for (const int interrupted_after : {0, 1, 17, 39}) {
       ForceEnvelope sut = at_force(force_n);
       for (int n = 0; n < interrupted_after; ++n) sut.step(force_n, false);
-      // A short permission in between starts the ramp anew.
+      // A short permission in between starts the ramp again.
       if (interrupted_after > 0) sut.step(force_n, true);
       double last = 0.0;
       for (int n = 0; n < 40; ++n) last = sut.step(force_n, false).force_n;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A control model as a file: what was written is read back bit for bit, and what was tampered with
 // is refused by name.
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
 // Something in every part.
-AugmentedModel full_model() {
-  AugmentedModel model;
+ControlModel full_model() {
+  ControlModel model;
   model.rate_hz = 1000.0;
   model.denominator = {1.0, -1.99, 0.9902};
   const ValueMap map{-2.0, 2.0, {-1.0 / 3.0, 0.0, 0.1}};
@@ -50,7 +50,7 @@ std::string changed(const std::function<void(Json&)>& change) {
 
 TEST(ControlModelFileTest, EveryNumberIsReadBackAsItWasWritten) {
   const std::string text = control_model_json(full_model(), 7);
-  const AugmentedModel back = parse_control_model(text, "m.json", 7);
+  const ControlModel back = parse_control_model(text, "m.json", 7);
   EXPECT_EQ(control_model_json(back, 7), text);
   EXPECT_EQ(back.inputs[0].map.values, full_model().inputs[0].map.values);
   EXPECT_EQ(back.loop->e, full_model().loop->e);
@@ -61,11 +61,11 @@ TEST(ControlModelFileTest, EveryNumberIsReadBackAsItWasWritten) {
 }
 
 TEST(ControlModelFileTest, ThePapersModelNeedsNoneOfTheParts) {
-  AugmentedModel model;
+  ControlModel model;
   model.rate_hz = 1000.0;
   model.denominator = {1.0};
   model.inputs = {{Channel::kAccelY, {}, {3.2}}};
-  const AugmentedModel back = parse_control_model(control_model_json(model, 1), "m.json", 1);
+  const ControlModel back = parse_control_model(control_model_json(model, 1), "m.json", 1);
   EXPECT_FALSE(back.loop);
   EXPECT_FALSE(back.adapts);
   EXPECT_TRUE(back.output.values.empty());
@@ -110,7 +110,7 @@ TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
 
 TEST(ControlModelFileTest, WhatTheCancellerWouldRefuseIsSaid) {
   const Config settings;
-  const auto why = [&](const AugmentedModel& model) {
+  const auto why = [&](const ControlModel& model) {
     try {
       require_sound(model, settings, "m.json");
     } catch (const ConfigError& error) {
@@ -118,15 +118,15 @@ TEST(ControlModelFileTest, WhatTheCancellerWouldRefuseIsSaid) {
     }
     return std::string("sound");
   };
-  AugmentedModel model;
+  ControlModel model;
   model.rate_hz = 1000.0;
   model.denominator = {1.0, -1.99, 0.9902};
   model.inputs = {{Channel::kAccelY, {}, {0.0, 2e-4, 0.0}}};
   EXPECT_EQ(why(model), "sound");
-  AugmentedModel unstable = model;
+  ControlModel unstable = model;
   unstable.denominator = {1.0, -2.02, 1.03};
   EXPECT_THAT(why(unstable), AllOf(HasSubstr("m.json"), HasSubstr("unit circle")));
-  AugmentedModel strong = model;
+  ControlModel strong = model;
   strong.inputs[0].numerator[1] = 1.0;
   EXPECT_THAT(why(strong), HasSubstr("gain"));
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/model_file.hpp"
+#include "services/cancellation/control_model_file.hpp"
 
 #include <algorithm>
 
-#include "services/cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/value_table.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/settings/json_entry.hpp"
@@ -15,8 +15,8 @@ using Json = settings::JsonEntry::Json;
 using Entry = settings::JsonEntry;
 
 constexpr const char* kFormat = "stillhand control model";
-constexpr std::size_t kMostNumbers = ModelFilter::kMaxOrder + 1;
-// More than the filter has room for is check_model()'s to refuse; this keeps a file's size bounded.
+constexpr std::size_t kMostNumbers = ControlModelFilter::kMaxOrder + 1;
+// This bounds a file's size; check_model() refuses what the filter has no room for.
 constexpr std::size_t kMostParts = 64;
 
 std::string_view name_of(Channel channel) {
@@ -72,7 +72,7 @@ HandCompliance hand_of(const Entry& entry) {
 
 }  // namespace
 
-std::string control_model_json(const AugmentedModel& model, std::uint32_t rig) {
+std::string control_model_json(const ControlModel& model, std::uint32_t rig) {
   Json inputs = Json::array();
   for (const InputPath& input : model.inputs) {
     inputs.push_back({{"channel", name_of(input.channel)},
@@ -105,13 +105,13 @@ std::string control_model_json(const AugmentedModel& model, std::uint32_t rig) {
                   {"waves", waves},
                   {"adapts", json_of(model.adapts)}};
   std::string text = json.dump(2) + "\n";
-  // A number that isn't finite would be written as null: what can't be read isn't written.
+  // A number that is not finite would be written as null: nothing is written that cannot be read.
   static_cast<void>(parse_control_model(text, "model", rig));
   return text;
 }
 
-AugmentedModel parse_control_model(std::string_view json, const std::string& origin,
-                                   std::uint32_t rig) {
+ControlModel parse_control_model(std::string_view json, const std::string& origin,
+                                 std::uint32_t rig) {
   const Json whole = settings::parsed_json(json, origin, "JSON of a stillhand control model");
   const Entry top(whole, origin);
   if (top.at("format").text() != kFormat) {
@@ -122,13 +122,13 @@ AugmentedModel parse_control_model(std::string_view json, const std::string& ori
   if (top.at("version").count() != kModelFormatVersion) {
     top.at("version").refuse("1: a newer stillhand wrote this file");
   }
-  // Whoever adds a limit to the file shall not believe that it counts.
+  // A limit in the file has no effect: it is refused, so that nobody relies on it.
   top.allow_only({"format", "version", "rig", "rate_hz", "denominator", "inputs", "loop", "output",
                   "paths", "waves", "adapts"});
   if (top.at("rig").count() != rig) {
     top.at("rig").refuse("rig " + std::to_string(rig) + ", which the model is wanted for");
   }
-  AugmentedModel model;
+  ControlModel model;
   model.rate_hz = top.at("rate_hz").number();
   model.denominator = top.at("denominator").numbers(1, kMostNumbers);
   for (const Entry& input : top.at("inputs").entries(1, kMostParts)) {
@@ -159,7 +159,7 @@ AugmentedModel parse_control_model(std::string_view json, const std::string& ori
   return model;
 }
 
-void require_sound(const AugmentedModel& model, const Config& settings, const std::string& origin) {
+void require_sound(const ControlModel& model, const Config& settings, const std::string& origin) {
   const Refusal refusal = check_model(model, bounds(settings)).refusal;
   if (refusal == Refusal::kNone) return;
   throw ConfigError(origin, std::string(describe(refusal)), "a model that the canceller takes");

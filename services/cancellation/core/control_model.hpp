@@ -12,7 +12,7 @@
 
 namespace stillhand::cancellation {
 
-/// What of a sensed sample a model may read.
+/// Channels of a sensed sample that a model may read.
 enum class Channel : std::uint8_t { kAccelX, kAccelY, kAccelZ, kRoll, kTheta, kOmega };
 
 inline constexpr std::size_t kChannels = 6;
@@ -20,9 +20,10 @@ inline constexpr std::size_t kChannels = 6;
 struct ChannelFacts {
   std::string_view name;  ///< as in recordings
   std::string_view unit;
-  double full_scale;  ///< [unit] largest magnitude that a model is asked about
+  double full_scale;  ///< [unit] largest magnitude that reaches a model
 };
-/// Sensors' ranges: 1.7 g, a quarter turn of roll, the stick's stop, and a hand's fastest swing.
+/// The sensors' ranges: 1.7 g, a quarter turn of roll, the stick's stop, and a hand's fastest
+/// swing.
 inline constexpr std::array<ChannelFacts, kChannels> kChannelFacts{{{"a_x", "m/s^2", 16.67},
                                                                     {"a_y", "m/s^2", 16.67},
                                                                     {"a_z", "m/s^2", 16.67},
@@ -34,7 +35,7 @@ inline constexpr std::array<ChannelFacts, kChannels> kChannelFacts{{{"a_x", "m/s
 using ChannelSample = std::array<double, kChannels>;
 
 /// A memoryless map as a table: straight lines between values at even distances from `low` to
-/// `high`, the outer lines going on beyond.  Empty: the identity.
+/// `high`; the outer lines continue beyond.  Empty: the identity.
 struct ValueMap {
   double low = 0.0;
   double high = 0.0;
@@ -56,7 +57,7 @@ struct LoopPath {
   ValueMap phi;
 };
 
-/// A path beside the body, README Eq. CC-8: gain * map(lag(channel)).
+/// A path next to the body, README Eq. CC-8: gain * map(lag(channel)).
 struct DirectPath {
   Channel channel = Channel::kAccelX;
   double lag_s = 0.0;  ///< of a first-order lag; 0: none
@@ -72,8 +73,8 @@ struct Wave {
   double cosine_n = 0.0;
 };
 
-/// How the stick gives way to a force at the hand while tracking, M x'' + B x' + K x = f: what the
-/// adaptation judges the motion by, README Eq. CC-10.
+/// Compliance of the stick to a force at the hand while tracking, M x'' + B x' + K x = f; the
+/// adaptation judges the motion by it, README Eq. CC-10.
 struct HandCompliance {
   double mass_kg = 0.0;
   double damping_n_s_m = 0.0;
@@ -81,9 +82,11 @@ struct HandCompliance {
   double lever_m = 0.0;  ///< hand to pivot
 };
 
-/// The feedthrough force as a function of what is sensed, at the control rate: a linear body with
-/// several inputs, one spring inside it that isn't linear, and what acts beside it.
-struct AugmentedModel {
+/// The model that the canceller runs, README Eq. CC-6 to CC-9: the feedthrough force as a function
+/// of the sensed channels at the control rate.  A linear body with several inputs, at most one
+/// nonlinear spring inside it, and paths and waves next to it.
+/// On the bus it is stillhand_msgs::AugmentedModel; its file is control_model.json.
+struct ControlModel {
   double rate_hz = 0.0;
   std::vector<double> denominator;  ///< 1, d_1 .. d_p
   std::vector<InputPath> inputs;
@@ -91,13 +94,13 @@ struct AugmentedModel {
   ValueMap output;  ///< of the body's force
   std::vector<DirectPath> paths;
   std::vector<Wave> waves;
-  std::optional<HandCompliance> adapts;  ///< there: gain and phase are followed, Eq. CC-10
+  std::optional<HandCompliance> adapts;  ///< present: gain and phase are followed, Eq. CC-10
 };
 
 /// The paper's model: a_y alone.
-AugmentedModel augmented(const signal::DifferenceModel& model);
+ControlModel control_model(const signal::DifferenceModel& model);
 
 /// The linear part from one input, as a difference model [N a unit of the channel].
-signal::DifferenceModel path_model(const AugmentedModel& model, const InputPath& input);
+signal::DifferenceModel path_model(const ControlModel& model, const InputPath& input);
 
 }  // namespace stillhand::cancellation

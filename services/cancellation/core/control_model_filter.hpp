@@ -5,38 +5,39 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "services/cancellation/core/augmented_model.hpp"
+#include "services/cancellation/core/control_model.hpp"
 #include "services/cancellation/core/value_table.hpp"
 #include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 
-/// An augmented model as a running filter of fixed size, README Eq. CC-6 to CC-9, transposed direct
-/// form II of Eq. SG-12 with further inputs:
+/// A control model as a running filter of fixed size, README Eq. CC-6 to CC-9, transposed direct
+/// form II of services/signal Eq. SG-12 with further inputs:
 ///
 ///   z = n_0 v_1 + t_1,   t_i = n_i v_1 + m_i phi(z) - d_i z + t_{i+1}
 ///   y = sum_k c_k0 v_k + e_0 phi(z) + s_1,
 ///   s_i = sum_k c_ki v_k + e_i phi(z) - d_i y + s_{i+1}
 ///
-/// Trusts its model: Canceller::load_model() checks it first.  step() allocates nothing.
-class ModelFilter {
+/// It trusts its model: prepare() checks it first.  Pure; step() allocates nothing.
+class ControlModelFilter {
  public:
   static constexpr std::size_t kMaxOrder = 12;
   static constexpr std::size_t kMostInputs = 4;
   static constexpr std::size_t kMostPaths = 6;
   static constexpr std::size_t kMostWaves = 6;
 
-  ModelFilter() = default;
+  ControlModelFilter() = default;
   /// @param model         within the sizes above
   /// @param settle_ticks  time for a transient from rest to fall to 1 %
-  ModelFilter(const AugmentedModel& model, std::int64_t settle_ticks) noexcept;
+  ControlModelFilter(const ControlModel& model, std::int64_t settle_ticks) noexcept;
 
   [[nodiscard]] bool loaded() const noexcept { return loaded_; }
   [[nodiscard]] std::int64_t settle_ticks() const noexcept { return settle_ticks_; }
 
   struct Force {
     double feedthrough_n = 0.0;  ///< of the body and the paths from the platform
-    double beside_n = 0.0;       ///< of paths from the stick and of waves: the arm has no say in it
+    double beside_n =
+        0.0;  ///< of paths from the stick and of waves; the arm has no influence on it
   };
   /// f^ at this tick.
   Force step(const ChannelSample& sample, Tick tick) noexcept;

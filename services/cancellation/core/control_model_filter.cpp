@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/core/model_filter.hpp"
+#include "services/cancellation/core/control_model_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,19 +16,20 @@ void copy(const std::vector<double>& from, Taps& to) {
 
 }  // namespace
 
-AugmentedModel augmented(const signal::DifferenceModel& model) {
-  AugmentedModel whole;
+ControlModel control_model(const signal::DifferenceModel& model) {
+  ControlModel whole;
   whole.rate_hz = model.rate_hz;
   whole.denominator = model.denominator;
   whole.inputs = {{Channel::kAccelY, {}, model.numerator}};
   return whole;
 }
 
-signal::DifferenceModel path_model(const AugmentedModel& model, const InputPath& input) {
+signal::DifferenceModel path_model(const ControlModel& model, const InputPath& input) {
   return {model.rate_hz, input.numerator, model.denominator};
 }
 
-ModelFilter::ModelFilter(const AugmentedModel& model, std::int64_t settle_ticks) noexcept
+ControlModelFilter::ControlModelFilter(const ControlModel& model,
+                                       std::int64_t settle_ticks) noexcept
     : order_(model.denominator.size() - 1),
       output_(model.output),
       settle_ticks_(settle_ticks),
@@ -60,13 +61,13 @@ ModelFilter::ModelFilter(const AugmentedModel& model, std::int64_t settle_ticks)
   }
 }
 
-void ModelFilter::reset() noexcept {
+void ControlModelFilter::reset() noexcept {
   s_.fill(0.0);
   t_.fill(0.0);
   lagged_.fill(0.0);
 }
 
-double ModelFilter::body(const ChannelSample& sample) noexcept {
+double ControlModelFilter::body(const ChannelSample& sample) noexcept {
   std::array<double, kMostInputs> v{};
   for (std::size_t k = 0; k < inputs_used_; ++k) {
     v[k] = inputs_[k].map(sample[inputs_[k].channel]);
@@ -90,7 +91,8 @@ double ModelFilter::body(const ChannelSample& sample) noexcept {
   return y;
 }
 
-ModelFilter::Force ModelFilter::step(const ChannelSample& sample, Tick tick) noexcept {
+ControlModelFilter::Force ControlModelFilter::step(const ChannelSample& sample,
+                                                   Tick tick) noexcept {
   Force force{output_(body(sample)), 0.0};
   for (std::size_t k = 0; k < paths_used_; ++k) {
     const Path& path = paths_[k];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An augmented model in the canceller: Eq. CC-6 to CC-9 and CC-14.
+// A control model in the canceller: Eq. CC-6 to CC-9 and CC-14.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -19,8 +19,8 @@ constexpr std::size_t kRoll_i = static_cast<std::size_t>(Channel::kRoll);
 constexpr ModelBounds kBounds{60.0, 10.0};
 
 // z'' = u - c z' - k z - spring(z) by Euler's two half steps: poles well inside the unit circle.
-AugmentedModel oscillator() {
-  AugmentedModel model;
+ControlModel oscillator() {
+  ControlModel model;
   model.rate_hz = 1000.0;
   model.denominator = {1.0, -1.99, 0.9902};
   model.inputs = {{Channel::kAccelY, {}, {0.0, 2e-4, 0.0}}};
@@ -40,14 +40,16 @@ ChannelSample at(double a_y, double roll = 0.0) {
   return sample;
 }
 
-double total(const ModelFilter::Force& force) { return force.feedthrough_n + force.beside_n; }
+double total(const ControlModelFilter::Force& force) {
+  return force.feedthrough_n + force.beside_n;
+}
 
-TEST(ModelFilterTest, ASecondInputAddsItsOwnResponse) {
-  AugmentedModel model = oscillator();
+TEST(ControlModelFilterTest, ASecondInputAddsItsOwnResponse) {
+  ControlModel model = oscillator();
   model.inputs.push_back({Channel::kRoll, {}, {0.0, 1e-3, 1e-3}});
-  ModelFilter both(model, 1);
-  ModelFilter first(augmented(path_model(model, model.inputs[0])), 1);
-  ModelFilter second(augmented(path_model(model, model.inputs[1])), 1);
+  ControlModelFilter both(model, 1);
+  ControlModelFilter first(control_model(path_model(model, model.inputs[0])), 1);
+  ControlModelFilter second(control_model(path_model(model, model.inputs[1])), 1);
   signal::Gaussian draw(1, 1);
   for (Tick n = 0; n < 2000; ++n) {
     const double a_y = draw();
@@ -57,7 +59,7 @@ TEST(ModelFilterTest, ASecondInputAddsItsOwnResponse) {
   }
 }
 
-TEST(ModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
+TEST(ControlModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
   const ValueTable table({-1.0, 1.0, {2.0, 0.0, 4.0}});
   EXPECT_DOUBLE_EQ(table(-1.0), 2.0);
   EXPECT_DOUBLE_EQ(table(-0.5), 1.0);
@@ -67,9 +69,9 @@ TEST(ModelFilterTest, AMapIsStraightBetweenItsValuesAndBeyondThem) {
   EXPECT_DOUBLE_EQ(ValueTable()(0.3), 0.3);
 }
 
-TEST(ModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
+TEST(ControlModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
   // Against the plain difference equations A z = N v + M phi(z), A y = C v + E phi(z).
-  AugmentedModel model = oscillator();
+  ControlModel model = oscillator();
   const auto cube = [](double z) { return z * z * z; };
   LoopPath loop;
   loop.e = {0.01, -0.02, 0.005};
@@ -77,7 +79,7 @@ TEST(ModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
   loop.m = {0.0, -2e-4, 0.0};
   loop.phi = table_of(-2.0, 2.0, cube);
   model.loop = loop;
-  ModelFilter sut(model, 1);
+  ControlModelFilter sut(model, 1);
   const ValueTable phi(loop.phi);
   double v1 = 0.0, v2 = 0.0, z1 = 0.0, z2 = 0.0, p1 = 0.0, p2 = 0.0, y1 = 0.0, y2 = 0.0;
   signal::Gaussian draw(2, 1);
@@ -95,11 +97,11 @@ TEST(ModelFilterTest, ASpringInsideTheBodyIsThatOfEq7) {
   EXPECT_GT(std::abs(p1) + std::abs(p2), 0.0);
 }
 
-TEST(ModelFilterTest, PathsAndWavesActBesideTheBody) {
-  AugmentedModel model = augmented({1000.0, {0.0}, {1.0}});
+TEST(ControlModelFilterTest, PathsAndWavesActBesideTheBody) {
+  ControlModel model = control_model({1000.0, {0.0}, {1.0}});
   model.paths = {{Channel::kRoll, 0.5, {}, 4.0}};
   model.waves = {{std::nullopt, 10.0, 0.3, 0.4}, {Channel::kTheta, 14.0, 0.0, 1.0}};
-  ModelFilter sut(model, 1);
+  ControlModelFilter sut(model, 1);
   ChannelSample sample = at(0.0, 0.2);
   sample[static_cast<std::size_t>(Channel::kTheta)] = 1.0 / 28.0;  // half a period
   double force_n = 0.0;
@@ -108,18 +110,18 @@ TEST(ModelFilterTest, PathsAndWavesActBesideTheBody) {
   EXPECT_NEAR(force_n, 4.0 * 0.2 + 0.3 - 1.0, 1e-4);
 }
 
-Refusal refusal_of(const AugmentedModel& model) { return check_model(model, kBounds).refusal; }
+Refusal refusal_of(const ControlModel& model) { return check_model(model, kBounds).refusal; }
 
 TEST(ModelCheckTest, APushWithoutMotionIsRefusedWhereverItComesFrom) {
   const ValueMap push{-20.0, 20.0, {5.0, 5.0}};
-  AugmentedModel behind = oscillator();
+  ControlModel behind = oscillator();
   behind.output = push;
   EXPECT_EQ(refusal_of(behind), Refusal::kRest);
-  AugmentedModel before = oscillator();
+  ControlModel before = oscillator();
   before.inputs[0].map = push;
   before.inputs[0].numerator = {1.0, -1.98, 0.982};  // 10 N at rest
   EXPECT_EQ(refusal_of(before), Refusal::kRest);
-  AugmentedModel beside = oscillator();
+  ControlModel beside = oscillator();
   beside.paths = {{Channel::kAccelX, 0.05, push, 1.0}};
   EXPECT_EQ(refusal_of(beside), Refusal::kRest);
   beside.paths[0].gain = 0.1;
@@ -127,7 +129,7 @@ TEST(ModelCheckTest, APushWithoutMotionIsRefusedWhereverItComesFrom) {
 }
 
 TEST(ModelCheckTest, WhatOnePathMayNotAskForSeveralMayNotEither) {
-  AugmentedModel model = oscillator();
+  ControlModel model = oscillator();
   model.paths = {{Channel::kAccelX, 0.0, {}, 35.0}};
   EXPECT_EQ(refusal_of(model), Refusal::kNone);
   model.paths.push_back(model.paths[0]);
@@ -149,9 +151,9 @@ TEST(ModelCheckTest, WhatOnePathMayNotAskForSeveralMayNotEither) {
   EXPECT_EQ(refusal_of(model), Refusal::kPath);
 }
 
-TEST(AugmentedModelTest, WhatIsTooStrongIsRefused) {
+TEST(ControlModelTest, WhatIsTooStrongIsRefused) {
   EXPECT_EQ(refusal_of(oscillator()), Refusal::kNone);
-  AugmentedModel model = oscillator();
+  ControlModel model = oscillator();
   model.paths = {{Channel::kTheta, 0.0, {}, 16.0}};  // 9.6 N at 0.6 rad
   EXPECT_EQ(refusal_of(model), Refusal::kNone);
   model.paths[0].gain = 17.0;
@@ -177,8 +179,8 @@ TEST(AugmentedModelTest, WhatIsTooStrongIsRefused) {
   EXPECT_EQ(refusal_of(model), Refusal::kGain);
 }
 
-TEST(AugmentedModelTest, ASpringThatLosesStabilityAtOneSlopeIsRefused) {
-  AugmentedModel model = oscillator();
+TEST(ControlModelTest, ASpringThatLosesStabilityAtOneSlopeIsRefused) {
+  ControlModel model = oscillator();
   LoopPath loop;
   loop.e = {0.0, 1e-4, 0.0};
   loop.n = {0.0, 2e-4, 0.0};
@@ -193,9 +195,9 @@ TEST(AugmentedModelTest, ASpringThatLosesStabilityAtOneSlopeIsRefused) {
   EXPECT_EQ(refusal_of(model), Refusal::kLoop);
 }
 
-TEST(AugmentedModelTest, WhatIsNoModelIsRefused) {
+TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   const auto spoilt = [](const auto& spoil) {
-    AugmentedModel model = oscillator();
+    ControlModel model = oscillator();
     model.loop = LoopPath{{0.0, 0.0, 0.0}, {}, {}, {-1.0, 1.0, {-1.0, 1.0}}};
     model.paths = {{Channel::kRoll, 0.0, {}, 1.0}};
     model.waves = {{Channel::kTheta, 10.0, 0.1, 0.1}};
@@ -203,7 +205,7 @@ TEST(AugmentedModelTest, WhatIsNoModelIsRefused) {
     spoil(model);
     return refusal_of(model);
   };
-  const auto nothing = [](AugmentedModel&) {};
+  const auto nothing = [](ControlModel&) {};
   EXPECT_EQ(spoilt(nothing), Refusal::kNone);
   EXPECT_EQ(spoilt([](auto& m) { m.inputs.clear(); }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.inputs[0].channel = Channel::kRoll; }), Refusal::kMalformed);
@@ -222,7 +224,7 @@ TEST(AugmentedModelTest, WhatIsNoModelIsRefused) {
 }
 
 TEST(CancellerTest, CostOfAFullModelIsReported) {
-  AugmentedModel model = oscillator();
+  ControlModel model = oscillator();
   model.inputs.resize(4, model.inputs[0]);
   model.loop =
       LoopPath{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {-1.0, 1.0, {-1.0, 1.0}}};
@@ -243,7 +245,7 @@ TEST(CancellerTest, CostOfAFullModelIsReported) {
 }
 
 TEST(CancellerTest, AToneIsAnsweredOnTheSampleClock) {
-  AugmentedModel model = augmented({1000.0, {0.0}, {1.0}});
+  ControlModel model = control_model({1000.0, {0.0}, {1.0}});
   model.waves = {{std::nullopt, 7.0, 2.0, 0.0}};
   Canceller sut{Config{}};
   ASSERT_EQ(sut.load_model(model), Refusal::kNone);

@@ -51,7 +51,7 @@ std::string changed(const Effect& effect, const Change& change) {
   return file.dump();
 }
 
-TEST(AugmentedModelFileTest, EffectsComeBackAsTheyWere) {
+TEST(DiagnosedModelFileTest, EffectsComeBackAsTheyWere) {
   for (const Effect& effect : {path_from_roll(), tone(), friction()}) {
     const Model sut = parse_model(model_json(model_with(effect)), "m.json");
     ASSERT_EQ(sut.effects.size(), 1u) << effect.kind;
@@ -60,7 +60,7 @@ TEST(AugmentedModelFileTest, EffectsComeBackAsTheyWere) {
   }
 }
 
-TEST(AugmentedModelFileTest, AWrongNumberOfCoefficientsIsNamed) {
+TEST(DiagnosedModelFileTest, AWrongNumberOfCoefficientsIsNamed) {
   for (const Effect& effect : {path_from_roll(), tone(), friction()}) {
     const std::string want = std::to_string(effect.coefficients.size()) + " numbers";
     const auto fewer = [](json& entry) { entry["coefficients"].erase(0); };
@@ -72,7 +72,7 @@ TEST(AugmentedModelFileTest, AWrongNumberOfCoefficientsIsNamed) {
   }
 }
 
-TEST(AugmentedModelFileTest, APathThroughTheBodyHasOneMoreThanItsOrder) {
+TEST(DiagnosedModelFileTest, APathThroughTheBodyHasOneMoreThanItsOrder) {
   Effect through = path_from_roll();
   through.form = "through the body";
   through.coefficients = {1.0, 2.0, 3.0};
@@ -81,7 +81,7 @@ TEST(AugmentedModelFileTest, APathThroughTheBodyHasOneMoreThanItsOrder) {
   EXPECT_THAT(refusal(changed(through, one)), HasSubstr("3 numbers"));
 }
 
-TEST(AugmentedModelFileTest, MissingChannelsAndParametersAreRefused) {
+TEST(DiagnosedModelFileTest, MissingChannelsAndParametersAreRefused) {
   const auto no_channel = [](json& entry) { entry["channels"] = json::array(); };
   const auto no_parameter = [](json& entry) { entry["parameters"] = json::array(); };
   EXPECT_THAT(refusal(changed(friction(), no_channel)),

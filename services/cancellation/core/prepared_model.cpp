@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/cancellation/core/prepared_model.hpp"
+
+namespace stillhand::cancellation {
+
+Preparation prepare(const ControlModel& model, const ModelBounds& bounds) noexcept {
+  const ModelCheck check = check_model(model, bounds);
+  if (check.refusal != Refusal::kNone) return {check.refusal, {}};
+  return {Refusal::kNone,
+          {ControlModelFilter(model, check.settle_ticks),
+           model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()}};
+}
+
+}  // namespace stillhand::cancellation

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/cancellation/core/trial_arming.hpp"
+
+#include <gtest/gtest.h>
+
+namespace stillhand::cancellation {
+namespace {
+
+constexpr Trial kTracking{3, TrialPhase::kTracking, 1000, 500, 100};
+
+TrialArming with(const Trial& trial, const Assignment& assignment) {
+  TrialArming sut;
+  sut.announce(trial);
+  sut.assign(assignment);
+  return sut;
+}
+
+TEST(TrialArmingTest, NothingIsArmedBeforeAnAssignment) {
+  TrialArming sut;
+  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
+  EXPECT_FALSE(sut.cancels(0));
+  sut.announce(kTracking);
+  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
+  EXPECT_FALSE(sut.cancels(1200));
+}
+
+TEST(TrialArmingTest, TrialAndAssignmentComeInEitherOrder) {
+  TrialArming sut;
+  sut.assign({3, true});
+  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
+  sut.announce(kTracking);
+  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kArmed);
+  EXPECT_TRUE(sut.cancels(1200));
+}
+
+TEST(TrialArmingTest, AnAssignmentOfAnotherTrialDoesNotCount) {
+  const TrialArming sut = with(kTracking, {2, true});
+  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kUnassigned);
+  EXPECT_FALSE(sut.cancels(1200));
+}
+
+TEST(TrialArmingTest, ATrialWithCancellationNeedsAModel) {
+  const TrialArming sut = with(kTracking, {3, true});
+  EXPECT_EQ(sut.readiness(false, std::nullopt), Readiness::kNoModel);
+  EXPECT_EQ(sut.readiness(false, 1000), Readiness::kArmed);  // its first measured tick
+  EXPECT_EQ(sut.readiness(false, 1001), Readiness::kModelTooLate);
+  EXPECT_EQ(sut.readiness(true, 1001), Readiness::kArmed);  // with the one in use
+}
+
+TEST(TrialArmingTest, ATrialWithoutCancellationNeedsNone) {
+  const TrialArming sut = with(kTracking, {3, false});
+  EXPECT_EQ(sut.readiness(false, std::nullopt), Readiness::kArmed);
+  EXPECT_FALSE(sut.cancels(1200));
+}
+
+TEST(TrialArmingTest, ItCancelsInTheTrackingTrialAndItsRampsAlone) {
+  const TrialArming sut = with(kTracking, {3, true});
+  EXPECT_FALSE(sut.cancels(899));
+  EXPECT_TRUE(sut.cancels(900));
+  EXPECT_TRUE(sut.cancels(1599));
+  EXPECT_FALSE(sut.cancels(1600));
+  Trial pegged = kTracking;
+  pegged.phase = TrialPhase::kPegged;
+  EXPECT_FALSE(with(pegged, {3, true}).cancels(1200));
+}
+
+}  // namespace
+}  // namespace stillhand::cancellation
