@@ -28,8 +28,8 @@ class Delay final : public EffectKind {
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
-    return "the output answers the input " + with_unit(1e3 * effect.value(0), "ms") +
-           " later than poles and zeros of the body can give";
+    return "the output follows the input " + with_unit(1e3 * effect.value(0), "ms") +
+           " later than the poles and zeros of the body provide";
   }
 };
 

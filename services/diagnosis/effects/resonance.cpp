@@ -39,10 +39,13 @@ class Resonance final : public EffectKind {
     if (ringing_s > kLongestRinging * signals.duration_s()) return {};
     return mode_denominator(effect.value(0), effect.value(1), signals.rate_hz());
   }
+  [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
+    return control::Mode{effect.value(0), effect.value(1)};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "a mode at " + with_unit(effect.value(0), "Hz") + " with damping ratio " +
-           with_unit(effect.value(1), "") + " that the body's order leaves no room for";
+           with_unit(effect.value(1), "") + " in addition to those of the body";
   }
 };
 

@@ -60,6 +60,9 @@ class Transients final : public EffectKind {
       }
     }
   }
+  [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
+    return control::LeftOut{"nothing predicts when a burst comes"};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     std::string text = std::to_string(effect.parameters.size() / 2) + " isolated burst(s), from";
