@@ -90,11 +90,11 @@ report::Figure figure_detections(const Evidence& evidence) {
   chance.reference_lines = {{.at = diagnosis::kSignificance, .label = "threshold"}};
   return {.name = "detections",
           .caption =
-              "The questions that explain most of the residual. Above: share of its power, "
-              "held out (negative ones at 0). Below: probability of such a gain by chance, "
-              "corrected for all questions after Holm. Large marks: something is there, the "
-              "share above its threshold and p below its own (drawn at 1e-30 where it is "
-              "less). y: the body's output.",
+              "The questions that explain most of the residual. Above: share of its power on "
+              "held-out blocks (negative ones drawn at 0). Below: probability of such a gain by "
+              "chance, corrected for all questions after Holm (smaller ones drawn at 1e-30). Large "
+              "marks: answered yes, with the share above its threshold and p below its own. y: the "
+              "body's output.",
           .panels = {share, chance},
           .width_px = 980,
           .height_px = 560};
