@@ -94,8 +94,8 @@ std::optional<Proposal> mode_of(const Model& larger, const Screening& screening,
   return best;
 }
 
-// Bodies of two poles more, fitted from starts of their own: a grid beside the body as it is misses
-// what only a different body makes room for.
+// Bodies with two more poles, fitted from starts of their own: a grid of modes next to the present
+// body misses a mode that needs a different body.
 std::vector<Proposal> from_larger_bodies(const Screening& screening) {
   constexpr int kIterations = 15;
   const Signals& signals = screening.signals();
