@@ -23,7 +23,7 @@ class Loop {
     if (!options_.progress(name)) throw diagnosis::Interrupted();
   }
   void paper_trials();
-  /// False: nothing more to do.
+  /// @return false when nothing more is to be done
   bool round();
   void try_model(Round& round, std::string why_not);
   [[nodiscard]] const TrialRun& newest_cancelled() const;
@@ -66,14 +66,14 @@ void Loop::try_model(Round& round, std::string why_not) {
     round.augmented = refused.empty();
     if (!refused.empty()) why_not = "the canceller refused the model (" + refused + ")";
   }
-  // What can't be carried or explained isn't put into a motor: gain and phase are followed, no
-  // more.
+  // A model that cannot be converted, or does not explain the residual, is not run on a motor: the
+  // paper's model runs with adapting gain and phase.
   if (!round.augmented) {
     model = followed(cancellation::control_model(result_.paper_model.control));
     if (const std::string refused = session_.use(model); !refused.empty()) {
-      throw ConfigError("the paper's model", refused, "one that the canceller takes");
+      throw ConfigError("the paper's model", refused, "one that the canceller accepts");
     }
-    round.outcome = why_not + ": the paper's model stays, gain and phase are followed; ";
+    round.outcome = why_not + ": the paper's model stays, its gain and phase adapt; ";
   }
   cancelled_.trial.number = ++last_number_;
   step("trial C+");
@@ -82,11 +82,11 @@ void Loop::try_model(Round& round, std::string why_not) {
   if (round.kept) {
     best_error_mm_ = round.trial.metrics.rms_error_mm;
     result_.control_model = model;
-    round.outcome += "the hand is stiller: kept";
+    round.outcome += "the tracking error is smaller: the model is kept";
   } else {
     const std::string refused = session_.use(result_.control_model);
-    round.outcome += "the hand isn't stiller: the last good model stays";
-    if (!refused.empty()) round.outcome += ", but the canceller did not take it back: " + refused;
+    round.outcome += "the tracking error is not smaller: the last good model stays";
+    if (!refused.empty()) round.outcome += ", but the canceller refused it: " + refused;
   }
 }
 
@@ -94,7 +94,7 @@ const TrialRun& Loop::newest_cancelled() const {
   return result_.rounds.empty() ? result_.trial("C") : result_.rounds.back().trial;
 }
 
-// I and B stay as they are: what C+ can tell anew is how late its motor and load cell are.
+// I and B do not change: the new fact in C+ is the delay of its motor and its load cell.
 bool Loop::anything_new() const {
   if (result_.rounds.empty()) return true;
   const auto& before = result_.rounds.back().verdict.latency;
@@ -119,7 +119,7 @@ bool Loop::round() {
   std::string why_not = round.verdict.not_carried;
   if (why_not.empty() && round.verdict.findings.empty() &&
       round.verdict.body.verdict() == "unexplained residual") {
-    why_not = "something is missing that no kind explains";
+    why_not = "the residual has a cause that no kind of effect explains";
   }
   try_model(round, why_not);
   const bool kept = round.kept;

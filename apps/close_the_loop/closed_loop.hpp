@@ -15,21 +15,21 @@ namespace stillhand::close_the_loop {
 struct LoopOptions {
   session::ProtocolOptions protocol;  ///< conditions are A, B, C
   DeclaredDrive declared;
-  cancellation::HandCompliance hand;  ///< what the adaptation counts on
+  cancellation::HandCompliance hand;  ///< the hand that the adaptation assumes
   int most_rounds = 3;
   diagnosis::ForEach for_each = diagnosis::in_order;
   /// Before each longer step; false ends the loop (diagnosis::Interrupted).
   std::function<bool(const std::string& step)> progress = [](const std::string&) { return true; };
-  /// Runs what takes long and has no deadline.
+  /// Runs work that takes long and has no deadline.
   std::function<void(const std::function<void()>&)> aside = [](const auto& work) { work(); };
 };
 
-/// One way through diagnosis, augmentation and C+.
+/// One pass through diagnosis, augmentation and C+.
 struct Round {
   Verdict verdict;
   TrialRun trial;          ///< C+
-  bool augmented = false;  ///< it ran with the verdict's model; else the paper's, followed
-  bool kept = false;       ///< C+ beat the best before it
+  bool augmented = false;  ///< it ran with the verdict's model; else the paper's, adapting
+  bool kept = false;       ///< C+ has a smaller RMS error than the best before it
   std::string outcome;     ///< one sentence
 };
 
@@ -37,8 +37,8 @@ struct LoopResult {
   identification::FeedthroughModel paper_model;
   std::vector<TrialRun> trials;              ///< I, then A, B, C in the order in which they ran
   std::vector<Round> rounds;                 ///< at least one
-  std::size_t final_round = 0;               ///< whose C+ counts: the best that ran
-  cancellation::ControlModel control_model;  ///< that the best trial ran with
+  std::size_t final_round = 0;               ///< the round with the best C+
+  cancellation::ControlModel control_model;  ///< the model of the best trial
 
   [[nodiscard]] const TrialRun& trial(const std::string& label) const;
   /// C+ of the final round, whether or not it was better than C.
@@ -46,9 +46,10 @@ struct LoopResult {
   [[nodiscard]] const Verdict& verdict() const { return rounds[final_round].verdict; }
 };
 
-/// Identifies, runs A, B and C with the paper's model, diagnoses, augments, runs C+, and again
-/// until nothing new is found or nothing helps, README "The loop".  The last good model stays.
-/// @throws ConfigError when no usable model comes out of the identification or a recording can't be
+/// Identifies, runs A, B and C with the paper's model, diagnoses, augments and runs C+; repeats
+/// until nothing new is found or C+ no longer improves, README "The loop".  The last good model
+/// stays.
+/// @throws ConfigError when the identification yields no usable model or a recording cannot be
 ///         diagnosed, diagnosis::Interrupted
 LoopResult close_loop(Session& session, const LoopOptions& options);
 

@@ -8,7 +8,6 @@
 
 #include "apps/close_the_loop/live_session.hpp"
 #include "apps/close_the_loop/output.hpp"
-#include "apps/diagnose/on_all_cores.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/lab/undeclared_effect.hpp"
 #include "apps/report/command_line.hpp"
@@ -21,6 +20,7 @@
 #include "services/recording/file_io.hpp"
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/run_jobs.hpp"
 #include "services/runtime/process/stop.hpp"
 
 namespace stillhand::close_the_loop {
@@ -31,14 +31,14 @@ struct Words {
   bool live = false;
 };
 
-// Steps of one way through the loop, for the bar.
+// Steps of one pass through the loop, for the progress line.
 constexpr double kUsualSteps = 14.0;
 
 DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
 }
 
-// Everything but the session, for both ways.
+// What both modes need besides the session.
 LoopRecord new_record(const Words& words) {
   LoopRecord record;
   record.command_line = report::command_line();
@@ -47,7 +47,7 @@ LoopRecord new_record(const Words& words) {
   record.options.protocol = words.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
-  record.options.for_each = diagnose::on_all_cores;
+  record.options.for_each = runtime::on_all_cores;
   return record;
 }
 
@@ -62,10 +62,10 @@ void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFold
 
 void run_in_process(const Words& words) {
   runtime::Stop stop;
-  // A recording is not for us to take away, and isn't this run's.
+  // The recording of another session must not be removed.
   if (std::filesystem::exists(words.lab.out / "session.mcap")) {
-    throw ConfigError("--out", words.lab.out.string() + ", which holds a session's recording",
-                      "a folder of its own");
+    throw ConfigError("--out", words.lab.out.string() + ", which holds the recording of a session",
+                      "a folder without one");
   }
   report::StagedFolder folder(words.lab.out);
   report::require_gnuplot();
@@ -110,7 +110,7 @@ void run_live(const Words& words) {
   });
   if (record.result.rounds.empty()) throw diagnosis::Interrupted();
   judge_cancellation(recording, live.outcomes, record.result);
-  // The verdict is in place before the truth is opened.
+  // The verdict is written before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
                                                            verdict_json(record.result));
       !status.ok()) {
@@ -136,19 +136,16 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   lab.headless = true;
   lab.protocol.identify_s = 120.0;  // paper III-A
   lab.protocol.conditions = session::parse_conditions("A,B,C");
-  CLI::App* verb =
-      cli.add_subcommand("close-the-loop",
-                         "What the model lacks goes back into the canceller: identifies with the "
-                         "stick pegged, runs A, "
-                         "B and C\n"
-                         "with the paper's model, diagnoses the recordings, augments the model, "
-                         "and runs C again (C+), "
-                         "until\n"
-                         "nothing new is found or nothing helps.\n"
-                         "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
-  verb->add_option(
-          "--undeclared-effect", lab.undeclared_effect,
-          "seed of an effect that only the rig knows of, opened after the verdict; 0: none")
+  CLI::App* verb = cli.add_subcommand(
+      "close-the-loop",
+      "Puts what the model lacks back into the canceller: identifies with the stick "
+      "pegged, runs A, B\n"
+      "and C with the paper's model, diagnoses the recordings, augments the model "
+      "and runs C again (C+),\n"
+      "until nothing new is found or C+ no longer improves.\n"
+      "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
+  verb->add_option("--undeclared-effect", lab.undeclared_effect,
+                   "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
       ->check(session::check_seed)
       ->capture_default_str();
   verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")

@@ -10,11 +10,11 @@
 
 namespace stillhand::close_the_loop {
 
-/// What becomes of an effect in the canceller.
+/// What the canceller does about an effect.
 struct Treatment {
   std::string kind;
   bool cancelled = false;
-  std::string how;  ///< one sentence: what the motor does about it, or why nothing
+  std::string how;  ///< one clause: what the motor does about it, or why it does nothing
 };
 
 /// A diagnosed model as the canceller runs it.
@@ -24,31 +24,25 @@ struct ConvertedModel {
   std::vector<Treatment> treatments;  ///< one an effect
 };
 
-/// How a model is carried over.
+/// How a model is converted.
 struct ControlOptions {
   double low_hz = 0.5;      ///< [Hz] the motion's band, met with full weight
   double high_hz = 4.0;     ///< [Hz]
   double upper_hz = 10.0;   ///< [Hz] met with less weight to here
   double max_error = 0.05;  ///< [-] Eq. CL-2
-  double lead_s = 0.0;      ///< [s] by which the motor is late: the prediction comes as much sooner
+  double lead_s = 0.0;      ///< [s] delay of the motor: the prediction comes as much sooner
 };
 
-/// The hand that the adaptation counts on: an average person's, as the command filter's.
+/// The hand that the adaptation assumes: an average person's, that of the command filter.
 cancellation::HandCompliance average_hand();
 
-/// Carries a diagnosed model to the control rate, README Eq. CL-1 to CL-4: the body's poles by
+/// Converts a diagnosed model to the control rate, README Eq. CL-1 to CL-4: the body's poles by
 /// z' = z^(rate/1000 Hz), each numerator by least squares on its response, springs inside the body,
-/// paths beside it and waves as they are.  Offset, drift and bursts are no feedthrough and stay
-/// out; what the sensors did to the force (a limit, a delay of the cell) isn't felt by the hand and
-/// stays out too.
+/// paths next to it and waves unchanged.  What becomes of an effect is its body_role()
+/// (services/diagnosis/core/model/control_role.hpp).
 /// @param signals  what the model was fitted to: ranges of its tables
 /// @throws stillhand::ConfigError when an error exceeds options.max_error.
 ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
                                 const ControlOptions& options = {});
-
-/// The same without a diagnosis, for what the drive does: friction against the sign of omega and
-/// ripple of theta, as found in the force that the hand needs to move the stick.
-/// @param share  [-] of the friction that the motor takes over: more than all of it would hunt
-void add_drive_effect(const diagnosis::Effect& effect, double share, ConvertedModel& to);
 
 }  // namespace stillhand::close_the_loop

@@ -70,24 +70,25 @@ void add_control_model_command(CLI::App& cli, int& status) {
   words->config = places.config;
   CLI::App* verb = cli.add_subcommand(
       "control-model",
-      "Carries a model that `stillhand diagnose --save` wrote to the canceller's 1 kHz, for\n"
-      "`stillhand lab --model`, and says of each effect what the motor will do about it.\n"
-      "The recording is the one that was diagnosed: the ranges of the model's tables are its.\n"
+      "Converts a model that `stillhand diagnose --save` wrote to the canceller's 1 kHz, for\n"
+      "`stillhand lab --model`, and prints for each effect what the motor will do about it.\n"
+      "REC is the recording that was diagnosed: its ranges are those of the model's tables.\n"
       "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
       "control.json");
   verb->add_option("MODEL", words->model, "model file")->required();
   verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
   verb->add_option("--trial", words->read.trial,
-                   "of a session's recording: number of the trial, or its condition's letter");
+                   "trial of a session's recording: its number, or the letter of its condition");
   verb->add_option("--save", words->save, "file of the control model")
       ->required()
       ->check(settings::check_name);
-  verb->add_option("--rig", words->rig, "number of the rig that it is for")->capture_default_str();
+  verb->add_option("--rig", words->rig, "number of the rig that the model is for")
+      ->capture_default_str();
   verb->add_option("--lead-ms", words->lead_ms,
-                   "how late the motor is [ms]: the prediction comes sooner by as much")
+                   "delay of the motor [ms]: the prediction comes as much sooner")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  verb->add_flag("--as-it-is", words->as_it_is, "gain and phase aren't followed while it runs");
+  verb->add_flag("--as-it-is", words->as_it_is, "gain and phase do not adapt while it runs");
   verb->add_option("--config", words->config,
                    "folder with the settings of each service: the canceller's bounds")
       ->capture_default_str();

@@ -11,13 +11,13 @@
 
 namespace stillhand::close_the_loop {
 
-/// What the lab knows of its own stick and motor, from their data sheets and the rig's settings.
+/// The lab's stick and motor by their data sheets and the rig's settings.
 struct DeclaredDrive {
   rig::StickConfig stick;
   double motor_delay_s = 0.0025;  ///< [s] one tick on the bus and the current loop's lag
 };
 
-/// Delay between the force that was asked for and the one that was felt, README Eq. CL-5:
+/// Delay between the commanded and the felt force, README Eq. CL-5:
 ///
 ///   f(t) = m lever alpha(t - c) + b lever omega(t - c) + F sign(omega)(t - c) - k f_m(t - m - c)
 ///
@@ -31,7 +31,7 @@ struct Latency {
 };
 
 /// @param trial  a tracking trial with the motor acting, 1 kHz: theta, f, f_motor
-/// @return nothing when the motor hardly acted
+/// @return nothing when the motor was almost idle
 std::optional<Latency> measure_latency(const recording::Recording& trial,
                                        const DeclaredDrive& declared);
 
@@ -40,7 +40,7 @@ std::optional<Latency> measure_latency(const recording::Recording& trial,
 diagnosis::Measurement drive_measurement(const recording::Recording& trial,
                                          const DeclaredDrive& declared);
 
-/// Diagnoses it: friction and ripple that nobody declared.
+/// Diagnoses it: friction and ripple that are not declared.
 diagnosis::Diagnosis diagnose_drive(const recording::Recording& trial,
                                     const DeclaredDrive& declared,
                                     const diagnosis::DiagnoseOptions& options);

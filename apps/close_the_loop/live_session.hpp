@@ -9,15 +9,14 @@
 
 namespace stillhand::close_the_loop {
 
-/// The same over DDS: trials of the lab's processes, measured by what the session's recorder has
-/// written.
+/// Trials of the lab's processes over DDS, measured by what the session's recorder has written.
 class LiveTrialSession final : public Session {
  public:
   /// @param recording  the session's file, being written
   LiveTrialSession(lab::LiveTrials& trials, std::filesystem::path recording)
       : trials_(trials), recording_(std::move(recording)) {}
 
-  /// @throws std::runtime_error when the trial isn't completed, or the recording doesn't hold it
+  /// @throws std::runtime_error when the trial is not completed, or the recording does not hold it
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
   identification::FeedthroughModel identify(const TrialRun& pegged) override;
   std::string use(const cancellation::ControlModel& model) override;
@@ -27,8 +26,8 @@ class LiveTrialSession final : public Session {
   std::filesystem::path recording_;
 };
 
-/// Shares of cancelled force and how late it was cancelled, which the rig's truth in the recording
-/// tells when the session has ended.
+/// Adds to each trial the share of force that was cancelled and the delay of the counterforce. Both
+/// come from the rig's truth in the recording, after the session has ended.
 void judge_cancellation(const std::filesystem::path& recording,
                         const std::vector<session::TrialOutcome>& outcomes, LoopResult& result);
 

@@ -182,7 +182,7 @@ void print_result(const LoopRecord& record) {
   }
   std::printf("feedthrough force cancelled: C %.1f %%, C+ %.1f %%\n",
               100.0 * result.trial("C").cancelled_share, 100.0 * result.plus().cancelled_share);
-  std::printf("the motor opposes it late by: C %.1f ms, C+ %.1f ms\n",
+  std::printf("delay of the motor's counterforce: C %.1f ms, C+ %.1f ms\n",
               1e3 * result.trial("C").counterforce_delay_s,
               1e3 * result.plus().counterforce_delay_s);
   const Verdict& verdict = result.verdict();

@@ -12,7 +12,7 @@
 
 namespace stillhand::close_the_loop {
 
-/// [Hz] What is followed takes seconds: ten values in each show its course.
+/// [Hz] Gain and phase adapt within seconds: ten values a second show their course.
 inline constexpr double kWeightRate_hz = 10.0;
 
 /// One trial as it was measured.
@@ -24,10 +24,10 @@ struct TrialRun {
   double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth
   double counterforce_delay_s = 0.0;        ///< [s] of the motor's force behind it, the same
   std::vector<cancellation::AdaptiveGain::Pair>
-      weights;  ///< w_0, w_1 as followed, at kWeightRate_hz
+      weights;  ///< w_0, w_1 as adapted, at kWeightRate_hz
 };
 
-/// What the loop asks of a session, in one process or over DDS.
+/// A session as the loop needs it, in one process or over DDS.
 class Session {
  public:
   Session() = default;
@@ -35,12 +35,13 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Runs one trial.  @param label  what to call it  @throws ConfigError, std::runtime_error
+  /// Runs one trial.  @param label  its name in the result  @throws ConfigError, std::runtime_error
   virtual TrialRun run(const session::PlannedTrial& planned, const std::string& label) = 0;
   /// The paper's model of a pegged trial, which the canceller uses from now on.
-  /// @throws ConfigError when no usable one comes out
+  /// @throws ConfigError when the trial yields no usable one
   virtual identification::FeedthroughModel identify(const TrialRun& pegged) = 0;
-  /// The model that the canceller uses from the next trial on.  @return why not, or empty
+  /// Sets the model that the canceller uses from the next trial on.  @return why it refuses, or
+  /// empty
   virtual std::string use(const cancellation::ControlModel& model) = 0;
 };
 
@@ -48,7 +49,7 @@ class Session {
 identification::TrackingMetrics metrics_of(const recording::Recording& measured,
                                            const session::PlannedTrial& planned);
 
-/// All in one process, as fast as the machine goes.
+/// All in one process, as fast as the machine allows.
 class InProcessSession final : public Session {
  public:
   InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
@@ -63,7 +64,7 @@ class InProcessSession final : public Session {
   [[nodiscard]] const std::string& commitment() const noexcept { return commitment_; }
 
  private:
-  std::string sealed_;  ///< its text: nothing here looks into it
+  std::string sealed_;  ///< its text, which nothing here reads
   std::string commitment_;
   session::InProcessLoop loop_;
 };

@@ -5,20 +5,22 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/close_the_loop/drive_effects.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/measurement/grid.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/diagnosis/core/working_set.hpp"
+#include "services/diagnosis/effects/delay.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
 
-// Less doesn't move a hand: a fifth of the held-out error, and of the drive more than its friction
-// is known to.
+// A smaller effect does not move a hand: a fifth of the held-out error; of the drive, more than the
+// uncertainty of its friction.
 constexpr double kWorthFall = 0.2;
 constexpr double kWorthDrive_n = 0.2;
-// Of the friction found: what is left of it keeps the stick from hunting.
+// Of the friction that was found: the rest keeps the stick from hunting.
 constexpr double kFrictionShare = 0.8;
 constexpr std::size_t kMostValues = 60'000'000;
 
@@ -28,7 +30,7 @@ double explained(const diagnosis::FoundEffect& effect) {
   return std::sqrt(std::max(before * before - after * after, 0.0));
 }
 
-// The force as it was before its sensor kept it back.
+// The force without the delay of its sensor.
 recording::Recording advanced(const recording::Recording& trial, double seconds) {
   recording::Recording out = trial;
   const auto ticks = static_cast<std::size_t>(std::lround(seconds * kControlRateHz));
@@ -59,13 +61,13 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
   const double late_s = std::max(latency->cell_s, motor_s);
   if (late_s < kWorthLatency_s) return std::nullopt;
   const double before = std::hypot(latency->residual_n, latency->explained_n);
-  return Finding{"delay",
+  return Finding{std::string(diagnosis::delay_kind().name()),
                  "",
                  of_cell ? "load cell" : "motor path",
                  latency->explained_n,
                  before,
                  latency->residual_n,
-                 std::string(of_cell ? "the load cell tells a force " : "the motor acts ") +
+                 std::string(of_cell ? "the load cell reports a force " : "the motor acts ") +
                      milliseconds(late_s) + (of_cell ? " late" : " later than declared") +
                      ", by the stick's own equation"};
 }
@@ -106,7 +108,7 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
 
   out.drive = diagnose_drive(*evidence.moving, declared, options);
   for (const diagnosis::FoundEffect& effect : out.drive.effects) {
-    // Whatever shape a late cell gives the stick's equation has been told already.
+    // A late cell distorts the stick's equation; it is among the findings already.
     if (cell_late || explained(effect) < kWorthDrive_n) continue;
     out.findings.push_back({effect.effect.kind, effect.channel, "drive", explained(effect),
                             effect.before.rmse, effect.after.rmse,

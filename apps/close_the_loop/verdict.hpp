@@ -12,10 +12,10 @@
 
 namespace stillhand::close_the_loop {
 
-/// [s] A shorter delay doesn't move a hand.
+/// [s] A shorter delay does not move a hand.
 inline constexpr double kWorthLatency_s = 0.005;
 
-/// The recordings that a verdict rests on; nothing else is known of the rig.
+/// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
   const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
   const recording::Recording* moving = nullptr;     ///< B: the stick's own equation
@@ -33,7 +33,7 @@ struct Finding {
   std::string evidence;
 };
 
-/// What is missing, and what the canceller makes of it.
+/// What is missing, and what the canceller does about it.
 struct Verdict {
   diagnosis::Diagnosis body;   ///< of the pegged trial, load cell's delay taken off
   diagnosis::Diagnosis drive;  ///< of the stick's own equation
@@ -48,10 +48,10 @@ struct Verdict {
   }
 };
 
-/// Diagnoses body, drive and latency, and makes the canceller's model of them, README "The
+/// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
 /// verdict".
 /// @param options  threads and progress; inputs, model and search are set here
-/// @throws ConfigError when a recording can't be diagnosed
+/// @throws ConfigError when a recording cannot be diagnosed
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                      const diagnosis::DiagnoseOptions& options);
 

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "apps/diagnose/diagnosis_json.hpp"
-#include "apps/diagnose/on_all_cores.hpp"
 #include "apps/diagnose/page/diagnosis_report.hpp"
 #include "apps/measurement/read.hpp"
 #include "apps/report/plot/draw.hpp"
@@ -18,6 +17,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/diagnose.hpp"
 #include "services/diagnosis/model_file.hpp"
+#include "services/runtime/process/run_jobs.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "services/settings/check_name.hpp"
 
@@ -37,7 +37,7 @@ struct Words {
   std::filesystem::path report;
 };
 
-// A recording given twice would be held out and fitted to at once.
+// A recording that is given twice would be held out and fitted to at the same time.
 void check_different(const std::vector<std::string>& recordings) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -77,11 +77,11 @@ int run(const Words& words) {
   options.search.most_effects = words.most_effects;
   if (words.model == "arx") options.model = diagnosis::ModelClass::kArx;
   if (words.model == "linear") options.model = diagnosis::ModelClass::kLinear;
-  options.for_each = on_all_cores;
+  options.for_each = runtime::on_all_cores;
   double done = 0.0;
   options.progress = [&](const std::string& step) {
     progress.show(step, done);
-    done += 0.5 * (1.0 - done);  // how many effects there are isn't known before
+    done += 0.5 * (1.0 - done);  // the number of effects is not known in advance
     return !stop.requested();
   };
   const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
@@ -101,23 +101,25 @@ void add_diagnose_command(CLI::App& cli, int& status) {
   auto words = std::make_shared<Words>();
   CLI::App* verb = cli.add_subcommand(
       "diagnose",
-      "What does the model lack? Fits a linear model of the recording, looks at what its free run\n"
-      "leaves on samples it has not seen, traces that to an effect, adds it, and tells the error\n"
-      "before and after. It knows 18 kinds of effect; services/diagnosis/README.md lists them.\n"
+      "Finds what the model lacks. Fits a linear model to the recording, takes the residual of "
+      "its\n"
+      "free run on samples that the fit has not seen, traces it to an effect, adds the effect, "
+      "and\n"
+      "prints the error before and after. services/diagnosis/README.md lists the kinds of effect.\n"
       "REC: CSV with columns 'name [unit]', 't [s]' first; or the MCAP file of a session. Several\n"
-      "recordings of one rig are taken together.\n"
+      "recordings of one rig are diagnosed together.\n"
       "Example: stillhand diagnose ride.csv --input a_y --output f --json out.json --report DIR");
   verb->add_option("REC", words->recordings, "recording(s), CSV or MCAP")->required();
-  verb->add_option("--input", words->inputs, "what drives the model: channel(s), comma-separated")
+  verb->add_option("--input", words->inputs, "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->capture_default_str();
-  verb->add_option("--output", words->output, "channel that the model is to predict")
+  verb->add_option("--output", words->output, "channel that the model predicts")
       ->capture_default_str();
   verb->add_option("--model", words->model,
                    "baseline: arx (the paper's difference model, refined on its free-run error),\n"
-                   "linear (static in the inputs: inverse dynamics), auto (whichever fits)")
+                   "linear (static in the inputs: inverse dynamics), auto (the one that fits)")
       ->check(CLI::IsMember({"auto", "arx", "linear"}))
       ->capture_default_str();
   verb->add_option("--order", words->order, "order of the difference model, 1 to 12")
@@ -128,10 +130,8 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
   verb->add_option("--trial", words->read.trial,
-                   "of a session's recording: number of the trial, or its condition's letter");
-  verb->add_option(
-          "--save", words->save,
-          "file for the diagnosed model, for `stillhand predict` and `stillhand control-model`")
+                   "trial of a session's recording: its number, or the letter of its condition");
+  verb->add_option("--save", words->save, "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);
   verb->add_option("--json", words->json, "file for the verdict")->check(settings::check_name);
   verb->add_option("--report", words->report, "folder for a page with figures")

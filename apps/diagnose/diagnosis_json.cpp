@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/diagnose/diagnosis_json.hpp"
 
+#include <fmt/ranges.h>
+
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "apps/diagnose/detection_json.hpp"
@@ -16,10 +17,8 @@ using diagnosis::Diagnosis;
 using diagnosis::FoundEffect;
 using nlohmann::ordered_json;
 
-std::string joined(const std::vector<std::string>& names, const char* between = ",") {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
-  return text;
+std::string inputs_of(const Diagnosis& diagnosis) {
+  return fmt::format("{}", fmt::join(diagnosis.options.inputs, ","));
 }
 
 ordered_json number(double value) {
@@ -30,7 +29,8 @@ ordered_json with_unit(double value, const std::string& unit) {
   return {{"value", number(value)}, {"unit", unit}};
 }
 
-// Nonlinear parameters by name; linear ones of effects beside the body, whose number says a force.
+// Nonlinear parameters by name; linear ones of effects next to the body, where each multiplies a
+// term.
 ordered_json parameters_json(const Diagnosis& diagnosis, const FoundEffect& found) {
   ordered_json json = ordered_json::object();
   for (const diagnosis::Parameter& parameter : found.effect.parameters) {
@@ -52,7 +52,7 @@ ordered_json parameters_json(const Diagnosis& diagnosis, const FoundEffect& foun
 // The evidence, and the kinds that explain the data as well.
 std::string with_ties(const FoundEffect& found) {
   if (found.ties.empty()) return found.evidence;
-  return found.evidence + "; as good an explanation: " + joined(found.ties, ", ");
+  return fmt::format("{}; as good an explanation: {}", found.evidence, fmt::join(found.ties, ", "));
 }
 
 ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
@@ -92,20 +92,6 @@ ordered_json body_json(const diagnosis::Model& model) {
           {"rate_hz", model.rate_hz}};
 }
 
-[[gnu::format(printf, 2, 3)]] void print(std::string& text, const char* format, ...) {
-  std::va_list arguments;
-  std::va_list again;
-  va_start(arguments, format);
-  va_copy(again, arguments);
-  const auto length = static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments));
-  va_end(arguments);
-  const std::size_t before = text.size();
-  text.resize(before + length + 1);  // and the end that vsnprintf writes
-  std::vsnprintf(text.data() + before, length + 1, format, again);
-  va_end(again);
-  text.pop_back();
-}
-
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
@@ -124,7 +110,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const diagnosis::NoiseEstimate& each : diagnosis.noise_floor.estimates) {
     estimates[each.name] = each.rmse;
   }
-  const ordered_json json{{"input", joined(diagnosis.options.inputs)},
+  const ordered_json json{{"input", inputs_of(diagnosis)},
                           {"output", diagnosis.options.output},
                           {"output_unit", diagnosis.output_unit},
                           {"sample_rate_hz", diagnosis.sample_rate_hz},
@@ -155,27 +141,32 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
 std::string diagnosis_table(const Diagnosis& diagnosis) {
   const std::string& unit = diagnosis.output_unit;
   std::string text;
-  print(text, "verdict       %s\n", diagnosis.verdict().c_str());
-  print(text, "model         %s from %s to %s, order %zu, at %.4g Hz\n",
-        diagnosis.model_class.c_str(), joined(diagnosis.options.inputs).c_str(),
-        diagnosis.options.output.c_str(), diagnosis.baseline.model.body.order(),
-        diagnosis.sample_rate_hz);
-  print(text, "baseline      RMS error %.4g %s, VAF %.2f %% (free run, held out)\n",
-        diagnosis.baseline_error.rmse, unit.c_str(), diagnosis.baseline_error.vaf_percent);
+  const auto add = [&text]<class... T>(fmt::format_string<T...> format, T&&... values) {
+    fmt::format_to(std::back_inserter(text), format, std::forward<T>(values)...);
+  };
+  const auto add_error = [&](const char* name, const diagnosis::HeldOutError& error,
+                             const char* how) {
+    add("{:<14}RMS error {:.4g} {}, VAF {:.2f} %{}\n", name, error.rmse, unit, error.vaf_percent,
+        how);
+  };
+  add("verdict       {}\n", diagnosis.verdict());
+  add("model         {} from {} to {}, order {}, at {:.4g} Hz\n", diagnosis.model_class,
+      inputs_of(diagnosis), diagnosis.options.output, diagnosis.baseline.model.body.order(),
+      diagnosis.sample_rate_hz);
+  add_error("baseline", diagnosis.baseline_error, " (free run, held out)");
   for (std::size_t e = 0; e < diagnosis.effects.size(); ++e) {
     const FoundEffect& found = diagnosis.effects[e];
-    print(text, "effect %zu      %s%s: %.4g -> %.4g %s (95 %%: %.4g to %.4g)\n              %s\n",
-          e + 1, found.effect.kind.c_str(),
-          found.channel.empty() ? "" : (" (" + found.channel + ")").c_str(), found.before.rmse,
-          found.after.rmse, unit.c_str(), found.after.low, found.after.high,
-          with_ties(found).c_str());
+    const std::string of = found.channel.empty() ? "" : " (" + found.channel + ")";
+    add("effect {}      {}{}: {:.4g} -> {:.4g} {} (95 %: {:.4g} to {:.4g})\n", e + 1,
+        found.effect.kind, of, found.before.rmse, found.after.rmse, unit, found.after.low,
+        found.after.high);
+    add("              {}\n", with_ties(found));
   }
-  print(text, "final         RMS error %.4g %s, VAF %.2f %%\n", diagnosis.final_error.rmse,
-        unit.c_str(), diagnosis.final_error.vaf_percent);
-  print(text, "noise floor   %.4g %s (%.4g to %.4g)\n", diagnosis.noise_floor.rmse, unit.c_str(),
-        diagnosis.noise_floor.low, diagnosis.noise_floor.high);
-  if (diagnosis.unexplained) print(text, "unexplained   %s\n", diagnosis.unexplained->what.c_str());
-  for (const std::string& note : diagnosis.notes) print(text, "note          %s\n", note.c_str());
+  add_error("final", diagnosis.final_error, "");
+  add("noise floor   {:.4g} {} ({:.4g} to {:.4g})\n", diagnosis.noise_floor.rmse, unit,
+      diagnosis.noise_floor.low, diagnosis.noise_floor.high);
+  if (diagnosis.unexplained) add("unexplained   {}\n", diagnosis.unexplained->what);
+  for (const std::string& note : diagnosis.notes) add("note          {}\n", note);
   return text;
 }
 

@@ -7,8 +7,8 @@
 
 namespace stillhand::diagnose {
 
-/// The contract's out.json (design section 4), and beside it the baseline's parameters, the
-/// interval of the noise floor, ties and notes.
+/// out.json, README: verdict, errors, effects and what is unexplained; the baseline's parameters,
+/// the interval of the noise floor, ties and notes.
 std::string diagnosis_json(const diagnosis::Diagnosis& diagnosis);
 
 /// The same for people: a short table.

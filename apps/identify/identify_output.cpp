@@ -110,8 +110,8 @@ std::string result_json(const IdentifyResult& result) {
       {"notes", result.notes}};
   json["frequency_response"] = response_json(result);
   json["measured_response"] = measured_json(result);
-  // A file's name may contain bytes that are no UTF-8.  JSON has no infinity: dump() writes a number
-  // that is not finite, such as the logarithm of an exact zero, as null.
+  // A file's name may contain bytes that are no UTF-8.  JSON has no infinity: dump() writes a
+  // number that is not finite, such as the logarithm of an exact zero, as null.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -46,8 +46,8 @@ void add_notes(const diagnosis::Model& model, Prediction& prediction) {
     if (!kind.time_only(effect)) continue;
     const bool gain = kind.stage(effect) == diagnosis::Stage::kGain;
     prediction.notes.push_back(effect.kind +
-                               (gain ? ": taken at the gain's mean, time alone can't tell more"
-                                     : ": left out, no input can tell it"));
+                               (gain ? ": the gain is taken at its mean, because it depends on time"
+                                     : ": left out, because the inputs do not determine it"));
   }
 }
 
@@ -70,7 +70,7 @@ Prediction predict(const diagnosis::Model& model, const Measurement& measurement
                       "a model as `stillhand diagnose --save` writes");
   }
   if (!run.finite) {
-    throw ConfigError(whole.source, "inputs on which the model runs away",
+    throw ConfigError(whole.source, "inputs for which the model's output is not finite",
                       "inputs like those that the model was fitted to");
   }
   Prediction prediction;

@@ -13,12 +13,13 @@ namespace stillhand::predict {
 /// A free run over a recording that need not hold the output.
 struct Prediction {
   recording::Recording table;      ///< `t [s]`, `<output>_model [unit]`, a row a measured sample
-  std::vector<std::string> notes;  ///< what was left out, a sentence each
+  std::vector<std::string> notes;  ///< one clause for each effect that was left out
 };
 
-/// From rest at the start of every stretch, from the inputs alone: effects that no input can tell
-/// (a tone's phase, a drift, a burst) are left out, a changing gain is taken at its mean.
-/// @throws stillhand::ConfigError when a channel is missing, or the rate isn't the model's or a
+/// From rest at the start of every stretch, from the inputs alone: effects that the inputs do not
+/// determine (a tone, a drift, a burst) are left out, a changing gain is taken at its mean.
+/// @throws stillhand::ConfigError when a channel is missing, or the rate is neither the model's nor
+/// a
 ///         whole multiple of it.
 Prediction predict(const diagnosis::Model& model, const diagnosis::Measurement& measurement);
 

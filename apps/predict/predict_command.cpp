@@ -46,13 +46,14 @@ void add_predict_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\n"
-      "The recording need not hold the output. What no input can tell (a tone's phase, a drift, a\n"
-      "burst) is left out, a changing gain is taken at its mean; both are said.\n"
+      "The recording need not hold the output. Effects that the inputs do not determine (a tone, "
+      "a\n"
+      "drift, a burst) are left out; a changing gain is taken at its mean. A note reports each.\n"
       "Example: stillhand predict model.json ride.csv --out prediction.csv");
   verb->add_option("MODEL", words->model, "model file")->required();
   verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
   verb->add_option("--trial", words->read.trial,
-                   "of a session's recording: number of the trial, or its condition's letter");
+                   "trial of a session's recording: its number, or the letter of its condition");
   verb->add_option("--out", words->out, "CSV file of the prediction")
       ->required()
       ->check(settings::check_name);

@@ -2,74 +2,12 @@
 #include "apps/study/study.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "services/contract/config_error.hpp"
+#include "services/runtime/process/run_jobs.hpp"
 
 namespace stillhand::study {
 namespace {
-
-using std::chrono::milliseconds;
-
-// Runs job(0) .. job(count - 1) on several threads, each index once.
-void run_all(std::int64_t count, unsigned threads, const std::function<void(std::int64_t)>& job,
-             const std::function<bool(std::int64_t)>& on_done) {
-  std::atomic<std::int64_t> next{0};
-  std::atomic<bool> stop{false};
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::int64_t done = 0;
-  unsigned running = threads;
-  std::int64_t failed_at = count;
-  std::exception_ptr failure;
-
-  const auto work = [&] {
-    while (!stop) {
-      const std::int64_t index = next++;
-      if (index >= count) break;
-      std::exception_ptr caught;
-      try {
-        job(index);
-      } catch (...) {
-        caught = std::current_exception();
-      }
-      const std::lock_guard lock(mutex);
-      ++done;
-      if (caught && index < failed_at) {
-        failed_at = index;
-        failure = caught;
-        stop = true;
-      }
-      changed.notify_one();
-    }
-    const std::lock_guard lock(mutex);
-    --running;
-    changed.notify_one();
-  };
-  bool interrupted = false;
-  {
-    std::vector<std::jthread> workers;
-    for (unsigned i = 0; i < threads; ++i) workers.emplace_back(work);
-    std::unique_lock lock(mutex);
-    while (running > 0) {
-      changed.wait_for(lock, milliseconds(100));
-      const std::int64_t so_far = done;
-      lock.unlock();
-      if (!stop && !on_done(so_far)) {
-        interrupted = true;
-        stop = true;
-      }
-      lock.lock();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
-  if (interrupted) throw Interrupted();
-}
 
 // The mean model of all subjects but `left_out`: one least-squares fit to their records, Eq. ID-18.
 signal::DifferenceModel mean_model(const std::vector<SubjectResult>& results,
@@ -116,23 +54,20 @@ std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgre
   for (std::int64_t index = 0; index < options.subjects; ++index) check_subject(options, index);
   const std::int64_t count = options.subjects;
   const std::int64_t all = options.wrong_models ? 2 * count : count;
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  const auto threads = static_cast<unsigned>(
-      std::min<std::int64_t>(count, options.threads > 0 ? options.threads : cores));
+  const auto threads =
+      options.threads > 0 ? static_cast<unsigned>(options.threads) : runtime::core_count();
   std::vector<SubjectResult> results(static_cast<std::size_t>(count));
-  run_all(
-      count, threads,
-      [&](std::int64_t index) {
-        results[static_cast<std::size_t>(index)] = run_subject(options, index);
-      },
-      [&](std::int64_t done) { return on_progress(done, all); });
+  const auto run_for_all = [&](std::int64_t done_before, const auto& job) {
+    const auto on_done = [&](std::size_t done) {
+      return on_progress(done_before + static_cast<std::int64_t>(done), all);
+    };
+    if (!runtime::run_jobs(results.size(), threads, job, on_done)) throw Interrupted();
+  };
+  run_for_all(0, [&](std::size_t index) {
+    results[index] = run_subject(options, static_cast<std::int64_t>(index));
+  });
   if (options.wrong_models) {
-    run_all(
-        count, threads,
-        [&](std::int64_t index) {
-          run_wrong_models(options, results, static_cast<std::size_t>(index));
-        },
-        [&](std::int64_t done) { return on_progress(count + done, all); });
+    run_for_all(count, [&](std::size_t index) { run_wrong_models(options, results, index); });
   }
   return results;
 }

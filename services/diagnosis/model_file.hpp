@@ -15,10 +15,10 @@ inline constexpr int kModelFormatVersion = 1;
 /// JSON text of a model; README "Model file".  Numbers keep every bit.
 std::string model_json(const Model& model);
 
-/// Reads it back.  @param origin  what to call the text in messages, for example its path
+/// Reads it back.  @param origin  name of the text in messages, for example its path
 /// @throws stillhand::ConfigError naming line and column of a syntax error, or the entry that is
-/// missing, has the wrong type or size, isn't finite, names a kind that isn't known, makes the body
-/// unstable, or a newer version.
+/// missing, has the wrong type or size, is not finite, names an unknown kind, makes the body
+/// unstable, or has a newer version.
 Model parse_model(std::string_view json, const std::string& origin);
 
 }  // namespace stillhand::diagnosis

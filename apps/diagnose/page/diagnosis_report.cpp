@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/diagnose/page/diagnosis_report.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "apps/diagnose/page/evidence.hpp"
@@ -19,25 +21,24 @@ using report::short_number;
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return axis_label(name, unit);
+std::string comma_separated(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 Pairs facts_of(const Evidence& evidence, const std::vector<std::string>& recordings) {
   const Diagnosis& found = evidence.found;
   const diagnosis::Signals& signals = evidence.signals;
-  std::string inputs;
+  std::vector<std::string> inputs;
   for (const diagnosis::Signal& input : signals.inputs()) {
-    inputs += (inputs.empty() ? "" : ", ") + with_unit(input.name, input.unit);
+    inputs.push_back(axis_label(input.name, input.unit));
   }
-  std::string files;
-  for (const std::string& each : recordings) files += (files.empty() ? "" : ", ") + each;
   const std::size_t order = found.baseline.model.body.order();
   Pairs facts{
       {"verdict", found.verdict()},
-      {recordings.size() == 1 ? "recording" : "recordings, taken together", files},
-      {"input", inputs},
-      {"output", with_unit(signals.output().name, signals.output().unit)},
+      {recordings.size() == 1 ? "recording" : "recordings, diagnosed together",
+       comma_separated(recordings)},
+      {"input", comma_separated(inputs)},
+      {"output", axis_label(signals.output().name, signals.output().unit)},
       {"sample rate", short_number(found.sample_rate_hz) + " Hz"},
       {"samples", std::to_string(signals.size())},
       {"length", report::number(signals.duration_s(), 1) + " s"},
@@ -85,7 +86,7 @@ void add_effects(Page& page, const Evidence& evidence,
   }
   if (found.search.removed > 0) {
     page.paragraph(std::to_string(found.search.removed) +
-                   " effect(s) left the model again: later ones had made them idle.");
+                   " effect(s) were removed again, because later ones explain the same.");
   }
   page.table(parameter_table(evidence));
 }
@@ -99,20 +100,15 @@ void add_remainder(Page& page, const Diagnosis& found,
     std::vector<std::string> items{"band: " + short_number(left.band_hz[0]) + " to " +
                                    short_number(left.band_hz[1]) +
                                    " Hz hold the middle 80 % of its power"};
-    std::string times;
-    for (const double time_s : left.times_s) {
-      times += (times.empty() ? "" : ", ") + short_number(time_s) + " s";
-    }
-    if (!times.empty()) items.push_back("strongest about " + times);
-    std::string channels;
-    for (const std::string& name : left.channels) {
-      channels += (channels.empty() ? "" : ", ") + name;
-    }
-    if (!channels.empty()) items.push_back("depends on " + channels);
+    std::vector<std::string> times;
+    for (const double time_s : left.times_s) times.push_back(short_number(time_s) + " s");
+    if (!times.empty()) items.push_back("strongest around " + comma_separated(times));
+    if (!left.channels.empty()) items.push_back("depends on " + comma_separated(left.channels));
     page.list(items);
   } else {
     page.paragraph(
-        "Nothing that was asked of the residual explains it: to this engine it is noise.");
+        "The residual depends on none of the quantities that were tested. The engine takes it for "
+        "noise.");
   }
   for (const char* name : {"residual_over_time", "autocorrelation", "partial_coherence",
                            "detection_lines", "detections"}) {
@@ -124,12 +120,12 @@ void add_remainder(Page& page, const Diagnosis& found,
 void add_search(Page& page, const Evidence& evidence) {
   page.section("What was tried");
   page.paragraph(
-      "Every kind of effect that something in the residual spoke for was fitted together with the "
-      "linear part and compared on held-out blocks; of those that can't be told apart the simplest "
-      "was taken. Far behind the best, errors are of a few steps of the fit only.");
+      "Each kind of effect that the residual suggests was fitted together with the linear part and "
+      "compared on held-out blocks. Of those that the data do not distinguish, the simplest was "
+      "taken. Candidates far behind the best were fitted for a few steps only.");
   for (const report::Table& table : tried_tables(evidence)) page.table(table);
   const std::string silent = never_proposed(evidence.found);
-  if (!silent.empty()) page.paragraph("Nothing spoke for: " + silent + ".");
+  if (!silent.empty()) page.paragraph("Nothing in the residual suggests: " + silent + ".");
 }
 
 }  // namespace

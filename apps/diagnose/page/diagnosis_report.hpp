@@ -13,17 +13,17 @@ namespace stillhand::diagnose {
 
 struct Evidence;
 
-/// The page: verdict in words, errors, figures, effects and their numbers, what was tried, what was
-/// asked, what is left.
-/// @param recordings  files that were diagnosed together, one at least
+/// The page: verdict in words, errors, figures, effects and their numbers, the candidates, the
+/// questions, the residual.
+/// @param recordings  files that were diagnosed together, at least one
 /// @param drawings    of diagnosis_figures()
 report::Page diagnosis_page(const Evidence& evidence, const std::vector<std::string>& recordings,
                             const std::vector<report::Drawing>& drawings);
 
-/// Runs the models again on what the engine worked on, draws, and publishes the folder:
+/// Runs the models again on the samples that the engine used, draws, and publishes the folder:
 /// report.html, and every figure as SVG and PNG.
-/// @param measurement  what was diagnosed, as it was read  @param recordings  its files
-/// @throws ConfigError without gnuplot, std::runtime_error when a file can't be written
+/// @param measurement  the measurement that was diagnosed, as read  @param recordings  its files
+/// @throws ConfigError without gnuplot, std::runtime_error when a file cannot be written
 void write_report(const diagnosis::Diagnosis& found, const diagnosis::Measurement& measurement,
                   const std::vector<std::string>& recordings, report::StagedFolder& folder);
 

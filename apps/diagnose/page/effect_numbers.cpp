@@ -32,27 +32,6 @@ std::size_t packed_count(const Effect& effect) {
          static_cast<std::size_t>(std::ranges::count_if(effect.parameters, &Parameter::fitted));
 }
 
-// What a term's column is measured in; empty where only the kind knows.
-std::string column_unit(const Effect& effect, std::size_t i, const diagnosis::Signals& signals) {
-  const auto unit = [&](std::size_t channel) {
-    return signals.at(effect.channels.at(channel)).unit;
-  };
-  const std::string& kind = effect.kind;
-  if (kind == "coulomb_friction" || kind == "tone" || kind == "drift" ||
-      kind == "position_ripple") {
-    return "-";
-  }
-  if (kind == "hysteresis") return i == 0 ? "-" : unit(0);
-  if (kind == "coupled_input") return unit(std::min(i, effect.channels.size() - 1));
-  if (kind == "dead_zone") return unit(0);
-  if (kind == "nonlinear_stiffness") return i == 0 ? unit(0) : unit_power(unit(0), "³");
-  if (kind == "asymmetry") {
-    return effect.form.starts_with("square") ? unit_power(unit(0), "²") : unit(0);
-  }
-  if (kind == "bilinear") return unit(0) + "*" + unit(1);
-  return {};
-}
-
 std::string origin_of(const Parameter& parameter) {
   if (parameter.fitted) return "fitted";
   return parameter.lower < parameter.upper ? "searched" : "given";
@@ -81,11 +60,11 @@ std::vector<ModelNumber> effect_numbers(const Evidence& evidence, std::size_t wh
   std::size_t place = body_count(model);
   for (std::size_t e = 0; e < which; ++e) place += packed_count(model.effects[e]);
   const auto& kind = diagnosis::effect_kind(effect.kind);
-  const bool told = kind.stage(effect) == diagnosis::Stage::kTerm && !kind.through_body(effect);
+  const bool named = kind.stage(effect) == diagnosis::Stage::kTerm && !kind.through_body(effect);
   std::vector<ModelNumber> numbers;
   for (std::size_t i = 0; i < effect.coefficients.size(); ++i, ++place) {
-    if (!told) continue;
-    const std::string under = column_unit(effect, i, evidence.signals);
+    if (!named) continue;
+    const std::string under = kind.column_unit(effect, evidence.signals, i);
     const std::string over = evidence.found.output_unit;
     numbers.push_back(
         {effect.coefficients.size() == 1 ? "coefficient" : "coefficient " + std::to_string(i + 1),

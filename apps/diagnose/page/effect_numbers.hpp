@@ -12,13 +12,13 @@ namespace stillhand::diagnose {
 struct ModelNumber {
   std::string name;
   double value = 0.0;
-  double standard_error = 0.0;  ///< NaN: not fitted, or the record doesn't tell
+  double standard_error = 0.0;  ///< NaN: not fitted, or not determined by the record
   std::string unit;
   std::string origin;  ///< "fitted", "searched", "given"
 };
 
 /// Coefficients of the terms, then the parameters.  Coefficients of a path through the body or of a
-/// loop are left out: alone they say nothing.
+/// loop are left out: a single one has no meaning.
 /// @param which  index in found.model.effects
 std::vector<ModelNumber> effect_numbers(const Evidence& evidence, std::size_t which);
 

@@ -29,8 +29,8 @@ ModelRun run_of(const Model& model, const diagnosis::Signals& signals) {
   return result;
 }
 
-// 1 + 2 sum rho_k up to the first that is small: how many samples say as much as one would that is
-// independent of the others.
+// 1 + 2 sum rho_k up to the first that is small: the number of samples that hold as much
+// information as one independent sample.
 double correlation_of(const std::vector<double>& residual, double rate_hz) {
   const Eigen::Map<const Eigen::VectorXd> r(residual.data(),
                                             static_cast<Eigen::Index>(residual.size()));
@@ -57,7 +57,7 @@ std::vector<double> errors_of(const diagnosis::Linearisation& line, double corre
   const Eigen::VectorXd scale = line.jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd unit = line.jacobian * scale.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(unit.transpose() * unit);
-  constexpr double kDegenerate = 1e-10;  // of the largest pivot: the record doesn't tell
+  constexpr double kDegenerate = 1e-10;  // of the largest pivot: not determined by the record
   if (ldlt.vectorD().minCoeff() < kDegenerate * ldlt.vectorD().maxCoeff()) return errors;
   const Eigen::MatrixXd inverse = ldlt.solve(Eigen::MatrixXd::Identity(count, count));
   const double variance = line.residual.squaredNorm() / left * correlation;

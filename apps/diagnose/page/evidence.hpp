@@ -17,7 +17,7 @@ struct ModelRun {
   std::vector<double> residual;  ///< weighted, initial states taken out; see residual_of()
 };
 
-/// What the page shows of a diagnosis, run once more on the samples that the engine worked on.
+/// What the page shows of a diagnosis: its models, run again on the samples that the engine used.
 struct Evidence {
   /// @param verdict  must stay as long as this
   /// @throws as diagnosis::Signals
@@ -29,18 +29,18 @@ struct Evidence {
   ModelRun before;                    ///< of the baseline
   ModelRun after;                     ///< of the baseline with the effects
   diagnosis::HeldOut after_held_out;  ///< of the latter, from one linearisation
-  /// Of the latter's numbers in packed()'s order; NaN where the record doesn't tell.  From the
-  /// linearised fit, with samples counted once a correlation length.
+  /// Of the latter's numbers, in the order of packed(); NaN where the record does not determine
+  /// them.  From the linearised fit, with samples counted once a correlation length.
   std::vector<double> standard_errors;
-  double correlation_samples = 1.0;  ///< [samples] of what is left: 1 + 2 sum of its correlations
+  double correlation_samples = 1.0;  ///< [samples] of the residual: 1 + 2 sum of its correlations
 };
 
-/// What one effect of the final model does.
+/// The part of the prediction that one effect of the final model makes.
 struct EffectTrace {
   diagnosis::FreeRun run;            ///< of the model without it
   std::vector<double> without;       ///< residual of the model without it
   std::vector<double> contribution;  ///< what it takes away: `without` less the final residual
-  /// The rest of the model was fitted anew without it, because it can't be taken out of a loop;
+  /// The rest of the model was fitted again without it, because it cannot be taken out of a loop;
   /// otherwise the other numbers are those of the joint fit.
   bool refitted = false;
 };

@@ -23,7 +23,7 @@ using report::Series;
 constexpr std::size_t kBins = 30;
 constexpr double kIsFunction = 0.5;  // of the effect's variance, that a variable explains
 constexpr std::size_t kFewestLines = 5;
-constexpr double kLargestError = 0.5;  // of a magnitude: beyond, a line of a response says nothing
+constexpr double kLargestError = 0.5;  // of a magnitude: a line with a larger one is not drawn
 
 Series with_errors(const std::string& label, report::Colour colour, const BinnedMeans& means) {
   Series series{.label = label,
@@ -71,7 +71,7 @@ Explanation against_variable(const Evidence& evidence, const EffectTrace& trace,
                    means(trace.contribution, weight)),
         with_errors("without it", kBefore, means(trace.without, weight))};
     panel.series.front().point_size = 0.7;
-    result.text = "means by bins of the variable that explains it";
+    result.text = "means by bins of the variable that explains the effect";
     return result;
   }
   for (const bool falling : {false, true}) {
@@ -84,12 +84,12 @@ Explanation against_variable(const Evidence& evidence, const EffectTrace& trace,
         with_errors(falling ? "falling" : "rising", colour, means(trace.without, counted)));
   }
   result.text =
-      "means by bins of the variable that explains it, apart where it rises and where it falls; "
-      "lines: the effect";
+      "means by bins of the variable that explains the effect, separately for rising and falling "
+      "values; lines: the effect";
   return result;
 }
 
-// Lines within the excited band that are sure enough.
+// Lines within the excited band whose error is small enough.
 Series magnitudes(const signal::TransferEstimate& response, const diagnosis::Signals& signals,
                   bool with_bars) {
   Series series{.kind = with_bars ? Kind::kErrorBars : Kind::kLine};
@@ -134,7 +134,7 @@ Explanation as_response(const Evidence& evidence, const Effect& effect, const Ef
                     .scale = Scale::kLogarithmic};
   result.panel.series = {measured, model};
   result.text = "frequency response from " + from.name +
-                " to the residual (bars: 95 %; excited lines that are surer than ±50 %)";
+                " to the residual (bars: 95 %; excited lines with an error below ±50 %)";
   return result;
 }
 
@@ -161,9 +161,9 @@ Explanation explanation_of(const Evidence& evidence, std::size_t which, const Ef
     return against_variable(evidence, trace, *variable);
   }
   Explanation response = as_response(evidence, effect, trace);
-  // What has neither: its best variable says more than no response.
-  const bool told = response.panel.series.front().x.size() >= kFewestLines;
-  return variable && !told ? against_variable(evidence, trace, *variable) : response;
+  // An effect that has neither is drawn over its best variable.
+  const bool enough_lines = response.panel.series.front().x.size() >= kFewestLines;
+  return variable && !enough_lines ? against_variable(evidence, trace, *variable) : response;
 }
 
 }  // namespace stillhand::diagnose

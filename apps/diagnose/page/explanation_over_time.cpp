@@ -103,8 +103,8 @@ Explanation lag_over_time(const Evidence& evidence, const Effect& effect,
   result.panel.series = {lags, model};
   result.panel.reference_lines = {{.at = 0.0}};
   result.text =
-      "how much later the measured output is than the prediction without the effect (largest "
-      "correlation, block by block)";
+      "delay of the measured output behind the prediction without the effect (largest correlation, "
+      "block by block)";
   return result;
 }
 
@@ -189,13 +189,13 @@ Explanation strongest_burst(const Evidence& evidence, const EffectTrace& trace) 
   Explanation result;
   result.panel.x.label = "time [s]";
   result.panel.y.label = axis_label("residual", evidence.found.output_unit);
-  result.text = "residual about the strongest of the bursts that the model leaves out";
+  result.text = "residual around the strongest of the bursts that the model leaves out";
   if (best.end == 0) return result;
   const auto around = static_cast<std::size_t>(kAround_s * signals.rate_hz());
   const std::size_t from = best.first > around ? best.first - around : 0;
   const std::size_t to = std::min(best.end + around, signals.size());
   Series line{.label = "residual", .kind = Kind::kLine, .colour = kBefore};
-  Series kept{.label = "that counts", .kind = Kind::kLine, .colour = kAfter};
+  Series kept{.label = "used for the fit", .kind = Kind::kLine, .colour = kAfter};
   for (std::size_t n = from; n < to; ++n) {
     line.x.push_back(signals.time_s()[n]);
     line.y.push_back(trace.run.weight[n] > 0.0 ? trace.without[n] : NAN);

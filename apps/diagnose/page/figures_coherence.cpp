@@ -16,7 +16,7 @@ using report::Panel;
 using report::Scale;
 using report::Series;
 
-constexpr double kBeside = 0.14;  // of a place, so that two points don't hide each other
+constexpr double kOffset = 0.14;  // of a place, so that two points do not hide each other
 
 // Channels, then inputs.
 std::vector<const ChannelCoherence*> all_of(const CoherenceResult& result) {
@@ -27,9 +27,9 @@ std::vector<const ChannelCoherence*> all_of(const CoherenceResult& result) {
 }
 
 Series highest_series(const CoherenceResult& result, const char* label, Colour colour,
-                      double beside) {
+                      double offset) {
   Series series{.label = label, .kind = Kind::kPoints, .colour = colour};
-  double place = 1.0 + beside;
+  double place = 1.0 + offset;
   for (const ChannelCoherence* each : all_of(result)) {
     series.x.push_back(place);
     series.y.push_back(each->highest);
@@ -62,7 +62,7 @@ Panel by_channel(const CoherenceResult& before, const CoherenceResult* after) {
   panel.series.push_back(threshold);
   panel.series.push_back(highest_series(before, "baseline's residual", kBefore, 0.0));
   if (after != nullptr) {
-    panel.series.push_back(highest_series(*after, "residual with the effects", kAfter, kBeside));
+    panel.series.push_back(highest_series(*after, "residual with the effects", kAfter, kOffset));
   }
   return panel;
 }
@@ -109,13 +109,13 @@ report::Figure figure_coherence(const Evidence& evidence) {
   return {
       .name = "partial_coherence",
       .caption =
-          "Coherence of the residual with every measured channel, the inputs taken out of both, "
-          "and with the inputs themselves: the highest of all frequencies, and over frequency "
-          "for the channel that has the highest. Threshold: 1 % by chance, corrected for all "
-          "frequencies and channels, " +
+          "Coherence of the residual with every measured channel, the inputs removed from both, "
+          "and with the inputs themselves. First: the highest of all frequencies; then, over "
+          "frequency, the channel that has the highest. Threshold: exceeded by chance in 1 % of "
+          "records, corrected for all frequencies and channels, with " +
           report::number(before.independent_averages, 0) +
-          " independent averages. What lies above tells that there is a linear path, not how "
-          "much it matters; it decides nothing.",
+          " independent averages. A value above it shows that a linear path exists, not how much "
+          "the path matters; the verdict does not use it.",
       .panels = std::move(panels),
       .width_px = 980,
       .height_px = height_px};

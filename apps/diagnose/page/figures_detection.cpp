@@ -16,7 +16,7 @@ using report::Series;
 constexpr std::size_t kMostQuestions = 12;
 // [-] smaller ones would leave the others no room, and the plotter no ticks.
 constexpr double kLeastDrawn = 1e-30;
-constexpr double kBeside =
+constexpr double kOffset =
     0.14;  // of a place on the axis, so that two points don't hide each other
 
 // Short enough for a place on the axis.
@@ -41,7 +41,7 @@ struct Points {
 };
 
 Points points_of(const std::vector<Answers>& all, diagnosis::Detection Answers::*which, bool found,
-                 const char* label, report::Colour colour, double beside) {
+                 const char* label, report::Colour colour, double offset) {
   Series series{.label = label, .kind = Kind::kPoints, .colour = colour};
   series.point_size = found ? 1.5 : 0.7;
   series.show_in_legend = found;
@@ -49,7 +49,7 @@ Points points_of(const std::vector<Answers>& all, diagnosis::Detection Answers::
   for (std::size_t i = 0; i < all.size(); ++i) {
     const diagnosis::Detection& answer = all[i].*which;
     if (answer.found != found) continue;
-    const double place = static_cast<double>(i + 1) + beside;
+    const double place = static_cast<double>(i + 1) + offset;
     points.share.x.push_back(place);
     points.chance.x.push_back(place);
     points.share.y.push_back(100.0 * std::max(answer.share, 0.0));
@@ -74,27 +74,27 @@ report::Figure figure_detections(const Evidence& evidence) {
   share.x.low = chance.x.low = 0.4;
   share.x.high = chance.x.high = static_cast<double>(all.size()) + 0.6;
   const auto add = [&](diagnosis::Detection Answers::*which, const char* label,
-                       report::Colour colour, double beside) {
+                       report::Colour colour, double offset) {
     for (const bool found : {true, false}) {
-      Points points = points_of(all, which, found, label, colour, beside);
+      Points points = points_of(all, which, found, label, colour, offset);
       share.series.push_back(std::move(points.share));
       chance.series.push_back(std::move(points.chance));
     }
   };
   add(&Answers::before, "baseline's residual", kBefore, 0.0);
   if (!evidence.found.effects.empty()) {
-    add(&Answers::after, "residual with the effects", kAfter, kBeside);
+    add(&Answers::after, "residual with the effects", kAfter, kOffset);
   }
   chance.legend = report::Legend::kNone;
   share.reference_lines = {{.at = 100.0 * diagnosis::kLeastShare, .label = "threshold"}};
   chance.reference_lines = {{.at = diagnosis::kSignificance, .label = "threshold"}};
   return {.name = "detections",
           .caption =
-              "The questions that explain most of the residual. Above: share of its power, "
-              "held out (negative ones at 0). Below: probability of such a gain by chance, "
-              "corrected for all questions after Holm. Large marks: something is there, the "
-              "share above its threshold and p below its own (drawn at 1e-30 where it is "
-              "less). y: the body's output.",
+              "The questions that explain most of the residual. Above: share of its power on "
+              "held-out blocks (negative ones drawn at 0). Below: probability of such a gain by "
+              "chance, corrected for all questions after Holm (smaller ones drawn at 1e-30). Large "
+              "marks: answered yes, with the share above its threshold and p below its own. y: the "
+              "body's output.",
           .panels = {share, chance},
           .width_px = 980,
           .height_px = 560};

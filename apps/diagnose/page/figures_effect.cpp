@@ -42,7 +42,7 @@ Slope slope_of(const Evidence& evidence, const EffectTrace& trace) {
           std::sqrt(left / std::max(weight, 1.0) * evidence.correlation_samples / square)};
 }
 
-// Samples passed over say nothing of those that count, beyond what the refit moves.
+// An effect that leaves samples out predicts nothing of the others, except through the refit.
 bool predicts(const Evidence& evidence, std::size_t which, const EffectTrace& trace) {
   const diagnosis::Effect& effect = evidence.found.effects.at(which).effect;
   if (diagnosis::effect_kind(effect.kind).stage(effect) == diagnosis::Stage::kWeight) return false;
@@ -52,7 +52,7 @@ bool predicts(const Evidence& evidence, std::size_t which, const EffectTrace& tr
   return false;
 }
 
-// Everything an effect says in one variable: its own prediction.
+// The residual as a function of the effect's own prediction.
 Panel against_prediction(const Evidence& evidence, const EffectTrace& trace) {
   const std::vector<double>& weight = evidence.after.run.weight;
   const std::string& unit = evidence.found.output_unit;
@@ -104,8 +104,8 @@ report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
   }
   figure.panels.push_back(against_prediction(evidence, trace));
   figure.caption +=
-      std::string(" Right: the residual against what the effect predicts of it. ") +
-      (trace.refitted ? "The model without the effect was fitted anew."
+      std::string(" Right: the residual against the part that the effect predicts. ") +
+      (trace.refitted ? "The model without the effect was fitted again."
                       : "The model without the effect keeps the other numbers of the joint fit.") +
       " Bars: one standard error, samples counted once a correlation length (" +
       report::short_number(evidence.correlation_samples / evidence.signals.rate_hz()) + " s).";

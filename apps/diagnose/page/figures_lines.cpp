@@ -67,7 +67,7 @@ std::string chances(const diagnosis::DetectionLines& lines) {
   add("odd lines", lines.odd);
   add("even lines", lines.even);
   add("lines not excited", lines.odd_or_even);
-  return text.empty() ? "there is no line that isn't excited" : text;
+  return text.empty() ? "every line is excited" : text;
 }
 
 }  // namespace
@@ -76,10 +76,10 @@ report::Figure figure_lines(const Evidence& evidence) {
   const diagnosis::Diagnosis& found = evidence.found;
   const diagnosis::DetectionLines& before = *found.before.lines;
   std::vector<Panel> panels{panel_of(before, "baseline's residual", found.output_unit)};
-  std::string told = "Before: " + chances(before) + ".";
+  std::string groups = "Before: " + chances(before) + ".";
   if (!found.effects.empty() && found.after.lines) {
     panels.push_back(panel_of(*found.after.lines, "residual with the effects", found.output_unit));
-    told += " After: " + chances(*found.after.lines) + ".";
+    groups += " After: " + chances(*found.after.lines) + ".";
   }
   const int columns = static_cast<int>(panels.size());
   return {.name = "detection_lines",
@@ -88,10 +88,11 @@ report::Figure figure_lines(const Evidence& evidence) {
                                           found.sample_rate_hz) +
                      " s, " + std::to_string(before.repeats.periods) + " periods: harmonics of " +
                      report::short_number(before.fundamental_hz) +
-                     " Hz. A linear system answers at the excited ones alone; distortion of even "
-                     "order appears at even ones, of odd order at odd ones. Dotted: what noise "
-                     "would have there, from the lines between the harmonics. " +
-                     told + " p isn't corrected here; it is among the questions below.",
+                     " Hz. A linear system responds at the excited harmonics alone; distortion of "
+                     "even order appears at even harmonics, of odd order at odd ones. Dotted: the "
+                     "noise at each harmonic, from the lines between the harmonics. " +
+                     groups +
+                     " p is not corrected here; the table of questions has corrected ones.",
           .panels = std::move(panels),
           .columns = columns,
           .width_px = 980,

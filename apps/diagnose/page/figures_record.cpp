@@ -54,7 +54,7 @@ std::size_t section_length(const diagnosis::Signals& signals) {
   return std::max<std::size_t>(static_cast<std::size_t>(samples), 2);
 }
 
-// Samples that the picture is about: within one stretch, where the effects take most away.
+// Samples that the figure shows: within one stretch, where the effects explain most.
 Section shown_section(const Evidence& evidence) {
   const std::size_t wanted = section_length(evidence.signals);
   const std::size_t middle = evidence.signals.size() / 2;
@@ -131,10 +131,10 @@ report::Figure figure_prediction(const Evidence& evidence) {
   }
   return {.name = "prediction",
           .caption = std::string("Free run over the measurement, ") +
-                     (found ? "where the effects take most away" : "in the middle of the record") +
-                     "; below, what is left. The models are driven by the inputs alone and fitted "
+                     (found ? "where the effects explain most" : "in the middle of the record") +
+                     "; below, the residuals. The models receive the inputs alone and are fitted "
                      "to the whole record; the table of errors is of held-out data. Gaps: samples "
-                     "that don't count.",
+                     "without weight.",
           .panels = {above, below},
           .width_px = 980,
           .height_px = 560};
@@ -172,16 +172,17 @@ report::Figure figure_over_time(const Evidence& evidence) {
   add("baseline", found.before.spread, kBefore);
   const bool both = !found.effects.empty();
   if (both) add("with the effects", found.after.spread, kAfter);
-  return {.name = "residual_over_time",
-          .caption =
-              "Root mean square of the residual, block by block. Largest over median: " +
-              report::number(found.before.spread.largest_ratio, 2) +
-              (both ? " before, " + report::number(found.after.spread.largest_ratio, 2) + " after"
-                    : "") +
-              "; uneven noise alone is no effect. Grey: the noise floor and its interval.",
-          .panels = {panel},
-          .width_px = 980,
-          .height_px = 320};
+  return {
+      .name = "residual_over_time",
+      .caption =
+          "Root mean square of the residual, block by block. Largest over median: " +
+          report::number(found.before.spread.largest_ratio, 2) +
+          (both ? " before, " + report::number(found.after.spread.largest_ratio, 2) + " after"
+                : "") +
+          "; noise that varies over time is not an effect. Grey: the noise floor and its interval.",
+      .panels = {panel},
+      .width_px = 980,
+      .height_px = 320};
 }
 
 }  // namespace stillhand::diagnose

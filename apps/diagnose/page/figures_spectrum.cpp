@@ -106,7 +106,7 @@ report::Figure figure_spectra(const Evidence& evidence) {
   const std::vector<double> all(signals.size(), 1.0);
   Panel panel;
   panel.x = {.label = "frequency [Hz]", .scale = Scale::kLogarithmic};
-  const std::string square = unit_power(found.output_unit, "²");
+  const std::string square = shown_unit(diagnosis::unit_power(found.output_unit, 2));
   panel.y = {.label = "PSD [" + (square == "-" ? "1" : square) + "/Hz]",
              .scale = Scale::kLogarithmic};
   const Spectrum output = spectrum_of(signals.output().values, all, signals);
@@ -121,7 +121,7 @@ report::Figure figure_spectra(const Evidence& evidence) {
     floor.y_low.assign(2, density(found.noise_floor.low));
     floor.y_high.assign(2, density(found.noise_floor.high));
     panel.series.push_back(floor);
-    floor.label = "noise floor, were it white";
+    floor.label = "noise floor, if white";
     floor.kind = Kind::kDottedLine;
     floor.y.assign(2, density(found.noise_floor.rmse));
     floor.show_in_legend = true;
@@ -179,7 +179,7 @@ report::Figure figure_autocorrelation(const Evidence& evidence) {
           .caption = "Autocorrelation of the residual. Outside the bounds: " +
                      percent(found.before.whiteness.share_outside, 0) + " of the lags" +
                      (both ? " before, " + percent(whiteness.share_outside, 0) + " after" : "") +
-                     "; white noise has 1 %. Coloured noise alone is no effect.",
+                     "; white noise has 1 %. Coloured noise is not an effect.",
           .panels = {panel},
           .width_px = 980,
           .height_px = 320};

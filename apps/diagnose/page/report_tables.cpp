@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/diagnose/page/report_tables.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -41,13 +43,9 @@ std::vector<Cell> error_row(const std::string& name, const HeldOutError& error,
           report::number(error.rmse / floor, 2)};
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "–" : text;
+std::string listed(const std::vector<std::string>& names) {
+  return names.empty() ? "–" : fmt::format("{}", fmt::join(names, ", "));
 }
-
-std::string spaced_kinds(const std::vector<std::string>& kinds) { return spaced(joined(kinds)); }
 
 void add_numbers(Table& table, const std::string& of, const std::vector<ModelNumber>& numbers) {
   bool first = true;
@@ -80,7 +78,7 @@ void add_trial(Table& table, const Step& step, std::size_t i) {
   const diagnosis::Trial& trial = step.tried[i];
   const diagnosis::Effect& effect = trial.model.effects.back();
   const bool finite = std::isfinite(trial.rmse) && trial.held_out.finite;
-  table.rows.push_back({spaced(effect.kind), effect.form, joined(effect.channels),
+  table.rows.push_back({spaced(effect.kind), effect.form, listed(effect.channels),
                         std::to_string(diagnosis::complexity(trial.model)),
                         short_number(trial.rmse),
                         finite ? percent(trial.rmse / step.before.rmse() - 1.0) : "–",
@@ -117,8 +115,9 @@ Table error_table(const Diagnosis& found) {
   const std::string unit = shown_unit(found.output_unit);
   Table table;
   table.caption =
-      "RMS error of the free run on blocks of time that the fit has not seen, 95 % interval over "
-      "the blocks; variance accounted for; against the noise floor.";
+      "RMS error of the free run on blocks of time that the fit has not seen, with its 95 % "
+      "interval "
+      "over the blocks; variance accounted for; ratio to the noise floor.";
   table.header = {"model",  "RMSE [" + unit + "]", "95 % interval [" + unit + "]", "VAF [%]",
                   "change", "over the floor"};
   const double floor = found.noise_floor.rmse;
@@ -140,15 +139,16 @@ Table error_table(const Diagnosis& found) {
 Table effect_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "Effects in the order in which they were added. p: of such an improvement by chance, signed "
-      "ranks of the blocks. Ties: other kinds that explain the record as well; the simplest was "
-      "taken.";
-  table.header = {"effect", "form", "what the data say", "p", "ties"};
+      "Effects in the order in which they were added. p: probability of such an improvement by "
+      "chance, by the signed ranks of the blocks. Ties: other kinds that explain the record "
+      "equally "
+      "well; the simplest was taken.";
+  table.header = {"effect", "form", "evidence", "p", "ties"};
   table.align = {Align::kLeft, Align::kLeft, Align::kLeft, Align::kRight, Align::kLeft};
   for (const FoundEffect& effect : found.effects) {
     table.rows.push_back({Cell(effect_title(effect), Emphasis::kStrong), effect.effect.form,
                           shown_sentence(effect.evidence, found.output_unit), p_value(effect.p),
-                          spaced_kinds(effect.ties)});
+                          spaced(listed(effect.ties))});
   }
   return table;
 }
@@ -156,10 +156,10 @@ Table effect_table(const Diagnosis& found) {
 Table parameter_table(const Evidence& evidence) {
   Table table;
   table.caption =
-      "Numbers of the final model, baseline and effects fitted together to the whole record. "
-      "Standard errors from the linearised fit, samples counted once a correlation length; an en "
-      "dash where the number was not fitted or is no plain one. A coefficient multiplies the "
-      "effect's term; those of a path through the body or of a loop are in the model file.";
+      "Numbers of the final model; baseline and effects are fitted together to the whole record. "
+      "Standard errors are those of the linearised fit, with samples counted once a correlation "
+      "length; an en dash: the number was not fitted itself. A coefficient multiplies the effect's "
+      "term. The coefficients of a path through the body or of a loop are in the model file.";
   table.header = {"part", "number", "value", "standard error", "unit", "origin"};
   table.align = {Align::kLeft,  Align::kLeft, Align::kRight,
                  Align::kRight, Align::kLeft, Align::kLeft};
@@ -175,11 +175,11 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
   std::vector<Table> tables;
   for (std::size_t s = 0; s < found.search.additions.size(); ++s) {
     const diagnosis::Addition& addition = found.search.additions[s];
-    std::string caption = "Step " + std::to_string(s + 1) + ": " +
-                          candidates_in_words(addition.tried) +
-                          ". RMSE held out; numbers: fitted ones of the whole model.";
+    std::string caption =
+        "Step " + std::to_string(s + 1) + ": " + candidates_in_words(addition.tried) +
+        ". RMSE: on held-out blocks. Numbers: the fitted ones of the whole model.";
     if (!addition.ties.empty()) {
-      caption += " As good as the one that was added: " + spaced_kinds(addition.ties) + ".";
+      caption += " As good as the added one: " + spaced(listed(addition.ties)) + ".";
     }
     tables.push_back(tried_table(
         found, {addition.before, addition.tried, addition.chosen, addition.ties}, caption));
@@ -189,10 +189,11 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
     const std::string caption =
         (tables.empty() ? std::string("No effect was worth adding: ")
                         : std::string("No further effect was worth adding: ")) +
-        candidates_in_words(last) + ". To be added, the error must fall by more than " +
+        candidates_in_words(last) + ". An effect is added if the error falls by more than " +
         percent(found.options.search.least_fall, 0) + " with p below " +
         short_number(found.options.search.significance) +
-        " divided by the number of candidates, or undivided where it falls by more than " +
+        " divided by the number of candidates; the division is left out if the error falls by more "
+        "than " +
         percent(found.options.search.large_fall, 0) + "; at most " +
         std::to_string(found.options.search.most_effects) + " effects are added.";
     tables.push_back(tried_table(found, {evidence.after_held_out, last, last.size(), {}}, caption));
@@ -203,9 +204,10 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
 Table detection_table(const Diagnosis& found) {
   Table table;
   table.caption =
-      "Questions put to the residual, each beside the model, whose numbers may move: the "
-      "share of its power that the answer explains on held-out blocks, and the probability of that "
-      "by chance, corrected after Holm for all " +
+      "Questions that were asked of the residual. Each adds columns to the model, whose own "
+      "numbers "
+      "are fitted again. Share: the part of the residual's power that the columns explain on "
+      "held-out blocks. p: the probability of that by chance, corrected after Holm for all " +
       std::to_string(found.before.detections.size()) + " questions.";
   const bool both = !found.effects.empty();
   table.header = {"question", "about", "share", "p", "found"};
@@ -237,12 +239,11 @@ std::string never_proposed(const Diagnosis& found) {
   };
   for (const diagnosis::Addition& addition : found.search.additions) note(addition.tried);
   note(found.search.last_tried);
-  std::string text;
+  std::vector<std::string> silent;
   for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
-    if (proposed.contains(std::string(kind->name()))) continue;
-    text += (text.empty() ? "" : ", ") + spaced(kind->name());
+    if (!proposed.contains(std::string(kind->name()))) silent.push_back(spaced(kind->name()));
   }
-  return text;
+  return fmt::format("{}", fmt::join(silent, ", "));
 }
 
 }  // namespace stillhand::diagnose

@@ -14,12 +14,12 @@ report::Table error_table(const diagnosis::Diagnosis& found);
 report::Table effect_table(const diagnosis::Diagnosis& found);
 /// Numbers of the effects, then of the linear part, with units and standard errors.
 report::Table parameter_table(const Evidence& evidence);
-/// For each step of the search the ten best that were tried; the last one is where it ended.
+/// The ten best candidates of each step of the search; the last table is the step that added none.
 std::vector<report::Table> tried_tables(const Evidence& evidence);
 /// The fifteen questions with the largest shares, before and after.
 report::Table detection_table(const diagnosis::Diagnosis& found);
 
-/// Names of the kinds that nothing spoke for in any step, ready to read; empty: none.
+/// Names of the kinds that were proposed in no step, separated by commas; empty: none.
 std::string never_proposed(const diagnosis::Diagnosis& found);
 
 }  // namespace stillhand::diagnose

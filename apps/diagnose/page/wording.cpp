@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/diagnose/page/wording.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -34,12 +36,15 @@ std::string model_name(const Diagnosis& diagnosis) {
   return "a linear model of order " + std::to_string(order);
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  }
+std::string capital(std::string text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z') text.front() -= 'a' - 'A';
   return text;
+}
+
+// "a", "a and b", "a, b and c".
+std::string enumerated(const std::vector<std::string>& names) {
+  if (names.size() < 2) return fmt::format("{}", fmt::join(names, ""));
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
 std::string error_in_words(const Diagnosis& diagnosis) {
@@ -47,7 +52,7 @@ std::string error_in_words(const Diagnosis& diagnosis) {
   return "the RMS error on held-out data falls from " + shown(diagnosis.baseline_error.rmse, unit) +
          " to " + shown(diagnosis.final_error.rmse, unit) +
          " (95 %: " + interval(diagnosis.final_error.low, diagnosis.final_error.high) +
-         "), where the noise floor is at " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
+         "); the noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ")";
 }
 
@@ -55,12 +60,15 @@ std::string error_in_words(const Diagnosis& diagnosis) {
 
 std::string shown_unit(std::string_view unit) {
   std::string text(unit);
+  const auto is_of = [&](const std::string& name) {
+    return text == name || text.starts_with(name + "/") || text.starts_with(name + "^");
+  };
+  if (is_of("deg")) replace_all(text, "deg", "°");
+  if (is_of("us")) text.replace(0, 2, "µs");
+  replace_all(text, "degC", "°C");
   replace_all(text, "^2", "²");
   replace_all(text, "^3", "³");
   replace_all(text, "*", "·");
-  replace_all(text, "degC", "°C");
-  if (text == "deg" || text.starts_with("deg/")) replace_all(text, "deg", "°");
-  if (text == "us" || text.starts_with("us/")) text.replace(0, 2, "µs");
   return text;
 }
 
@@ -80,12 +88,6 @@ std::string unit_ratio(std::string_view over, std::string_view under) {
   std::string below = shown_unit(under);
   if (is_compound(under)) below = "(" + below + ")";
   return (is_plain(over) ? "1" : shown_unit(over)) + "/" + below;
-}
-
-std::string unit_power(std::string_view unit, std::string_view exponent) {
-  if (is_plain(unit)) return "-";
-  const bool whole = unit.find_first_of("/*^ ") == std::string_view::npos;
-  return (whole ? shown_unit(unit) : "(" + shown_unit(unit) + ")") + std::string(exponent);
 }
 
 std::string shown_sentence(std::string_view sentence, std::string_view output_unit) {
@@ -126,11 +128,12 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
       names.push_back(effect_title(effect));
       tied = tied || !effect.ties.empty();
     }
-    text = "Effects found. What " + model + " lacks: " + joined(names) + ". With " +
+    text = "Effects found. " + capital(model) + " lacks: " + enumerated(names) + ". With " +
            (names.size() == 1 ? "it " : "them ") + error_in_words(diagnosis) + ".";
-    if (tied) text += " Other kinds explain some of it as well: see the ties.";
-    text += diagnosis.unexplained ? " Something is left that no kind of effect explains."
-                                  : " What is left depends on nothing that was asked.";
+    if (tied) text += " Other kinds explain some of it equally well: see the ties.";
+    text += diagnosis.unexplained
+                ? " A part of the residual is left that no kind of effect explains."
+                : " The rest depends on none of the quantities that were tested.";
     return text;
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +
@@ -138,13 +141,15 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                            interval(diagnosis.baseline_error.low, diagnosis.baseline_error.high) +
                            ")";
   if (diagnosis.unexplained) {
-    return "Unexplained residual. What " + model + " leaves, " + left +
-           ", is more than noise (noise floor " +
+    return "Unexplained residual. " + capital(model) + " leaves " + left +
+           ". This is more than noise (noise floor " +
            shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) +
            "), and no kind of effect explains it.";
   }
-  return "Nothing missing. What " + model + " leaves, " + left +
-         ", depends on nothing that was asked, and no effect made it smaller by more than chance.";
+  return "Nothing missing. " + capital(model) + " leaves " + left +
+         ". This residual depends on none of the quantities that were tested, and no effect "
+         "reduces "
+         "it by more than chance does.";
 }
 
 }  // namespace stillhand::diagnose

@@ -16,18 +16,16 @@ std::string shown(double value, std::string_view unit);
 std::string axis_label(std::string_view name, std::string_view unit);
 /// "[unit]" of a ratio of units, for example "N/(m/s²)"; "-" where both are the same or none.
 std::string unit_ratio(std::string_view over, std::string_view under);
-/// "N²", "(m/s²)²": a power of a unit; "-" of none.  @param exponent  "²" or "³"
-std::string unit_power(std::string_view unit, std::string_view exponent);
 /// The engine's sentence with the output's unit put in and signs as people write them.
 std::string shown_sentence(std::string_view sentence, std::string_view output_unit);
 
-/// "coulomb friction" and, if it hangs on one, its channel: "coulomb friction (omega)".
+/// "coulomb friction", with its channel where it has one: "coulomb friction (omega)".
 std::string effect_title(const diagnosis::FoundEffect& effect);
 std::string spaced(std::string_view kind);
 
-/// p as text; "< 10⁻³⁰⁰" where a double can't hold it.
+/// p as text; "< 10⁻³⁰⁰" where a double cannot hold it.
 std::string p_value(double p);
-/// "12.3 %"; an en dash for what isn't finite.
+/// "12.3 %"; an en dash for a number that is not finite.
 std::string percent(double share, int decimals = 1);
 
 /// The verdict in words, a few sentences.

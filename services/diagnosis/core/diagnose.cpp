@@ -60,7 +60,8 @@ void check_excitation(const Signals& signals, const std::string& source) {
     }
     if (std::abs(correlation(input.values, signals.output().values)) > 1.0 - 1e-12) {
       throw ConfigError(source + ", output '" + signals.output().name + "'",
-                        "the input '" + input.name + "' itself, scaled", "a measured answer to it");
+                        "the input '" + input.name + "' itself, scaled",
+                        "a measured response to it");
     }
   }
 }
@@ -95,7 +96,7 @@ Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
 
 std::string measured_channel(const Effect& effect, const Signals& signals,
                              const std::vector<std::string>& inputs) {
-  // Of several channels the one that isn't the input says more.
+  // Of several channels, the one that is not an input.
   std::string channel;
   for (const std::string& name : effect.channels) {
     const std::string source = signals.at(name).source;
@@ -133,7 +134,7 @@ std::string finding(const Detection& detection) {
       std::to_string(std::lround(100.0 * detection.share)) + " % of its power";
   if (detection.question == kDistortion) {
     return "the residual repeats with the excitation at " + detection.channel +
-           ", where a linear system has no answer (" + share +
+           ", where a linear system does not respond (" + share +
            "): distortion that no kind of effect explains";
   }
   return "the residual still depends on: " + detection.question + " " + detection.channel + " (" +
@@ -205,22 +206,23 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
   diagnosis.final_error = held_out_error(errors.back(), variance);
 }
 
-// What a recording that was held out whole has refuted, a sentence a kind.
+// A note for each kind that a recording held out whole has refuted.
 void note_refuted(Diagnosis& diagnosis) {
-  std::vector<std::string> told;
+  std::vector<std::string> noted;
   for (const RefutedEffect& refuted : diagnosis.search.refuted) {
     const std::string& kind = refuted.effect.kind;
     const auto is_kind = [&](const Effect& effect) { return effect.kind == kind; };
     if (std::ranges::any_of(diagnosis.model.effects, is_kind) ||
-        std::ranges::find(told, kind) != told.end()) {
+        std::ranges::find(noted, kind) != noted.end()) {
       continue;
     }
-    told.push_back(kind);
-    std::string note = kind + " (" + refuted.effect.form + ") left out: recordings held out whole ";
+    noted.push_back(kind);
+    std::string note = kind + " (" + refuted.effect.form +
+                       ") left out: it changes the error of recordings held out whole, ";
     for (std::size_t r = 0; r < refuted.fall.size(); ++r) {
       std::array<char, 48> text{};
-      std::snprintf(text.data(), text.size(), "%s%zu by %+.1f %%",
-                    r == 0 ? "change with it, " : ", ", r + 1, -100.0 * refuted.fall[r]);
+      std::snprintf(text.data(), text.size(), "%s%zu by %+.1f %%", r == 0 ? "" : ", ", r + 1,
+                    -100.0 * refuted.fall[r]);
       note += text.data();
     }
     diagnosis.notes.push_back(note);

@@ -13,7 +13,7 @@
 
 namespace stillhand::diagnosis {
 
-/// Which baseline: the paper's difference model, static in the inputs, or whichever fits the data.
+/// Which baseline: the paper's difference model, static in the inputs, or the one that fits.
 enum class ModelClass { kAuto, kArx, kLinear };
 
 /// What to diagnose, and how.
@@ -28,7 +28,7 @@ struct DiagnoseOptions {
   std::function<bool(const std::string&)> progress = [](const std::string&) { return true; };
 };
 
-/// Thrown when progress() said no.
+/// Thrown when progress() returns false.
 struct Interrupted : std::exception {
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
 };
@@ -44,15 +44,15 @@ struct HeldOutError {
 /// One effect of the verdict.
 struct FoundEffect {
   Effect effect;
-  std::string channel;  ///< measured channel that it hangs on; empty: none
+  std::string channel;  ///< measured channel that it depends on; empty: none
   HeldOutError before;
   HeldOutError after;
   double p = 1.0;                 ///< [-] of the improvement by chance
   std::string evidence;           ///< one sentence
-  std::vector<std::string> ties;  ///< kinds that explain the data as well
+  std::vector<std::string> ties;  ///< kinds that explain the data equally well
 };
 
-/// What is left and not explained.
+/// A residual that no kind explains.
 struct Unexplained {
   std::string what;  ///< one sentence
   std::array<double, 2> band_hz{};
@@ -60,7 +60,7 @@ struct Unexplained {
   std::vector<std::string> channels;  ///< measured ones, three at most
 };
 
-/// The verdict and everything that it rests on.
+/// The verdict and everything that it is based on.
 struct Diagnosis {
   DiagnoseOptions options;
   std::string model_class;  ///< "arx" or "linear"
@@ -76,16 +76,15 @@ struct Diagnosis {
   Model model;             ///< baseline and effects, fitted together to all samples
   DetectionResult before;  ///< of the baseline's residual
   DetectionResult after;   ///< of the final model's
-  SearchResult search;     ///< what was tried
+  SearchResult search;     ///< the candidates of every step
 
   [[nodiscard]] std::string verdict() const;
 };
 
-/// The residual engine, design section 4: fits the baseline, looks for what it lacks, adds it, and
+/// The residual engine, README: fits the baseline, finds the effects that it lacks, adds them, and
 /// judges on held-out blocks.  Pure; deterministic.
-/// @throws stillhand::ConfigError when the recording can't be diagnosed: channels that aren't
-/// there,
-///         no excitation, too few samples.
+/// @throws stillhand::ConfigError when the recording cannot be diagnosed: a missing channel, no
+///         excitation, too few samples.
 Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& options);
 
 }  // namespace stillhand::diagnosis

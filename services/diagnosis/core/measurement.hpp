@@ -15,7 +15,7 @@ struct Channel {
   std::vector<double> values;  ///< one a sample, finite
 };
 
-/// Samples [first, end) that follow each other without a gap; nothing is known of what went before.
+/// Samples [first, end) that follow each other without a gap; what came before is unknown.
 struct Stretch {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -23,9 +23,9 @@ struct Stretch {
   std::size_t recording = 0;  ///< which of the recordings that were joined
 };
 
-/// What was measured: channels on one uniform grid, a stretch for every run without a long gap.
-/// Samples of a short gap are filled in by interpolation, so that a simulation can run through, and
-/// count nothing: their weight is 0.
+/// Measured channels on one uniform grid, with a stretch for every run without a long gap.  Samples
+/// of a short gap are filled in by interpolation, so that a simulation can run through them; their
+/// weight is 0.
 struct Measurement {
   std::string source;  ///< for messages and reports, usually the file
   double rate_hz = 0.0;
@@ -41,8 +41,8 @@ struct Measurement {
   [[nodiscard]] std::vector<double> time_s() const;
 };
 
-/// @throws stillhand::ConfigError when sizes disagree, a value isn't finite (channel and sample are
-/// named), the rate isn't positive or the stretches don't cover the samples.
+/// @throws stillhand::ConfigError when sizes disagree, a value is not finite (names channel and
+/// sample), the rate is not positive or the stretches do not cover the samples.
 void check(const Measurement& measurement);
 
 }  // namespace stillhand::diagnosis

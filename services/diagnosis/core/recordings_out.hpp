@@ -7,7 +7,7 @@
 
 namespace stillhand::diagnosis {
 
-/// What each of the recordings that were joined says of an effect when it is held out whole, README
+/// Errors of an effect's model on each of the recordings that were joined, held out whole, README
 /// Eq. DG-52.  Pure.
 class RecordingsOut {
  public:

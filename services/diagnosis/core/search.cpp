@@ -38,9 +38,9 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
   return trial;
 }
 
-// The body that was fitted without the effect may sit in a hollow that the effect has made void:
-// one estimated anew from what the effect leaves of the output, where that is better.  Of the order
-// that was asked for, too: what the effect did may have hidden poles of a body taken down.
+// The body that was fitted without the effect may be in a local minimum.  A body estimated again
+// from what the effect leaves of the output replaces it where it is better.  The full order is
+// tried too: the effect may have hidden poles of a body whose order was reduced.
 void start_afresh(Model& model, const Signals& signals, int order) {
   constexpr double kWorthPoles = 0.98;  // of the squared error
   std::vector<double> left = signals.output().values;
@@ -71,10 +71,10 @@ bool same_shape(const Model& a, const Model& b) {
          a.effects.back().form == b.effects.back().form;
 }
 
-// Nonlinearities inside the body differ in their shape alone, and their fits often end in a hollow:
-// each is tried again from the linear parts of the best of them, and from those of another that
-// this has made the best.  The first may have been bound to the order of a body taken down, whose
-// other poles it has hidden.
+// Nonlinearities inside the body differ in their shape alone, and their fits often end in a local
+// minimum.  Each is tried again from the linear parts of the best of them, and from those of
+// another that this has made the best.  The first may have hidden poles of a body whose order was
+// reduced.
 void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
                      const Blocks& blocks, int order, const SearchOptions& options,
                      const ForEach& for_each) {
@@ -165,12 +165,12 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
 bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
                      std::size_t candidates, const SearchOptions& options) {
   const Comparison comparison = compared(current, trial.held_out);
-  // Bursts lie in few blocks, whose signs say little; that they stand out has been asked already.
+  // Bursts lie in few blocks, too few for the signs; that they stand out has been tested already.
   if (passes_over_samples(trial)) return 1.0 - comparison.rmse_ratio > options.large_fall;
   return worth_it(comparison, options, least_fall, candidates);
 }
 
-// What only time can tell has nothing to say of another recording.
+// Effects of time alone describe one recording and cannot be tested on another.
 bool asks_recordings(const Trial& trial) {
   const Effect& effect = trial.model.effects.back();
   return !passes_over_samples(trial) && !effect_kind(effect.kind).time_only(effect);

@@ -13,13 +13,13 @@
 
 namespace stillhand::diagnosis {
 
-/// Calls task(0) to task(count - 1), in any order, perhaps at once, and returns when all are done.
+/// Calls task(0) to task(count - 1), in any order or in parallel; returns when all are done.
 using ForEach =
     std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
 /// One after the other.
 void in_order(std::size_t count, const std::function<void(std::size_t)>& task);
 
-/// One effect that was added, and what it was chosen against.
+/// One effect that was added, and the candidates that it was chosen from.
 struct Addition {
   HeldOut before;
   HeldOut after;
@@ -30,23 +30,23 @@ struct Addition {
                                   ///< `tie` and `tied_gain`
 };
 
-/// An effect that was worth adding by the blocks, but not by the recordings that were joined.
+/// An effect that the blocks support, but the recordings that were joined do not.
 struct RefutedEffect {
   Effect effect;
   std::vector<double> fall;  ///< [-] of each recording's error, held out whole
 };
 
-/// What the search found.
+/// Result of the search.
 struct SearchResult {
   Model model;
   std::vector<Addition> additions;     ///< one an effect of the model, in its order
-  std::size_t removed = 0;             ///< effects that later ones made idle
+  std::size_t removed = 0;             ///< effects that later ones replaced
   std::vector<RefutedEffect> refuted;  ///< of all rounds
   std::vector<Trial> last_tried;       ///< after the last addition, best first: all were rejected
 };
 
 /// Forward selection with re-testing, README "Selection": propose, fit jointly, compare on held-out
-/// blocks, add the simplest of the best; after each addition the earlier ones must stay worth it.
+/// blocks, add the simplest of the best; after each addition every earlier one is tested again.
 SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
                     const SearchOptions& options, const ForEach& for_each,
                     const std::function<bool(const std::string&)>& progress);

@@ -26,7 +26,7 @@ BlockDifferences mean_squares(const HeldOut& before, const HeldOut& after) {
   return result;
 }
 
-// True when `other` explains as much as the best: the blocks don't tell them apart (one standard
+// True when `other` explains as much as the best: the blocks do not distinguish them (one standard
 // error), or its error is hardly larger and it has nearly all of the gain.
 bool ties_with(const Trial& other, const Trial& best, double current_rmse,
                const SearchOptions& options) {

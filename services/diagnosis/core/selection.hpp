@@ -7,14 +7,14 @@
 
 #include "services/diagnosis/core/fitting/fit.hpp"
 
-/// Which of the models that were tried is taken, README "Selection".
+/// The choice among the models that were tried, README "Selection".
 namespace stillhand::diagnosis {
 
-/// Settings of the search; the figures' origin: README "Selection".
+/// Settings of the search; README "Selection" gives the reason of each number.
 struct SearchOptions {
   std::size_t most_effects = 4;
   double first_least_fall = 0.005;  ///< [-] of the held-out error: is anything missing at all?
-  double least_fall = 0.01;     ///< [-] later: less is what the first one's form leaves of itself
+  double least_fall = 0.01;     ///< [-] later: an imperfect form of the first leaves about as much
   double significance = 0.001;  ///< [-] divided by the number of candidates (Bonferroni)
   double large_fall = 0.15;     ///< [-] of the held-out error: significance not divided,
   double large_significance = 0.01;  ///< [-] and this one
@@ -24,7 +24,7 @@ struct SearchOptions {
   int fit_iterations = 30;
 };
 
-/// How two models' held-out errors compare, block by block, README Eq. DG-16.
+/// Held-out errors of two models compared block by block, README Eq. DG-16.
 struct Comparison {
   double rmse_ratio = 1.0;  ///< [-] after / before
   double t = 0.0;           ///< [-] mean of the blocks' differences over its standard error
@@ -44,7 +44,7 @@ struct Trial {
 
 bool by_rmse(const Trial& a, const Trial& b);
 
-/// True when what is left of the output is rounding of its own numbers, and asks for no effect.
+/// True when the residual is no more than rounding of the output's own numbers.
 bool is_rounding(double rmse, const Signals& signals);
 
 /// The best that earns its numbers, Eq. DG-50, or the simplest that ties with it, Eq. DG-17.

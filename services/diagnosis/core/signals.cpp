@@ -227,4 +227,10 @@ Signals Signals::weighed(std::vector<double> weight) const {
   return other;
 }
 
+std::string unit_power(const std::string& unit, int exponent) {
+  if (unit.empty() || unit == "-" || unit == "1") return "-";
+  const bool whole = unit.find_first_of("/*^ ") == std::string::npos;
+  return (whole ? unit : "(" + unit + ")") + "^" + std::to_string(exponent);
+}
+
 }  // namespace stillhand::diagnosis

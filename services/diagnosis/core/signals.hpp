@@ -13,7 +13,7 @@ namespace stillhand::diagnosis {
 /// Signals by column, each as long as the measurement.
 using Columns = std::vector<std::vector<double>>;
 
-/// What a channel's unit says it is.
+/// Quantity of a channel, by its unit.
 enum class Quantity { kPosition, kRate, kAcceleration, kOther };
 
 /// A channel that may explain something: measured, or made from a measured one.
@@ -35,19 +35,19 @@ struct Signal {
 ///   position of v    trapezoidal sum within a stretch, from 0
 ///   rate of a        the same, then a high-pass of second order (Butterworth) at 0.1 Hz
 ///
-/// unless a measured channel already is that (its correlation with it above 0.95).
+/// unless a measured channel already is that signal (correlation above 0.95).
 class Signals {
  public:
-  /// @throws stillhand::ConfigError for a channel that isn't there, an input that is the output, or
-  /// what check() refuses.
+  /// @throws stillhand::ConfigError for a channel that is missing, an input that is the output, or
+  /// a measurement that check() refuses.
   Signals(const Measurement& measurement, const std::vector<std::string>& inputs,
           const std::string& output);
 
   [[nodiscard]] std::size_t size() const noexcept { return output_.values.size(); }
   [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }
   [[nodiscard]] const std::vector<Stretch>& stretches() const noexcept { return stretches_; }
-  /// The measurement's, and 0 in a stretch's first second (at most a tenth of it): there the
-  /// unknown past has its say, beyond what a fitted initial state follows.
+  /// The measurement's, and 0 in a stretch's first second (at most a tenth of it), where the
+  /// unknown past has more effect than a fitted initial state describes.
   [[nodiscard]] const std::vector<double>& weight() const noexcept { return weight_; }
   /// The same signals with other weights, one a sample.
   [[nodiscard]] Signals weighed(std::vector<double> weight) const;
@@ -86,5 +86,8 @@ class Signals {
 /// Quantity of a unit: m, mm, cm, rad, deg are positions; with "/s" rates, with "/s^2"
 /// accelerations.
 Quantity quantity_of(std::string_view unit) noexcept;
+
+/// A unit to a power, as a recording's header has it: "m^3", "(m/s^2)^2"; "-" of none.
+std::string unit_power(const std::string& unit, int exponent);
 
 }  // namespace stillhand::diagnosis

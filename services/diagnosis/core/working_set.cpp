@@ -95,7 +95,7 @@ Measurement thinned(const Measurement& measurement) {
   result.notes.push_back("of " + std::to_string(measurement.size()) + " samples " +
                          std::to_string(result.size()) + " in " +
                          std::to_string(result.stretches.size()) +
-                         " pieces spread evenly over the record were worked on");
+                         " pieces spread evenly over the record were used");
   return result;
 }
 
@@ -132,7 +132,7 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
     result.stretches.push_back({first, result.weight.size(), stretch.start_s, stretch.recording});
   }
   result.notes.push_back("the inputs end far below " + figure(measurement.rate_hz / 2.0) +
-                         " Hz: worked at " + figure(result.rate_hz) + " Hz");
+                         " Hz: the engine works at " + figure(result.rate_hz) + " Hz");
   return result;
 }
 

@@ -44,6 +44,11 @@ class Asymmetry final : public EffectKind {
     }
     columns.push_back(std::move(even));
   }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t /*i*/) const override {
+    const std::string& unit = signals.at(effect.channels.at(0)).unit;
+    return quadratic(effect) ? unit_power(unit, 2) : unit;
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (!effect.channels.empty() && stage(effect) == Stage::kTerm) {

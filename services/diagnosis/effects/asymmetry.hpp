@@ -5,7 +5,12 @@
 
 namespace stillhand::diagnosis {
 
-/// A response that differs with the direction, even, README Eq. DG-25.
+/// A response that differs with the direction, an even function of a signal:
+///
+///   v + k |v| of input or output;  feedback of |z| or z^2 inside the body;
+///   c (x - m)^2 of a channel
+///
+/// Source: README Eq. DG-25; bilinear and quadratic stiffness: Worden and Tomlinson (2001).
 const EffectKind& asymmetry_kind();
 
 }  // namespace stillhand::diagnosis

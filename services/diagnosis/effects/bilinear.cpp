@@ -32,6 +32,10 @@ class Bilinear final : public EffectKind {
     }
     columns.push_back(std::move(product));
   }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t /*i*/) const override {
+    return signals.at(effect.channels.at(0)).unit + "*" + signals.at(effect.channels.at(1)).unit;
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (stage(effect) == Stage::kGain) return "the body's gain follows " + effect.channels.at(0);

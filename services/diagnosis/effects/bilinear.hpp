@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A product of two channels, README Eq. DG-36.
+/// A product of two channels, or a gain that follows a channel:
+///
+///   c (x_1 - m_1)(x_2 - m_2);  g = 1 + s (x - m) on the body's output
+///
+/// Source: README Eq. DG-36.
 const EffectKind& bilinear_kind();
 
 }  // namespace stillhand::diagnosis

@@ -22,6 +22,9 @@ class ClockDrift final : public EffectKind {
   [[nodiscard]] double input_delay_s(const Effect& effect, double time_s) const override {
     return 1e-6 * effect.value(0) * (time_s - effect.value(1));
   }
+  [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
+    return control::LeftOut{"input and output run on two clocks, the canceller on one"};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "the output lags the input by " + with_unit(effect.value(0), "us") +

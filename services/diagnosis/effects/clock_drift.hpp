@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// Clocks of input and output that run apart, README Eq. DG-35.
+/// Clocks of input and output that run apart:
+///
+///   u(t - d (t - t_m)),  t_m the middle of the record
+///
+/// Source: README Eq. DG-35, by the fractional delay of DG-2, Laakso et al. (1996).
 const EffectKind& clock_drift_kind();
 
 }  // namespace stillhand::diagnosis

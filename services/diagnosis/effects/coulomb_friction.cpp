@@ -43,6 +43,13 @@ class CoulombFriction final : public EffectKind {
     columns.push_back(rate.values);
     for (double& v : columns.back()) v = std::tanh(v / effect.value(0));
   }
+  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
+                                        std::size_t /*i*/) const override {
+    return "-";
+  }
+  [[nodiscard]] ControlRole drive_role(const Effect& effect) const override {
+    return control::Friction{effect.parameters.empty() ? 0.0 : effect.value(0)};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "a force of " + with_unit(std::abs(effect.coefficients.at(0)), "(output unit)") +

@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A force with the sign of a rate, README Eq. DG-23.
+/// A force with the sign of a rate:
+///
+///   c sign(v)  or  c tanh(v / v_t)
+///
+/// Source: README Eq. DG-23; Worden and Tomlinson (2001).
 const EffectKind& coulomb_friction_kind();
 
 }  // namespace stillhand::diagnosis

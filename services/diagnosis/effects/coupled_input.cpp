@@ -33,6 +33,8 @@ std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals
   return y;
 }
 
+bool lagged(const Effect& effect) { return effect.form == "lagged"; }
+
 class CoupledInput final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "coupled_input"; }
@@ -41,12 +43,19 @@ class CoupledInput final : public EffectKind {
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     for (const std::string& channel : effect.channels) {
       const Signal& signal = signals.at(channel);
-      if (effect.form == "lagged") {
+      if (lagged(effect)) {
         columns.push_back(low_passed(signal, effect.value(0), signals));
         continue;
       }
       columns.push_back(signal.values);
     }
+  }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t i) const override {
+    return signals.at(effect.channels.at(std::min(i, effect.channels.size() - 1))).unit;
+  }
+  [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
+    return control::Path{through_body(effect), lagged(effect) ? effect.value(0) : 0.0};
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {

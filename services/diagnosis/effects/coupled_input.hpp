@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A linear path from another channel, README Eq. DG-22.
+/// A linear path from another channel:
+///
+///   c x;  c_1 x + c_2 x';  c times a first-order low-pass of x;  x through the body's poles
+///
+/// Source: README Eq. DG-22.
 const EffectKind& coupled_input_kind();
 
 }  // namespace stillhand::diagnosis

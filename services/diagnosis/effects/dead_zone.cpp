@@ -40,6 +40,10 @@ class DeadZone final : public EffectKind {
     columns.push_back(position.values);
     for (double& x : columns.back()) x = without_play(x - effect.value(1), effect.value(0));
   }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t /*i*/) const override {
+    return signals.at(effect.channels.at(0)).unit;
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (effect.parameters.empty()) return "nothing happens within a range: " + effect.form;

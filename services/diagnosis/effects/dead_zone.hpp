@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// Play: nothing happens within a range, README Eq. DG-27.
+/// Play: nothing happens within a range of half width h:
+///
+///   x - clip(x, h) of input, output or a position;  feedback of clip(z, 1) inside the body
+///
+/// Source: README Eq. DG-27; piecewise linear stiffness: Worden and Tomlinson (2001).
 const EffectKind& dead_zone_kind();
 
 }  // namespace stillhand::diagnosis

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kEarliest_s = -0.1;  // the input's own sensor may be late, too
 constexpr double kLatest_s = 0.5;
-// Hollows of the error lie a few samples of 10 ms apart.
+// Local minima of the error lie a few samples of 10 ms apart.
 constexpr double kTried_s[] = {-0.03, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3};
 constexpr std::size_t kThorough = 4;
 constexpr double kFiner_s[] = {0.01, 0.005, 0.0025};
-constexpr double kHollow_s = 0.015;
+constexpr double kMinimum_s = 0.015;
 
 class Delay final : public EffectKind {
  public:
@@ -28,8 +28,8 @@ class Delay final : public EffectKind {
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
-    return "the output answers the input " + with_unit(1e3 * effect.value(0), "ms") +
-           " later than poles and zeros of the body can give";
+    return "the output follows the input " + with_unit(1e3 * effect.value(0), "ms") +
+           " later than the poles and zeros of the body provide";
   }
 };
 
@@ -72,7 +72,7 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   for (const double delay_s : kTried_s) {
     proposals.push_back(with_own_body(screening, delay_s, false));
   }
-  // The order among the first few rests on bodies that may sit in a hollow.
+  // The order among the first few depends on bodies that may be in a local minimum.
   proposals = best_of(std::move(proposals), kThorough);
   for (Proposal& each : proposals) each = with_own_body(screening, each.effect.value(0), true);
   proposals = best_of(std::move(proposals), kThorough);
@@ -84,9 +84,9 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
       if (next.gain > best.gain) best = std::move(next);
     }
   }
-  // Another hollow may be as deep once it is fitted: the best beyond this one.
+  // Another minimum may be as deep once it is fitted: the best beyond this one.
   const auto other = std::ranges::find_if(proposals, [&](const Proposal& each) {
-    return std::abs(each.effect.value(0) - best.effect.value(0)) > kHollow_s;
+    return std::abs(each.effect.value(0) - best.effect.value(0)) > kMinimum_s;
   });
   if (other == proposals.end()) return {best};
   return {best, *other};

@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A pure delay of the input that the body's poles don't give, README Eq. DG-20.
+/// A pure delay of the input that the body's poles and zeros do not provide:
+///
+///   u(t - d)
+///
+/// Source: README Eq. DG-20, by the fractional delay of DG-2, Laakso et al. (1996).
 const EffectKind& delay_kind();
 
 }  // namespace stillhand::diagnosis

@@ -77,6 +77,13 @@ class Drift final : public EffectKind {
       }
     }
   }
+  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
+                                        std::size_t /*i*/) const override {
+    return "-";
+  }
+  [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
+    return control::LeftOut{"the force's sensor has a slow offset, or the hand leans"};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override {
     const HalfCosines of_residual = powers_of(screening.residual(), screening.signals());
     std::vector<Effect> forms{{"drift", "linear", {}, {}, {}},

@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A slow additive change, README Eq. DG-32.
+/// A slow additive change, L the length of the record:
+///
+///   c (t/L - 1/2);  c e^(-t/tau);  sum_{k=1..3} c_k cos(pi k t/L)
+///
+/// Source: README Eq. DG-32.
 const EffectKind& drift_kind();
 
 }  // namespace stillhand::diagnosis

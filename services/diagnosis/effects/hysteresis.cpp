@@ -39,6 +39,10 @@ class Hysteresis final : public EffectKind {
     columns.push_back(std::move(state));
     if (!signals.is_input(effect.channels[0])) columns.push_back(std::move(linear));
   }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t i) const override {
+    return i == 0 ? "-" : signals.at(effect.channels.at(0)).unit;
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     const std::string element =

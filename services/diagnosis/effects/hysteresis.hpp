@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A force that depends on where a displacement came from, README Eq. DG-26.
+/// A force that depends on the past of a displacement z, in units of a threshold:
+///
+///   w(n) = clip(w(n-1) + z(n) - z(n-1), 1)  or  dw = dz (1 - w sign dz)
+///
+/// Source: README Eq. DG-26; Visintin (1994) for the first, Dahl (1968) for the second.
 const EffectKind& hysteresis_kind();
 
 }  // namespace stillhand::diagnosis

@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// An input that reaches the body only up to a limit, README Eq. DG-29.
+/// An input that reaches the body only up to a limit L:
+///
+///   clip(u_1, L)  or  L tanh(u_1 / L)
+///
+/// Source: README Eq. DG-29; a static map before a linear system: Schoukens and Ljung (2019).
 const EffectKind& input_saturation_kind();
 
 }  // namespace stillhand::diagnosis

@@ -52,6 +52,11 @@ class NonlinearStiffness final : public EffectKind {
     columns.push_back(std::move(linear));
     columns.push_back(std::move(cubic));
   }
+  [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
+                                        std::size_t i) const override {
+    const std::string& unit = signals.at(effect.channels.at(0)).unit;
+    return i == 0 ? unit : unit_power(unit, 3);
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (!effect.channels.empty()) {

@@ -128,7 +128,7 @@ std::vector<Proposal> loop_proposals(const Screening& screening, const std::stri
                                      bool homogeneous) {
   const Body& body = screening.model().body;
   if (body.order() < 2) return {};
-  // One nonlinearity inside the body at a time: two there are hardly told apart.
+  // One nonlinearity inside the body at a time: the data hardly distinguish two.
   for (const Effect& each : screening.model().effects) {
     if (effect_kind(each.kind).stage(each) == Stage::kFeedback) return {};
   }

@@ -8,7 +8,7 @@
 #include "services/diagnosis/core/fitting/screening.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
-/// What several kinds propose alike.
+/// Proposals that several kinds share.
 namespace stillhand::diagnosis {
 
 /// phi of a signal in units of its threshold, with memory.
@@ -17,18 +17,18 @@ using Shape = std::function<double(double z, LoopMemory& memory)>;
 /// The better ones of some proposals, best first.
 std::vector<Proposal> best_of(std::vector<Proposal> proposals, std::size_t count);
 
-/// A nonlinearity inside the body: where it would have to sit, tried at the output and at every
-/// mode's own displacement, with thresholds of 0.5 to 3 standard deviations.
+/// A nonlinearity inside the body, tried at the output and at the displacement of every mode, with
+/// thresholds of 0.5 to 3 standard deviations.
 /// @param form  begins the effect's form; " of the output" or " inside the body" is added
-/// @param homogeneous  phi(c z) is a multiple of phi(z): no threshold to be found
+/// @param homogeneous  phi(c z) is a multiple of phi(z): there is no threshold to find
 std::vector<Proposal> loop_proposals(const Screening& screening, const std::string& kind,
                                      const std::string& form, const Shape& shape, bool homogeneous);
 
-/// Of a feedback effect; inside the body the scale is in the path, and it is 1.
+/// Threshold of a feedback effect; 1 inside the body, where the path holds the scale.
 double threshold_of(const Effect& effect);
 
-/// A map of the first input that differs from the identity: what the difference brings at the
-/// body's output, for parameter values to try; and the best with a body of its own.
+/// A map of the first input: for each parameter value to try, the gain that its difference from the
+/// identity brings at the body's output; and the best of them with a body of its own.
 std::vector<Proposal> input_map_proposals(
     const Screening& screening, const Effect& effect, const std::vector<double>& values,
     const std::function<double(double u, double value)>& difference);
@@ -42,13 +42,14 @@ std::vector<Proposal> output_map_proposals(
 /// The inputs as measured, [inputs][samples].
 std::vector<std::vector<double>> measured_inputs(const Screening& screening);
 
-/// A body of the model's order, estimated anew: from an effect's own view of inputs and output.
+/// A body of the model's order, estimated again from the inputs and the output as an effect maps
+/// them.
 Body body_anew(const Screening& screening, const std::vector<std::vector<double>>& inputs,
                const std::vector<double>& output);
 
-/// The body that was fitted without an effect may sit where the effect can't get it out: the
-/// proposal whose free run with a body of its own leaves least.
-/// @return without a body where none is finite, the body is static or other effects are there
+/// The proposal whose free run with a body of its own leaves least.  The body that was fitted
+/// without the effect may be in a local minimum that no step with the effect leaves.
+/// @return without a body where none is finite, the body is static or the model has other effects
 Proposal best_with_body(const Screening& screening, std::vector<Proposal> proposals,
                         const std::function<Body(const Effect&)>& body_for);
 
@@ -58,7 +59,7 @@ std::vector<double> response_of(const Screening& screening, const std::vector<do
 /// Standard deviation about the mean.
 double deviation_of(const std::vector<double>& values);
 
-/// The value below which a share of them lies.
+/// The value below which a share of the values lies.
 double quantile_of(std::vector<double> values, double share);
 
 /// Number and unit, for evidence: "3.2 N".

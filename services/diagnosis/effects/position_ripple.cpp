@@ -40,6 +40,13 @@ class PositionRipple final : public EffectKind {
   [[nodiscard]] bool time_only(const Effect& effect) const override {
     return effect.channels.at(0).starts_with("position of ");
   }
+  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
+                                        std::size_t /*i*/) const override {
+    return "-";
+  }
+  [[nodiscard]] ControlRole drive_role(const Effect& effect) const override {
+    return control::Waves{effect.value(0)};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "the residual repeats every " + with_unit(1.0 / effect.value(0), period_unit(effect)) +

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCoarse = 40;     // moments tried over the record
 constexpr int kFine = 20;       // and around the best of them
-constexpr double kEdge = 0.05;  // of the record, at both ends: too little to tell a gain
+constexpr double kEdge = 0.05;  // of the record, at both ends: too short to determine a gain
 constexpr double kLargest = 5.0;
 
 class RegimeChange final : public EffectKind {

@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A gain that changes at one moment, README Eq. DG-34.
+/// A gain of the body's output that changes at one moment t_0:
+///
+///   g = 1 - c before t_0, 1 + c after
+///
+/// Source: README Eq. DG-34.
 const EffectKind& regime_change_kind();
 
 }  // namespace stillhand::diagnosis

@@ -39,10 +39,13 @@ class Resonance final : public EffectKind {
     if (ringing_s > kLongestRinging * signals.duration_s()) return {};
     return mode_denominator(effect.value(0), effect.value(1), signals.rate_hz());
   }
+  [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
+    return control::Mode{effect.value(0), effect.value(1)};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "a mode at " + with_unit(effect.value(0), "Hz") + " with damping ratio " +
-           with_unit(effect.value(1), "") + " that the body's order leaves no room for";
+           with_unit(effect.value(1), "") + " in addition to those of the body";
   }
 };
 
@@ -91,8 +94,8 @@ std::optional<Proposal> mode_of(const Model& larger, const Screening& screening,
   return best;
 }
 
-// Bodies of two poles more, fitted from starts of their own: a grid beside the body as it is misses
-// what only a different body makes room for.
+// Bodies with two more poles, fitted from starts of their own: a grid of modes next to the present
+// body misses a mode that needs a different body.
 std::vector<Proposal> from_larger_bodies(const Screening& screening) {
   constexpr int kIterations = 15;
   const Signals& signals = screening.signals();

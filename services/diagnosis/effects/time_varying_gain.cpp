@@ -30,7 +30,7 @@ class TimeVaryingGain final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "time_varying_gain"; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kGain; }
-  // At its mean, 1, where time can't tell: predict() leaves it out.
+  // predict() takes it at its mean, 1.
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
   void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const override {
     for (std::size_t n = 0; n < gain.size(); ++n) {

@@ -34,6 +34,13 @@ class Tone final : public EffectKind {
     columns.push_back(std::move(sine));
     columns.push_back(std::move(cosine));
   }
+  [[nodiscard]] std::string column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
+                                        std::size_t /*i*/) const override {
+    return "-";
+  }
+  [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
+    return control::Waves{effect.value(0)};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override {
     const Signals& signals = screening.signals();
     const Eigen::VectorXd& r = screening.residual();

@@ -5,7 +5,11 @@
 
 namespace stillhand::diagnosis {
 
-/// A sinusoid in time that no channel has, README Eq. DG-31.
+/// A sinusoid in time that no channel has:
+///
+///   c sin(2 pi f t) + c' cos(2 pi f t)
+///
+/// Source: README Eq. DG-31.
 const EffectKind& tone_kind();
 
 }  // namespace stillhand::diagnosis

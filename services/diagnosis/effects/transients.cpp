@@ -60,6 +60,9 @@ class Transients final : public EffectKind {
       }
     }
   }
+  [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
+    return control::LeftOut{"nothing predicts when a burst comes"};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     std::string text = std::to_string(effect.parameters.size() / 2) + " isolated burst(s), from";
@@ -101,7 +104,7 @@ Bursts bursts_above(double least, const std::vector<Window>& windows,
   return bursts;
 }
 
-// A body fitted to what the bursts leave: one fitted to them as well may be all wrong.
+// A body fitted without the bursts: one fitted to them as well may be far off.
 std::optional<Body> body_without(const Bursts& bursts, const Screening& screening) {
   constexpr int kIterations = 10;
   const Signals& signals = screening.signals();
@@ -148,8 +151,8 @@ std::vector<Proposal> Transients::proposed(const Screening& screening) const {
     proposals.push_back({std::move(bursts.effect), share, body});
   };
   propose({});
-  // Bursts bend the fit that is to show them.  Where few windows hold much, they are left out and
-  // the fit is made anew.
+  // Bursts bias the fit that must reveal them.  Where few windows hold much energy, they are left
+  // out and the rest is fitted again.
   std::optional<Body> body;
   for (int round = 0; round < kRounds; ++round) {
     const Bursts strongest =

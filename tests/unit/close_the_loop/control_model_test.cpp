@@ -174,6 +174,31 @@ TEST(ControlModelTest, WhatCantBeCancelledIsSaid) {
   EXPECT_LT(difference(two_modes(), control.model, motion), 0.005);
 }
 
+TEST(ControlModelTest, ALimitOfTheForceSensorIsPredictedAway) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.effects.push_back({"output_saturation", "hard", {}, {{"limit", "N", 0.1, 0.0, 9.0}}, {}});
+  const ConvertedModel control = to_control_model(model, motion.signals());
+  ASSERT_EQ(control.treatments.size(), 1u);
+  EXPECT_TRUE(control.treatments[0].cancelled);
+  EXPECT_TRUE(control.model.output.values.empty());
+  EXPECT_LT(difference(two_modes(), control.model, motion), 0.005);
+}
+
+TEST(ControlModelTest, APathThroughTheBodyBecomesAnInputOfItsOwn) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  model.effects.push_back({"coupled_input",
+                           "through the body",
+                           {"a_x"},
+                           {},
+                           diagnosis::difference_basis({0.01, 0.005, -0.01, 0.0, 0.01})});
+  const ConvertedModel control = to_control_model(model, motion.signals());
+  EXPECT_EQ(control.model.inputs.size(), 2u);
+  EXPECT_LT(difference(model, control.model, motion), 0.01);
+  EXPECT_GT(difference(two_modes(), control.model, motion), 0.05);
+}
+
 TEST(ControlModelTest, AModelOfAnotherChannelIsRefused) {
   const Motion motion;
   diagnosis::Model model = two_modes();

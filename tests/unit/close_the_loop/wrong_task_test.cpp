@@ -67,7 +67,7 @@ rig::BodyConfig hand(double stiffness_factor, double damping_factor) {
 TEST(WrongTaskTest, AHandThatClenchesIsFollowed) {
   const Outcome out = run(hand(4.0, 2.0), 1.0);
   EXPECT_LT(out.followed, out.paper);
-  // Four times as stiff, it tells of an error four times more slowly: two minutes are short.
+  // Four times as stiff, it shows an error four times more slowly: two minutes are short.
   EXPECT_LT(out.followed, out.still + 0.3 * (out.moving - out.still));
 }
 

@@ -44,7 +44,7 @@ TEST(DetectionJsonTest, WithoutAPeriodAndCoherenceTheyAreNull) {
   EXPECT_TRUE(sut["questions"].empty());
 }
 
-// The contract's keys stand beside the new ones.
+// The keys that scripts rely on stay next to the new ones.
 TEST(DetectionJsonTest, TheVerdictHoldsBothResidualsAnswersAndTheirThresholds) {
   diagnosis::Diagnosis diagnosis;
   diagnosis.before = made_result();

@@ -188,7 +188,7 @@ TEST_F(DiagnosisReportTest, WhatIsLeftIsDescribed) {
   const Evidence evidence(found, without_->measurement);
   const std::string html = diagnosis_page(evidence, {"ride.csv"}, {}).html();
   for (const char* part : {"Unexplained residual.", "Not explained: it depends on the moon",
-                           "0.5 to 2 Hz", "strongest about 12 s", "depends on roll"}) {
+                           "0.5 to 2 Hz", "strongest around 12 s", "depends on roll"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
 }

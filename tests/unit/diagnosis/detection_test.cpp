@@ -163,7 +163,7 @@ TEST(DetectionTest, AFewBlocksThatDependOnAChannelAreNotEnough) {
   EXPECT_FALSE(asked->found);
 }
 
-// Colour is told, and is no effect.
+// Colour is reported, and is not an effect.
 TEST(DetectionTest, ColouredNoiseIsNotWhiteAndNoEffect) {
   const auto colour = made::answer({1.0}, {1.0, -0.9}, made::white(kCount, 31));
   const DetectionResult sut =

@@ -51,8 +51,8 @@ Planted planted(const char* kind, const char* form, const std::vector<double>& y
   return result;
 }
 
-// A four-pole body's zeros can take a sample or two of 10 ms of it, and the error then has hollows
-// that deep beside the true one: 15 ms.  That nothing but the noise is left is asked besides.
+// The zeros of a four-pole body can absorb a sample or two of 10 ms of it, and the error then has
+// minima as deep next to the true one: 15 ms.  A second check: nothing but the noise is left.
 TEST(EffectsOfPathsTest, ADelay) {
   const Body body = made::four_pole_body();
   const auto late = sampled([](double t_s) { return many_sines(t_s - 0.1134); });
@@ -100,7 +100,7 @@ TEST(EffectsOfPathsTest, AnInputThatBends) {
   Planted soft =
       planted("input_saturation", "",
               answer(mapped(kU, [](double u) { return 1.2 * std::tanh(u / 1.2); })), kU, {"u"});
-  // Either form may screen better; what is left tells them apart in the search.
+  // Either form may screen better; the search distinguishes them by the residual.
   soft.left = 20.0;
   expect_proposed(soft);
 }

@@ -6,7 +6,7 @@
 
 #include "tests/unit/diagnosis/proposed.hpp"
 
-// Effects that time alone tells.  Each on a recording of its own.
+// Effects of time alone.  Each on a recording of its own.
 namespace stillhand::diagnosis {
 namespace {
 

@@ -267,7 +267,7 @@ std::vector<double> by_leaving_folds_out(const LinearCase& of) {
   return squares;
 }
 
-// For a model that is linear in its numbers one linearisation tells all, up to the ridge: 1e-6 of
+// For a model that is linear in its numbers one linearisation is exact, up to the ridge: 1e-6 of
 // the diagonal moves the step, itself a few hundredths, by 1e-6 of it.
 TEST(FitTest, LinearisedCrossValidationEqualsLeavingFoldsOut) {
   LinearCase of;

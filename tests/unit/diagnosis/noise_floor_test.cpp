@@ -40,7 +40,7 @@ double estimate(const NoiseFloor& floor, const std::string& name) {
   return 0.0;
 }
 
-// 5900 samples of white noise tell its size to 1 % (one deviation), spectra of it to 2 %.
+// 5900 samples of white noise determine its size to 1 % (one deviation), spectra of it to 2 %.
 TEST(NoiseFloorTest, OfWhiteNoiseAllEstimatesAgree) {
   const NoiseFloor sut = floor_of(made_with(made::ride(kCount, 1), made::white(kCount, 2)));
   EXPECT_NEAR(sut.rmse, 0.05, 0.002);

@@ -5,9 +5,9 @@
 #include "tests/planted/recording.hpp"
 #include "tests/planted/to_measurement.hpp"
 
-// Recordings of a simulator that shares nothing with the engine, a few that are beyond doubt: 40 s,
-// an effect of a quarter of the force, noise of a hundredth.  How often the engine is right is the
-// benchmark's to tell (tests/benchmark/planted_effects.cpp).
+// Recordings of a simulator that shares no code with the engine, in a few clear cases: 40 s,
+// an effect of a quarter of the force, noise of a hundredth.  tests/benchmark/planted_effects.cpp
+// measures how often the engine is right.
 namespace stillhand::diagnosis {
 namespace {
 

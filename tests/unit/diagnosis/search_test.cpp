@@ -115,11 +115,11 @@ TEST(SearchTest, EffectsAreAddedStrongestFirst) {
   EXPECT_NEAR(sut.result.additions[0].before.rmse(), std::hypot(0.5, 0.25, 0.1), 0.03);
   EXPECT_NEAR(sut.result.additions[1].after.rmse(), 0.1, 0.01);
   EXPECT_EQ(sut.result.removed, 0u);
-  EXPECT_FALSE(sut.result.last_tried.empty()) << "what was rejected is told";
+  EXPECT_FALSE(sut.result.last_tried.empty()) << "the rejected candidates are kept";
   EXPECT_THAT(sut.steps, ElementsAre("effect 1", "effect 2", "effect 3"));
 }
 
-// A ramp with a small bend, 0.02 RMS beside noise of 0.1: three cosines leave 2 % less than a
+// A ramp with a small bend, 0.02 RMS in noise of 0.1: three cosines leave 2 % less than a
 // straight line.  Within 3 % the form with fewer numbers has the name.
 TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
   constexpr std::size_t kCount = 6000;
@@ -157,7 +157,7 @@ TEST(SearchTest, NoMoreIsAddedThanAskedFor) {
   EXPECT_THAT(sut.result.model.effects[0].channels, ElementsAre("w"));
 }
 
-// Pieces of 20 s: y = 2 u + c v + noise, each with the c and of the recording that are told.
+// Pieces of 20 s: y = 2 u + c v + noise, each with its own c and recording.
 SearchResult search_joined(const std::vector<double>& of_v,
                            const std::vector<std::size_t>& recording) {
   constexpr std::size_t kEach = 2000;

@@ -53,8 +53,8 @@ struct DetectionResult {
 
 /// Puts every question to a residual: each signal at several lags, powers and products of signals
 /// and of the body's output, its past and sign, gains and offsets over time.  Each is judged on
-/// held-out blocks beside the model, whose numbers may move; p after Holm.  Where the excitation is
-/// periodic the lines that it leaves out are asked as well (Eq. DG-44).
+/// held-out blocks next to the model, whose numbers are fitted again; p after Holm.  Where the
+/// input is periodic, the lines that it does not excite are tested as well (Eq. DG-44).
 /// @param excitation  of the same signals
 DetectionResult detected(const Screening& screening,
                          const std::optional<PeriodicExcitation>& excitation);

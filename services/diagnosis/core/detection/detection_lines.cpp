@@ -17,7 +17,7 @@ using Complex = std::complex<double>;
 // it; what it does is linear and in the model.
 constexpr double kLeastExcitation = 1e-3;
 constexpr double kOverInputNoise = 10.0;
-// Lines at each side that say what noise is: a local level, and 32 degrees of freedom.
+// Lines at each side that give the level of the noise, with 32 degrees of freedom.
 constexpr std::size_t kMostNeighbours = 8;
 constexpr std::size_t kOddReach = 3;   // cubes of lines reach to three times the highest,
 constexpr std::size_t kEvenReach = 2;  // squares to twice

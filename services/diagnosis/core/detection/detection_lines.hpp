@@ -21,10 +21,10 @@ struct LineGroup {
   [[nodiscard]] bool empty() const noexcept { return frequency_hz.empty(); }
 };
 
-/// A multisine's detection lines, Eq. DG-43 and DG-44: what a linear system can't answer at.
+/// Detection lines of a multisine, Eq. DG-43 and DG-44: a linear system does not respond there.
 /// Where only odd harmonics are excited, distortion of even order falls on even lines, of odd order
-/// on odd ones; where even ones are excited too the orders can't be told apart, and all lines that
-/// aren't excited are in `odd_or_even`.
+/// on odd ones.  Where even ones are excited too, the orders cannot be distinguished, and all lines
+/// that are not excited are in `odd_or_even`.
 /// Source: Pintelon and Schoukens, System Identification, 2nd ed., 2012 (nonlinear distortions);
 /// Schoukens and Ljung, IEEE Control Systems 39(6), 2019.
 struct DetectionLines {
@@ -32,7 +32,7 @@ struct DetectionLines {
   Repeats repeats;
   double fundamental_hz = 0.0;  ///< greatest common divisor of the excited lines
   bool odd_excitation = false;  ///< only odd multiples of it are excited
-  LineGroup excited;  ///< for the picture: the model should explain it, effects may lie there
+  LineGroup excited;  ///< for the figure: the model should explain it, effects may lie there
   LineGroup odd;
   LineGroup even;
   LineGroup odd_or_even;

@@ -70,9 +70,9 @@ void use_final_model(NoiseFloor& floor, const ErrorBounds& bounds) {
     floor.high = std::min(floor.high, std::max(bounds.impulse_response, floor.rmse));
   }
   floor.method =
-      "residual of the final model, freed of its fitted numbers and of what any question about "
-      "channels, state and time still explains of it; the interval is that of the held-out blocks, "
-      "at most what a long impulse response leaves";
+      "residual of the final model, corrected for its fitted numbers and without what any question "
+      "about channels, state and time still explains; the interval is that of the held-out blocks, "
+      "at most the residual of a long impulse response";
   // Noise can't be more than is left: an estimate beyond that end says nothing.
   for (const NoiseEstimate& other : floor.estimates) floor.low = std::min(floor.low, other.rmse);
   if (floor.estimates.size() > 1) floor.method += ", and reaches down to the lowest estimate";
@@ -83,11 +83,11 @@ void use_repeats(NoiseFloor& floor, const Repeats& repeats, const Periodicity& p
   floor.rmse = repeats.rms;
   floor.low = repeats.low;
   floor.high = repeats.high;
-  floor.method = "repeats: what the final model leaves differs by that much between " +
+  floor.method = "repeats: the deviation of the final model's residual between " +
                  std::to_string(repeats.periods) + " periods of the excitation (" +
                  figure(static_cast<double>(periodicity.period) / rate_hz) + " s each" +
                  (repeats.first_left_out ? ", the first left out because it differs" : "") +
-                 "), the mean period taken out; 95 % after chi-square with " +
+                 "), without the mean period; 95 % after chi-square with " +
                  figure(repeats.degrees_of_freedom) + " degrees of freedom";
 }
 

@@ -9,14 +9,14 @@
 
 namespace stillhand::diagnosis {
 
-/// One way to tell noise from the rest.
+/// One estimate of the noise.
 struct NoiseEstimate {
   std::string name;   ///< "repeats", "final model", "high frequencies", "between blocks"
   double rmse = 0.0;  ///< [unit of the output]
 };
 
-/// What noise amounts to, README "Noise floor".  No single estimate deserves trust: the one that is
-/// used, its interval, and all that there are.
+/// The size of the noise, README "Noise floor".  No single estimate is reliable: the one that is
+/// used, its interval, and all that exist.
 struct NoiseFloor {
   double rmse = 0.0;
   double low = 0.0;

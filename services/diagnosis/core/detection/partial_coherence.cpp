@@ -16,7 +16,7 @@ constexpr std::size_t kLongestSegment = 1024;
 constexpr std::size_t kShortestSegment = 32;
 constexpr std::size_t kSegments = 20;  // at least, half as many again by the overlap
 constexpr std::size_t kFirstLine = 2;  // a Hann window spreads the mean over lines 0 and 1
-constexpr double kCollinear = 1e-9;    // of a channel's power left beside the inputs: none
+constexpr double kCollinear = 1e-9;    // of a channel's power left without the inputs: none
 constexpr double kLeastWeight = 0.9;   // of a segment's samples
 
 // Where the segments begin.
@@ -82,7 +82,7 @@ std::vector<const Signal*> other_channels(const Signals& signals) {
 // A signal's segments at one line.
 using Column = Eigen::VectorXcd;
 
-// A column without what the basis tells of it: conditioned, Eq. DG-45.
+// A column without its projection on the basis: conditioned, Eq. DG-45.
 Column conditioned(Column column, const std::vector<Column>& basis) {
   const double power = column.squaredNorm();
   for (const Column& each : basis)
@@ -91,7 +91,7 @@ Column conditioned(Column column, const std::vector<Column>& basis) {
   return column;
 }
 
-// Orthonormal columns that span the inputs at one line; those that others already tell are left
+// Orthonormal columns that span the inputs at one line; those that depend on others are left
 // out.
 std::vector<Column> basis_of(const std::vector<Eigen::MatrixXcd>& inputs, Eigen::Index line) {
   std::vector<Column> basis;

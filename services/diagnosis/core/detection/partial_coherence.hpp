@@ -37,9 +37,9 @@ struct CoherenceResult {
 
 /// Partial coherence of a residual with each channel, the inputs taken out of both, Eq. DG-45, and
 /// ordinary coherence with each input.  Welch's averages (Hann, half overlapping) over segments
-/// within the stretches.  Tells that there is a linear path, at which frequencies, of any dynamics;
-/// evidence for the page, no verdict by itself.
-/// Source: Bendat and Piersol, Random Data, 4th ed., chapter 7 (conditioned spectra).  Pure.
+/// within the stretches.  Shows that a linear path of any dynamics exists, and at which
+/// frequencies; the page shows it, the verdict does not use it. Source: Bendat and Piersol, Random
+/// Data, 4th ed., chapter 7 (conditioned spectra).  Pure.
 /// @param residual  weighted, as long as the signals
 CoherenceResult coherence_of(const Eigen::VectorXd& residual, const std::vector<double>& weight,
                              const Signals& signals);

@@ -22,7 +22,7 @@ struct Periodicity {
 /// in the longest stretch; what comes before the periodic part and after it is cut off.  At least
 /// two whole periods, and at most a hundredth of the power that doesn't repeat.
 /// Source: Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed.
-/// (periodic averaging). Pure.  Empty: not periodic, as far as this record tells.
+/// (periodic averaging). Pure.  Empty: not periodic, as far as this record shows.
 std::optional<Periodicity> periodicity_of(const Signals& signals);
 
 }  // namespace stillhand::diagnosis

@@ -21,8 +21,8 @@ struct Repeats {
   bool first_left_out = false;      ///< the first period differs from the others
 };
 
-/// Variance between the periods, the mean period taken out; and the lines over the periods together
-/// from which everything about them is told.
+/// Variance between the periods, the mean period removed; and the lines over all periods, from
+/// which the detection lines are computed.
 struct RepeatedResidual {
   Periodicity used;  ///< without a first period that differs
   Repeats repeats;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <numbers>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/fitting/equation_error.hpp"
 #include "services/diagnosis/core/fitting/modes.hpp"
 #include "services/signal/decompositions.hpp"
 #include "services/signal/difference_model.hpp"
@@ -17,89 +17,6 @@ namespace {
 
 constexpr int kSteiglitzMcBrideSteps = 4;
 constexpr double kClearlyAbove = 1.003;  // of what a long impulse response leaves
-
-// Least squares by Householder QR, columns scaled.
-Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& right) {
-  const Eigen::VectorXd scale =
-      columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  columns *= scale.asDiagonal();
-  return scale.asDiagonal() * signal::least_squares(columns, right);
-}
-
-// A mode rings for a twenty-fourth of the record at most, what the input doesn't excite is
-// forgotten within a sixtieth: a slower pole's free response would take a tone, or a drift, for
-// itself.
-void bound_poles(const Signals& signals, Body& body) {
-  const auto radius = [&](double longest_s) {
-    return std::exp(-1.0 / (longest_s * signals.rate_hz()));
-  };
-  body.largest_radius = radius(std::max(2.0, signals.duration_s() / 24.0));
-  body.slowest_radius = radius(std::max(1.0, signals.duration_s() / 60.0));
-  body.least_turn = 2.0 * std::numbers::pi * signals.lowest_excited_hz() / signals.rate_hz();
-  stabilise(body);
-}
-
-// Rows of A(q) target = B(q) inputs + offset that don't reach beyond a stretch's start.
-Body equation_error_fit(const std::vector<std::vector<double>>& inputs,
-                        const std::vector<double>& target, const std::vector<bool>& valid,
-                        const Signals& signals, std::size_t order) {
-  const auto& stretches = signals.stretches();
-  Columns columns{std::vector<double>(target.size(), 1.0)};
-  for (const auto& input : inputs) {
-    std::vector<double> x = input;
-    for (std::size_t i = 0; i <= order; ++i) {
-      if (i > 0) x = differenced(x, stretches);
-      columns.push_back(x);
-    }
-  }
-  std::vector<double> late = target;
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.end; n-- > stretch.first + 1;) late[n] = late[n - 1];
-    late[stretch.first] = 0.0;
-  }
-  for (std::size_t i = 0; i < order; ++i) {
-    if (i > 0) late = differenced(late, stretches);
-    columns.push_back(late);
-  }
-  std::vector<std::size_t> rows;
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.first + order; n < stretch.end; ++n) {
-      if (valid[n] && valid[n - order] && signals.weight()[n] > 0.0) rows.push_back(n);
-    }
-  }
-  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(rows.size()),
-                         static_cast<Eigen::Index>(columns.size()));
-  Eigen::VectorXd right(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      matrix(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = columns[c][rows[r]];
-    }
-    right[static_cast<Eigen::Index>(r)] = target[rows[r]];
-  }
-  if (matrix.rows() < 2 * matrix.cols()) {
-    throw ConfigError(
-        "recording", std::to_string(rows.size()) + " usable samples",
-        "at least " + std::to_string(2 * matrix.cols()) + " for order " + std::to_string(order));
-  }
-  const Eigen::VectorXd solution = least_squares(std::move(matrix), right);
-  Body body;
-  const double* next = solution.data() + 1;
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    body.numerators.push_back(difference_basis({next, next + order + 1}));
-    next += order + 1;
-  }
-  std::vector<double> g(next, next + order);
-  for (double& each : g) each = -each;
-  body.denominator.resize(1);
-  const auto tail = difference_basis(g);
-  body.denominator.insert(body.denominator.end(), tail.begin(), tail.end());
-  bound_poles(signals, body);
-  // sum of the denominator: what an offset before the poles becomes behind them.
-  double sum = 0.0;
-  for (const double a : body.denominator) sum += a;
-  body.offset = order == 0 ? solution[0] : solution[0] / sum;
-  return body;
-}
 
 struct Rated {
   Body body;

@@ -9,7 +9,7 @@
 
 namespace stillhand::diagnosis {
 
-/// Of a difference model that is offered.
+/// Largest order of a difference model.
 constexpr int kLargestOrder = 12;
 
 /// The linear model and how it was reached.
@@ -25,8 +25,8 @@ struct Baseline {
 /// Eqs DG-1 and DG-9, from several starts: the paper's least squares, the least squares of the
 /// impulse response's prediction (noise taken out), both iterated after Steiglitz and McBride
 /// (1965), and, where the impulse response leaves less, each of its modes with a second one tried
-/// over the whole band. Where the input determines fewer poles than p, the order is taken down: the
-/// rest would be pole-zero pairs outside its band, whose held-out error is meaningless.
+/// over the whole band. Where the input determines fewer poles than p, the order is reduced: the
+/// others would be pole-zero pairs outside its band, whose held-out error has no meaning.
 /// @param order  p; 0: static, linear in the inputs
 /// @throws stillhand::ConfigError for an order outside 0 to 12 or a record too short for it.
 Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order);
@@ -39,8 +39,8 @@ Body started_body(const std::vector<std::vector<double>>& inputs, const std::vec
 Body with_mode(const Body& like, const std::vector<double>& kept,
                const std::vector<std::vector<double>>& inputs, const std::vector<double>& output,
                const Signals& signals);
-/// A fit may rest in a hollow where one mode is right and the other's poles are of no use: each
-/// mode of a fourth-order body is kept in turn, the other tried on a grid of frequency and damping.
+/// A fit may end in a local minimum where one mode is right and the other is not: each mode of a
+/// fourth-order body is kept in turn, the other tried on a grid of frequency and damping.
 /// @return the best of them, `fitted` included, unrefined
 Body with_other_mode(const Body& fitted, const std::vector<std::vector<double>>& inputs,
                      const std::vector<double>& output, const Signals& signals);

@@ -43,7 +43,7 @@ struct Grams {
 Grams grams_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
                const std::vector<double>& weight, const Blocks& blocks);
 
-/// What a fit found.
+/// Result of a fit.
 struct FitResult {
   bool finite = false;
   double rmse = 0.0;  ///< [unit of the output] over the samples it was fitted to

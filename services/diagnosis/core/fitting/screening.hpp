@@ -10,7 +10,7 @@
 
 namespace stillhand::diagnosis {
 
-/// What columns beside a model would explain.
+/// What columns next to a model would explain.
 struct ScreenedGain {
   double share = 0.0;  ///< [-] of the squared error, held out, Eq. DG-12; below 0: it would harm
   double p = 1.0;      ///< [-] of such a gain by chance, signed ranks of the blocks
@@ -18,8 +18,8 @@ struct ScreenedGain {
       coefficients;  ///< of the columns, all samples, the model's numbers moving too
 };
 
-/// A residual seen by those who propose: a fitted model, its linearisation, and what any columns
-/// beside it would gain.  Cheap: products of columns, no simulation.
+/// A residual as the kinds of effect see it: a fitted model, its linearisation, and the gain of any
+/// columns next to it.  Cheap: products of columns, no simulation.
 class Screening {
  public:
   /// @param model  fitted to the signals; must stay until the last use

@@ -13,9 +13,9 @@ enum class Stage {
   kInputValue,   ///< a memoryless map of the input, Eq. DG-3
   kFeedback,     ///< a nonlinearity inside the body, Eq. DG-4
   kGain,         ///< a factor on the body's output, Eq. DG-5
-  kTerm,         ///< a sum of terms beside the body or through it, Eq. DG-6
+  kTerm,         ///< a sum of terms next to the body or through it, Eq. DG-6
   kOutputValue,  ///< a memoryless map of the output, Eq. DG-7
-  kWeight,       ///< samples that the model doesn't claim to explain
+  kWeight,       ///< samples that the model does not claim to explain
 };
 
 /// A number of an effect on which the prediction depends nonlinearly.
@@ -28,7 +28,7 @@ struct Parameter {
   bool fitted = true;  ///< false: found by search, held fixed in the joint fit
 };
 
-/// One effect of a model: plain numbers, which its kind gives meaning to (effect_kind.hpp).
+/// One effect of a model: plain numbers, to which its kind gives a meaning (effect_kind.hpp).
 struct Effect {
   std::string kind;                   ///< name in effect_kinds(), for example "delay"
   std::string form;                   ///< which of the kind's forms, for example "through the body"
@@ -39,7 +39,7 @@ struct Effect {
   [[nodiscard]] double value(std::size_t i) const { return parameters.at(i).value; }
 };
 
-/// A number that the effect was built with, no result: a channel's mean to count from.
+/// A number that is given, not fitted: the mean of a channel, from which it is counted.
 Parameter constant(std::string name, std::string unit, double value);
 
 /// Number of numbers that the data chose.

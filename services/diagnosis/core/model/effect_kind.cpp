@@ -7,7 +7,29 @@
 
 namespace stillhand::diagnosis {
 
-// What a kind doesn't do leaves the signal as it is.
+ControlRole EffectKind::body_role(const Effect& effect) const {
+  switch (stage(effect)) {
+    case Stage::kInputTime:
+      return control::InputDelay{};
+    case Stage::kInputValue:
+      return control::InputMap{};
+    case Stage::kFeedback:
+      return control::Spring{};
+    case Stage::kGain:
+      return control::Gain{};
+    case Stage::kOutputValue:
+      return control::OutputMap{};
+    case Stage::kTerm:
+    case Stage::kWeight:
+      break;
+  }
+  return control::LeftOut{"the canceller has no law of this form"};
+}
+ControlRole EffectKind::drive_role(const Effect& /*effect*/) const {
+  return control::LeftOut{"the canceller has no law of this form for the drive"};
+}
+
+// A function that a kind does not override leaves the signal as it is.
 double EffectKind::input_delay_s(const Effect& /*effect*/, double /*time_s*/) const { return 0.0; }
 double EffectKind::mapped(const Effect& /*effect*/, double value) const { return value; }
 double EffectKind::slope(const Effect& /*effect*/, double /*value*/) const { return 1.0; }
@@ -18,6 +40,10 @@ void EffectKind::gain(const Effect& /*effect*/, const Signals& /*signals*/,
                       std::span<double> /*gain*/) const {}
 void EffectKind::terms(const Effect& /*effect*/, const Signals& /*signals*/,
                        const std::vector<double>& /*body_output*/, Columns& /*columns*/) const {}
+std::string EffectKind::column_unit(const Effect& /*effect*/, const Signals& /*signals*/,
+                                    std::size_t /*i*/) const {
+  return {};
+}
 bool EffectKind::through_body(const Effect& effect) const {
   return effect.form.find("through the body") != std::string::npos;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "services/diagnosis/core/model/control_role.hpp"
 #include "services/diagnosis/core/model/effect.hpp"
 #include "services/diagnosis/core/model/model.hpp"
 #include "services/diagnosis/core/signals.hpp"
@@ -35,21 +36,28 @@ struct Proposal {
   std::optional<Body> body;  ///< to start from instead of the model's own
 };
 
-/// A kind of effect, what it knows of itself.  Stateless; one object a kind, in effect_kinds().
-/// An effect acts at one stage(), and only that stage's function is called.
+/// A kind of effect and every fact about it: core and apps know no kind by its name.  Stateless;
+/// one object a kind, in effect_kinds().  An effect acts at one stage(), and only that stage's
+/// function is called.
 class EffectKind {
  public:
   virtual ~EffectKind() = default;
 
   /// As in the verdict, for example "coulomb_friction".
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Ready to be fitted, from a residual; empty when nothing speaks for it.
+  /// Ready to be fitted, from a residual; empty when nothing in it suggests the kind.
   [[nodiscard]] virtual std::vector<Proposal> proposed(const Screening& screening) const = 0;
   [[nodiscard]] virtual Stage stage(const Effect& effect) const = 0;
   /// One sentence on what the data said, with numbers and units.
   [[nodiscard]] virtual std::string evidence(const Effect& effect) const = 0;
-  /// True when an input alone can't tell it: predict() leaves it out.
+  /// True when the inputs do not determine it: predict() leaves it out.
   [[nodiscard]] virtual bool time_only(const Effect& /*effect*/) const { return false; }
+
+  /// What a canceller does about it when it is found in the hand's response; by default what the
+  /// stage allows.
+  [[nodiscard]] virtual ControlRole body_role(const Effect& effect) const;
+  /// The same when it is found in the stick's own equation; by default nothing.
+  [[nodiscard]] virtual ControlRole drive_role(const Effect& effect) const;
 
   /// kInputTime: the body sees u(t - delay(t)) [s].
   [[nodiscard]] virtual double input_delay_s(const Effect& effect, double time_s) const;
@@ -60,22 +68,26 @@ class EffectKind {
   [[nodiscard]] virtual Nonlinearity feedback(const Effect& effect) const;
   /// kGain: multiplies `gain`, one a sample.
   virtual void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const;
-  /// kTerm: appends a column for every signal that is weighed; through_body() tells how.
+  /// kTerm: appends a column for every signal that is weighed; through_body() says how.
   virtual void terms(const Effect& effect, const Signals& signals,
                      const std::vector<double>& body_output, Columns& columns) const;
+  /// kTerm: unit of column i as a recording's header has it, "-" for a pure number; empty: none
+  /// that can be named.
+  [[nodiscard]] virtual std::string column_unit(const Effect& effect, const Signals& signals,
+                                                std::size_t i) const;
   /// kTerm: each column passes the body's poles with order + 1 coefficients, instead of one factor.
   [[nodiscard]] virtual bool through_body(const Effect& effect) const;
   /// kTerm: poles that it filters its columns with, as a denominator 1, m_1, .. whose free response
   /// at a stretch's start is fitted as the body's is, Eq. DG-10; empty: none.
   [[nodiscard]] virtual std::vector<double> own_poles(const Effect& effect,
                                                       const Signals& signals) const;
-  /// kWeight: sets samples to 0 that aren't claimed.
+  /// kWeight: sets the weight of samples that the model does not claim to explain to 0.
   virtual void weigh(const Effect& effect, const Signals& signals, std::span<double> weight) const;
 };
 
 /// Every kind there is.
 const std::vector<const EffectKind*>& effect_kinds();
-/// @throws stillhand::ConfigError for a name that isn't there.
+/// @throws stillhand::ConfigError for a name that no kind has.
 const EffectKind& effect_kind(std::string_view name);
 
 }  // namespace stillhand::diagnosis

@@ -186,10 +186,10 @@ FreeRun free_run(const Model& model, const Signals& signals, bool with_time_only
     run_all(model, signals, run);
     return std::move(run.free);
   }
-  Model told = model;
-  std::erase_if(told.effects,
+  Model determined = model;
+  std::erase_if(determined.effects,
                 [](const Effect& effect) { return effect_kind(effect.kind).time_only(effect); });
-  run_all(told, signals, run);
+  run_all(determined, signals, run);
   return std::move(run.free);
 }
 

@@ -17,20 +17,19 @@ struct FreeRun {
   std::vector<double> phi;           ///< phi(z)
   std::vector<double> prediction;    ///< [unit of the output]
   std::vector<double> output_slope;  ///< of the output maps, [-]
-  std::vector<double> weight;        ///< of the measurement, less what the model doesn't claim
+  std::vector<double> weight;        ///< of the measurement, 0 where the model claims nothing
 };
 
-/// What a prediction has to stay below: a million times the output's size; without an output, as in
-/// predicting from the inputs alone, 1e30.
+/// Bound on a prediction: a million times the output's size; without an output, as in predicting
+/// from the inputs alone, 1e30.
 double runaway_bound(const Signal& output);
 
 /// Every stretch from rest, the inputs alone.  @param with_time_only  false: without the effects
-/// that no input can tell (EffectKind::time_only)
+/// that the inputs do not determine (EffectKind::time_only)
 FreeRun free_run(const Model& model, const Signals& signals, bool with_time_only = true);
 
-/// What is left for a linear body once the effects have had their say: the inputs as they reach it,
-/// the output without terms and gain.  false: an effect is inside the body or behind it, and can't
-/// be taken off.
+/// The signals between which a linear body lies: the inputs as they reach it, the output without
+/// terms and gain.  false: an effect is inside the body or behind it, and cannot be removed.
 /// @param output  the measured one, changed
 bool without_effects(const Model& model, const Signals& signals,
                      std::vector<std::vector<double>>& inputs, std::vector<double>& output);
@@ -55,7 +54,7 @@ Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun&
 class InitialStates {
  public:
   InitialStates(const Body& body, const Signals& signals, const std::vector<double>& weight);
-  /// With the poles that effects have beside the body.
+  /// With the poles that effects add to the body's.
   InitialStates(const Model& model, const Signals& signals, const std::vector<double>& weight);
   void remove_from(Eigen::Ref<Eigen::MatrixXd> columns) const;
   /// What it removes from one column.

@@ -38,7 +38,7 @@ std::size_t complexity(const Model& model) noexcept;
 
 /// True when every number is finite and every pole of the body lies within largest_radius, and
 /// within slowest_radius where it turns less than least_turn: the free response of a pole that
-/// forgets too slowly would pass for a tone, and of one that the input can't have told for a drift.
+/// decays too slowly would fit a tone, and that of one below the excited band a drift.
 bool is_stable(const Body& body);
 
 /// The poles that is_stable() would refuse, mirrored into the unit circle, then drawn in.

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/control_response.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/diagnosis/core/fitting/modes.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/identification/core/polynomial.hpp"
+#include "services/identification/core/rate_conversion.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+using diagnosis::Effect;
+using Complex = std::complex<double>;
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr Eigen::Index kPoints = 241;  // of a response, each with a real and an imaginary part
+constexpr double kOuterWeight = 0.2;
+
+// Eq. CL-1: z' = z^(rate/1000 Hz).
+std::vector<double> carried_poles(const std::vector<double>& denominator, double rate_hz) {
+  const double share = rate_hz / kControlRateHz;
+  const std::vector<double> reversed(denominator.rbegin(), denominator.rend());
+  std::vector<Complex> poles = identification::roots(reversed);
+  for (Complex& z : poles) {
+    constexpr double kLeast = 1e-3;
+    const bool turns = std::abs(z.imag()) > 1e-12;
+    z = std::polar(std::pow(std::max(std::abs(z), kLeast), share),
+                   turns ? std::arg(z) * share : 0.0);
+  }
+  const identification::Polynomial ascending = identification::from_roots(poles);
+  return {ascending.rbegin(), ascending.rend()};
+}
+
+// A mode in addition to the body, at the model's own rate.
+struct ModeOf {
+  const Effect& effect;
+  std::vector<double> denominator;
+};
+
+std::vector<ModeOf> modes_of(const diagnosis::Model& model) {
+  std::vector<ModeOf> modes;
+  for (const Effect& effect : model.effects) {
+    const diagnosis::ControlRole role = diagnosis::effect_kind(effect.kind).body_role(effect);
+    if (const auto* mode = std::get_if<diagnosis::control::Mode>(&role)) {
+      modes.push_back({effect, diagnosis::mode_denominator(mode->frequency_hz, mode->damping_ratio,
+                                                           model.rate_hz)});
+    }
+  }
+  return modes;
+}
+
+// Body and modes as one difference model, from the first input.
+identification::DifferenceModel all_of(const diagnosis::Model& model) {
+  using diagnosis::product;
+  std::vector<double> numerator = model.body.numerators.front();
+  std::vector<double> denominator = model.body.denominator;
+  for (const ModeOf& mode : modes_of(model)) {
+    // c_0 (1 - q^-1) + c_1 over the mode.
+    const double c0 = mode.effect.coefficients.at(0);
+    const std::vector<double> of_mode =
+        product({c0 + mode.effect.coefficients.at(1), -c0}, denominator);
+    numerator = product(numerator, mode.denominator);
+    denominator = product(denominator, mode.denominator);
+    for (std::size_t i = 0; i < of_mode.size(); ++i) numerator[i] += of_mode[i];
+  }
+  return {model.rate_hz, numerator, denominator};
+}
+
+// The points at which a response is met.
+class Grid {
+ public:
+  explicit Grid(const ControlOptions& options) : options_(options) {}
+  [[nodiscard]] double frequency_hz(Eigen::Index row) const {
+    return options_.upper_hz * static_cast<double>(row) / (kPoints - 1.0);
+  }
+  [[nodiscard]] bool in_band(Eigen::Index row) const {
+    return frequency_hz(row) >= options_.low_hz && frequency_hz(row) <= options_.high_hz;
+  }
+  [[nodiscard]] double turn(Eigen::Index row) const {
+    return kTwoPi * frequency_hz(row) / kControlRateHz;
+  }
+
+ private:
+  const ControlOptions& options_;
+};
+
+// Weighted least squares on real and imaginary parts, columns scaled; the solution by powers of
+// D = 1 - q^-1.
+std::vector<double> nearest_differences(const std::vector<double>& denominator,
+                                        const std::vector<Complex>& target, bool late,
+                                        const Grid& grid) {
+  const std::size_t order = denominator.size() - 1;
+  const auto columns = static_cast<Eigen::Index>(late ? order : order + 1);
+  Eigen::MatrixXd matrix(2 * kPoints, columns);
+  Eigen::VectorXd right(2 * kPoints);
+  for (Eigen::Index row = 0; row < kPoints; ++row) {
+    const double weight = grid.in_band(row) ? 1.0 : kOuterWeight;
+    const double w = grid.turn(row);
+    const Complex delay = std::polar(1.0, -w);
+    Complex column = weight / polynomial_at(denominator, w) * (late ? delay : 1.0);
+    for (Eigen::Index i = 0; i < columns; ++i) {
+      matrix(2 * row, i) = column.real();
+      matrix(2 * row + 1, i) = column.imag();
+      column *= 1.0 - delay;
+    }
+    right[2 * row] = weight * target[static_cast<std::size_t>(row)].real();
+    right[2 * row + 1] = weight * target[static_cast<std::size_t>(row)].imag();
+  }
+  const Eigen::RowVectorXd norms = matrix.colwise().norm();
+  matrix.array().rowwise() /= norms.array();
+  const Eigen::VectorXd x = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(matrix).solve(right);
+  std::vector<double> differences(static_cast<std::size_t>(columns));
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    differences[static_cast<std::size_t>(i)] = x[i] / norms[i];
+  }
+  return differences;
+}
+
+}  // namespace
+
+Complex polynomial_at(const std::vector<double>& c, double turn_rad) {
+  Complex sum = 0.0;
+  for (std::size_t i = c.size(); i-- > 0;) sum = sum * std::polar(1.0, -turn_rad) + c[i];
+  return sum;
+}
+
+std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& model) {
+  const auto with_modes = [&](std::vector<double> denominator) {
+    for (const ModeOf& mode : modes_of(model)) {
+      denominator = diagnosis::product(denominator, carried_poles(mode.denominator, model.rate_hz));
+    }
+    return denominator;
+  };
+  std::vector<std::vector<double>> all{
+      with_modes(carried_poles(model.body.denominator, model.rate_hz))};
+  const auto add_fitted = [&](const identification::DifferenceModel& to_fit, const auto& extended) {
+    try {
+      all.push_back(extended(identification::to_control_rate(to_fit).model.denominator));
+    } catch (const ConfigError&) {  // no fit: one possibility less
+    }
+  };
+  add_fitted({model.rate_hz, model.body.numerators.front(), model.body.denominator}, with_modes);
+  add_fitted(all_of(model), [](std::vector<double> denominator) { return denominator; });
+  return all;
+}
+
+Complex linear_response(const diagnosis::Model& model, std::size_t k, double gain,
+                        double frequency_hz) {
+  const double w = kTwoPi * frequency_hz / model.rate_hz;
+  Complex sum =
+      gain * polynomial_at(model.body.numerators[k], w) / polynomial_at(model.body.denominator, w);
+  for (const ModeOf& mode : modes_of(model)) {
+    const Complex difference = 1.0 - std::polar(1.0, -w);
+    sum +=
+        (mode.effect.coefficients.at(2 * k) * difference + mode.effect.coefficients.at(2 * k + 1)) /
+        polynomial_at(mode.denominator, w);
+  }
+  return sum;
+}
+
+double input_delay_s(const diagnosis::Model& model) {
+  for (const Effect& effect : model.effects) {
+    const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
+    if (std::holds_alternative<diagnosis::control::InputDelay>(kind.body_role(effect))) {
+      return kind.input_delay_s(effect, 0.0);
+    }
+  }
+  return 0.0;
+}
+
+NumeratorFit fit_numerator(const std::vector<double>& denominator, const Response& wanted,
+                           bool late, const ControlOptions& options) {
+  const Grid grid(options);
+  std::vector<Complex> target(kPoints);
+  for (Eigen::Index row = 0; row < kPoints; ++row) {
+    target[static_cast<std::size_t>(row)] = wanted(grid.frequency_hz(row));
+  }
+  NumeratorFit fit;
+  fit.numerator = diagnosis::difference_basis(nearest_differences(denominator, target, late, grid));
+  if (late) fit.numerator.insert(fit.numerator.begin(), 0.0);
+  double largest = 0.0;
+  double error = 0.0;
+  for (Eigen::Index row = 0; row < kPoints; ++row) {
+    if (!grid.in_band(row)) continue;
+    const double w = grid.turn(row);
+    const Complex got = polynomial_at(fit.numerator, w) / polynomial_at(denominator, w);
+    error = std::max(error, std::abs(got - target[static_cast<std::size_t>(row)]));
+    largest = std::max(largest, std::abs(target[static_cast<std::size_t>(row)]));
+  }
+  if (largest > 0.0) fit.error = error / largest;
+  return fit;
+}
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report's figures.
+#include <algorithm>
+#include <cmath>
+
+#include "apps/close_the_loop/output.hpp"
+#include "apps/measurement/grid.hpp"
+#include "apps/session/paper_table.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/working_set.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+using report::Colour;
+using session::kMetrics;
+
+constexpr double kExcerpt_s = 12.0;
+
+struct Shown {
+  const TrialRun* trial;
+  Colour colour;
+};
+
+std::vector<Shown> shown(const LoopResult& result) {
+  return {{&result.trial("A"), Colour::kConditionA},
+          {&result.trial("B"), Colour::kConditionB},
+          {&result.trial("C"), Colour::kConditionC},
+          {&result.plus(), Colour::kConditionCPlus}};
+}
+
+// Bars of one metric, a condition each.
+report::Panel metric_panel(const LoopResult& result, std::size_t metric) {
+  report::Panel panel;
+  panel.title = kMetrics[metric].title;
+  panel.x.ticks = {};
+  panel.y.low = 0.0;
+  panel.legend = report::Legend::kNone;
+  double at = 0.0;
+  for (const Shown& each : shown(result)) {
+    at += 1.0;
+    report::Series bar;
+    bar.kind = report::Kind::kBars;
+    bar.colour = each.colour;
+    bar.x = {at};
+    bar.y = {kMetrics[metric].of(each.trial->metrics)};
+    panel.series.push_back(bar);
+    panel.x.ticks.push_back({at, each.trial->label});
+  }
+  panel.x.low = 0.4;
+  panel.x.high = at + 0.6;
+  return panel;
+}
+
+report::Figure tracking_figure(const LoopResult& result) {
+  report::Figure figure;
+  figure.name = "tracking";
+  figure.caption =
+      "The paper's three metrics. A: platform still. B: platform moving. C: cancelled with the "
+      "paper's model. C+: cancelled with the augmented model, whose gain and phase adapt.";
+  figure.columns = 3;
+  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
+    figure.panels.push_back(metric_panel(result, k));
+  }
+  return figure;
+}
+
+std::vector<double> part(const std::vector<double>& values, std::size_t from, std::size_t count,
+                         std::size_t stride, double factor) {
+  std::vector<double> out;
+  for (std::size_t n = from; n < std::min(from + count, values.size()); n += stride) {
+    out.push_back(factor * values[n]);
+  }
+  return out;
+}
+
+report::Series line(const char* label, Colour colour, std::vector<double> x,
+                    std::vector<double> y) {
+  report::Series series;
+  series.label = label;
+  series.colour = colour;
+  series.x = std::move(x);
+  series.y = std::move(y);
+  return series;
+}
+
+// Part of the pegged force, and what the models leave of it.
+report::Figure force_figure(const LoopRecord& record) {
+  const Verdict& verdict = record.result.verdict();
+  const diagnosis::Signals signals(
+      diagnosis::working_set(measurement::on_grid(record.result.trial("I").measured, 60'000'000),
+                             {"a_y"}),
+      {"a_y"}, "f");
+  const auto run = [&](const diagnosis::Model& model) {
+    return diagnosis::free_run(model, signals).prediction;
+  };
+  const std::vector<double> before = run(verdict.body.baseline.model);
+  const std::vector<double> after = run(verdict.body.model);
+  const std::vector<double>& force = signals.output().values;
+  const auto count = static_cast<std::size_t>(kExcerpt_s * signals.rate_hz());
+  const std::size_t from = (signals.size() - std::min(count, signals.size())) / 2;
+  std::vector<double> time = part(signals.time_s(), from, count, 1, 1.0);
+  const double begin = time.empty() ? 0.0 : time.front();
+  for (double& t : time) t -= begin;
+  const auto left = [&](const std::vector<double>& predicted) {
+    std::vector<double> out;
+    for (std::size_t n = from; n < std::min(from + count, signals.size()); ++n) {
+      out.push_back(force[n] - predicted[n]);
+    }
+    return out;
+  };
+  report::Figure figure;
+  figure.name = "force";
+  figure.caption =
+      "Force of the idle hand on the pegged stick. Above: measured, and predicted from the sensed "
+      "motion (free run). Below: what each model leaves.";
+  figure.height_px = 520;
+  report::Panel top;
+  top.y.label = "force [N]";
+  top.series = {line("measured", Colour::kMeasured, time, part(force, from, count, 1, 1.0)),
+                line("augmented model", Colour::kAccent, time, part(after, from, count, 1, 1.0))};
+  report::Panel bottom;
+  bottom.x.label = "time [s]";
+  bottom.y.label = "left [N]";
+  bottom.series = {line("linear model", Colour::kWarning, time, left(before)),
+                   line("augmented model", Colour::kAccent, time, left(after))};
+  figure.panels = {top, bottom};
+  return figure;
+}
+
+// The weights to which the canceller adapted in the newest C+; in C it does not adapt.
+report::Figure adaptation_figure(const LoopResult& result) {
+  report::Figure figure;
+  figure.name = "adaptation";
+  figure.caption =
+      "Gain and phase to which the canceller adapts during C+. The motor opposes w₀ times the "
+      "prediction plus w₁ times its derivative over Ω (1.2 Hz). With 1 and 0 the model is used "
+      "unchanged.";
+  figure.columns = 2;
+  const TrialRun& plus = result.plus();
+  std::vector<double> time;
+  for (std::size_t n = 0; n < plus.weights.size(); ++n) {
+    time.push_back(static_cast<double>(n) / kWeightRate_hz);
+  }
+  for (const std::size_t k : {0U, 1U}) {
+    report::Panel panel;
+    panel.title = k == 0 ? "gain w₀ [-]" : "phase w₁ [-]";
+    panel.x.label = "time [s]";
+    panel.legend = report::Legend::kNone;
+    std::vector<double> values;
+    for (const auto& pair : plus.weights) values.push_back(pair[k]);
+    const auto [low, high] = std::ranges::minmax(values);
+    panel.y.low = std::min(low, static_cast<double>(1 - k)) - 0.1;
+    panel.y.high = std::max(high, static_cast<double>(1 - k)) + 0.1;
+    panel.series = {line("", Colour::kConditionCPlus, time, values)};
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+// Target and cursor, the same twelve seconds under every condition that moves.
+report::Figure motion_figure(const LoopResult& result) {
+  report::Figure figure;
+  figure.name = "motion";
+  figure.caption = "Target and cursor, twelve seconds from the middle of each trial.";
+  figure.columns = 1;
+  const auto conditions = shown(result);
+  figure.height_px = 200 * static_cast<int>(conditions.size());
+  double largest = 0.0;  // one scale for all: they are to be compared
+  for (const Shown& each : conditions) {
+    const recording::Recording& rows = each.trial->measured;
+    const auto count = static_cast<std::size_t>(kExcerpt_s * rows.rate_hz);
+    const std::size_t from = (rows.row_count() - std::min(count, rows.row_count())) / 2;
+    std::vector<double> time = part(rows.time_s, from, count, 20, 1.0);
+    const double begin = time.empty() ? 0.0 : time.front();
+    for (double& t : time) t -= begin;
+    report::Panel panel;
+    panel.title = each.trial->label;
+    panel.y.label = "[mm]";
+    if (&each == &conditions.back()) panel.x.label = "time [s]";
+    panel.series = {
+        line("target", Colour::kTarget, time, part(rows.find("x_r")->values, from, count, 20, 1e3)),
+        line("cursor", each.colour, time, part(rows.find("x_p")->values, from, count, 20, 1e3))};
+    for (const report::Series& series : panel.series) {
+      for (const double y : series.y) largest = std::max(largest, std::abs(y));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  for (report::Panel& panel : figure.panels) {
+    panel.y.low = -1.05 * largest;
+    panel.y.high = 1.05 * largest;
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<report::Figure> loop_figures(const LoopRecord& record) {
+  return {tracking_figure(record.result), force_figure(record), adaptation_figure(record.result),
+          motion_figure(record.result)};
+}
+
+}  // namespace stillhand::close_the_loop
