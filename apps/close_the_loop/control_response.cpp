@@ -13,6 +13,7 @@
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/identification/core/polynomial.hpp"
 #include "services/identification/core/rate_conversion.hpp"
+#include "services/signal/decompositions.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -116,7 +117,7 @@ std::vector<double> nearest_differences(const std::vector<double>& denominator,
   }
   const Eigen::RowVectorXd norms = matrix.colwise().norm();
   matrix.array().rowwise() /= norms.array();
-  const Eigen::VectorXd x = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(matrix).solve(right);
+  const Eigen::VectorXd x = signal::least_squares(matrix, right);
   std::vector<double> differences(static_cast<std::size_t>(columns));
   for (Eigen::Index i = 0; i < columns; ++i) {
     differences[static_cast<std::size_t>(i)] = x[i] / norms[i];

@@ -8,6 +8,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -17,7 +18,7 @@ Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& ri
   const Eigen::VectorXd scale =
       columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   columns *= scale.asDiagonal();
-  return scale.asDiagonal() * columns.colPivHouseholderQr().solve(right).eval();
+  return scale.asDiagonal() * signal::least_squares(columns, right);
 }
 
 // A mode rings for a twenty-fourth of the record at most; what the input does not excite is
