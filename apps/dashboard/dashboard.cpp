@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/dashboard/dashboard.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cstdio>
@@ -38,12 +40,12 @@ Access access_of(const DashboardOptions& options) {
   if (!options.token_file.empty()) return Access(read_token(options.token_file));
   if (!is_loopback(options.server.address)) {
     throw ConfigError("--bind", options.server.address + " without --token-file",
-                      "a file with a token: others than this host could look in");
+                      "--token-file FILE, since other hosts can reach this address");
   }
   return Access("");
 }
 
-// The narrower of the two holds; each is its process's own.
+// Canceller and drive limit the force separately: the smaller limit holds.
 double motor_limit_n(const std::filesystem::path& config) {
   const auto canceller =
       settings::load<cancellation::Config>(config / "cancellation.yaml", "cancellation");
@@ -51,108 +53,166 @@ double motor_limit_n(const std::filesystem::path& config) {
   return std::min(canceller.limits.max_force_n, rig.motor.limits.max_force_n);
 }
 
-// What a request of the page comes to.
-Outcome act(std::string_view path, MessageFeed& feed, std::optional<Remote>& remote) {
-  if (path == "/acknowledge") {
-    const Outcome told = remote ? remote->note("alarms acknowledged") : Outcome{};
-    if (told.kind == Outcome::Kind::kDone) feed.acknowledge();
-    return told;
-  }
-  if (!remote) {
-    return {Outcome::Kind::kRefused, "this dashboard only looks: a recording, or --read-only"};
-  }
-  return remote->ask(path);
+FeedOptions feed_options(const DashboardOptions& options) {
+  FeedOptions feed;
+  feed.config = settings::load<Config>(options.config / "dashboard.yaml", "dashboard");
+  feed.rig = options.rig;
+  feed.blinded = options.blinded;
+  feed.listener = options.recording.empty() ? "experiment" : "recorder";
+  return feed;
 }
+
+Surroundings surroundings(const DashboardOptions& options) {
+  Surroundings around;
+  around.mode = options.recording.empty() ? "live" : "recording";
+  around.file = std::filesystem::path(options.recording).filename().string();
+  around.domain = options.bus.domain;
+  around.motor_limit_n = motor_limit_n(options.config);
+  around.screen =
+      settings::load<display::TrackingDisplay::Config>(options.config / "display.yaml", "display");
+  return around;
+}
+
+// Fast DDS's threads inherit the priority.  On a busy machine a thread without it would stamp a
+// sample when this process is scheduled.  The priority is below the control path, and the threads
+// only copy.  Not with security: they would share Fast DDS's locks with the ordinary thread here,
+// see become_real_time().
+void raise_priority(const DashboardOptions& options) {
+  const bool plain = options.bus.security.empty();
+  if (options.real_time && plain && runtime::become_real_time()) runtime::become_background();
+}
+
+/// A running bus or a recording, and its page.
+class Dashboard {
+ public:
+  Dashboard(const DashboardOptions& options, runtime::Stop& stop)
+      : stop_(stop),
+        pages_(options.pages),
+        access_(access_of(options)),
+        feed_options_(feed_options(options)),
+        rigs_(feed_options_),
+        around_(surroundings(options)),
+        server_(options.server, pages_, access_, served(options)) {
+    if (options.recording.empty()) {
+      listen(options);
+    } else {
+      read(options.recording);
+    }
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return server_.port(); }
+
+  void run() {
+    const runtime::OrdinaryWhile ordinary;
+    for (std::int64_t framed_ns = 0; !stop_.requested();) {
+      server_.run_for(kDrain);
+      if (bus_) {
+        // The time is read before the messages that it is compared with.  In the other order a
+        // delay of this process between the two would make every topic look silent.
+        now_ns_ = runtime::system_ns();
+        bus_->drain();
+      }
+      const std::int64_t monotonic_ns = runtime::monotonic_ns();
+      if (monotonic_ns - framed_ns < kFrame_ns) continue;
+      framed_ns = monotonic_ns;
+      frame();
+    }
+  }
+
+ private:
+  Served served(const DashboardOptions& options) {
+    std::function<std::string()> timeline;
+    if (!options.recording.empty()) {
+      timeline = [this] { return timeline_json(run_->timeline()).dump(); };
+    }
+    return {[this](std::optional<double> at_s) { return snapshot(at_s); }, timeline,
+            [this](std::string_view path) { return act(path); }};
+  }
+
+  void listen(const DashboardOptions& options) {
+    raise_priority(options);
+    bus_.emplace(options.bus, rigs_);
+    bus_->start();
+    if (!options.read_only) remote_.emplace(options.bus, options.rig);
+    around_.actions = remote_.has_value();
+  }
+
+  void read(const std::string& recording) {
+    run_.emplace(recording, feed_options_, [this] { return stop_.requested(); });
+    now_ns_ = run_->timeline().end_ns();
+    feed() = run_->as_of(now_ns_);
+  }
+
+  [[nodiscard]] MessageFeed& feed() { return rigs_.shown(); }
+
+  std::string snapshot(std::optional<double> at_s) {
+    if (!run_ || !at_s) return snapshot_json(feed(), around_, now_ns_, -1);
+    const std::int64_t at_ns = run_->instant_ns(*at_s);
+    return snapshot_json(run_->as_of(at_ns), around_, at_ns, -1);
+  }
+
+  // The outcome of a request of the page.
+  Outcome act(std::string_view path) {
+    if (path == "/acknowledge") {
+      const Outcome noted = remote_ ? remote_->note("alarms acknowledged") : Outcome{};
+      if (noted.kind == Outcome::Kind::kDone) feed().acknowledge();
+      return noted;
+    }
+    if (!remote_) {
+      return {Outcome::Kind::kRefused,
+              "this dashboard is read-only: it shows a recording, or was started with --read-only"};
+    }
+    return remote_->ask(path);
+  }
+
+  // Ten times a second.
+  void frame() {
+    around_.cpu_share = cpu_.step();
+    around_.clients = server_.listeners();
+    if (bus_) {
+      around_.dropped = bus_->dropped();
+      around_.trouble = bus_->trouble();
+      rigs_.step(now_ns_);
+      around_.rigs = rigs_.summaries();
+      if (remote_) remote_->step();
+    }
+    const Parts parts{frame_ % kGraphEvery == 0, frame_ % kSpectrumEvery == 0};
+    ++frame_;
+    if (around_.clients > 0) {
+      // The page asks for each instant of a recording; the stream only shows that the process
+      // lives.
+      server_.broadcast(bus_ ? snapshot_json(feed(), around_, now_ns_, sent_tick_, parts)
+                             : R"({"mode":"recording"})");
+    }
+    const auto rows = feed().traces().rows(sent_tick_);
+    if (!rows.empty()) sent_tick_ = rows.back().tick;
+  }
+
+  runtime::Stop& stop_;
+  Pages pages_;
+  Access access_;
+  FeedOptions feed_options_;
+  Rigs rigs_;
+  Surroundings around_;
+  std::int64_t now_ns_ = runtime::system_ns();
+  std::optional<Remote> remote_;
+  std::optional<RecordedRun> run_;
+  HttpServer server_;
+  std::optional<LiveBus> bus_;
+  runtime::ProcessCpu cpu_;
+  Tick sent_tick_ = -1;
+  std::uint64_t frame_ = 0;
+};
 
 }  // namespace
 
 int run_dashboard(const DashboardOptions& options, runtime::Stop& stop) {
-  const Pages pages(options.pages);
-  const Access access = access_of(options);
-  const bool live = options.recording.empty();
-  Surroundings around;
-  around.mode = live ? "live" : "recording";
-  around.file = std::filesystem::path(options.recording).filename().string();
-  around.domain = options.bus.domain;
-  FeedOptions feed_options;
-  feed_options.config = settings::load<Config>(options.config / "dashboard.yaml", "dashboard");
-  feed_options.rig = options.rig;
-  feed_options.blinded = options.blinded;
-  feed_options.listener = live ? "experiment" : "recorder";
-  Rigs rigs(feed_options);
-  MessageFeed& feed = rigs.shown();
-  around.motor_limit_n = motor_limit_n(options.config);
-  around.screen =
-      settings::load<display::TrackingDisplay::Config>(options.config / "display.yaml", "display");
-
-  std::int64_t now_ns = runtime::system_ns();
-  std::optional<Remote> remote;
-  std::optional<RecordedRun> run;
-  const auto snapshot = [&](std::optional<double> at_s) {
-    if (!run || !at_s) return snapshot_json(feed, around, now_ns, -1);
-    const std::int64_t at_ns = run->instant_ns(*at_s);
-    return snapshot_json(run->as_of(at_ns), around, at_ns, -1);
-  };
-  const auto timeline = [&] { return timeline_json(run->timeline()).dump(); };
-  const Served served{snapshot, live ? std::function<std::string()>() : timeline,
-                      [&](std::string_view path) { return act(path, feed, remote); }};
-  HttpServer server(options.server, pages, access, served);
-  std::optional<LiveBus> bus;
-  if (live) {
-    // For Fast DDS's threads, which inherit it: on a busy machine a sample would else be stamped
-    // when this process gets its turn.  Below the control path, and they only copy.  Not with
-    // security: they would share Fast DDS's locks with the ordinary thread here, see
-    // become_real_time().
-    const bool plain = options.bus.security.empty();
-    if (options.real_time && plain && runtime::become_real_time()) runtime::become_background();
-    bus.emplace(options.bus, rigs);
-    bus->start();
-    if (!options.read_only) remote.emplace(options.bus, options.rig);
-    around.actions = remote.has_value();
-  } else {
-    run.emplace(options.recording, feed_options, [&stop] { return stop.requested(); });
-    now_ns = run->timeline().end_ns();
-    feed = run->as_of(now_ns);
-  }
-  const runtime::OrdinaryWhile ordinary;
-  const bool six = options.server.address.find(':') != std::string::npos;
-  std::printf("http://%s%s%s:%u/\n", six ? "[" : "", options.server.address.c_str(), six ? "]" : "",
-              server.port());
+  Dashboard dashboard(options, stop);
+  const std::string& address = options.server.address;
+  const bool six = address.find(':') != std::string::npos;
+  fmt::print("http://{}{}{}:{}/\n", six ? "[" : "", address, six ? "]" : "", dashboard.port());
   std::fflush(stdout);
-
-  runtime::ProcessCpu cpu;
-  Tick told_tick = -1;
-  std::int64_t framed_ns = 0;
-  std::uint64_t frame = 0;
-  while (!stop.requested()) {
-    server.run_for(kDrain);
-    if (bus) {
-      // Before what it is compared with: held up in between, this process would call others silent.
-      now_ns = runtime::system_ns();
-      bus->drain();
-    }
-    const std::int64_t monotonic_ns = runtime::monotonic_ns();
-    if (monotonic_ns - framed_ns < kFrame_ns) continue;
-    framed_ns = monotonic_ns;
-    around.cpu_share = cpu.step();
-    around.clients = server.listeners();
-    if (bus) {
-      around.dropped = bus->dropped();
-      around.trouble = bus->trouble();
-      rigs.step(now_ns);
-      around.rigs = rigs.summaries();
-      if (remote) remote->step();
-    }
-    const Parts parts{frame % kGraphEvery == 0, frame % kSpectrumEvery == 0};
-    ++frame;
-    if (around.clients > 0) {
-      // A recording is asked for instant by instant; the page only hears that somebody is there.
-      server.broadcast(bus ? snapshot_json(feed, around, now_ns, told_tick, parts)
-                           : R"({"mode":"recording"})");
-    }
-    const auto rows = feed.traces().rows(told_tick);
-    if (!rows.empty()) told_tick = rows.back().tick;
-  }
+  dashboard.run();
   return 0;
 }
 

@@ -20,8 +20,8 @@ struct DashboardOptions {
   std::string recording;         ///< empty: the bus
   std::uint32_t rig = 1;
   bool blinded = true;
-  bool read_only = false;  ///< asks nothing of the session
-  bool real_time = true;   ///< ask for it, for the threads that receive
+  bool read_only = false;  ///< sends nothing to the session
+  bool real_time = true;   ///< request SCHED_FIFO for the receiving threads
 };
 
 /// Serves the page until a signal comes.  @returns 0

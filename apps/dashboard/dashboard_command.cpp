@@ -18,38 +18,38 @@ void add_dashboard_command(CLI::App& cli, int& status) {
   options->pages = runtime::shipped("dashboard");
   CLI::App* verb = cli.add_subcommand(
       "dashboard",
-      "A page for the browser that tells whether the control loop of a running session is "
-      "healthy,\n"
-      "and when not, where and since when. Listens from outside: no session waits for it or ends\n"
-      "with it. Ends with Ctrl-C.\n"
+      "Serves a page for the browser that shows whether the control loop of a running session\n"
+      "is healthy and, if not, where and since when. The dashboard is outside of every session:\n"
+      "no session waits for it or ends with it. Ends with Ctrl-C.\n"
       "Example: stillhand dashboard --port 8340, then open http://127.0.0.1:8340/");
-  verb->add_option("--port", options->server.port, "TCP port; 0: any that is free")
+  verb->add_option("--port", options->server.port, "TCP port; 0: any free port")
       ->capture_default_str();
   verb->add_option("--bind", options->server.address,
-                   "address to listen on; beyond loopback it wants --token-file")
+                   "address to listen on; an address other than loopback requires --token-file")
       ->capture_default_str();
   verb->add_option("--token-file", options->token_file,
-                   "file with a token that a browser has to show once, as /?token=...")
+                   "file with a token; a browser shows the token once, as /?token=...")
       ->check(settings::check_name);
   verb->add_option("--recording", options->recording,
-                   "instead of the bus: what this MCAP file of a session holds")
+                   "show this recording (MCAP) of a session instead of the bus")
       ->check(settings::check_name);
   verb->add_flag("!--unblinded", options->blinded,
-                 "show a trial's condition, and the motor's force while a person tracks");
+                 "show the condition of a trial, and the motor force while a person tracks");
   verb->add_flag("--read-only", options->read_only,
-                 "no buttons: asks nothing of a session or a recorder");
+                 "no buttons; send nothing to a session or a recorder");
   verb->add_flag("!--no-real-time", options->real_time,
-                 "do not ask for SCHED_FIFO for the threads that receive");
-  verb->add_option("--rig", options->rig, "number of the rig")->capture_default_str();
+                 "do not request SCHED_FIFO for the receiving threads");
+  verb->add_option("--rig", options->rig, "rig that the page shows in full")->capture_default_str();
   verb->add_option("--domain", options->bus.domain, "DDS domain, 0 to 232")->capture_default_str();
-  verb->add_option("--config", options->config, "folder with dashboard.yaml and the services' own")
+  verb->add_option("--config", options->config,
+                   "folder with dashboard.yaml and the settings of the services")
       ->capture_default_str();
   verb->add_option("--profiles", options->bus.profiles, "QoS profiles")->capture_default_str();
   verb->add_option(
           "--security", options->bus.security,
-          "folder of certificates (deploy/security/make.sh): this verb listens with that of "
-          "the tap and\nasks with that of the dashboard, which --read-only does without; "
-          "none: no security")
+          "folder of certificates (deploy/security/make.sh): the verb listens with the certificate "
+          "of the tap\nand sends with that of the dashboard, unless --read-only is given [no "
+          "security]")
       ->check(settings::check_name);
   verb->callback([options, &status] {
     runtime::Stop stop;

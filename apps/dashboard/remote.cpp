@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/dashboard/remote.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,20 +36,20 @@ constexpr std::array kRecorder{
 
 Outcome too_many() {
   return {Outcome::Kind::kTooMany,
-          "more than " + std::to_string(RequestRate::kMostPerSecond) + " requests within a second"};
+          fmt::format("more than {} requests within a second", RequestRate::kMostPerSecond)};
 }
 
-// The process too: hosts of one name are told apart, and two dashboards of one.
+// With the process number, which distinguishes hosts of one name and dashboards of one host.
 std::string name_of_asker() {
   std::array<char, 41> host{};  // with the rest it fits string<64> of idl/session.idl
   gethostname(host.data(), host.size() - 1);
-  return "dashboard on " + std::string(host.data()) + " (" + std::to_string(getpid()) + ")";
+  return fmt::format("dashboard on {} ({})", host.data(), getpid());
 }
 
 runtime::Bus::Options bus_options(const LiveOptions& options, std::uint32_t rig) {
   runtime::Bus::Options bus;
-  // A name of its own: two dashboards are not one service that is there twice.
-  bus.service = std::string(topics::kDashboard) + "-" + std::to_string(getpid());
+  // A name for each process: two dashboards must not count as one service that is there twice.
+  bus.service = fmt::format("{}-{}", topics::kDashboard, getpid());
   bus.rig = rig;
   bus.domain = options.domain;
   bus.profiles = options.profiles;
@@ -59,12 +60,12 @@ runtime::Bus::Options bus_options(const LiveOptions& options, std::uint32_t rig)
 }  // namespace
 
 Remote::Remote(const LiveOptions& options, std::uint32_t rig)
-    : nobody_("nobody listens on domain " + std::to_string(options.domain)),
+    : domain_(fmt::format("domain {}", options.domain)),
       bus_(bus_options(options, rig)),
       session_(bus_.publisher<stillhand_msgs::SessionCommand>(topics::kSessionCommand)),
       recorder_(bus_.publisher<stillhand_msgs::RecorderCommand>(topics::kRecorderCommand)),
       asker_(name_of_asker()),
-      // Behind every one of an earlier process of this number, by a clock that nobody sets.
+      // Larger than every request of an earlier process of this name: a clock that is never set.
       request_(static_cast<std::uint64_t>(runtime::monotonic_ns())) {
   bus_.start();
 }
@@ -84,7 +85,8 @@ Outcome Remote::stop_at_once() {
   stop_until_ns_ = now_ns + 5 * runtime::kNsPerSecond;
   if (!asked) send(stillhand_msgs::SESSION_EMERGENCY_STOP, "");
   if (bus_.matched_peers(topics::kSessionCommand).contains("rig")) return {};
-  return {Outcome::Kind::kRefused, nobody_ + ": no rig is there; asked again for 5 s"};
+  return {Outcome::Kind::kRefused,
+          domain_ + ": no rig is connected; the request is repeated for 5 s"};
 }
 
 Outcome Remote::ask(std::string_view path) {
@@ -93,7 +95,7 @@ Outcome Remote::ask(std::string_view path) {
   if (session != kSession.end()) {
     if (session->action == stillhand_msgs::SESSION_EMERGENCY_STOP) return stop_at_once();
     if (!bus_.matched_peers(topics::kSessionCommand).contains("experiment")) {
-      return {Outcome::Kind::kRefused, nobody_ + ": no session runs"};
+      return {Outcome::Kind::kRefused, domain_ + ": no session runs"};
     }
     if (!rate_.take(runtime::monotonic_ns())) return too_many();
     send(session->action, "");
@@ -103,7 +105,7 @@ Outcome Remote::ask(std::string_view path) {
   // By the name of its process (runtime::outsider).
   if (!std::ranges::any_of(bus_.matched_peers(topics::kRecorderCommand),
                            [](const std::string& peer) { return peer.starts_with("record-"); })) {
-    return {Outcome::Kind::kRefused, nobody_ + ": no `stillhand record` runs"};
+    return {Outcome::Kind::kRefused, domain_ + ": no `stillhand record` runs"};
   }
   if (!rate_.take(runtime::monotonic_ns())) return too_many();
   stillhand_msgs::RecorderCommand command;

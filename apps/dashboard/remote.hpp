@@ -14,8 +14,8 @@
 
 namespace stillhand::dashboard {
 
-/// What the page may ask of a session and of a recorder, on the bus.  The rig, the experiment and
-/// the recorder decide what comes of it, and say so in events.  One thread.
+/// Sends the page's requests to sessions and recorders over the bus.  Rig, experiment and recorder
+/// decide about them and report the outcome as events.  One thread.
 class Remote {
  public:
   /// @throws as runtime::Bus does
@@ -23,20 +23,20 @@ class Remote {
 
   /// @param path  "/session/start", "/session/pause", "/session/stop", "/emergency-stop",
   ///              "/recorder/pause", "/recorder/resume", "/recorder/trigger", "/recorder/stop"
-  /// Done is what somebody heard who does it: the rig an emergency stop, the experiment the others,
-  /// a `stillhand record` its own.
+  /// Done means delivered: an emergency stop to a rig, other session requests to an experiment, a
+  /// recorder request to a `stillhand record`.
   Outcome ask(std::string_view path);
-  /// Into the session's events.
+  /// Publishes a note among the session's events.
   Outcome note(const std::string& what);
-  /// Ten times a second: an emergency stop is written again for some seconds, so that it reaches a
-  /// rig that was out of reach when it was asked for.
+  /// Ten times a second: an emergency stop is repeated for 5 s, so that it reaches a rig that
+  /// was not connected at the first time.
   void step();
 
  private:
   Outcome stop_at_once();
   void send(stillhand_msgs::SessionAction action, const std::string& text);
 
-  std::string nobody_;
+  std::string domain_;  // begins a refusal
   runtime::Bus bus_;
   runtime::Publisher<stillhand_msgs::SessionCommand> session_;
   runtime::Publisher<stillhand_msgs::RecorderCommand> recorder_;

@@ -58,7 +58,7 @@ FieldTrigger::FieldTrigger(const std::string& text) : text_(text) {
   if (value.empty() || end != value.c_str() + value.size() || !std::isfinite(threshold_)) {
     throw ConfigError("--trigger", text, want);
   }
-  // A topic of the catalogue is checked now, any other when its first sample tells its type.
+  // A topic of the catalogue is checked now; another one at its first sample, which gives the type.
   const topics::Topic* row = topics::find(topic_);
   if (row != nullptr && !prepare(std::string(row->type))) {
     throw ConfigError("--trigger", text, "a number that " + std::string(row->type) + " has");

@@ -25,8 +25,9 @@ struct RecordOptions {
   std::filesystem::path security;  ///< see runtime::Bus::Options
 };
 
-/// Records until the duration is over, a signal comes or the tape stops.  Tells what was received,
-/// lost and written.  @returns 0, or 1 when anything was lost, missing or could not be written
+/// Records until the duration is over, a signal arrives or the tape stops.  Prints the counts of
+/// messages received, lost and written.  @returns 0, or 1 when anything was lost, missing or could
+/// not be written
 /// @throws ConfigError, runtime::BusError
 int run_record(const RecordOptions& options, runtime::Stop& stop);
 

@@ -44,11 +44,12 @@ int run(Words words) {
   options.tape.rotation.max_bytes = static_cast<std::uint64_t>(words.rotate_mb * kBytesPerMb);
   options.tape.window_ns = ns_of(words.window_s);
   if ((options.trigger_on_deadline || !options.triggers.empty()) && words.window_s <= 0) {
-    throw ConfigError("--trigger", "one without --window", "--window S with it");
+    throw ConfigError("--trigger", "no --window", "--window S together with a trigger");
   }
   runtime::Stop stop;
   if (!words.remote.empty()) return run_remote(words.remote, options, stop);
-  // Before the participant: Fast DDS's threads inherit it.  Where it is refused, it goes without.
+  // Before the participant exists, since Fast DDS's threads inherit the priority.  If the system
+  // refuses it, the verb runs without.
   if (!words.ordinary) runtime::become_real_time(!options.security.empty());
   return run_record(options, stop);
 }
@@ -61,50 +62,53 @@ void add_record_command(CLI::App& cli, int& status) {
   options.profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "record",
-      "Records a running bus into an MCAP file, from outside: no session waits for it or ends "
-      "with\n"
-      "it. Every topic whose type is known, unless patterns say otherwise; in a pattern * stands\n"
-      "for any run of characters and ? for one. Ends with Ctrl-C or --duration, and tells for "
-      "each\n"
-      "topic how many messages came, were lost and were written. Exit status 1 when any was lost.\n"
+      "Records a running bus into an MCAP file. The verb is outside of every session: no\n"
+      "session waits for it or ends with it. It records every topic whose type it knows, unless\n"
+      "patterns select fewer; in a pattern * stands for any run of characters and ? for one\n"
+      "character. It ends with Ctrl-C or after --duration, and prints for each topic how many\n"
+      "messages it received, lost and wrote. Exit status 1 when a message was lost.\n"
       "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
-  verb->add_option("--out", words->out, "MCAP file; must not be there yet");
-  verb->add_option("--topics", options.topics.allow, "record topics that match; may be repeated")
+  verb->add_option("--out", words->out, "MCAP file to write; it must not exist yet");
+  verb->add_option("--topics", options.topics.allow, "pattern of topics to record; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--block", options.topics.block, "and none that match; may be repeated")
+  verb->add_option("--block", options.topics.block,
+                   "pattern of topics not to record; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--require", options.required,
-                   "topic that must be there: says in red when it is not, before a trial starts "
-                   "and at the end; may be repeated")
+  verb->add_option(
+          "--require", options.required,
+          "required topic: a warning in red when it is silent before a trial starts, and exit "
+          "status 1 when it is silent at the end; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--duration", words->duration_s, "stop after that long [s]")
+  verb->add_option("--duration", words->duration_s, "end after this time [s]")
       ->check(recording::within(0.001, kMostSeconds));
-  verb->add_option("--rotate-s", words->rotate_s, "go on in another file after that long [s]")
+  verb->add_option("--rotate-s", words->rotate_s, "continue in a new file after this time [s]")
       ->check(recording::within(0.1, kMostSeconds));
-  verb->add_option("--rotate-mb", words->rotate_mb, "go on in another file after that much [MB]")
+  verb->add_option("--rotate-mb", words->rotate_mb, "continue in a new file after this size [MB]")
       ->check(recording::within(0.1, kMostMb));
   verb->add_option("--window", words->window_s,
-                   "keep only that much in memory until something triggers [s]")
+                   "event window: keep the last seconds in memory and write them at a trigger [s]")
       ->check(recording::within(0.1, 3600.0));
   verb->add_option("--trigger", options.triggers,
-                   "a signal beyond a threshold writes the window: TOPIC.FIELD>VALUE or <VALUE, "
-                   "|FIELD| for its magnitude; may be repeated")
+                   "write the window when a field crosses a threshold: TOPIC.FIELD>VALUE or "
+                   "TOPIC.FIELD<VALUE, |FIELD| for its magnitude; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_flag("--trigger-on-deadline", options.trigger_on_deadline,
-                 "a missed deadline writes the window");
+                 "write the window when a process reports a missed deadline");
   recording::add_keep_options(*verb, words->keep);
-  verb->add_option("--remote", words->remote,
-                   "instead: tell the recorder on this domain to pause, resume, trigger or stop");
+  verb->add_option(
+      "--remote", words->remote,
+      "do not record; send pause, resume, trigger or stop to the recorders of the domain");
   verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();
-  verb->add_option("--security", options.security,
-                   "folder of certificates (deploy/security/make.sh), of which this verb is the "
-                   "tap; none: no security")
+  verb->add_option(
+          "--security", options.security,
+          "folder of certificates (deploy/security/make.sh); the verb uses that of the tap "
+          "[no security]")
       ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }

@@ -17,7 +17,7 @@ using recording::CellKind;
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
 
-// RFC 4180: quotes around what holds a comma, a quote or an end of line.
+// RFC 4180: quotes around a text with a comma, a quote or an end of line.
 void put_text(std::string& out, std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
     out += text;
@@ -35,7 +35,7 @@ void put_number(std::string& out, Number number) {
   out.append(text.data(), end);
 }
 
-// Exactly: a double of seconds since 1970 would not tell nanoseconds apart.
+// Exact: a double of seconds since 1970 does not resolve nanoseconds.
 void put_seconds(std::string& out, std::int64_t time_ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   if (time_ns < 0) out += '-';
@@ -57,7 +57,7 @@ void put_cell(std::string& out, const Cell& cell) {
       cell);
 }
 
-// A number whose unit nobody stated is not one without a unit.
+// A number without a stated unit may still have one.
 std::string unit_of(const recording::MessageColumn& column) {
   if (!column.unit.empty()) return column.unit;
   return column.kind == CellKind::kReal ? "?" : "-";

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kLongestTable = 60;  // room below MATLAB's 63, for a number behind it
 
 // One topic on its way out: all its channels of one type, since a recorder gives each writer its
-// own. What was a replay when it was recorded is kept apart from what was live.
+// own. Messages of a replay are kept apart from live ones.
 struct Outlet {
   std::string topic;
   bool replayed = false;
@@ -49,7 +49,8 @@ class Schemas {
     if (found == known.end()) return of_catalogue(channel);
     const recording::Schema& schema = found->second;
     if (schema.encoding != recording::kSchemaEncoding) {
-      throw ConfigError(channel.topic, "a schema in '" + schema.encoding + "'", "one in 'omgidl'");
+      throw ConfigError(channel.topic, "a schema in '" + schema.encoding + "'",
+                        "a schema in 'omgidl'");
     }
     const std::string_view text(reinterpret_cast<const char*>(schema.bytes.data()),
                                 schema.bytes.size());
@@ -62,7 +63,7 @@ class Schemas {
       const recording::Channel& channel) {
     const topics::Topic* topic = topics::find(channel.topic);
     if (topic == nullptr) {
-      throw ConfigError(channel.topic, "no schema in the recording", "one in 'omgidl'");
+      throw ConfigError(channel.topic, "no schema in the recording", "a schema in 'omgidl'");
     }
     return type_in(topics::idl_of(topic->type), std::string(topic->type), "the catalogue");
   }
@@ -72,7 +73,7 @@ class Schemas {
     const auto* schema = parse(text, source);
     const auto* type = schema->find(name);
     if (type == nullptr) {
-      throw ConfigError(source, "no struct " + name + " in it", "the type of the messages");
+      throw ConfigError(source, "no struct " + name, "the type of the messages");
     }
     return {schema, type};
   }
@@ -94,7 +95,7 @@ class Exporter {
  public:
   Exporter(const std::string& path, const ExportOptions& options)
       : options_(options), recording_(path, options.stopped), schemas_(recording_) {
-    // Says what is wrong with a place before the work.
+    // A place that cannot be written is refused before the work.
     const report::ResultFiles checked({{"--mat", options.mat}, {"--hdf5", options.hdf5}}, {path});
     (void)checked;
     open_outlets();
@@ -141,8 +142,8 @@ class Exporter {
     drop_troubled();
     if (!matched) {
       throw options_.topics.empty()
-          ? ConfigError(recording_.path, "a recording without a topic", "one that holds messages")
-          : ConfigError("--topics", "no topic of that name",
+          ? ConfigError(recording_.path, "a recording without a topic", "a recording with messages")
+          : ConfigError("--topics", "no such topic",
                         recording::one_of_topics(recording_.reader.channels()));
     }
   }
@@ -188,7 +189,7 @@ class Exporter {
     if (!filter.topics.empty()) {
       check(recording_.reader.for_each_message(filter, [&](const recording::MessageView& message) {
         const auto found = by_channel_.find(message.channel.id);
-        // What is no message of its type is counted when it is written.
+        // A message that does not match its type is counted in write().
         if (found != by_channel_.end()) (void)found->second->columns->learn(message.bytes);
         return true;
       }));

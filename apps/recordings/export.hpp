@@ -19,13 +19,13 @@ struct ExportOptions {
   Stopped stopped = {};  ///< true: give up
 };
 
-/// What became of one topic.
+/// The result of one topic.
 struct ExportedTopic {
   std::string topic;
   std::string name;  ///< of its file, struct or group
   std::uint64_t rows = 0;
   std::size_t columns = 0;
-  std::uint64_t unread = 0;  ///< [-] messages that are not of their type
+  std::uint64_t unread = 0;  ///< [-] messages that do not match their type
 };
 
 struct Exported {

@@ -210,7 +210,7 @@ class Hdf5File : public TableFile {
 }  // namespace
 
 std::unique_ptr<TableFile> hdf5_tables(const std::string& path) {
-  // Failures are told by their outcome; the library would print its stack besides.
+  // Failures are reported by return values; the library would also print its stack.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   return std::make_unique<Hdf5File>(path);
 }

@@ -26,7 +26,7 @@ struct TopicInfo {
   std::optional<std::int64_t> lost_ticks;
 };
 
-/// What is in a recording, as found by reading all of it.
+/// The content of a recording, found by reading all of it.
 struct RecordingInfo {
   std::string path;
   std::uint64_t bytes = 0;

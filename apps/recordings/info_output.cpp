@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
 
@@ -17,27 +18,20 @@ using nlohmann::ordered_json;
 // A terminal's width of findings; `verify` and --json list all.
 constexpr std::size_t kMostFindings = 10;
 
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
-
 // Log times before 2000 are no calendar's: a clock that counts from the host's start.
 std::string calendar(std::uint64_t time_ns) {
   constexpr std::uint64_t kYear2000_s = 946'684'800;
   const auto time_s = static_cast<std::time_t>(time_ns / 1'000'000'000);
   std::tm parts{};
   if (time_ns / 1'000'000'000 < kYear2000_s || gmtime_r(&time_s, &parts) == nullptr) {
-    return format("%.3f s", static_cast<double>(time_ns) * 1e-9);
+    return fmt::format("{:.3f} s", static_cast<double>(time_ns) * 1e-9);
   }
   std::array<char, 64> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S UTC", &parts);
   return text.data();
 }
 
-// What a file says is shown without what would move a terminal's cursor.
+// Texts of a file are shown without control characters, which could move a terminal's cursor.
 std::string shown(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
@@ -47,8 +41,9 @@ std::string shown(std::string text) {
 std::string state_of(const RecordingInfo& info) {
   if (info.being_written) return "still being written";
   if (info.whole) return "whole";
-  return info.lost_bytes == 0 ? "not closed, or damaged where nothing is lost"
-                              : "damaged, " + recording::byte_count(info.lost_bytes) + " lost";
+  return info.lost_bytes == 0
+             ? "not closed or damaged, but nothing is lost"
+             : fmt::format("damaged, {} lost", recording::byte_count(info.lost_bytes));
 }
 
 std::string topic_table(const RecordingInfo& info) {
@@ -66,10 +61,9 @@ std::string topic_table(const RecordingInfo& info) {
       cell("topic", width) + cell("type", type_width) + "  messages   rate [Hz]  lost ticks\n";
   for (const TopicInfo& topic : info.topics) {
     const std::string lost = topic.lost_ticks ? std::to_string(*topic.lost_ticks) : "-";
-    const std::string rate = topic.rate_hz > 0.0 ? format("%.5g", topic.rate_hz) : "-";
+    const std::string rate = topic.rate_hz > 0.0 ? fmt::format("{:.5g}", topic.rate_hz) : "-";
     text += cell(topic.topic, width) + cell(topic.type.empty() ? "?" : topic.type, type_width) +
-            format("%10llu  %10s  %10s\n", static_cast<unsigned long long>(topic.messages),
-                   rate.c_str(), lost.c_str());
+            fmt::format("{:>10}  {:>10}  {:>10}\n", topic.messages, rate, lost);
   }
   return text;
 }
@@ -89,8 +83,10 @@ ordered_json topic_json(const TopicInfo& topic) {
 std::string damage_text(const std::vector<recording::Damage>& damage) {
   std::string text;
   for (const recording::Damage& each : damage) {
-    text += "byte " + std::to_string(each.offset) + ": " + shown(each.text);
-    if (each.lost_bytes > 0) text += " (" + recording::byte_count(each.lost_bytes) + " lost)";
+    text += fmt::format("byte {}: {}", each.offset, shown(each.text));
+    if (each.lost_bytes > 0) {
+      text += fmt::format(" ({} lost)", recording::byte_count(each.lost_bytes));
+    }
     text += '\n';
   }
   return text;
@@ -98,32 +94,29 @@ std::string damage_text(const std::vector<recording::Damage>& damage) {
 
 std::string info_text(const RecordingInfo& info) {
   const double duration_s = static_cast<double>(info.end_ns - info.start_ns) * 1e-9;
-  std::string packings;
-  for (const std::string& packing : info.packings) {
-    packings += (packings.empty() ? "" : ", ") + packing;
-  }
-  std::string text = shown(info.path) + ": " + recording::byte_count(info.bytes) + ", " +
-                     state_of(info) + "\nwritten by " + shown(info.program) + ", profile " +
-                     shown(info.profile) + "; " + std::to_string(info.chunks) + " chunks" +
-                     (packings.empty() ? "" : " (" + packings + ")") + "\n";
+  std::string text = fmt::format(
+      "{}: {}, {}\nwritten by {}, profile {}; {} chunks{}\n", shown(info.path),
+      recording::byte_count(info.bytes), state_of(info), shown(info.program), shown(info.profile),
+      info.chunks,
+      info.packings.empty() ? "" : fmt::format(" ({})", fmt::join(info.packings, ", ")));
   if (info.messages > 0) {
-    text += "from " + calendar(info.start_ns) + ", " + format("%.3f s, ", duration_s);
+    text += "from " + calendar(info.start_ns) + ", " + fmt::format("{:.3f} s, ", duration_s);
   }
   text += std::to_string(info.messages) + " messages\n\n" + topic_table(info);
   for (const recording::Metadata& metadata : info.metadata) {
     text += "\n" + shown(metadata.name) + "\n";
     for (const auto& [key, value] : metadata.texts) {
-      text += "  " + shown(key) + ": " + shown(value) + "\n";
+      text += fmt::format("  {}: {}\n", shown(key), shown(value));
     }
   }
   if (info.attachments > 0) {
-    text += "\n" + std::to_string(info.attachments) + " attachments, which are not read\n";
+    text += fmt::format("\n{} attachments, which are not read\n", info.attachments);
   }
   if (info.damage.empty()) return text;
   const auto listed = static_cast<std::ptrdiff_t>(std::min(info.damage.size(), kMostFindings));
   text += "\ndamage\n" + damage_text({info.damage.begin(), info.damage.begin() + listed});
   if (info.damage.size() > kMostFindings) {
-    text += "and " + std::to_string(info.damage.size() - kMostFindings) + " findings more\n";
+    text += fmt::format("and {} more findings\n", info.damage.size() - kMostFindings);
   }
   return text;
 }

@@ -161,8 +161,9 @@ class MatSink : public TableSink {
     for (const Cell& cell : row.cells) put(cell);
     if (bytes_ < kMostBytes) return;
     throw std::runtime_error(file_.place() + ": " + table_.topic +
-                             " is larger than a MATLAB file holds (2 GiB a topic); --hdf5 has no "
-                             "such bound, --topics leaves topics out");
+                             " is larger than the 2 GiB for each topic that a MATLAB file "
+                             "allows: use --hdf5, which has no such limit, or --topics to leave "
+                             "topics out");
   }
 
   void finish() override { file_.write(structure()); }

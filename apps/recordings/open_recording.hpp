@@ -10,10 +10,10 @@
 
 namespace stillhand::recordings {
 
-/// Whether somebody asked for the end, as Ctrl-C does; empty: nobody can.  Asked again and again.
+/// Whether the end was requested, as by Ctrl-C; empty: never.  Called repeatedly.
 using Stopped = std::function<bool()>;
 
-/// Somebody did, before the results were in place.
+/// The end was requested before the results were in place.
 struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("stopped before the end; nothing was written") {}
 };
@@ -38,7 +38,7 @@ struct OpenRecording {
   ///         now or while it is read.
   explicit OpenRecording(const std::string& file, Stopped stopped = {});
 
-  /// Says on standard error, in one line, what is lost; nothing where nothing is.
+  /// Prints on standard error, in one line, what is lost; nothing if nothing is lost.
   /// @param messages  [-] that were delivered
   void tell_loss(std::uint64_t messages) const;
 

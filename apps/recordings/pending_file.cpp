@@ -33,7 +33,8 @@ PendingFile::PendingFile(std::string place) : place_(std::move(place)), path_(be
   std::error_code none;
   const auto status = std::filesystem::status(place_, none);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw ConfigError(place_, "something that is no file", "a file, or a name that is free");
+    throw ConfigError(place_, "something that is not a regular file",
+                      "a file, or a name that does not exist yet");
   }
 }
 
@@ -58,10 +59,11 @@ void PendingFile::publish_new() {
   to_disk();
   // A second name is refused where one is; renaming would write over it.
   if (::link(path_.c_str(), place_.c_str()) == 0) return;
-  if (errno == EEXIST) throw ConfigError(place_, "a file that is there", "a name that is free");
+  if (errno == EEXIST)
+    throw ConfigError(place_, "a file that exists", "a name that does not exist yet");
   // A file system without second names.
   if (std::filesystem::exists(place_)) {
-    throw ConfigError(place_, "a file that is there", "a name that is free");
+    throw ConfigError(place_, "a file that exists", "a name that does not exist yet");
   }
   if (std::rename(path_.c_str(), place_.c_str()) != 0) fail(place_, "make");
 }

@@ -9,7 +9,7 @@ namespace stillhand::recordings {
 /// complete.  Gone, when that never happens.
 class PendingFile {
  public:
-  /// @throws ConfigError when something that is no file is there
+  /// @throws ConfigError when the place holds something that is not a regular file
   explicit PendingFile(std::string place);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;
@@ -17,7 +17,7 @@ class PendingFile {
 
   /// Where it is to be written.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Onto the disk, then to its place, over what is there.  @throws std::runtime_error
+  /// Writes to the disk, then replaces the file at its place.  @throws std::runtime_error
   void publish();
   /// Same, where nothing may be there yet.
   /// @throws ConfigError naming the place when it is taken; std::runtime_error

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/recordings/recorder_commands.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -38,12 +40,12 @@ void add_info(CLI::App& cli, int& status) {
   auto words = std::make_shared<InfoWords>();
   CLI::App* verb = cli.add_subcommand(
       "info",
-      "What is in a recording: topics, types, messages, rates, lost ticks, QoS, metadata, damage.\n"
-      "Reads all of it, every checksum too. A file that a crash left open is read as far as it\n"
-      "goes, and so said.\n"
+      "Prints what a recording holds: topics, types, messages, rates, lost ticks, QoS,\n"
+      "metadata, damage. Reads the whole file and checks every checksum. Of a file that a crash\n"
+      "left open, it reads what is there and prints what is lost.\n"
       "Example: stillhand info demo/session.mcap --json info.json");
   verb->add_option("FILE", words->recording, "recording (MCAP)")->required();
-  verb->add_option("--json", words->json, "file of everything that was found");
+  verb->add_option("--json", words->json, "write the same as JSON to this file");
   verb->callback([words, &status] { status = run_info(*words); });
 }
 
@@ -54,8 +56,7 @@ int run_verify(const std::string& path) {
   const auto& damage = recording.reader.damage();
   const bool being_written = recording.source.being_written();
   if (damage.empty() && !being_written) {
-    std::printf("%s: whole; %llu messages, every checksum is right\n", path.c_str(),
-                static_cast<unsigned long long>(messages));
+    fmt::print("{}: whole; {} messages, every checksum is right\n", path, messages);
     return 0;
   }
   std::fputs(damage_text(damage).c_str(), stdout);
@@ -67,8 +68,8 @@ void add_verify(CLI::App& cli, int& status) {
   auto path = std::make_shared<std::string>();
   CLI::App* verb = cli.add_subcommand(
       "verify",
-      "Reads a recording whole and checks every checksum. Exit status 1 when anything is damaged,\n"
-      "cut off or still being written; each finding is listed with its place.\n"
+      "Reads the whole recording, checks every checksum and lists each finding with its place.\n"
+      "Exit status 1 when the file is damaged, cut off or still being written.\n"
       "Example: stillhand verify demo/session.mcap");
   verb->add_option("FILE", *path, "recording (MCAP)")->required();
   verb->callback([path, &status] { status = run_verify(*path); });
@@ -87,17 +88,16 @@ int run_recover(RecoverWords words) {
       *recording::compression_of(words.compression == "none" ? "" : words.compression);
   const Recovered result = recover(words.recording, words.options);
   if (result.was_whole) {
-    std::printf("%s: whole; nothing to recover\n", words.recording.c_str());
+    fmt::print("{}: whole; nothing to recover\n", words.recording);
     return 0;
   }
-  for (const std::string& finding : result.findings) std::printf("%s\n", finding.c_str());
-  std::printf("%llu messages recovered into %s; %s of the old file lost\n",
-              static_cast<unsigned long long>(result.messages), result.out.c_str(),
-              recording::byte_count(result.lost_bytes).c_str());
+  for (const std::string& finding : result.findings) fmt::print("{}\n", finding);
+  fmt::print("{} messages recovered into {}; {} of the old file lost\n", result.messages,
+             result.out, recording::byte_count(result.lost_bytes));
   if (result.attachments > 0) {
-    std::printf("%u attachments are in the old file only\n", result.attachments);
+    fmt::print("{} attachments are in the old file only\n", result.attachments);
   }
-  if (!result.kept.empty()) std::printf("the old file is kept as %s\n", result.kept.c_str());
+  if (!result.kept.empty()) fmt::print("the old file is kept as {}\n", result.kept);
   return 0;
 }
 
@@ -105,15 +105,15 @@ void add_recover(CLI::App& cli, int& status) {
   auto words = std::make_shared<RecoverWords>();
   CLI::App* verb = cli.add_subcommand(
       "recover",
-      "Writes what can be read of a cut-off or damaged recording into a whole file, and tells "
-      "what\n"
-      "was lost. Without --out the whole file takes the name and the old one is kept as\n"
-      "FILE.damaged; with it the old one stays as it is. The new file appears when it is complete\n"
-      "and on the disk. A whole file is left alone.\n"
+      "Copies everything readable of a cut-off or damaged recording into a new file, and prints\n"
+      "what is lost. With --out the old file stays as it is. Without --out the new file takes\n"
+      "the name of the old one, which is kept as FILE.damaged. The new file appears when it is\n"
+      "complete and on the disk. If the recording is whole, nothing is written.\n"
       "Example: stillhand recover crashed.mcap --out whole.mcap");
   verb->add_option("FILE", words->recording, "recording (MCAP)")->required();
-  verb->add_option("--out", words->options.out, "name of the whole file, a free one");
-  verb->add_option("--compression", words->compression, "of its chunks: zstd, lz4 or none")
+  verb->add_option("--out", words->options.out, "file to write; it must not exist yet");
+  verb->add_option("--compression", words->compression,
+                   "compression of the chunks: zstd, lz4 or none")
       ->check(CLI::IsMember({"zstd", "lz4", "none"}))
       ->capture_default_str();
   verb->callback([words, &status] { status = run_recover(*words); });
@@ -132,19 +132,18 @@ int run_export(const ExportWords& words) {
     throw ConfigError("export", "no format", "--csv DIR, --mat FILE or --hdf5 FILE");
   }
   const Exported exported = export_recording(words.recording, options);
-  std::printf("%-40s %12s %9s\n", "table", "rows", "columns");
+  fmt::print("{:<40} {:>12} {:>9}\n", "table", "rows", "columns");
   for (const ExportedTopic& topic : exported.topics) {
-    std::printf("%-40s %12llu %9zu\n", topic.name.c_str(),
-                static_cast<unsigned long long>(topic.rows), topic.columns);
+    fmt::print("{:<40} {:>12} {:>9}\n", topic.name, topic.rows, topic.columns);
   }
   std::fflush(stdout);
   for (const ExportedTopic& topic : exported.topics) {
     if (topic.unread == 0) continue;
-    std::fprintf(stderr, "stillhand: %s: %llu messages that are not of their type left out\n",
-                 topic.topic.c_str(), static_cast<unsigned long long>(topic.unread));
+    fmt::print(stderr, "stillhand: {}: {} messages that do not match their type are left out\n",
+               topic.topic, topic.unread);
   }
   for (const std::string& reason : exported.left_out) {
-    std::fprintf(stderr, "stillhand: left out: %s\n", reason.c_str());
+    fmt::print(stderr, "stillhand: left out: {}\n", reason);
   }
   return 0;
 }
@@ -153,14 +152,15 @@ void add_export(CLI::App& cli, int& status) {
   auto words = std::make_shared<ExportWords>();
   CLI::App* verb = cli.add_subcommand(
       "export",
-      "A recording as tables, one a topic: a folder of CSV files, a MATLAB file (version 5), an\n"
-      "HDF5 file, or all three. Column `t [s]` first, from the recording's start; units from the\n"
-      "IDL that the recording carries. Any recording in CDR with its IDL as schema is exported.\n"
+      "Writes a recording as tables, one for each topic: a folder of CSV files, a MATLAB file\n"
+      "(version 5), an HDF5 file, or all three. The first column is `t [s]` since the\n"
+      "recording's start; units come from the IDL that the recording carries. Any recording in\n"
+      "CDR with its IDL as schema can be exported.\n"
       "Example: stillhand export demo/session.mcap --csv tables --hdf5 session.h5");
   verb->add_option("FILE", words->recording, "recording (MCAP)")->required();
-  verb->add_option("--csv", words->options.csv, "folder of one CSV file a topic");
-  verb->add_option("--mat", words->options.mat, "MATLAB file, one struct a topic");
-  verb->add_option("--hdf5", words->options.hdf5, "HDF5 file, one group a topic");
+  verb->add_option("--csv", words->options.csv, "folder for CSV files, one for each topic");
+  verb->add_option("--mat", words->options.mat, "MATLAB file, one struct for each topic");
+  verb->add_option("--hdf5", words->options.hdf5, "HDF5 file, one group for each topic");
   verb->add_option("--topics", words->options.topics,
                    "names or patterns with * and ?, comma-separated [every topic]")
       ->delimiter(',')

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/recordings/recover.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file of thousands of damaged chunks need not tell of each in its metadata.
+// The metadata does not list each of thousands of damaged chunks.
 constexpr std::size_t kMostFindings = 100;
 
 // The new file, with the topics of the old one under their new numbers.
@@ -92,7 +93,7 @@ recording::TextMap summary_of(const Recovered& result, const std::string& path) 
 void keep_as(const std::string& path, const std::string& kept) {
   if (::link(path.c_str(), kept.c_str()) == 0) return;
   if (errno == EEXIST) {
-    throw ConfigError(kept, "a file that is there", "a name that is free, or --out");
+    throw ConfigError(kept, "a file that exists", "a name that does not exist yet, or --out");
   }
   // A file system without second names.
   fs::copy_file(path, kept);
@@ -101,9 +102,9 @@ void keep_as(const std::string& path, const std::string& kept) {
 std::vector<std::string> findings_of(const recording::McapReader& reader) {
   std::vector<std::string> findings;
   for (const recording::Damage& damage : reader.damage()) {
-    findings.push_back(
-        "byte " + std::to_string(damage.offset) + ": " + damage.text +
-        (damage.lost_bytes == 0 ? "" : " (" + std::to_string(damage.lost_bytes) + " bytes lost)"));
+    findings.push_back(fmt::format(
+        "byte {}: {}{}", damage.offset, damage.text,
+        damage.lost_bytes == 0 ? "" : fmt::format(" ({} bytes lost)", damage.lost_bytes)));
   }
   return findings;
 }
@@ -132,16 +133,17 @@ Recovered recover(const std::string& path, const RecoverOptions& options) {
   const std::string place = in_place ? fs::canonical(path).string() : options.out.string();
   const std::string kept = place + ".damaged";
   if (fs::exists(in_place ? kept : place)) {
-    throw ConfigError(in_place ? kept : place, "a file that is there",
-                      in_place ? "a name that is free, or --out" : "a name that is free");
+    throw ConfigError(
+        in_place ? kept : place, "a file that exists",
+        in_place ? "a name that does not exist yet, or --out" : "a name that does not exist yet");
   }
   PendingFile pending(place);
   recording::FileSink sink(pending.path());
   Copy copy(old.reader, sink, options.compression);
   result.messages = copy.copy_messages();
   if (result.messages == 0 && old.reader.metadata().empty()) {
-    throw std::runtime_error(path + ": no message and no metadata in it can be read; nothing was " +
-                             "written");
+    throw std::runtime_error(path +
+                             ": no message and no metadata can be read; no file was written");
   }
   result.lost_bytes = old.reader.lost_bytes();
   result.attachments = old.reader.statistics().attachment_count;

@@ -16,7 +16,7 @@ struct RecoverOptions {
   Stopped stopped = {};  ///< true: give up
 };
 
-/// What recover() did.
+/// The result of recover().
 struct Recovered {
   bool was_whole = false;  ///< nothing to mend: nothing was written
   std::string out;         ///< where the whole file is now

@@ -13,7 +13,7 @@
 
 namespace stillhand::recordings {
 
-/// One topic as a table: what stands in its head.
+/// One topic as a table: its head.
 struct TopicTable {
   std::string name;  ///< of a file, a group or a variable: letters, digits and _; unique
   std::string topic;

@@ -15,7 +15,7 @@ namespace {
 // What is due sooner is waited for asleep, and the keyboard waits; later, the keyboard is asked.
 constexpr std::int64_t kHorizon_ns = 2'000'000;
 constexpr std::int64_t kLongestWait_ns = 20'000'000;
-// Later than this the machine has held the replay up, which is told.
+// A message that is later than this counts as a delay by the machine.
 constexpr std::int64_t kHeldUp_ns = 10'000'000;
 
 }  // namespace
@@ -36,7 +36,7 @@ void Player::begin(bool paused) {
   if (paused) clock_.pause(began_ns_);
 }
 
-// The clock starts anew once the first stretch is there: reading is not lateness.
+// The clock starts again when the first stretch has been read: reading is not lateness.
 void Player::jump(std::uint64_t to_ns) {
   const std::uint64_t end_ns = loop_to_ns_ && *loop_to_ns_ > to_ns ? *loop_to_ns_ : last_ns_;
   source_.seek(to_ns, end_ns);
@@ -69,7 +69,7 @@ std::optional<std::int64_t> Player::step() {
       return 0;
     }
     const std::int64_t due_ns = *clock_.due(static_cast<std::int64_t>(front().log_time_ns));
-    // A burst of what is overdue would overrun the readers' histories (16 samples at 1 kHz): at
+    // A burst of overdue messages would overrun the readers' histories (16 samples at 1 kHz): at
     // most twice as fast until the schedule is met again.
     const std::int64_t when_ns =
         newest_ ? std::max(due_ns, newest_->released_ns + (due_ns - newest_->due_ns) / 2) : due_ns;

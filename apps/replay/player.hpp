@@ -25,7 +25,7 @@ class Player {
 
   /// Begins at the first instant; the state before it has been read when this returns.
   void begin(bool paused);
-  /// Releases what is due within the next two milliseconds, sleeping until each one's time.
+  /// Releases the messages due within the next two milliseconds, each at its time.
   /// @returns [ns] until something may be due again; nothing when the replay is over
   std::optional<std::int64_t> step();
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/replay/remote.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <sstream>
 #include <vector>
@@ -27,7 +28,7 @@ std::int64_t log_time(double at_s, const Played& played) {
   return static_cast<std::int64_t>(played.start_ns) + std::llround(at_s * kNs);
 }
 
-/// @returns why not, or ""
+/// @returns why the command is refused, or ""
 std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& player,
                      const Played& played, bool& quit) {
   switch (command.action()) {
@@ -48,13 +49,13 @@ std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& playe
       player.loop_off();
       return {};
     case stillhand_msgs::REPLAY_SEEK:
-      if (!inside(command.from_s(), played)) return "not inside the recording";
+      if (!inside(command.from_s(), played)) return "the instant is outside the recording";
       player.seek(log_time(command.from_s(), played));
       return {};
     case stillhand_msgs::REPLAY_LOOP:
       if (!inside(command.from_s(), played) || !inside(command.to_s(), played) ||
           command.from_s() >= command.to_s()) {
-        return "not two instants of the recording, one after the other";
+        return "a loop needs two instants inside the recording, the earlier one first";
       }
       player.loop_between(log_time(command.from_s(), played), log_time(command.to_s(), played));
       return {};
@@ -62,13 +63,13 @@ std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& playe
       const double per_mille = command.rate() * 1000.0;
       if (!(per_mille >= static_cast<double>(recording::PlayRate::kSlowest)) ||
           per_mille > static_cast<double>(recording::PlayRate::kFastest)) {
-        return "not a rate of 0.1 to 100";
+        return "the rate is outside 0.1 to 100";
       }
       player.set_rate({std::llround(per_mille)});
       return {};
     }
   }
-  return "no such action";
+  return "unknown action";
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ std::string obey_one(const stillhand_msgs::ReplayCommand& command, Player& playe
 void obey(Remote& remote, Player& player, const Played& played, bool& quit) {
   while (const auto command = remote.next()) {
     remote.answer(*command, obey_one(*command, player, played, quit));
-    // Who asked hears of it at once.
+    // At once, for the program that asked.
     tell_status(remote, player, played);
   }
 }
@@ -146,17 +147,16 @@ int run_remote(const std::string& text, const ReplayOptions& options, runtime::S
       runtime::outsider("remote", options.domain, options.profiles, true), topics::kReplayCommand,
       topics::kReplayStatus, parse_command(text), kAnswer_ns, stop);
   if (!status) {
-    std::fprintf(stderr, "stillhand: no replay answers on domain %u\n", options.domain);
+    fmt::print(stderr, "stillhand: no replay answers on domain {}\n", options.domain);
     return 1;
   }
   if (!status->accepted()) {
-    std::fprintf(stderr, "stillhand: %s: %s\n", text.c_str(), status->answer().c_str());
+    fmt::print(stderr, "stillhand: {}: {}\n", text, status->answer().c_str());
     return 1;
   }
-  std::printf("%.3f of %.3f s, rate %g%s%s, %llu messages\n", status->position_s(),
-              status->length_s(), status->rate(), status->paused() ? ", paused" : "",
-              status->looping() ? ", looping" : "",
-              static_cast<unsigned long long>(status->released()));
+  fmt::print("{:.3f} of {:.3f} s, rate {:g}{}{}, {} messages\n", status->position_s(),
+             status->length_s(), status->rate(), status->paused() ? ", paused" : "",
+             status->looping() ? ", looping" : "", status->released());
   return 0;
 }
 

@@ -12,17 +12,17 @@ namespace stillhand::replay {
 
 using Remote = runtime::RemoteControl<stillhand_msgs::ReplayCommand, stillhand_msgs::ReplayStatus>;
 
-/// What a replay's status tells besides the player.
+/// The recording that is played, for the status.
 struct Played {
   std::string file;
   std::uint64_t start_ns;  ///< log time of the recording's first message
   std::uint64_t end_ns;    ///< and of its last
 };
 
-/// Obeys every command that has come; `quit` becomes true when one said so.
+/// Carries out every command that has come; `quit` becomes true at a stop.
 void obey(Remote& remote, Player& player, const Played& played, bool& quit);
 void tell_status(Remote& remote, const Player& player, const Played& played);
-/// The same for half a second, as the replay ends.
+/// The same, repeated for half a second at the end of the replay.
 void tell_last_status(Remote& remote, const Player& player, const Played& played);
 
 /// "seek 3.5" and the like as a command.  @throws ConfigError

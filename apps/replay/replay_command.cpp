@@ -48,7 +48,8 @@ int run(Words words) {
   runtime::Stop stop;
   if (!words.remote.empty()) return run_remote(words.remote, options, stop);
   if (options.file.empty()) throw ConfigError("REC", "none", "the MCAP recording to play");
-  // Before the participant: Fast DDS's threads inherit it.  Where it is refused, it goes without.
+  // Before the participant exists, since Fast DDS's threads inherit the priority.  If the system
+  // refuses it, the verb runs without.
   if (!words.ordinary) runtime::become_real_time();
   return run_replay(options, stop);
 }
@@ -61,40 +62,45 @@ void add_replay_command(CLI::App& cli, int& status) {
   options.profiles = runtime::shipped("qos/profiles.xml");
   CLI::App* verb = cli.add_subcommand(
       "replay",
-      "Plays a recording onto the bus, byte for byte, with the QoS it was recorded with. What it\n"
-      "writes is marked: processes of a session drop it, and no rig on the domain gives a motor\n"
-      "force while a replay is there. Processes started with --answer-replay take it.\n"
-      "Keys: space pause, arrows 5 s back and forth, s next message, + - rate, a b c loop from\n"
-      "here, to here, off, q end.\n"
+      "Plays a recording onto the bus, byte for byte, with the recorded QoS. Every message\n"
+      "carries the replay's mark: processes of a session drop it, and no rig on the domain\n"
+      "produces a motor force while a replay runs. Processes started with --answer-replay\n"
+      "accept it.\n"
+      "Keys: space pause; left and right 5 s back and forward; s next message; + and - rate; a\n"
+      "loop start, b loop end, c loop off; q quit.\n"
       "Example: stillhand replay run/session.mcap --domain 7 --topics stillhand/sensed --rate 0.5");
   verb->add_option("REC", options.file, "MCAP recording");
-  verb->add_option("--rate", words->rate, "0.1 to 100 times as fast")->capture_default_str();
+  verb->add_option("--rate", words->rate, "speed relative to the recording, 0.1 to 100")
+      ->capture_default_str();
   verb->add_option("--topics", options.topics.allow,
-                   "play topics that match (* any run, ? any one); may be repeated")
+                   "pattern of topics to play (* any run of characters, ? one); may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--block", options.topics.block, "and none that match; may be repeated")
+  verb->add_option("--block", options.topics.block,
+                   "pattern of topics not to play; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--remap", words->remap, "RECORDED=WRITTEN: another topic; may be repeated")
+  verb->add_option("--remap", words->remap,
+                   "RECORDED=WRITTEN: write a topic under another name; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--start", words->start_s, "begin there [s] from the recording's start")
+  verb->add_option("--start", words->start_s, "begin at this time [s] after the recording's start")
       ->check(recording::within(0.0, kMostSeconds));
-  verb->add_option("--end", words->end_s, "end there [s] from the recording's start")
+  verb->add_option("--end", words->end_s, "end at this time [s] after the recording's start")
       ->check(recording::within(0.0, kMostSeconds));
-  verb->add_flag("--loop", options.loop, "begin again at the end");
+  verb->add_flag("--loop", options.loop, "play again from the start when the end is reached");
   verb->add_flag("--paused", options.begin_paused, "begin paused");
   verb->add_option("--wait-for", options.wait_for,
-                   "begin when this topic has a reader; may be repeated")
+                   "topic that must have a reader before the replay begins; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--wait-seconds", words->wait_s, "patience of --wait-for [s]")
+  verb->add_option("--wait-seconds", words->wait_s, "longest wait of --wait-for [s]")
       ->check(recording::within(0.0, kMostSeconds))
       ->capture_default_str();
-  verb->add_option("--remote", words->remote,
-                   "instead: tell the replay on this domain: play, pause, step, stop, \"seek S\", "
-                   "\"rate R\", \"loop S S\", loop-off");
+  verb->add_option(
+      "--remote", words->remote,
+      "do not play; send a command to the replay of the domain: play, pause, step, stop, "
+      "\"seek S\", \"rate R\", \"loop S S\", loop-off");
   verb->add_flag("--no-real-time", words->ordinary, "do not ask for real-time priority");
   verb->add_option("--domain", options.domain, "DDS domain, 0 to 232")->capture_default_str();
   verb->add_option("--profiles", options.profiles, "QoS profiles")->capture_default_str();

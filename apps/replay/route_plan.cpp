@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/replay/route_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <set>
 
 #include "idl/idl_text.hpp"
@@ -22,15 +23,16 @@ std::string mapped(const ReplayOptions& options, const std::string& topic) {
   return found == options.remap.end() ? topic : found->second;
 }
 
-/// Why a channel cannot be written, or "".
+/// @returns why a channel cannot be played, or ""
 std::string refusal(const Channel& channel, const recording::McapReader& reader) {
   if (channel.message_encoding != recording::kMessageEncoding) {
-    return "its messages are \"" + channel.message_encoding + "\", not CDR";
+    return fmt::format("its message encoding is \"{}\", not CDR", channel.message_encoding);
   }
   const auto schema = reader.schemas().find(channel.schema_id);
   if (schema == reader.schemas().end()) return "its type is not in the file";
   const std::string& type = schema->second.name;
-  if (!runtime::Playback::knows(type)) return "its type " + type + " is not known here";
+  if (!runtime::Playback::knows(type))
+    return fmt::format("its type {} is unknown to this program", type);
   const std::string_view text(reinterpret_cast<const char*>(schema->second.bytes.data()),
                               schema->second.bytes.size());
   const std::string_view ours = topics::idl_of(type);
@@ -38,7 +40,9 @@ std::string refusal(const Channel& channel, const recording::McapReader& reader)
   try {
     const std::string difference = recording::definition_difference(
         recording::parse_idl(text, "schema of " + type), recording::parse_idl(ours, "idl"), type);
-    return difference.empty() ? "" : type + " is another version's: " + difference;
+    return difference.empty()
+               ? ""
+               : fmt::format("this program has another definition of {}: {}", type, difference);
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -60,7 +64,7 @@ runtime::WriterQos qos_for(const Channel& channel, const runtime::Playback& play
   return qos;
 }
 
-/// What a late reader is owed after a seek: the last one of a state.
+/// A state: a late reader gets its last message, also after a seek.
 bool is_latched(const runtime::WriterQos& qos) {
   return qos.reliable && qos.durability != runtime::Durability::kVolatile && qos.depth == 1;
 }
@@ -77,7 +81,7 @@ void check_names(const ReplayOptions& options, const recording::McapReader& read
     }
     if (!options.topics.wants(recorded)) {
       throw ConfigError("--remap", recorded + ", which is not played",
-                        "a topic that --topics and --block leave");
+                        "a topic that --topics and --block select");
     }
   }
 }
@@ -101,11 +105,11 @@ RoutePlan plan_routes(const ReplayOptions& options, const recording::McapReader&
   }
   if (plan.wanted.empty()) {
     throw refused.empty()
-        ? ConfigError("--topics and --block", "no topic that they leave",
+        ? ConfigError("--topics and --block", "no topic selected",
                       recording::one_of_topics(reader.channels()))
         : ConfigError(options.file, *refused.begin(), "a recording with topics to play");
   }
-  for (const std::string& each : refused) std::fprintf(stderr, "not played: %s\n", each.c_str());
+  for (const std::string& each : refused) fmt::print(stderr, "not played: {}\n", each);
   return plan;
 }
 

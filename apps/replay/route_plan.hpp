@@ -18,11 +18,11 @@ struct Route {
   std::size_t writer;  ///< of the playback
 };
 
-/// What of a recording is played, and where to.
+/// The channels that are played, and their writers.
 struct RoutePlan {
   std::map<recording::ChannelId, Route> routes;
   std::vector<recording::ChannelId> wanted;
-  std::vector<recording::ChannelId> latched;  ///< of these: a late reader is owed the last one
+  std::vector<recording::ChannelId> latched;  ///< of these: a late reader gets the last message
 };
 
 /// Names of topics against a recording, before anything is on the bus.

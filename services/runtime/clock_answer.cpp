@@ -20,7 +20,8 @@ void answer_clock_questions(Bus& bus) {
   stillhand_msgs::ClockAnswer answer;
   answer.service(bus.options().service);
   answer.clock(clock_identity());
-  // Answered in the receiving thread: a question that waits for another one would tell less.
+  // Answered in the receiving thread: a question that waits for another gives a less certain
+  // offset.
   bus.subscribe<stillhand_msgs::ClockQuestion>(
       topics::kClockQuestion, [answers, answer](const stillhand_msgs::ClockQuestion& question,
                                                 const Arrival& arrival) mutable {

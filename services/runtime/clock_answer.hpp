@@ -11,7 +11,7 @@ namespace stillhand::runtime {
 /// same one compare their stamps as they are.
 std::string clock_identity();
 
-/// Answers each question of the clock, and tells the bus what the answers came to.  Endpoints are
+/// Answers each question of the clock, and passes the resulting offsets to the bus.  Endpoints are
 /// made here, so before Bus::start().
 void answer_clock_questions(Bus& bus);
 

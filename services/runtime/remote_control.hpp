@@ -14,8 +14,8 @@
 
 namespace stillhand::runtime {
 
-/// Bus options of a verb that stands outside of every session: a name of its own for each process,
-/// so that no session takes two of them for one service that is there twice.
+/// Bus options of a verb that is outside of every session.  Each process has a name of its own, so
+/// that no session counts two of them as one service that runs twice.
 inline Bus::Options outsider(const std::string& verb, std::uint32_t domain,
                              const std::filesystem::path& profiles, bool answers_replay) {
   Bus::Options options;
@@ -26,7 +26,7 @@ inline Bus::Options outsider(const std::string& verb, std::uint32_t domain,
   return options;
 }
 
-/// The side that obeys: takes commands, and says in its status which was answered and how.
+/// The side that carries out commands; its status names the answered command and the answer.
 /// next(), answer() and tell() from one thread.
 template <typename Command, typename Status>
 class RemoteControl {
@@ -53,12 +53,12 @@ class RemoteControl {
     waiting_.pop_front();
     return command;
   }
-  /// @param refusal  why the command was not obeyed; empty: it was
+  /// @param refusal  why the command was refused; empty: it was carried out
   void answer(const Command& command, const std::string& refusal) {
     answered_ = command.request();
     refusal_ = refusal;
   }
-  /// Somebody asked at least once.
+  /// At least one command was answered.
   [[nodiscard]] bool asked() const noexcept { return answered_ != 0; }
   /// Publishes a status with the newest answer.
   void tell(Status status) {
@@ -68,8 +68,8 @@ class RemoteControl {
     status.answer(refusal_.substr(0, kRoom));
     statuses_.write(status);
   }
-  /// The last word, told for half a second: the status is best effort, and who asked for the end
-  /// may not be matched with it yet.
+  /// The last status, repeated for half a second: it is best effort, and the sender of a stop may
+  /// not be matched with it yet.
   void tell_last(const Status& status) {
     constexpr int kTimes = 10;
     constexpr std::int64_t kPause_ns = 50'000'000;
@@ -90,9 +90,9 @@ class RemoteControl {
   std::string refusal_;
 };
 
-/// The side that asks: sends one command to everybody who is found until somebody answers, and
-/// waits for that at most `limit_ns`.
-/// @returns the status that answered, nothing when nobody did
+/// The side that sends commands: sends one to every listener that is found until one answers, and
+/// waits at most `limit_ns`.
+/// @returns the status with the answer; nothing without an answer
 template <typename Command, typename Status>
 std::optional<Status> ask(const Bus::Options& options, const topics::Topic& commands,
                           const topics::Topic& statuses, Command command, std::int64_t limit_ns,
@@ -116,7 +116,8 @@ std::optional<Status> ask(const Bus::Options& options, const topics::Topic& comm
       const std::lock_guard lock(mutex);
       if (answer) break;
     }
-    // A command reaches only who is there when it is written; a tap matches too, and obeys nobody.
+    // A command reaches only readers that are matched when it is written; a tap matches, too, and
+    // does not answer.
     const std::size_t there = bus.matched_peers(commands).size();
     if (there > told) publisher.write(command);
     told = there;

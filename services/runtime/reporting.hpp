@@ -16,7 +16,7 @@
 
 namespace stillhand::runtime {
 
-/// One thing to tell, plain enough to leave a control path without lock or allocation.
+/// One event, plain enough to leave a control path without lock or allocation.
 struct Note {
   stillhand_msgs::EventKind kind;
   const topics::Topic* topic;  ///< nullptr: none
@@ -27,8 +27,8 @@ struct Note {
 };
 
 /// Publishes this process's status ten times a second, its host's once a second, and its events as
-/// they come; events that say the same within a tenth of a second become one, with their number and
-/// the worst figure.
+/// they occur; equal events within a tenth of a second become one, with their number and the worst
+/// figure.
 class Reporter {
  public:
   /// Endpoints are made here, so before Bus::start().
@@ -38,7 +38,7 @@ class Reporter {
   Reporter& operator=(const Reporter&) = delete;
 
   void start();
-  /// Publishes what still waits and ends the thread; nothing is published afterwards.
+  /// Publishes the waiting events and ends the thread; nothing is published afterwards.
   void stop();
   /// Any thread; drops the note, and counts it, when 256 wait.
   void tell(const Note& note) noexcept;

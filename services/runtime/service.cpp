@@ -104,7 +104,7 @@ void Service::follow_session(stillhand_msgs::SessionState session) {
   }
 }
 
-// Nobody will say that the session ends.
+// No process is left to announce the end of the session.
 void Service::end_without_experiment() {
   constexpr int kPatience = 50;  // statuses: 5 s
   if (!options_.one_session || !in_session_.load(std::memory_order_relaxed)) return;
@@ -160,22 +160,24 @@ int run_service(const std::string& name, int argc, char** argv,
                 const std::function<void(CLI::App&, ServiceOptions&)>& more_options) {
   ServiceOptions options;
   options.service = name;
-  CLI::App cli("stillhand-" + name + ": one process of a session; `stillhand lab` starts them all");
+  CLI::App cli("stillhand-" + name +
+               ": one process of a session; `stillhand lab` starts all of them");
   bool with_parent = false;
   cli.add_option("--domain", options.domain, "DDS domain, 0 to 232");
   cli.add_option("--rig", options.rig, "number of the rig on the bus");
-  cli.add_option("--seed", options.seed, "seed of everything random in this process");
+  cli.add_option("--seed", options.seed, "seed of all randomness in this process");
   cli.add_option("--profiles", options.profiles, "QoS profiles (qos/profiles.xml)")->required();
   cli.add_option("--config", options.config, "folder with the settings of each service")
       ->required();
   cli.add_option("--out", options.out, "folder or file this process may write");
   cli.add_option("--security", options.security,
-                 "folder of certificates (deploy/security/make.sh); none: no security")
+                 "folder of certificates (deploy/security/make.sh) [no security]")
       ->check(settings::check_name);
   cli.add_flag("--real-time", options.real_time,
-               "ask for real-time priority: SCHED_FIFO, with keys SCHED_RR");
-  cli.add_flag("--one-session", options.one_session,
-               "end when the session it took part in does, to be started anew for the next");
+               "request real-time priority: SCHED_FIFO, with --security SCHED_RR");
+  cli.add_flag(
+      "--one-session", options.one_session,
+      "end together with the session, so that a service manager starts it for the next one");
   cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
   if (more_options) more_options(cli, options);
   try {

@@ -20,16 +20,16 @@ class App;
 
 namespace stillhand::runtime {
 
-/// What every process is started with.
+/// Start options of every process.
 struct ServiceOptions {
   std::string service;             ///< own name, one of topics::kServices
   std::uint32_t domain = 0;        ///< DDS domain
   std::uint32_t rig = 1;           ///< number of the rig
-  std::uint64_t seed = 1;          ///< seed of everything random in this process
+  std::uint64_t seed = 1;          ///< seed of all randomness in this process
   std::filesystem::path profiles;  ///< QoS profiles
   std::filesystem::path config;    ///< folder of <service>.yaml
   std::filesystem::path security;  ///< see Bus::Options
-  bool real_time = false;          ///< ask for a real-time scheduling policy
+  bool real_time = false;          ///< request a real-time scheduling policy
   bool serialized = false;         ///< see Bus::Options
   bool answers_replay = false;     ///< see Bus::Options
   bool one_session = false;        ///< end with the session this process took part in
@@ -64,7 +64,7 @@ class Service {
   void note_tick(Tick tick) noexcept { tick_.store(tick, std::memory_order_relaxed); }
   /// This process is prepared for a trial.
   void note_armed(std::int64_t trial) noexcept { armed_.store(trial, std::memory_order_relaxed); }
-  /// What trial control says of the session; the experiment, which writes it, calls this itself.
+  /// The session's state by trial control; the experiment, which writes it, calls this itself.
   void follow_session(stillhand_msgs::SessionState session);
   /// An event on the bus, from any thread, without lock or allocation.
   void note_event(stillhand_msgs::EventKind kind, const char* text, double by_us = 0.0) noexcept;
@@ -94,7 +94,7 @@ class Service {
 };
 
 /// main() of every service: command line, signals, real time, errors as one line and exit status
-/// (0 good, 2 what the user can mend, 1 the rest).
+/// (0 good, 2 for a fault that the user can correct, 1 for any other).
 int run_service(const std::string& name, int argc, char** argv,
                 const std::function<void(Service&)>& body,
                 const std::function<void(CLI::App&, ServiceOptions&)>& more_options = {});

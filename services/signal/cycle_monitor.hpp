@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 #include "services/contract/tick.hpp"
+#include "services/signal/log_bins.hpp"
 
 namespace stillhand::signal {
 
@@ -68,30 +68,20 @@ class CycleMonitor {
     std::int64_t seen = 0;
     for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
       seen += bins_[bin];
-      if (seen > wanted) return std::min(bin_edge_us(bin), max_latency_us_);
+      if (seen > wanted) return std::min(Bins::upper_edge(bin), max_latency_us_);
     }
     return max_latency_us_;
   }
 
  private:
-  // 8 linear bins an octave: bin = 8 * exponent + next three bits.
-  static std::size_t bin_of(std::int64_t us) noexcept {
-    const auto value = static_cast<std::uint64_t>(std::max<std::int64_t>(us, 0));
-    if (value < 8) return value;
-    const auto exponent = static_cast<std::size_t>(std::bit_width(value)) - 4;
-    return std::min<std::size_t>(8 * exponent + (value >> exponent), kBins - 1);
-  }
-  static std::int64_t bin_edge_us(std::size_t bin) noexcept {
-    if (bin < 8) return static_cast<std::int64_t>(bin);
-    const std::size_t exponent = bin / 8 - 1;
-    return static_cast<std::int64_t>(((bin - 8 * exponent + 1) << exponent) - 1);
-  }
+  using Bins = LogBins<3>;
+
   void count_latency(std::int64_t us) noexcept {
-    ++bins_[bin_of(us)];
+    ++bins_[std::min(Bins::bin_of(std::max<std::int64_t>(us, 0)), kBins - 1)];
     max_latency_us_ = std::max(max_latency_us_, us);
   }
 
-  static constexpr std::size_t kBins = std::size_t{8} * 24;
+  static constexpr std::size_t kBins = Bins::kLinear * 24;
 
   Config config_;
   std::int64_t samples_ = 0;

@@ -101,13 +101,13 @@ TEST(CheckIdentityTest, WarnsThirtyDaysAhead) {
 TEST(CheckIdentityTest, RefusesAnotherAuthoritysCertificate) {
   const fs::path folder = altered();
   replace(SecurityFolders::get().other() / "rig/certificate.pem", folder / "rig/certificate.pem");
-  EXPECT_THAT(refusal({folder, "rig"}), HasSubstr("one of the authority in"));
+  EXPECT_THAT(refusal({folder, "rig"}), HasSubstr("a certificate of the authority in"));
 }
 
 TEST(CheckIdentityTest, RefusesAnothersKey) {
   const fs::path folder = altered();
   replace(folder / "motion/key.pem", folder / "rig/key.pem");
-  EXPECT_THAT(refusal({folder, "rig"}), HasSubstr("another key"));
+  EXPECT_THAT(refusal({folder, "rig"}), HasSubstr("the key of another certificate"));
 }
 
 TEST(CheckIdentityTest, RefusesDocumentsThatTheAuthorityDidNotSign) {
@@ -202,8 +202,8 @@ TEST(SecurityTest, AGroupBesideUnicastIsRefusedAndUnicastAloneIsNot) {
 }
 
 TEST(SecurityTest, SeveralWaysToBeHeardAreRefused) {
-  EXPECT_THAT(refused_discovery({"127.0.0.1", "192.0.2.1"}, false), HasSubstr("several ways"));
-  EXPECT_THAT(refused_discovery({"127.0.0.1"}, true), HasSubstr("several ways"));
+  EXPECT_THAT(refused_discovery({"127.0.0.1", "192.0.2.1"}, false), HasSubstr("several transports"));
+  EXPECT_THAT(refused_discovery({"127.0.0.1"}, true), HasSubstr("several transports"));
 }
 
 TEST(SecurityTest, ADiscoveryServerIsRefused) {

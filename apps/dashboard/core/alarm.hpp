@@ -19,9 +19,9 @@ struct Threshold {
   }
 };
 
-/// An alarm that stays until somebody has seen it (ISA-18.2): raised by a value beyond a threshold,
-/// it holds the worst level met until it is acknowledged *and* the value is back.  An acknowledged
-/// one that gets worse, or comes again, wants to be acknowledged again.  Pure; one thread.
+/// An alarm that stays until it is acknowledged (ISA-18.2).  A value beyond a threshold raises it;
+/// it holds its worst level until it is acknowledged *and* the value is back.  An acknowledged
+/// alarm that gets worse or is raised again must be acknowledged again.  Pure; one thread.
 class Alarm {
  public:
   explicit Alarm(Threshold threshold) : threshold_(threshold) {}
@@ -52,7 +52,7 @@ class Alarm {
     }
   }
 
-  /// What is to be shown: the worst since it was acknowledged.
+  /// The level to show: the worst since the last acknowledgement.
   [[nodiscard]] Level level() const noexcept { return held_; }
   [[nodiscard]] bool active() const noexcept { return active_ != Level::kHealthy; }
   [[nodiscard]] bool acknowledged() const noexcept { return acknowledged_; }

@@ -18,7 +18,7 @@ Threshold checked(const char* key, double warning, double critical) {
   if (warning > critical) {
     std::ostringstream got, want;
     got << warning;
-    want << "at most " << critical << ", from which on it is critical";
+    want << "at most " << critical << ", the critical value";
     throw ConfigError(std::string("dashboard.") + key, got.str(), want.str());
   }
   return {warning, critical};

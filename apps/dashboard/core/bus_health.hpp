@@ -13,7 +13,7 @@
 
 namespace stillhand::dashboard {
 
-/// What an alarm watches.
+/// The quantity that an alarm watches.
 enum class Watch : std::uint8_t { kLate, kLost, kSilent, kLatency, kChain, kService };
 inline constexpr std::size_t kWatches = 6;
 
@@ -24,8 +24,8 @@ struct NamedAlarm {
   Alarm alarm;
 };
 
-/// Health of a whole bus: every topic, the chain, who is there, and the alarms.  Live and from a
-/// recording it is fed in the same way.  Pure: time enters with each call; one thread.
+/// Health of a whole bus: every topic, the chain, the processes and the alarms.  A live bus and
+/// a recording feed it in the same way.  Pure: time enters with each call; one thread.
 class BusHealth {
  public:
   /// @param topics    in the order in which a fault is looked for: from the sensor to the motor
@@ -40,7 +40,7 @@ class BusHealth {
   void set_running(bool running, std::int64_t now_ns) noexcept;
   /// A life sign.  @param service  its place in the list
   void alive(std::size_t service, std::int64_t now_ns) noexcept;
-  /// What only the absence of samples tells; ten times a second.
+  /// Alarms that rest on missing samples; ten times a second.
   void step(std::int64_t now_ns);
   /// Everything that is raised now.
   void acknowledge() noexcept;

@@ -27,8 +27,8 @@ struct Growth {
   }
 };
 
-/// An edge of the graph: one end of a topic, and since when it is late or loses.  What was counted
-/// before the first report has no time.  Pure; one thread.
+/// An edge of the graph: one end of a topic, and the time since when it is late or loses samples.
+/// Counts from before the first report have no time.  Pure; one thread.
 class EdgeHealth {
  public:
   void step(const EndCounts& counts, std::int64_t at_ns) noexcept {

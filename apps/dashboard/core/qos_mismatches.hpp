@@ -9,15 +9,15 @@
 
 namespace stillhand::dashboard {
 
-/// An endpoint that some other one cannot match, as its own process told it.
+/// An endpoint that another endpoint cannot match, as reported by its process.
 struct QosMismatch {
   std::string service, topic, policy;
   std::int64_t since_ns = 0, last_ns = 0;
 };
 
-/// Which endpoints cannot match, by which policy and since when.  DDS tells it once for each pair,
-/// and nobody tells its end: it holds until another process of that name begins.  Bounded, whoever
-/// comes and goes.  Pure; one thread.
+/// Endpoints that cannot match, with the policy and the time.  DDS reports a mismatch once for each
+/// pair and does not report its end, so it holds until another process of that name starts.
+/// Bounded for any number of processes.  Pure; one thread.
 class QosMismatches {
  public:
   /// @param text  the policy, and behind a comma how often
@@ -33,15 +33,15 @@ class QosMismatches {
     if (all_.size() == kMost) all_.erase(all_.begin());
     all_.push_back({std::move(service), std::move(topic), std::move(policy), at_ns, at_ns});
   }
-  /// A process of that name began: what was told before it is over.
+  /// A process of that name started: earlier mismatches are over.
   void begun(const std::string& service, std::int64_t at_ns) {
-    // Its first word of a mismatch may come a little before its first status.
+    // Its first report of a mismatch may arrive shortly before its first status.
     std::erase_if(all_, [&](const QosMismatch& each) {
       return each.service == service && each.last_ns < at_ns - kBefore_ns;
     });
   }
 
-  /// In the order in which they were first told.
+  /// In the order of their first reports.
   [[nodiscard]] const std::vector<QosMismatch>& all() const noexcept { return all_; }
 
  private:

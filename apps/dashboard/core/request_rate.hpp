@@ -7,7 +7,7 @@
 
 namespace stillhand::dashboard {
 
-/// Lets through what a person asks for, and of a program's storm so many a second.  Pure: time
+/// Limits requests: those of a person pass, those of a program at most kMostPerSecond.  Pure: time
 /// enters with each call; one thread.
 class RequestRate {
  public:

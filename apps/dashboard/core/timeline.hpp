@@ -17,7 +17,7 @@ namespace stillhand::dashboard {
 enum class MarkKind : std::uint8_t { kLate, kLost, kAlarm, kEvent };
 inline constexpr std::size_t kMarkKinds = 4;
 
-/// Something that went wrong, or that a process told, at one instant of a recording.
+/// A fault, or an event of a process, at one instant of a recording.
 struct Mark {
   std::int64_t at_ns = 0;  ///< [ns] the first of those that were put together
   Level level = Level::kHealthy;
@@ -34,12 +34,12 @@ struct TrialSpan {
   std::int64_t from_ns = 0, to_ns = 0;
 };
 
-/// What happened when in a recording.  Bounded: of a kind, what falls into the same 2000th part of
-/// the whole is one mark, at the instant of the first.  Pure: time enters with each call; one
-/// thread.
+/// Faults and events of a recording, with their times.  Bounded: marks of one kind that fall into
+/// the same 1/2000 of the recording are one mark, at the instant of the first.  Pure: time enters
+/// with each call; one thread.
 class Timeline {
  public:
-  /// @param begin_ns,end_ns  of the whole; what lies outside counts for the first or last part
+  /// @param begin_ns,end_ns  of the recording; marks outside count for its first or last part
   Timeline(std::int64_t begin_ns, std::int64_t end_ns) noexcept
       : begin_ns_(begin_ns), end_ns_(end_ns > begin_ns ? end_ns : begin_ns) {}
 

@@ -37,13 +37,13 @@ TopicHealth::Writer& TopicHealth::writer_of(const Sample& sample) {
   Writer fresh;
   fresh.number = sample.writer;
   if (writers_.size() < kMostWriters) return writers_.emplace_back(fresh);
-  // Bounded whoever comes and goes: the one that was silent longest is forgotten.
+  // Bounded for any number of writers: the one that was silent longest is forgotten.
   Writer& oldest = *std::ranges::min_element(writers_, {}, &Writer::last_at_ns);
   return oldest = fresh;
 }
 
 void TopicHealth::turn_to(std::int64_t second) {
-  if (second <= now_.number) return;  // an arrival that is told late counts for the newest second
+  if (second <= now_.number) return;  // a late report of an arrival counts for the newest second
   if (now_.number == second - 1) {
     std::swap(before_, now_);
   } else {
@@ -56,7 +56,7 @@ void TopicHealth::turn_to(std::int64_t second) {
   now_.latency.clear();
 }
 
-// Eq. DB-3.  What a lost sample explains is a gap and no lateness.
+// Eq. DB-3.  The time of a lost sample is a gap, not lateness.
 std::int64_t TopicHealth::late_by(std::int64_t interval_ns, std::int64_t lost) const noexcept {
   if (plan_.deadline_ns == 0) return 0;
   const std::int64_t explained_ns = std::min(lost, kMostLost) * plan_.period_ns;

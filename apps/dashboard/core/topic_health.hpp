@@ -12,7 +12,7 @@
 
 namespace stillhand::dashboard {
 
-/// What is expected of a topic.
+/// The expected timing of a topic.
 struct TopicPlan {
   std::string name;
   std::int64_t period_ns = 0;    ///< [ns] between two samples of one writer, 0: when it happens
@@ -29,7 +29,7 @@ struct Sample {
   std::int64_t arrived_ns = 0;  ///< [ns] listener's system clock
 };
 
-/// What one sample showed.
+/// The result of one sample.
 struct Verdict {
   std::int64_t lost = 0;          ///< [ticks] or messages missing just before it
   std::int64_t sent_late_ns = 0;  ///< [ns] interval of the stamps beyond what ticks explain; >= 0
@@ -58,13 +58,13 @@ struct TopicReport {
 };
 
 /// Health of one topic, Eq. DB-1 to DB-4: rate, jitter of the arrivals, one-way latency, gaps and
-/// missed deadlines.  What rests on ticks, sequence numbers and stamps is the same for every
-/// listener that lost nothing; what rests on arrivals is this listener's own.
+/// missed deadlines.  Figures from ticks, sequence numbers and stamps are the same for every
+/// listener that lost no sample; figures from arrivals belong to this listener.
 ///
-/// A topic with ticks has one writer: one that is found later is another session, and counting
-/// begins anew.  Who was found before it isn't counted any longer, unless the later one is silent
-/// for a second: two that write at the same time cannot make it begin anew again and again.
-/// Pure: time enters with the samples.  Allocates at a writer's first sample alone; one thread.
+/// A topic with ticks has one writer.  A writer that is found later belongs to another session, and
+/// counting begins again.  An earlier writer is then not counted, unless the later one is silent
+/// for a second, so two writers at the same time cannot restart the count repeatedly. Pure: time
+/// enters with the samples.  Allocates at a writer's first sample alone; one thread.
 class TopicHealth {
  public:
   explicit TopicHealth(TopicPlan plan);

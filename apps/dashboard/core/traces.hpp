@@ -23,8 +23,8 @@ enum class Signal : std::size_t {
 };
 inline constexpr std::size_t kSignals = 6;
 
-/// The newest ten seconds of what moves, every 20th tick of it: a picture, not a measurement (what
-/// is faster than 25 Hz is folded).  Topics fill a row in any order.  Pure, no allocation but in
+/// The newest ten seconds of six signals at every 20th tick: a picture, not a measurement (signals
+/// above 25 Hz are aliased).  Topics fill a row in any order.  Pure, no allocation but in
 /// rows(); one thread.
 class Traces {
  public:

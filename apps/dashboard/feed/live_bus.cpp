@@ -9,12 +9,14 @@ namespace stillhand::dashboard {
 
 LiveBus::LiveBus(const LiveOptions& options, Rigs& rigs)
     : rigs_(rigs),
-      tap_({"stillhand-dashboard/" + std::to_string(getpid()), options.domain, options.profiles,
-            options.security, true,
-            [&rigs](const std::string& topic) { return rigs.shown().wants(topic); },
-            [this](const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
-              take(writer, sample);
-            }}) {}
+      tap_({.name = "stillhand-dashboard/" + std::to_string(getpid()),
+            .domain = options.domain,
+            .profiles = options.profiles,
+            .security = options.security,
+            .batched = true,
+            .wanted = [&rigs](const std::string& topic) { return rigs.shown().wants(topic); },
+            .on_sample = [this](const runtime::FoundWriter& writer,
+                                const runtime::TappedSample& sample) { take(writer, sample); }}) {}
 
 void LiveBus::take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
   const std::lock_guard lock(mutex_);

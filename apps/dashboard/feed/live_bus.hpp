@@ -21,15 +21,15 @@ struct LiveOptions {
   std::filesystem::path security;  ///< see runtime::Bus::Options
 };
 
-/// A running bus, listened to from outside of the session, on its way to a feed.  DDS's threads
-/// only copy a message into a queue that has a bound; whoever owns the feed empties it.
+/// Messages of a running bus on their way to the feeds, received from outside of the session.
+/// DDS's threads only copy a message into a bounded queue; the thread of the feeds empties it.
 class LiveBus {
  public:
   /// @param rigs  outlive this; touched by drain() alone  @throws as runtime::Tap does
   LiveBus(const LiveOptions& options, Rigs& rigs);
 
   void start() { tap_.start(); }
-  /// Feeds what has come since the last call.
+  /// Feeds the messages since the last call.
   void drain();
   /// Messages that came while the queue was full.
   [[nodiscard]] std::uint64_t dropped() const;
@@ -47,7 +47,7 @@ class LiveBus {
   std::map<std::size_t, std::uint32_t> number_of_;  // by the tap's
   std::uint64_t dropped_ = 0;
   recording::MessageBatch draining_;  // of drain() alone
-  runtime::Tap tap_;                  // last: its threads end before what they use
+  runtime::Tap tap_;                  // last: its threads use the members above
 };
 
 }  // namespace stillhand::dashboard

@@ -111,7 +111,7 @@ Heard MessageFeed::take(const Message& message) {
   if (known.row == &topics::kRecorderStatus) take_recorder(message);
   if (known.topic == kNone) return {};
   const recording::SampleHead head = recording::sample_head(message.bytes);
-  if (head.rig != options_.rig || passed_over(known)) return {};  // also what is no message
+  if (head.rig != options_.rig || passed_over(known)) return {};  // also malformed bytes
   Sample sample{message.source, message.sequence, -1, 0, message.source_ns, message.arrived_ns};
   if (known.row->pattern == topics::Pattern::kStream1khz) {
     if (head.tick < 0 || head.tick > kLastTick) {
@@ -162,7 +162,7 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
     if (rig_writer_ && *rig_writer_ != message.source) {
       health_.chain().clear();
       forces_ = {};
-      // A process that begins now nobody has stopped.
+      // A process that starts now has not been stopped.
       if (message.source > *rig_writer_) emergency_ns_ = 0;
     }
     rig_writer_ = message.source;
@@ -265,13 +265,13 @@ void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::
   services_[number] = std::move(view);
 }
 
-// While a person tracks, a force of the motor tells that this trial cancels.  A trial is announced
+// While a person tracks, a motor force reveals that this trial cancels.  A trial is announced
 // before it begins.
 bool MessageFeed::motor_hidden() const noexcept {
   return options_.blinded && control_ && control_->phase() == stillhand_msgs::PHASE_TRACKING;
 }
 
-// Eq. DB-4: both told against the experiment's clock.
+// Eq. DB-4: both relative to the experiment's clock.
 std::int64_t MessageFeed::system_ahead_ns(const std::string& service) const {
   const auto ahead = [this](const std::string& name) -> std::int64_t {
     const auto found = clocks_.find(name);

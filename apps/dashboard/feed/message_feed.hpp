@@ -42,41 +42,41 @@ struct Message {
 struct FeedOptions {
   Config config;
   std::uint32_t rig = 1;
-  bool blinded = true;                ///< what tells a trial's condition is passed over
+  bool blinded = true;                ///< data that reveal a trial's condition are not shown
   std::string listener = "recorder";  ///< process on whose host the arrivals were stamped
 };
 
-/// What a process says of itself, newest.
+/// The newest reports of a process.
 struct ServiceView {
   std::optional<stillhand_msgs::ServiceStatus> status;
   std::optional<stillhand_msgs::HostStatus> host;
-  std::int64_t host_at_ns = 0;                                          ///< when that came
+  std::int64_t host_at_ns = 0;                                          ///< its arrival
   std::uint64_t deadline_misses = 0, cycle_misses = 0, lost_ticks = 0;  ///< of all it reads
   std::map<std::string, EdgeHealth> reads;                              ///< by topic
 };
 
-/// A `stillhand record`, by its own word.
+/// The newest status of a `stillhand record`.
 struct RecorderView {
   std::int64_t at_ns;
   stillhand_msgs::RecorderStatus status;
 };
 
-/// A process's own word, when it came.
+/// An event and its arrival.
 struct HeardEvent {
   std::int64_t at_ns;
   stillhand_msgs::Event event;
 };
 
-/// What a message was.
+/// The result of one message.
 struct Heard {
   const topics::Topic* topic = nullptr;  ///< nullptr: of no topic or rig that is shown
   Verdict verdict;
 };
 
-/// The one way from messages to the dashboard's numbers: a live bus and a recording both go through
-/// it, so that they cannot count differently.  What a replay plays is counted until a session's own
-/// process is heard, and not beside it: nobody of the session hears it either.  One thread; no
-/// clock: time comes with messages and step().  A copy goes on by itself.
+/// From messages to the dashboard's numbers.  A live bus and a recording both use it, so that they
+/// cannot count differently.  Samples of a replay are counted only while no process of a session
+/// sends, since processes of a session drop them too.  One thread; no clock: time comes with
+/// messages and step().  A copy is independent.
 class MessageFeed {
  public:
   /// @throws ConfigError as BusHealth does
@@ -108,7 +108,7 @@ class MessageFeed {
   [[nodiscard]] const std::map<std::string, RecorderView>& recorders() const noexcept {
     return recorders_;
   }
-  /// [ns] when the rig told of an emergency stop; 0: it did not.
+  /// [ns] when the rig reported an emergency stop; 0: none.
   [[nodiscard]] std::int64_t emergency_ns() const noexcept { return emergency_ns_; }
   /// Newest first.
   [[nodiscard]] const std::deque<HeardEvent>& events() const noexcept { return events_; }

@@ -13,8 +13,8 @@
 
 namespace stillhand::dashboard {
 
-/// A recording, fed as the bus would have been: what a dashboard would have shown at any instant of
-/// it, and what happened when.
+/// A recording, fed as a bus is: the state that a dashboard would have shown at any instant, and
+/// the time line of faults and events.
 ///
 /// States on the way are kept, one a second or kMostKept over the whole, so that any instant is
 /// reached by feeding at most what lies behind one of them.  Bounded memory: a state takes 1.5 MB.

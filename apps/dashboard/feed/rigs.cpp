@@ -18,8 +18,8 @@ void Rigs::add(const Source& source) {
   for (auto& [rig, feed] : feeds_) feed.add(source);
 }
 
-// A rig is found by its samples; what is of none of those found, a recorder's word for one, is told
-// to the one that is shown.
+// A rig is found by its samples.  A message of no known rig, for example a recorder's status, goes
+// to the rig that is shown.
 MessageFeed& Rigs::feed_of(std::uint32_t writer, std::uint32_t rig) {
   const auto known = feeds_.find(rig);
   if (known != feeds_.end()) return known->second;

@@ -20,11 +20,11 @@ struct RigSummary {
   std::string worst;                    ///< topic or process of the worst alarm, or ""
 };
 
-/// Every rig of a bus, each with a feed of its own: the one that the page shows, and those that are
-/// found beside it.  One thread.
+/// Every rig of a bus, each with a feed of its own: the one that the page shows, and the others
+/// that are found.  One thread.
 class Rigs {
  public:
-  static constexpr std::size_t kMostRigs = 32;  ///< who brings more is not counted
+  static constexpr std::size_t kMostRigs = 32;  ///< further rigs are not counted
 
   /// @param options  of the one that is shown  @throws ConfigError as BusHealth does
   explicit Rigs(const FeedOptions& options);

@@ -49,7 +49,7 @@ std::string_view value_behind(std::string_view text, std::string_view key, char 
 }  // namespace
 
 bool Access::is_token(std::string_view word) const {
-  // Its length is no secret; what it holds is compared in a time that does not depend on it.
+  // The length is no secret; the comparison takes a time that does not depend on the content.
   return !token_.empty() && word.size() == token_.size() &&
          CRYPTO_memcmp(word.data(), token_.data(), token_.size()) == 0;
 }
@@ -83,10 +83,10 @@ std::string read_token(const std::string& file) {
   struct stat about {};
   if (stat(file.c_str(), &about) == 0) {
     if (!S_ISREG(about.st_mode)) {
-      throw ConfigError("--token-file " + file, "no file", "a file with a token");
+      throw ConfigError("--token-file " + file, "not a regular file", "a file with a token");
     }
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-      throw ConfigError("--token-file " + file, "a file that others may read", "mode 600");
+      throw ConfigError("--token-file " + file, "a file that other users can read", "mode 600");
     }
   }
   std::string token = recording::read_file(file);
@@ -96,8 +96,8 @@ std::string read_token(const std::string& file) {
   });
   if (token.size() < kShortest || token.size() > kLongest || !plain) {
     throw ConfigError("--token-file " + file, std::to_string(token.size()) + " characters",
-                      "16 to 256 letters, digits, '-', '_' and '.' in one line, as of `openssl "
-                      "rand -hex 32`");
+                      "one line of 16 to 256 letters, digits, '-', '_' and '.', for example from "
+                      "`openssl rand -hex 32`");
   }
   return token;
 }

@@ -7,28 +7,28 @@
 
 namespace stillhand::dashboard {
 
-/// Who may see the page.  On loopback everybody on this host; a request must then name the host as
-/// a loopback address, or a page of the world could reach this one by a name of its own ("DNS
-/// rebinding").  Elsewhere whoever shows the token.
+/// Decides which requests may see the page.  Without a token: requests that name the host as a
+/// loopback address, since otherwise a page of another site could reach this one through a host
+/// name of its own ("DNS rebinding").  With a token: requests that show it.
 class Access {
  public:
   /// @param token  empty: loopback
   explicit Access(std::string token) : token_(std::move(token)) {}
 
-  /// What is to be looked at of a request; empty where it has none.
+  /// The parts of a request that decide; empty if missing.
   struct Request {
     std::string_view host, origin, authorization, cookie;
-    std::string_view query;  ///< behind the "?" of the target
+    std::string_view query;  ///< after the "?" of the target
   };
 
   /// May see everything.
   [[nodiscard]] bool allows(const Request& request) const;
-  /// May also change something: not when another site's page asks.
+  /// May also cause an action: never for a page of another site.
   [[nodiscard]] bool allows_change(const Request& request) const;
-  /// The query shows the right token: it goes into a cookie, and out of the address.
+  /// The query shows the right token, which then moves from the address into a cookie.
   [[nodiscard]] bool signs_in(const Request& request) const;
-  /// Named by the port that the browser asked, since cookies are of a host and know no ports:
-  /// another dashboard there is not signed out.
+  /// Its name contains the port that the browser uses, since cookies ignore ports; otherwise
+  /// another dashboard on the host would be signed out.
   [[nodiscard]] std::string cookie(const Request& request) const;
 
  private:

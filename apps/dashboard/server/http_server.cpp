@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/dashboard/server/http_server.hpp"
 
+#include <fmt/format.h>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -29,12 +31,12 @@ constexpr std::size_t kMostHeader = 8192;
 constexpr std::size_t kMostBody = 4096;
 constexpr std::size_t kMostDiscarded = std::size_t{64} * 1024;
 constexpr int kSendBuffer = 64 * 1024;
-constexpr int kBacklog = 1024;  // a flood fills it; who knocks behind waits a second in the kernel
+constexpr int kBacklog = 1024;  // a flood fills it; later connections wait a second in the kernel
 constexpr std::chrono::seconds kRequestTime{10};
 constexpr std::chrono::seconds kLeaveTime{2};
 constexpr std::chrono::milliseconds kAcceptPause{100};
 
-// The page runs its own files and nothing else; it is in nobody's frame.
+// The page runs only its own files and appears in no frame.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -63,8 +65,8 @@ struct HttpServer::Impl {
   const Access& access;
   Served served;
   std::size_t connections = 0, streams = 0;
-  // Who can be closed where connections run out, in this order, the oldest first: who has the last
-  // answer and does not close, and who has sent no whole request yet.
+  // Connections that can be closed when all are taken, in this order, the oldest first: those that
+  // have their last answer and stay open, and those without a complete request.
   std::list<Connection*> leaving, asking;
   asio::io_context io{1};  // its end is that of every Connection in it
   tcp::acceptor acceptor{io};
@@ -142,14 +144,14 @@ class HttpServer::Connection : public std::enable_shared_from_this<HttpServer::C
     if (server_.streams < kMostListeners) return listen();
     Answer full;
     full.status = 503;
-    full.body = "want fewer pages at once: " + std::to_string(kMostListeners) + " listen\n";
+    full.body = fmt::format("too many open pages: at most {} can listen\n", kMostListeners);
     respond(full, false);
   }
 
   void refuse(unsigned status, const char* want) {
     Answer refusal;
     refusal.status = status;
-    refusal.body = std::string("want ") + want + "\n";
+    refusal.body = fmt::format("want {}\n", want);
     respond(refusal, false);
   }
 
@@ -245,8 +247,8 @@ void HttpServer::Impl::open(const Options& options) {
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(kBacklog, error);
   if (error) {
-    throw ConfigError("--port", options.address + ":" + std::to_string(options.port),
-                      "one that can be listened on (" + error.message() + ")");
+    throw ConfigError("--port", fmt::format("{}:{}", options.address, options.port),
+                      fmt::format("an address and a port that are free ({})", error.message()));
   }
   accept();
 }
@@ -264,8 +266,8 @@ void HttpServer::Impl::accept() {
   });
 }
 
-// Who has had the last answer goes first, and then who connects and asks nothing: a flood of such
-// displaces itself, and who asks at once is answered before it is his turn.
+// First connections that have their last answer, then those without a request: a flood of such
+// connections displaces itself, and a client that sends its request at once is answered in time.
 bool HttpServer::Impl::make_room() {
   if (connections < kMostConnections) return true;
   for (const std::list<Connection*>* idle : {&leaving, &asking}) {
@@ -295,7 +297,7 @@ std::size_t HttpServer::listeners() const { return impl_->listeners.size(); }
 
 void HttpServer::broadcast(const std::string& json) {
   const auto frame = std::make_shared<const std::string>("data: " + json + "\n\n");
-  const auto listeners = impl_->listeners;  // who is dropped leaves the set
+  const auto listeners = impl_->listeners;  // a copy: a dropped client leaves the set
   for (const auto& listener : listeners) listener->send(frame);
 }
 

@@ -12,14 +12,14 @@
 namespace stillhand::dashboard {
 
 /// HTTP/1.1 in the thread that calls run_for(), and in no other.  Everything a client can make it
-/// hold has a bound: connections, header, body, time for a request, frames that wait for a client;
-/// who exceeds one is answered or dropped, never waited for.  Where connections run out, those that
-/// have had their last answer make room, then those that asked nothing yet, the oldest first.
+/// hold has a bound: connections, header, body, time for a request, frames that wait for a client.
+/// A client that exceeds one gets an answer or is dropped.  When all connections are taken, those
+/// that have their last answer are closed, then those without a request, the oldest first.
 class HttpServer {
  public:
   struct Options {
     std::string address = "127.0.0.1";
-    std::uint16_t port = 0;  ///< 0: any that is free
+    std::uint16_t port = 0;  ///< 0: any free port
   };
   static constexpr std::size_t kMostConnections = 64;
   static constexpr std::size_t kMostListeners = 48;  ///< the others are for requests
@@ -32,11 +32,11 @@ class HttpServer {
   HttpServer& operator=(const HttpServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Answers what comes until the time is over.
+  /// Answers requests until the time is over.
   void run_for(std::chrono::milliseconds time);
   /// Clients of the event stream.
   [[nodiscard]] std::size_t listeners() const;
-  /// One event to each of them; who has not taken the last kMostQueued is dropped.
+  /// One event to each of them; a client with kMostQueued waiting frames is dropped.
   void broadcast(const std::string& json);
 
  private:

@@ -26,7 +26,7 @@ Pages::Pages(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / needed;
     if (!std::filesystem::is_regular_file(path)) {
       throw ConfigError(path.string(), "no such file",
-                        "the page's files, which a build with npm puts there");
+                        "the files of the page; a build with npm installed puts them there");
     }
   }
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

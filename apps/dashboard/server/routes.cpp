@@ -10,8 +10,8 @@ namespace stillhand::dashboard {
 namespace {
 
 constexpr const char* kSignIn =
-    "signed out: open this page as /?token=... once, with the token of --token-file; without one, "
-    "as 127.0.0.1, localhost or [::1]";
+    "signed out: open this page once as /?token=... with the token of --token-file; a dashboard "
+    "without --token-file answers only to 127.0.0.1, localhost and [::1]";
 
 Answer refusal(unsigned status, std::string why) {
   Answer answer;
@@ -23,7 +23,7 @@ Answer refusal(unsigned status, std::string why) {
 Answer answer_to(const Outcome& outcome) {
   switch (outcome.kind) {
     case Outcome::Kind::kUnknown:
-      return refusal(404, "no such action");
+      return refusal(404, "unknown action");
     case Outcome::Kind::kRefused:
       return refusal(409, outcome.why);
     case Outcome::Kind::kTooMany:
@@ -61,10 +61,12 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
   }
   if (!access.allows(request)) return refusal(403, kSignIn);
   if (question.method == "POST") {
-    if (!access.allows_change(request)) return refusal(403, "not for a page of another site");
+    if (!access.allows_change(request))
+      return refusal(403, "requests from pages of other sites are refused");
     return answer_to(served.act(path));
   }
-  if (question.method != "GET") return refusal(405, "GET, or POST of an action");
+  if (question.method != "GET")
+    return refusal(405, "the method must be GET, or POST for an action");
   Answer found;
   if (path == "/snapshot") {
     found.type = "application/json";
@@ -72,12 +74,13 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
       found.body = served.snapshot({});
       return found;
     }
-    if (!served.timeline) return refusal(404, "at=: a bus has no past");
+    if (!served.timeline)
+      return refusal(404, "at=: only a dashboard of a recording can show an instant");
     const std::optional<double> at_s = finite(query.substr(3));
-    if (!at_s) return refusal(400, "at=: want seconds since the beginning, as 12.5");
+    if (!at_s) return refusal(400, "at=: want seconds since the beginning, for example 12.5");
     try {
       found.body = served.snapshot(at_s);
-    } catch (const std::exception& error) {  // the file is no longer what it was
+    } catch (const std::exception& error) {  // the file has changed
       return refusal(500, error.what());
     }
     return found;
@@ -92,7 +95,7 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
     return found;
   }
   const Page* page = pages.find(path);
-  if (page == nullptr) return refusal(404, "no such page");
+  if (page == nullptr) return refusal(404, "unknown page");
   found.type = page->type;
   found.body = page->content;
   return found;

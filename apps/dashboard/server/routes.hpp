@@ -12,7 +12,7 @@
 
 namespace stillhand::dashboard {
 
-/// What of a request decides about its answer; empty where it has none.
+/// The parts of a request that decide its answer; empty if missing.
 struct Question {
   std::string_view method, target, host, origin, authorization, cookie;
 };
@@ -25,23 +25,23 @@ struct Answer {
   bool streams = false;          ///< no body: server-sent events from now on
 };
 
-/// What became of an action that was asked for.
+/// The outcome of a requested action.
 struct Outcome {
   enum class Kind : std::uint8_t { kDone, kUnknown, kRefused, kTooMany };
   Kind kind = Kind::kDone;
-  std::string why;  ///< one line for a person, where it was not done
+  std::string why;  ///< reason, one line for a person; empty if done
 };
 
-/// What the server can be asked for.
+/// What the server serves.
 struct Served {
-  /// Whole, as JSON.  @param at_s  [s] since the beginning of a recording; none: the newest
+  /// Everything, as JSON.  @param at_s  [s] since the beginning of a recording; none: the newest
   std::function<std::string(std::optional<double> at_s)> snapshot;
   std::function<std::string()> timeline;  ///< of a recording, as JSON; empty on a bus
-  /// Does what a path asks for, "/session/pause" and the like.
+  /// Carries out the action of a path such as "/session/pause".
   std::function<Outcome(std::string_view path)> act;
 };
 
-/// The answer to any request, however odd; without a socket.
+/// The answer to any request, also a malformed one; uses no socket.
 Answer answer(const Question& question, const Pages& pages, const Access& access,
               const Served& served);
 

@@ -63,7 +63,7 @@ Json topic_json(const TopicHealth& topic, std::int64_t now_ns) {
           {"last_ms", instant(report.last_at_ns)}};
 }
 
-/// Where a process runs, "" until it told.
+/// The host of a process, "" until its first report.
 std::string host_of(const MessageFeed& feed, std::string_view service) {
   for (const ServiceView& view : feed.services()) {
     if (view.host && view.host->service().to_string() == service)
@@ -102,7 +102,7 @@ Json rigs_json(const std::vector<RigSummary>& rigs) {
   return all;
 }
 
-// The worst first; of those, what is upstream comes first already.
+// The worst first; alarms of one level are already in the order of the chain.
 Json alarms_json(const MessageFeed& feed) {
   std::vector<const NamedAlarm*> raised;
   for (const NamedAlarm& each : feed.health().alarms()) {
@@ -169,7 +169,7 @@ Json services_json(const MessageFeed& feed, std::int64_t now_ns) {
   return all;
 }
 
-// Each process tells of its host; the newest word counts.
+// Each process reports its host; the newest report counts.
 Json hosts_json(const MessageFeed& feed) {
   std::map<std::string, Json> by_name;
   std::map<std::string, std::int64_t> newest_ns;
@@ -318,7 +318,7 @@ std::string snapshot_json(const MessageFeed& feed, const Surroundings& around, s
                   {"trouble", around.trouble}}}};
   if (parts.graph) snapshot["graph"] = graph_json(feed);
   if (parts.spectrum) snapshot["spectrum"] = spectrum_json(feed.forces());
-  // Texts come from the bus: what is no UTF-8 is shown as such and breaks nothing.
+  // Texts come from the bus: bytes that are not UTF-8 are replaced.
   return snapshot.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

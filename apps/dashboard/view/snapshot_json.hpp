@@ -12,7 +12,7 @@
 
 namespace stillhand::dashboard {
 
-/// What the page shows beside the feed's own.
+/// Values on the page that do not come from the feed.
 struct Surroundings {
   std::string mode;  ///< "live" or "recording"
   std::string file;  ///< of a recording
@@ -24,12 +24,12 @@ struct Surroundings {
   double cpu_share = 0.0;        ///< [-] of one core, by this process
   std::size_t clients = 0;       ///< that listen
   std::vector<RigSummary> rigs;  ///< of a bus
-  bool actions = false;          ///< it may ask something of the session
+  bool actions = false;          ///< requests to the session are possible
 };
 
-/// What need not be in every frame.
+/// Parts that not every frame needs.
 struct Parts {
-  bool graph = true;     ///< nobody reads it faster than twice a second
+  bool graph = true;     ///< sent twice a second
   bool spectrum = true;  ///< takes milliseconds
 };
 

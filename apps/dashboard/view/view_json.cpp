@@ -19,7 +19,7 @@ Json times(const Growth& growth) {
   return {{"first_ms", instant(growth.first_at_ns)}, {"last_ms", instant(growth.last_at_ns)}};
 }
 
-// The readers of a row, and whoever else says that it reads.
+// The readers of a row, and other processes that report to read it.
 Json readers_json(const MessageFeed& feed, const topics::Topic& topic) {
   Json readers = Json::array();
   for (std::size_t i = 0; i < topics::kServices.size(); ++i) {
@@ -101,7 +101,7 @@ Json spectrum_json(const ForceRecord& record) {
 Json timeline_json(const Timeline& timeline) {
   constexpr std::array<const char*, kMarkKinds> kKinds{"late", "lost", "alarm", "event"};
   constexpr std::array kPhases{"idle", "pegged", "tracking"};
-  // To the microsecond above: an instant of the page then holds what is marked there.
+  // Rounded up to a microsecond: the instant on the page then includes the marked message.
   const auto since_s = [&](std::int64_t at_ns) {
     return std::ceil(static_cast<double>(difference_ns(at_ns, timeline.begin_ns())) / 1e3) / 1e6;
   };

@@ -16,8 +16,8 @@ Json instant(std::int64_t at_ns);
 /// null where it is not finite.
 Json number(double value);
 
-/// The catalogue as a graph: who writes and reads each topic, each reader's own counts, and which
-/// endpoints cannot match.
+/// The catalogue as a graph: writers and readers of each topic, the counts of each reader, and
+/// endpoints that cannot match.
 Json graph_json(const MessageFeed& feed);
 /// Eq. DB-6; null without a segment.
 Json spectrum_json(const ForceRecord& record);

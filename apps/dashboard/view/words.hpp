@@ -9,13 +9,13 @@
 
 namespace stillhand::dashboard {
 
-/// What the page's scripts know things by.
+/// Names in the JSON, which the page shows.
 const char* word(Level level);
 const char* word(Watch watch);
 const char* word(stillhand_msgs::EventKind kind);
 /// Of an alarm's value.
 const char* unit(Watch watch);
-/// How bad it is that a process tells this.
+/// Severity of an event.
 Level level_of(stillhand_msgs::EventKind kind);
 /// The one process that writes a topic, or "".
 std::string_view writer_of(const std::string& topic);

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page can ask for. The emergency stop needs one key from anywhere and asks no question back.
+// Requests of the page. The emergency stop needs one key, wherever the focus is, and no confirmation.
 import { SIGN_IN, clock, element, write } from "/elements.js";
 
-const TRIES = 40; // of an emergency stop that gets no answer, four a second
+const TRIES = 40; // of an emergency stop without an answer, four each second
 const plain = (event) => !event.ctrlKey && !event.metaKey && !event.altKey;
 
-function tell(text, bad = false) {
+function report(text, bad = false) {
   element("answer").classList.toggle("bad", bad);
   write(element("answer"), text);
 }
 
-// Why not; nothing: it was asked for.
+// Returns why the request failed; "" when it was accepted.
 async function ask(path, name) {
   try {
     const answer = await fetch(path, { method: "POST", signal: AbortSignal.timeout(2000) });
     if (answer.ok) {
-      tell(`${name}: asked at ${clock(Date.now())}`);
+      report(`${name}: asked at ${clock(Date.now())}`);
       return "";
     }
     const why = answer.status === 403 ? `signed out: ${SIGN_IN}` : (await answer.text()).trim();
-    tell(`${name}: refused: ${why}`, true);
+    report(`${name}: refused: ${why}`, true);
     return why;
   } catch {
-    tell(`${name}: not delivered, the dashboard's process does not answer`, true);
+    report(`${name}: not delivered: the dashboard's process does not answer`, true);
     return "the dashboard's process does not answer";
   }
 }
@@ -33,15 +33,15 @@ async function emergencyStop(button) {
     const why = await ask("/emergency-stop", "Emergency stop");
     if (why === "") {
       button.dataset.state = "asked";
-      // From then on the session's own word counts.
+      // From then on the session's own state is shown.
       setTimeout(() => { if (button.dataset.state === "asked") delete button.dataset.state; }, 5000);
       return;
     }
     button.dataset.state = "failed";
-    tell(`EMERGENCY STOP NOT DELIVERED (${why}): use the rig's own. Trying again …`, true);
+    report(`EMERGENCY STOP NOT DELIVERED (${why}): use the emergency stop at the rig. Trying again …`, true);
     await new Promise((then) => setTimeout(then, 250));
   }
-  tell("EMERGENCY STOP NOT DELIVERED: use the rig's own.", true);
+  report("EMERGENCY STOP NOT DELIVERED: use the emergency stop at the rig.", true);
 }
 
 export class Actions {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest ten seconds of what moves.
+// Traces of the newest ten seconds.
 import uPlot from "/uPlot.esm.js";
 import { create, mark, write } from "/elements.js";
 
 const KEPT_S = 10;
 const HEIGHT = 118;
 const STEP_TICKS = 20; // between two rows of the dashboard
-const SPOKEN_MS = 2000;
+const DESCRIBED_MS = 2000;
 const FIGURES = [
-  { title: "Acceleration [m/s²]", series: [{ name: "accel_y_m_s2", key: "platform, right" }], least: 1 },
+  { title: "Acceleration [m/s²]", series: [{ name: "accel_y_m_s2", key: "platform, positive to the right" }], least: 1 },
   { title: "Force of the hand [N]", series: [{ name: "force_n", key: "measured" }, { name: "predicted_force_n", key: "predicted by the model" }], least: 1 },
   { title: "Residual [N]", series: [{ name: "residual_n", key: "measured − predicted" }], least: 1 },
   { title: "Motor force [N]", series: [{ name: "motor_force_n", key: "on the stick" }], limits: true, least: 1 },
@@ -17,7 +17,7 @@ const FIGURES = [
 
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// Figure, caption with a key for each line, and a place for the plot that says what it shows.
+// A figure: a caption with a key for each line, and a place for the plot with a description for screen readers.
 export function figureOf(parent, title, keys, about) {
   const box = create("figure");
   const caption = create("figcaption");
@@ -41,14 +41,14 @@ class Chart {
     this.figure = figure;
     this.limit = limit;
     this.plot = null;
-    this.spokenAt = -Infinity;
+    this.describedAt = -Infinity;
     const keys = figure.series.map(({ key }, i) => ({ key, look: i === 0 ? "" : "second" }));
     if (figure.limits) keys.push({ key: `limits ±${limit} N`, look: "limit" });
     Object.assign(this, figureOf(parent, figure.title, keys, `${figure.title}, newest ${KEPT_S} seconds`));
     new ResizeObserver(() => this.plot?.setSize({ width: this.place.clientWidth, height: HEIGHT })).observe(this.place);
   }
 
-  // Anew whenever the colours change.
+  // Called again whenever the colours change.
   draw(columns) {
     this.plot?.destroy();
     const lines = this.figure.series.map((_, i) => ({ stroke: colour(`--line-${i + 1}`), width: 1.75, dash: i === 0 ? undefined : [6, 4], points: { show: false } }));
@@ -80,22 +80,22 @@ class Chart {
     };
     let last = null;
     for (const row of rows) {
-      // Nothing is drawn where nothing was heard.
+      // A gap in the ticks is a gap in the line.
       if (last !== null && row.tick - last > 2 * STEP_TICKS) add(last + STEP_TICKS, this.figure.series.map(() => null));
       add(row.tick, this.figure.series.map(({ name }) => row[name]));
       last = row.tick;
     }
     write(this.note, hidden && this.figure.limits ? "hidden while a person tracks (blinded)" : "");
-    this.speak(columns);
+    this.describe(columns);
     if (this.plot) this.plot.setData(columns); else this.draw(columns);
   }
 
-  speak(columns) {
-    if (performance.now() - this.spokenAt < SPOKEN_MS) return;
-    this.spokenAt = performance.now();
+  describe(columns) {
+    if (performance.now() - this.describedAt < DESCRIBED_MS) return;
+    this.describedAt = performance.now();
     const parts = this.figure.series.map(({ key }, i) => {
       const values = columns[i + 1].filter((value) => value !== null);
-      if (values.length === 0) return `${key}: nothing heard`;
+      if (values.length === 0) return `${key}: no samples`;
       return `${key}: now ${values.at(-1).toFixed(2)}, from ${Math.min(...values).toFixed(2)} to ${Math.max(...values).toFixed(2)}`;
     });
     mark(this.place, "aria-label", `${this.figure.title}, newest ${KEPT_S} seconds. ${parts.join("; ")}`);
@@ -126,7 +126,7 @@ export class Charts {
     });
   }
 
-  // What is new; `whole`: what was there before is of another instant.
+  // Adds new rows; `whole`: the rows before belong to another instant and are dropped.
   add({ traces, limits, session }, whole) {
     if (this.charts.length === 0) this.charts = FIGURES.map((figure) => new Chart(this.parent, figure, limits.motor_force_n));
     this.hidden = session.blinded && session.phase === "tracking";
@@ -137,7 +137,7 @@ export class Charts {
   }
 
   join(arrived) {
-    // Ticks that go far back are another session.
+    // Ticks that jump far back belong to another session.
     if (arrived.at(-1).tick < (this.rows.at(-1)?.tick ?? -1) - 1000 * KEPT_S) this.rows = [];
     if (arrived[0].tick > (this.rows.at(-1)?.tick ?? -1)) {
       this.rows.push(...arrived);

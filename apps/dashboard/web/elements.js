@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small words for the document.
-export const SIGN_IN = "open this page again with ?token=… of its --token-file";
+// Access to the document, and text of times and names.
+export const SIGN_IN = "open this page again with ?token=… and the token of its --token-file";
 export const element = (id) => document.getElementById(id);
 
-// A screen reader speaks what changes: nothing is written that is there already.
+// A screen reader announces every change, so an unchanged text is not written again.
 export function write(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }

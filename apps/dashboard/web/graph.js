@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes and topics: who is there, who is missing, which edge is late.
+// The graph of processes and topics: which process is missing, which edge is late.
 import { clock, create, draw, element, mark, short, write } from "/elements.js";
 import { faultsOf, gone } from "/graph_faults.js";
 import { layOut } from "/graph_layout.js";
@@ -13,7 +13,7 @@ const RAIL_H = 58;
 const SIGNS = { healthy: "", warning: "!", critical: "✕" };
 const worse = (one, other) => (LEVELS.indexOf(one) > LEVELS.indexOf(other) ? one : other);
 
-const gravest = (faults) => faults.reduce((worst, { level }) => worse(worst, level), "healthy");
+const worstOf = (faults) => faults.reduce((worst, { level }) => worse(worst, level), "healthy");
 
 // A name of several words on two lines.
 function lines(name) {
@@ -97,11 +97,11 @@ export class Graph {
     this.svg = svg;
   }
 
-  // What nearly everybody writes or reads, and the two that do: a line that all are on.
+  // Topics that nearly every process writes or reads, and experiment and recorder: a line that connects all.
   rail(topics, top, width) {
     const group = draw("g", { class: "rail" });
     const y = top + 26;
-    group.append(draw("path", { d: `M${MARGIN} ${y}H${width - MARGIN}` }), draw("text", { x: MARGIN, y: top - 2, class: "told start" }, "to and from all"));
+    group.append(draw("path", { d: `M${MARGIN} ${y}H${width - MARGIN}` }), draw("text", { x: MARGIN, y: top - 2, class: "told start" }, "to and from all processes"));
     const space = { w: 92, h: 36 };
     const names = ["experiment", ...topics, "recorder"];
     const first = MARGIN + space.w / 2;
@@ -145,23 +145,23 @@ export class Graph {
         if (away && going) missing.push(node.name);
         const touched = this.faults.filter(({ reader, active }) => active && reader === node.name);
         const edges = new Set(touched.map(({ topic }) => topic)).size;
-        const told = service.state === undefined ? "not there" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} late or bad` : service.state;
-        const level = (away && going) || service.state === "fault" ? "critical" : gravest(touched);
+        const told = service.state === undefined ? "missing" : away ? `silent ${(service.silent_ms / 1000).toFixed(1)} s` : edges > 0 ? `${edges} edge${edges === 1 ? "" : "s"} at fault` : service.state;
+        const level = (away && going) || service.state === "fault" ? "critical" : worstOf(touched);
         node.show(away && !going ? "none" : worse(level, levels.get(node.name) ?? "healthy"), told);
       } else {
         const touched = this.faults.filter(({ topic, active }) => active && topic === node.name);
-        node.show(worse(gravest(touched), levels.get(node.name) ?? "healthy"));
+        node.show(worse(worstOf(touched), levels.get(node.name) ?? "healthy"));
       }
     }
     for (const edge of this.edges) {
       edge.drawn.show(this.faults.filter((fault) => fault.topic === edge.topic && (edge.reader ? fault.reader === edge.reader : fault.reader === "")));
     }
     const active = this.faults.filter(({ active: now }) => now).length;
-    const absent = missing.length > 0 ? `missing: ${missing.join(", ")}` : "every process that is awaited is there";
-    mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no edge is at fault now" : `${active} faults of edges now, listed below`}`);
+    const absent = missing.length > 0 ? `missing: ${missing.join(", ")}` : "no process is missing";
+    mark(this.svg, "aria-label", `Processes and topics along the control chain. ${going ? absent : "no session runs"}; ${active === 0 ? "no edge is at fault now" : `${active} fault${active === 1 ? "" : "s"} of edges now, listed below`}`);
   }
 
-  // The same in words.
+  // The same as a table.
   list() {
     const rows = this.faults.map((fault) => {
       const row = create("tr");
@@ -169,7 +169,7 @@ export class Graph {
       const edge = [fault.writer, short(fault.topic), fault.reader].filter((part) => part !== "").join(" → ");
       const head = create("th", edge);
       head.scope = "row";
-      const since = fault.since_ms ? clock(fault.since_ms) : fault.kind === "unmatched" ? "" : "before this page";
+      const since = fault.since_ms ? clock(fault.since_ms) : fault.kind === "unmatched" ? "" : "before this page opened";
       row.append(head, create("td", fault.active ? "now" : "was", fault.active ? "l bad" : "l"), create("td", fault.text, "l"), create("td", since),
         create("td", fault.last_ms ? clock(fault.last_ms) : "–"));
       return row;

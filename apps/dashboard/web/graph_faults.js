@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong in the graph, by each process's own word. Pure.
+// Faults of the graph, from the counts that each process reports. Pure.
 const RECENT_MS = 5000;
-const GONE_MS = 300; // the lease of a process's life sign
+const GONE_MS = 300; // lease of a life sign
 const GOING = ["waiting", "running", "paused"];
 
-// "peer (topic), peer (topic)"; the last one may be cut off.
+// "peer (topic), peer (topic)"; the last name may be cut off.
 function missing(text) {
   return [...text.matchAll(/(\w+) \(([^),]+)\)/g)].map(([, peer, topic]) => ({ peer, topic }));
 }
@@ -16,7 +16,7 @@ function unmatched({ services, graph }) {
     for (const { peer, topic } of missing(text)) {
       const row = rows.get(topic);
       if (!row) continue;
-      // Both ends may say so: it is one edge.
+      // Both ends may report it: it is one edge.
       const writes = row.writers.includes(service) && row.readers.some((reader) => reader.service === peer);
       const [writer, reader] = writes ? [service, peer] : [peer, service];
       found.set(`${writer}>${topic}>${reader}`, { kind: "unmatched", topic, writer, reader, level: "critical", active: true, text: "not matched" });
@@ -38,17 +38,17 @@ function trouble({ topic, writers }, reader, now) {
   const longest = `longest interval ${(reader.worst_interval_us / 1000).toFixed(1)} ms`;
   if (reader.lost_ticks > 0) add("lost", "warning", lost, `lost ${times(reader.lost_ticks, "tick")}`);
   if (reader.deadline_misses > 0) add("missed", "warning", missed, `${times(reader.deadline_misses, "DDS deadline")} missed, ${longest}`);
-  // What the loop is made to bear: told, and no warning.
+  // The loop tolerates late cycles: they are listed without a warning.
   if (reader.cycle_misses > 0) add("late", "healthy", late, `${times(reader.cycle_misses, "cycle")} late, ${longest}`);
   return found;
 }
 
-// true: no life sign
+// True without a life sign within the lease.
 export function gone(service) {
   return service.state === undefined || service.silent_ms > GONE_MS;
 }
 
-// Faults of edges, the gravest first: { kind, topic, writer, reader, level, active, text, since_ms, last_ms }.
+// Faults of edges, the most severe first: { kind, topic, writer, reader, level, active, text, since_ms, last_ms }.
 export function faultsOf(snapshot) {
   const { graph, session, services, now_ms: now } = snapshot;
   const found = [];

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where processes and topics stand: columns along the control chain, from the process that holds the sample clock round
-// to itself again. Pure.
+// Positions of processes and topics: columns along the control chain, which begins and ends at the process with the
+// sample clock. Pure.
 const FIRST = "rig";
-const ASIDE = ["experiment", "recorder", "dashboard"]; // they read or write nearly everything, or come and go
+const ASIDE = ["experiment", "recorder", "dashboard"]; // they use nearly every topic, or may be absent
 
 const inChain = ({ writers }) => writers.length === 1 && !ASIDE.includes(writers[0]);
 
-// Distance from the first one, in processes.
+// Distance from the first process, counted in processes.
 function layersOf(chain) {
   const layers = new Map([[FIRST, 0]]);
   for (let changed = true; changed;) {
@@ -22,7 +22,7 @@ function layersOf(chain) {
   return layers;
 }
 
-// Who writes to a neighbour of the same column stands right behind it.
+// A process that writes to another of its column follows directly after it.
 function inOrder(services, chain) {
   const order = [...services];
   for (const { writers: [writer], readers } of chain) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes, and who shows what of it.
+// Passes each snapshot to the modules that show it.
 import { Actions } from "/actions.js";
 import { Charts } from "/charts.js";
 import { element } from "/elements.js";
@@ -12,7 +12,7 @@ import { Stream } from "/stream.js";
 import { Tables } from "/tables.js";
 import { Timeline } from "/timeline.js";
 
-const TABLES_EVERY_MS = 500; // what a person reads
+const TABLES_EVERY_MS = 500; // tables are for reading, not for watching
 
 const actions = new Actions();
 const charts = new Charts(element("charts"));
@@ -41,7 +41,7 @@ function show(snapshot, whole) {
   }
 }
 
-// One question at a time, and of those that wait the newest.
+// One request at a time; of those that wait, only the newest is sent.
 let asking = false;
 let wanted = null;
 async function fetchSnapshot(target) {
@@ -53,12 +53,12 @@ async function fetchSnapshot(target) {
       const next = wanted;
       wanted = null;
       const snapshot = await (await fetch(next)).json();
-      // The first of a recording tells only that it is one: its time line then asks for an instant.
+      // The first snapshot only shows that this is a recording; its time line then asks for an instant.
       if (snapshot.mode === "recording" && next === "/snapshot") await timeline.begin();
       else show(snapshot, true);
     }
   } catch {
-    // The stream says so.
+    // The stream shows the lost connection.
   } finally {
     asking = false;
   }
@@ -66,8 +66,8 @@ async function fetchSnapshot(target) {
 
 const timeline = new Timeline((seconds) => fetchSnapshot(`/snapshot?at=${seconds.toFixed(6)}`));
 
-// The stream brings what is new. The ten seconds before it are fetched once it runs, so that nothing falls between the
-// two; also when the browser has connected again.
+// The stream brings new rows. The ten seconds before are fetched once it runs, so that no row is missed between the two;
+// also after the browser has connected again.
 new Stream({
   opened: () => fetchSnapshot("/snapshot"),
   heard: (snapshot) => {

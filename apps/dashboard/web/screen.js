@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracking screen, to scale: what the subject sees, a fifth of a second later.
+// The tracking screen to scale, 0.2 s behind the screen of the subject.
 import { draw, element, mark } from "/elements.js";
 
 const BEHIND_TICKS = 200; // rows come ten times a second, five at once
-const SPOKEN_MS = 2000;
+const DESCRIBED_MS = 2000;
 
 export class TrackingScreen {
   constructor() {
     this.rows = [];
     this.at = null; // [ticks] shown
     this.still = matchMedia("(prefers-reduced-motion: reduce)");
-    this.spokenAt = -Infinity;
+    this.describedAt = -Infinity;
   }
 
   make({ width_m: width, height_m: height, line_width_m: line, cross_width_m: cross, track_above_bottom_m: track, box_width_m: box }) {
@@ -45,7 +45,7 @@ export class TrackingScreen {
     this.turnedAt = now;
     if (!this.past && !this.still.matches) {
       const due = newest.tick - BEHIND_TICKS;
-      // With the clock, as long as that stays near to what has come.
+      // Advances with the clock while that stays close to the newest rows.
       this.at = this.at === null || Math.abs(this.at - due) > 1.5 * BEHIND_TICKS ? due : this.at + passed + 0.02 * (due - this.at);
     }
     const behind = this.rows.findIndex((row) => row.tick >= this.at);
@@ -58,8 +58,8 @@ export class TrackingScreen {
   place(target, cursor) {
     mark(this.box, "transform", `translate(${target.toFixed(5)} 0)`);
     mark(this.cross, "transform", `translate(${cursor.toFixed(5)} 0)`);
-    if (performance.now() - this.spokenAt < SPOKEN_MS) return;
-    this.spokenAt = performance.now();
+    if (performance.now() - this.describedAt < DESCRIBED_MS) return;
+    this.describedAt = performance.now();
     const mm = (value) => `${(1000 * value).toFixed(0)} mm`;
     const inside = Math.abs(target - cursor) < this.half_m ? "inside" : "outside";
     mark(this.svg, "aria-label", `Tracking screen: target at ${mm(target)}, cursor at ${mm(cursor)}, ${inside} the box`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tones for alarms that nobody has acknowledged yet. Off until somebody wants it; this browser remembers.
+// Tones for alarms that are not acknowledged. Off until a person turns it on; the browser stores the choice.
 import { element, write } from "/elements.js";
 
 const KEY = "stillhand.sound";
@@ -21,7 +21,7 @@ export class Sound {
     this.show();
   }
 
-  // A browser lets a page sound once somebody has touched it.
+  // A browser allows sound only after a person has touched the page.
   async allow() {
     if (!navigator.userActivation.hasBeenActive) return;
     this.audio ??= new AudioContext();
@@ -31,7 +31,7 @@ export class Sound {
 
   show() {
     this.button.setAttribute("aria-pressed", this.on);
-    write(this.button, !this.on ? "Sound off" : this.audio?.state === "running" ? "Sound on" : "Sound on: touch the page once");
+    write(this.button, !this.on ? "Sound off" : this.audio?.state === "running" ? "Sound on" : "Sound on: touch the page to start it");
   }
 
   beep({ hz, beeps }) {

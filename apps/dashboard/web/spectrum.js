@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of the hand's force is left by the model, and at which frequencies (README, Eq. DB-6).
+// Power density of the measured force and of the residual (README, Eq. DB-6).
 import uPlot from "/uPlot.esm.js";
 import { axisOf, colour, figureOf } from "/charts.js";
 import { mark, write } from "/elements.js";
 
 const HEIGHT = 210;
 const MARKED_HZ = [0.25, 0.5, 1, 2, 5, 10, 20, 50];
-const DECADES = 6; // below the largest: more is of no interest
+const DECADES = 6; // shown below the largest
 
 function decades(min, max) {
   const first = Math.ceil(Math.log10(min) - 1e-9);
@@ -29,7 +29,7 @@ export class Spectrum {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.plot?.destroy(); this.plot = null; this.drawn(); });
   }
 
-  // undefined: as it was; null: there is none
+  // undefined: unchanged; null: no spectrum
   show(spectrum) {
     if (spectrum === undefined) return;
     if (!this.place) {
@@ -45,18 +45,18 @@ export class Spectrum {
     const { spectrum } = this;
     if (!this.place) return;
     if (!spectrum) {
-      write(this.note, "after 4.1 s of force and prediction without a gap");
-      mark(this.place, "aria-label", "Spectrum: not enough heard yet");
+      write(this.note, "shown after 4.1 s of force and prediction without a gap");
+      mark(this.place, "aria-label", "Spectrum: not enough samples yet");
       this.plot?.destroy();
       this.plot = null;
       return;
     }
     const [force, residual] = [spectrum.force_rms_n, spectrum.residual_rms_n];
     const bridged = spectrum.bridged_ticks > 0 ? `, ${spectrum.bridged_ticks} lost ticks bridged` : "";
-    const told = `RMS 0.2 to 50 Hz: force ${force.toFixed(2)} N, residual ${residual.toFixed(2)} N`;
-    write(this.note, `${told} (newest ${spectrum.length_s.toFixed(1)} s, ${spectrum.segments} segments${bridged})`);
+    const summary = `RMS 0.2 to 50 Hz: force ${force.toFixed(2)} N, residual ${residual.toFixed(2)} N`;
+    write(this.note, `${summary} (newest ${spectrum.length_s.toFixed(1)} s, ${spectrum.segments} segments${bridged})`);
     const peak = spectrum.frequency_hz[spectrum.residual_n2_hz.indexOf(Math.max(...spectrum.residual_n2_hz))];
-    mark(this.place, "aria-label", `Spectrum of force and residual up to 50 Hz. ${told}; the residual is largest at ${peak.toFixed(2)} Hz`);
+    mark(this.place, "aria-label", `Spectrum of force and residual up to 50 Hz. ${summary}; the residual is largest at ${peak.toFixed(2)} Hz`);
     const columns = [spectrum.frequency_hz, positive(spectrum.force_n2_hz), positive(spectrum.residual_n2_hz)];
     if (this.plot) this.plot.setData(columns); else this.draw(columns);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strip that is read from across the room.
+// The strip, which is read from across the room.
 import { SIGN_IN, clock, element, short, span, write } from "/elements.js";
 
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
-const SESSIONS = { none: "No session", waiting: "Session waits", ending: "Session over", unknown: "Session unknown" };
+const SESSIONS = { none: "No session", waiting: "Session waiting", ending: "Session over", unknown: "Session unknown" };
 export const LEVELS = ["healthy", "warning", "critical"];
 
 function amount(alarm) {
@@ -20,10 +20,10 @@ export function what(alarm) {
     case "late": return `${topic}${from} sent late, by up to ${amount(alarm)}`;
     case "lost": return `${topic}${from} lost up to ${amount(alarm)} in a row`;
     case "silent": return `${topic}${from} silent for ${amount(alarm)}`;
-    case "latency": return `${topic}${from} takes ${amount(alarm)} (p99)`;
+    case "latency": return `${topic}${from} has a latency of ${amount(alarm)} (p99)`;
     case "qos": return `${topic} of ${alarm.writer} is not matched: QoS mismatch, ${alarm.policy}`;
     case "chain": return `sensor to motor takes ${amount(alarm)}`;
-    case "missing": return `${alarm.subject}${at} shows no life sign, for ${amount(alarm)}`;
+    case "missing": return `${alarm.subject}${at} has shown no life sign for ${amount(alarm)}`;
     default: return `${alarm.watch} ${alarm.subject}`;
   }
 }
@@ -37,11 +37,11 @@ function strip(level, word, text, since) {
   document.title = `${word} – Stillhand`;
 }
 
-// A silence is over because somebody speaks again, or because the session is.
+// A silence ends because the writer sends again or because the session is over.
 function ended({ active, watch }, state) {
   if (active) return "";
-  if (watch !== "missing" && watch !== "silent") return "; not now";
-  return state === "ending" ? "; the session is over" : "; back again";
+  if (watch !== "missing" && watch !== "silent") return "; over now";
+  return state === "ending" ? "; the session is over" : "; back now";
 }
 
 function stripOfAlarms(alarms, state, now) {
@@ -50,7 +50,7 @@ function stripOfAlarms(alarms, state, now) {
   strip(first.level, WORDS[first.level], what(first) + ended(first, state) + others, `since ${clock(first.since_ms)}\n${span(now - first.since_ms)} ago`);
 }
 
-// With the QoS mismatches, which no threshold raises and nobody can acknowledge away. The graph is not in every snapshot.
+// Adds the QoS mismatches, which have no threshold and cannot be acknowledged. Not every snapshot holds the graph.
 let mismatches = [];
 export function withMismatches({ alarms, graph }) {
   mismatches = graph?.qos_mismatches ?? mismatches;
@@ -59,8 +59,8 @@ export function withMismatches({ alarms, graph }) {
   return [...standing, ...alarms];
 }
 
-// What the strip and the graph tell of. In a recording nobody acknowledges, so that each alarm stays at its worst to the
-// end: there it is what is marked just before the instant, and what lasts.
+// The alarms that strip and graph show. In a recording no alarm is acknowledged, so each stays at its worst to the end.
+// There these are the marks of the second before the instant, and the alarms that still last.
 export function alarmsOfNow({ mode, alarms, recent = [] }) {
   if (mode !== "recording") return alarms;
   const lasting = alarms.filter(({ active, watch }) => active && watch !== "late" && watch !== "lost");
@@ -75,25 +75,25 @@ export function showStatus(snapshot) {
   const title = recording ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
   const shown = alarmsOfNow(snapshot);
   if (session.emergency) {
-    const when = session.emergency_ms ? `asked ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
+    const when = session.emergency_ms ? `requested ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
     const ends = session.state === "ending" ? "the session is over" : "the motor's force goes to zero, the platform brakes, the session ends";
     strip("critical", "Emergency stop", ends, when);
   } else if (shown.length > 0) {
     stripOfAlarms(shown, session.state, now);
   } else if (session.state === "running" || session.state === "paused") {
-    const paused = session.state === "paused" || session.paused ? "no trial begins until Start; " : "";
-    const before = alarms.length > 0 ? `; ${alarms.length} alarm${alarms.length === 1 ? "" : "s"} before` : "";
+    const paused = session.state === "paused" || session.paused ? "no trial begins until Start is pressed; " : "";
+    const before = alarms.length > 0 ? `; ${alarms.length} earlier alarm${alarms.length === 1 ? "" : "s"}` : "";
     strip("healthy", WORDS.healthy, paused + title + before, recording ? clock(now) : `since ${clock(snapshot.level_since_ms)}\n${span(now - snapshot.level_since_ms)}`);
   } else {
     const absent = snapshot.services.filter(({ state }) => state === undefined).map(({ service }) => service);
-    const waits = session.state === "waiting" && absent.length > 0 ? `; not there yet: ${absent.join(", ")}` : "";
+    const waits = session.state === "waiting" && absent.length > 0 ? `; missing: ${absent.join(", ")}` : "";
     strip("none", SESSIONS[session.state] ?? session.state, title + waits, recording ? clock(now) : "");
   }
   delete document.body.dataset.stale;
 }
 
 export function showLost(since, signedOut) {
-  const silent = `no word from the dashboard's process since ${clock(since)}`;
+  const silent = `no data from the dashboard's process since ${clock(since)}`;
   strip("none", signedOut ? "Signed out" : "No connection", signedOut ? SIGN_IN : silent, `${span(Date.now() - since)} ago`);
   document.body.dataset.stale = "";
 }

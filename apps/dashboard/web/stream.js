@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stream of snapshots. A process that is gone, stopped or started anew is noticed and found again without anybody's
-// doing.
-const SILENT_MS = 1000; // it speaks ten times a second
-const DEAF_MS = 4000; // a host that is gone closes nothing
+// The stream of snapshots. It notices when the dashboard's process stops, and connects again by itself.
+const SILENT_MS = 1000; // it sends ten times a second
+const DEAF_MS = 4000; // a host that is gone closes no connection
 const AGAIN_MS = 500;
 
 export class Stream {
-  // opened(): it runs, anew; heard(snapshot); lost(since, signedOut): no word since then, told again
-  // and again.
+  // opened(): the stream runs, for the first time or again; heard(snapshot); lost(since, signedOut): no data since then,
+  // called repeatedly.
   constructor({ opened, heard, lost }) {
     this.calls = { opened, heard, lost };
     this.heardAt = performance.now();
@@ -39,7 +38,7 @@ export class Stream {
     };
   }
 
-  // An EventSource does not tell a refusal from a silence.
+  // An EventSource does not distinguish a refusal from a lost connection.
   async askWhy() {
     const answer = await fetch("/style.css", { cache: "no-store" }).catch(() => null);
     this.signedOut = answer?.status === 403;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is read from near by.
+// Tables, which are read from close by.
 import { clock, create, element, short, write } from "/elements.js";
 import { what } from "/status.js";
 
@@ -25,7 +25,7 @@ function memory({ resident_mb: mb, memory_locked: locked }) {
   return mb === undefined ? "–" : `${mb.toFixed(0)}${locked ? ", locked" : ""}`;
 }
 
-// Rows that stay: only cells whose text differs are written.
+// Rows are kept: only cells whose text changes are written.
 class Table {
   constructor(id, heads) {
     const table = element(id);
@@ -43,7 +43,7 @@ class Table {
     this.rows = new Map();
   }
 
-  // Only these rows stay.
+  // Removes all other rows.
   keep(names) {
     for (const [name, row] of this.rows) {
       if (names.includes(name)) continue;
@@ -75,7 +75,7 @@ class Table {
   }
 }
 
-// Jitters since the start, one bar a decade's third; the height is logarithmic.
+// Jitter since the start, three bars for each decade; the height is logarithmic.
 function bars(topic, edges) {
   const upTo = topic.jitter_counts;
   const counts = upTo.map((count, i) => count - (i === 0 ? 0 : upTo[i - 1]));
@@ -95,19 +95,19 @@ function bars(topic, edges) {
 
 export class Tables {
   constructor() {
-    this.topics = new Table("topics", ["topic", { text: "rate [Hz]" }, "jitter", { text: "histogram", title: "of the jitter since the start, 10 µs to above 10 ms; heights are logarithmic" },
-      "latency", "samples", { text: "lost", title: "by sequence number and tick" },
-      { text: "sent late [ms]", title: "intervals of the writer's stamps beyond the deadline: how many, and by how much at worst" },
-      { text: "came late [ms]", title: "the same of the arrivals here" }, "since"]);
+    this.topics = new Table("topics", ["topic", { text: "rate [Hz]" }, "jitter", { text: "histogram", title: "jitter since the start, from 10 µs to above 10 ms; heights are logarithmic" },
+      "latency", "samples", { text: "lost", title: "missing samples, by sequence number and tick" },
+      { text: "sent late [ms]", title: "intervals between the writer's stamps that exceed the deadline: their number and the largest excess" },
+      { text: "arrived late [ms]", title: "the same, for the intervals between the arrivals here" }, "since"]);
     this.chain = new Table("chain", ["up to", "p50", "p99", "p99.9", "max", "samples"]);
     this.services = new Table("services", ["process", { text: "state", left: true }, "last seen",
-      { text: "real time", title: "runs with a real-time scheduling policy, and its priority" },
-      { text: "CPU", title: "of one core, by this process, over the last second" }, { text: "memory [MB]", title: "in use, and whether any page of it can be swapped out" }, "pid",
-      { text: "DDS misses", title: "deadlines missed as its own readers count them, whole milliseconds" },
-      { text: "cycle misses", title: "as its own supervision counts them, microseconds" }, "lost ticks", { text: "waits for", left: true }]);
+      { text: "real time", title: "whether the process has a real-time scheduling policy, and its priority" },
+      { text: "CPU", title: "share of one core that the process used in the last second" }, { text: "memory [MB]", title: "resident memory; locked: no page of it can be swapped out" }, "pid",
+      { text: "DDS misses", title: "deadlines that DDS reported as missed to its readers, in whole milliseconds" },
+      { text: "cycle misses", title: "late cycles by the process's own supervision, in microseconds" }, "lost ticks", { text: "waits for", left: true }]);
     this.rigs = new Table("rigs", ["rig", { text: "level", left: true }, { text: "session", left: true }, { text: "worst", left: true }, "samples", "lost"]);
-    this.edges = new Table("edges", ["edge", "matched", "samples", "lost ticks", { text: "cycle misses", title: "its own supervision, microseconds" },
-      { text: "DDS misses", title: "deadlines missed as DDS counts them, whole milliseconds" }, "longest interval [ms]", { text: "latency p99 [µs]", title: "stamp to arrival, the clocks' offset taken off" }]);
+    this.edges = new Table("edges", ["edge", "matched", "samples", "lost ticks", { text: "cycle misses", title: "late cycles by the reader's own supervision, in microseconds" },
+      { text: "DDS misses", title: "deadlines that DDS reported as missed, in whole milliseconds" }, "longest interval [ms]", { text: "latency p99 [µs]", title: "from stamp to arrival, corrected for the offset of the clocks" }]);
     element("edges-part").addEventListener("toggle", () => this.graph && this.showEdges(this.graph));
     this.hosts = new Table("hosts", [{ text: "host" }, { text: "processes", left: true }, { text: "CPU", title: "of all its cores" }, "cores", "clock [µs]", "± [µs]"]);
     this.recorders = new Table("recorders", ["recorder", { text: "state", left: true }, { text: "file", left: true }, "received", "lost", "written", "dropped", "file [MB]", "free [GB]", { text: "its last answer", left: true }]);
@@ -148,7 +148,7 @@ export class Tables {
         ["measured", `${Math.min(Math.max(at, 0), session.duration_ticks / 1000).toFixed(0)} of ${(session.duration_ticks / 1000).toFixed(0)} s`]);
     }
     parts.push(["condition", session.condition ?? (session.blinded ? "hidden (blinded)" : "–")]);
-    if (session.replayed) parts.push(["replay", "a recording is being played on this domain"]);
+    if (session.replayed) parts.push(["replay", "a recording is played on this domain"]);
     parts.push([mode === "live" ? "now" : "instant", clock(now)]);
     const list = element("session");
     while (list.children.length > parts.length) list.lastChild.remove();
@@ -239,8 +239,8 @@ export class Tables {
     element("recorders-part").hidden = recorders.length === 0;
     this.recorders.keep(recorders.map(({ name }) => name));
     for (const each of recorders) {
-      const state = each.silent_ms > 2000 ? "silent" : each.trouble ? each.trouble : each.paused ? "paused" : "records";
-      this.recorders.show(each.name, [{ text: state, look: state === "records" || state === "paused" ? "l" : "l bad" }, { text: each.file, look: "l" },
+      const state = each.silent_ms > 2000 ? "silent" : each.trouble ? each.trouble : each.paused ? "paused" : "recording";
+      this.recorders.show(each.name, [{ text: state, look: state === "recording" || state === "paused" ? "l" : "l bad" }, { text: each.file, look: "l" },
         each.received, { text: each.lost, look: each.lost > 0 ? "bad" : "" }, each.written, { text: each.dropped, look: each.dropped > 0 ? "bad" : "" },
         (each.file_bytes / 1e6).toFixed(1), (each.free_bytes / 1e9).toFixed(1), { text: each.answer ?? "", look: "l" }]);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording's time line: what happened when, and the instant that the page shows.
+// The time line of a recording: marks of faults and events, and the instant that the page shows.
 import { clock, create, draw, element, mark, write } from "/elements.js";
 import { LEVELS, what } from "/status.js";
 
@@ -12,18 +12,18 @@ const LEFT = 74; // [px] names of the lanes
 const LANE_H = 20;
 const plain = (event) => !event.ctrlKey && !event.metaKey && !event.altKey;
 
-// By level another shape: a stroke, a triangle, a square with a cross.
+// A shape for each level: a stroke, a triangle, a square with a cross.
 const SHAPES = { healthy: "M0-4V4", warning: "M0-6L6 5H-6z", critical: "M-6-6H6V6H-6zM-3-3L3 3M3-3L-3 3" };
 
 export function spoken(kind, { subject, writer, what: word, amount, count }) {
-  const times = count > 1 ? ` (${count} of them)` : "";
+  const times = count > 1 ? ` (${count} times)` : "";
   if (kind === "event") return `${subject}: ${word}${times}`;
   const watch = kind === "alarm" ? word : kind;
   return (kind === "alarm" ? "alarm: " : "") + what({ watch, subject, writer, worst: amount, unit: UNITS[watch] ?? "ms" }) + times;
 }
 
 export class Timeline {
-  // at(seconds): the page is to show that instant
+  // at(seconds): the page shall show that instant
   constructor(at) {
     this.at = at;
     this.slider = element("instant");
@@ -40,7 +40,7 @@ export class Timeline {
     });
   }
 
-  // Also when the browser has connected again: it may be another recording.
+  // Also after the browser has connected again, since it may be another recording.
   async begin() {
     const answer = await fetch("/timeline");
     if (!answer.ok) return;
@@ -54,7 +54,7 @@ export class Timeline {
     this.choose(this.chosen_s ?? (wanted === undefined ? this.lanes.length_s : Number(wanted)));
   }
 
-  // A tenth of a second by an arrow, a second with Shift or by a page key.
+  // An arrow moves by 0.1 s; with Shift, or with a page key, by 1 s.
   step(event) {
     const steps = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     if (steps === undefined || !plain(event)) return;
@@ -76,7 +76,7 @@ export class Timeline {
     this.at(seconds);
   }
 
-  // What is marked at this very instant.
+  // The marks of exactly this instant.
   nearest(seconds) {
     const found = LANES.flatMap(([kind]) => this.lanes.marks[kind].filter(({ at_s }) => Math.abs(at_s - seconds) < 1e-5).map((each) => spoken(kind, each)));
     const trial = this.lanes.trials.find(({ from_s, to_s }) => from_s <= seconds && seconds <= to_s);
@@ -94,7 +94,7 @@ export class Timeline {
   jump(way) {
     const behind = this.misses.filter((at_s) => (at_s - this.chosen_s) * way > 1e-6);
     if (behind.length > 0) this.choose(way > 0 ? behind[0] : behind.at(-1));
-    else write(element("here"), way > 0 ? "no miss behind this instant" : "no miss before this instant");
+    else write(element("here"), way > 0 ? "no miss after this instant" : "no miss before this instant");
   }
 
   x(seconds) {
@@ -116,7 +116,7 @@ export class Timeline {
     LANES.forEach(([kind, name], i) => {
       const y = LANE_H * (i + 1.5);
       svg.append(draw("text", { x: 0, y: y + 4 }, name), draw("path", { d: `M${LEFT} ${y}H${this.width - 10}`, class: "lane" }));
-      // The graver above the others.
+      // More severe marks are drawn above the others.
       for (const each of [...this.lanes.marks[kind]].sort((one, other) => LEVELS.indexOf(one.level) - LEVELS.indexOf(other.level))) {
         const node = draw("path", { d: SHAPES[each.level], class: `mark ${each.level}`, transform: `translate(${this.x(each.at_s).toFixed(1)} ${y})` });
         node.append(draw("title", {}, spoken(kind, each)));
@@ -153,7 +153,7 @@ export class Timeline {
     return `Time line of ${this.lanes.length_s.toFixed(1)} s: ${this.lanes.trials.length} trials; marks: ${counts}. Listed below.`;
   }
 
-  // The same in words: each mark is a button to its instant.
+  // The marks as a list: each has a button to its instant.
   list() {
     const all = LANES.flatMap(([kind]) => this.lanes.marks[kind].map((each) => ({ kind, ...each }))).sort((one, other) => one.at_s - other.at_s);
     element("marks").replaceChildren(...all.slice(0, MOST_LISTED).map((each) => {
@@ -164,7 +164,7 @@ export class Timeline {
       item.append(button, create("span", ` ${each.level === "healthy" ? "" : `${each.level}: `}${spoken(each.kind, each)}`));
       return item;
     }));
-    const more = all.length > MOST_LISTED ? `, the first ${MOST_LISTED} of them` : "";
-    write(element("marks-title"), `${all.length} marks as a list${more}`);
+    const more = all.length > MOST_LISTED ? `, of which it shows the first ${MOST_LISTED}` : "";
+    write(element("marks-title"), `List of ${all.length} marks${more}`);
   }
 }

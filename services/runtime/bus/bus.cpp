@@ -34,7 +34,7 @@ struct Bus::Impl {
     edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
 
-  /// What carries a type on this participant: the type itself, or its bytes.
+  /// The carrier of a type on this participant: the type itself, or its bytes.
   static edds::TypeSupport carrier(const Bus::Options& options, const edds::TypeSupport& real) {
     return options.serialized ? edds::TypeSupport(new SerializedType(real)) : real;
   }
@@ -43,7 +43,7 @@ struct Bus::Impl {
                    std::shared_ptr<void> sample, detail::Deliver deliver);
 
   // Readers and writers hand callbacks into `endpoints` until the participant is gone, and the
-  // participant into `peers`, which tell `writers`: order of members matters.
+  // participant into `peers`, which notify `writers`: order of members matters.
   FoundWriters writers;
   Peers peers;
   std::atomic<bool> supervising{false};
@@ -69,11 +69,11 @@ Bus::Bus(Options options) : options_(std::move(options)) {
   subscriber_qos.entity_factory().autoenable_created_entities = false;
   impl_->subscriber = impl_->participant->create_subscriber(subscriber_qos);
   if (impl_->publisher == nullptr || impl_->subscriber == nullptr) {
-    throw BusError("Fast DDS gave no publisher or subscriber");
+    throw BusError("Fast DDS created no publisher or subscriber");
   }
   if (options_.serialized) {
     impl_->writers.learn_depths(*impl_->publisher, options_.profiles);
-    // Nobody tells a participant of itself.
+    // A participant does not discover itself.
     impl_->writers.note_participant(impl_->participant->guid().guidPrefix,
                                     Peers::participant_name(options_.rig, options_.service));
   }
@@ -138,7 +138,7 @@ void Bus::subscribe_serialized(
     std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample) {
   const TypeTag* real = find_type(topic.type);
   if (real == nullptr || !options_.serialized) {
-    throw BusError("no bytes of " + std::string(topic.type) + " to be had");
+    throw BusError("Fast DDS cannot serialize " + std::string(topic.type));
   }
   const bool stream = topic.pattern == topics::Pattern::kStream1khz ||
                       topic.pattern == topics::Pattern::kStreamSlow ||
@@ -210,7 +210,7 @@ bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
 bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
 std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
 void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {
-  // Whoever writes on the bus may name whom he likes; kept are offsets of a session's own.
+  // The service name in a message is not proof: only offsets of the session's services are kept.
   if (std::ranges::find(topics::kServices, service) == topics::kServices.end()) return;
   const std::lock_guard lock(impl_->clock_mutex);
   impl_->clock_offsets_ns[service] = offset_ns;

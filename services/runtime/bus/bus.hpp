@@ -38,12 +38,12 @@ struct Arrival {
   std::int64_t logged_ns;    ///< [ns] system clock of this host
   std::int64_t sequence;     ///< [-] RTPS sequence number of its writer
   /// With Options::serialized: the writer, valid during the call, and its number in the order of
-  /// finding.  nullptr without, and for a writer that DDS never announced.
+  /// finding.  nullptr without, and for a writer that discovery did not announce.
   const FoundWriter* writer = nullptr;
   std::size_t writer_number = 0;
 };
 
-/// What happened at an endpoint, told from DDS's own threads.  Plain, so that it can leave a
+/// An incident at an endpoint, reported from DDS's own threads.  Plain, so that it can leave a
 /// receiving thread without lock or allocation.
 struct BusIncident {
   enum class Kind : std::uint8_t {
@@ -74,7 +74,7 @@ namespace detail {
 class Endpoint;
 void write(Endpoint& endpoint, void* message);
 
-/// What the supervision needs to know of a delivered sample.
+/// The part of a delivered sample that the supervision needs.
 struct SampleClock {
   bool ours = false;  ///< false: another rig's
   Tick tick = -1;     ///< -1: the type has none
@@ -102,7 +102,7 @@ class Publisher {
   std::uint32_t rig_ = 0;
 };
 
-/// One process's place on the bus: a DDS participant, its endpoints, and who is matched with them.
+/// One process on the bus: a DDS participant, its endpoints, and the peers matched with them.
 /// Every endpoint takes the QoS profile of its topic's pattern from the profile file; none is set
 /// in code.  Callbacks of subscriptions run one at a time in the thread that receives user data;
 /// incidents come from DDS's event and discovery threads.
@@ -116,11 +116,11 @@ class Bus {
     /// Every topic is carried as bytes: the recorder reads what it also writes, and one participant
     /// can hold a type name once.  subscribe_serialized() needs it.
     bool serialized = false;
-    /// This process takes what a replay writes, and carries the replay's mark itself, so that no
-    /// rig takes what it answers.  Others drop every sample of a marked writer.
+    /// This process accepts samples of a replay and carries the replay's mark itself, so that no
+    /// rig accepts its answers.  Other processes drop every sample of a marked writer.
     bool answers_replay = false;
-    /// A folder that deploy/security/make.sh wrote: only who holds a certificate of its authority
-    /// is heard and hears, each with its own topics.  Empty: no security.
+    /// A folder written by deploy/security/make.sh: only processes with a certificate of its
+    /// authority exchange samples, each on its own topics.  Empty: no security.
     std::filesystem::path security;
     std::function<void(const BusIncident&)> on_incident;
   };
@@ -156,9 +156,9 @@ class Bus {
                });
   }
 
-  /// For the recorder: every sample as it came; the callback tells its tick, CDR with its
-  /// encapsulation header, any rig. Takes the profile "record_stream" on best-effort topics.  Only
-  /// with Options::serialized.  Arrival tells the writer.
+  /// For the recorder: every sample of any rig as CDR with its encapsulation header; the callback
+  /// returns its tick, and Arrival names the writer.  Takes the profile "record_stream" on
+  /// best-effort topics.  Only with Options::serialized.
   void subscribe_serialized(
       const topics::Topic& topic,
       std::function<detail::SampleClock(std::span<const std::byte>, const Arrival&)> on_sample);
@@ -169,26 +169,27 @@ class Bus {
   /// No callback of a subscription runs after this returns.  Publishers stay usable.
   void stop_receiving();
 
-  /// Names of who is matched with this process's endpoints of a topic: processes of this rig, none
-  /// of them a Tap.
+  /// Names of the processes that are matched with this process's endpoints of a topic: of this rig,
+  /// without Taps.
   [[nodiscard]] std::set<std::string> matched_peers(const topics::Topic& topic) const;
   /// Catalogue peers that are not matched yet, as "service (topic)", empty when complete.
   [[nodiscard]] std::vector<std::string> missing_peers() const;
   /// Services that are on the bus more than once under this rig number.
   [[nodiscard]] std::vector<std::string> duplicate_peers() const;
-  /// True when each service of the catalogue but this one has a live status writer and nobody on
-  /// the domain plays a recording.  With Options::answers_replay: while somebody does.
+  /// True when every other service of the catalogue has a live status writer and no replay is on
+  /// the domain.  With Options::answers_replay: while a replay is on the domain.
   [[nodiscard]] bool peers_alive() const noexcept;
   /// A participant that carries the replay's mark is on the domain.
   [[nodiscard]] bool replay_present() const noexcept;
   /// Names of services whose status writer was alive once and is not now.
   [[nodiscard]] std::vector<std::string> lost_peers() const;
 
-  /// By how much a service's monotonic clock is ahead of the experiment's; latencies of what it
-  /// writes are told with it taken off.  Any thread.
+  /// By how much a service's monotonic clock is ahead of the experiment's; latencies of its samples
+  /// are corrected by it.  Any thread.
   void set_clock_offset(const std::string& service, std::int64_t offset_ns);
 
-  /// Counts of misses start and stop here: outside a running session an absent sample is no fault.
+  /// Counts of misses start and stop here: outside of a running session an absent sample is not a
+  /// fault.
   void supervise(bool on) noexcept;
   [[nodiscard]] std::vector<EndpointReport> report() const;
   [[nodiscard]] const Options& options() const noexcept { return options_; }

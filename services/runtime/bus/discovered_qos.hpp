@@ -11,13 +11,13 @@
 
 namespace stillhand::runtime {
 
-/// What discovery tells of a writer's QoS.
+/// The QoS of a writer, as announced by discovery.
 WriterQos discovered_qos(const eprosima::fastdds::dds::WriterQos& told);
 
 /// A writer that offers the same; resource limits as for KEEP_LAST of its depth.
 eprosima::fastdds::dds::DataWriterQos offered_qos(const WriterQos& wanted);
 
-/// What a profile of the loaded file offers; nothing when it is missing.
+/// The QoS of a profile of the loaded file; nothing when it is missing.
 std::optional<WriterQos> profile_qos(const eprosima::fastdds::dds::Publisher& publisher,
                                      const std::string& name);
 

@@ -14,7 +14,7 @@ namespace stillhand::runtime {
 struct FoundWriter {
   std::string topic;
   std::string type;         ///< DDS type name
-  std::string participant;  ///< its name; "" while DDS has not told it
+  std::string participant;  ///< its name; "" until DDS announces it
   std::string id;           ///< GUID as text
   std::string profile;      ///< QoS profile of a topic of the catalogue, or ""
   WriterQos qos;

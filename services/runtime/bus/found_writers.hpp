@@ -16,21 +16,21 @@
 
 namespace stillhand::runtime {
 
-/// Every writer that discovery told of, numbered in the order of finding; those that left stay.
+/// Every discovered writer, numbered in the order of discovery; writers that left stay.
 /// Any thread; every call locks.
 class FoundWriters {
  public:
   using Handle = eprosima::fastrtps::rtps::InstanceHandle_t;
 
-  /// HISTORY does not travel in discovery: the catalogue's profiles tell it.  Before the first
-  /// reader.  @throws ConfigError when `profiles` lacks one
+  /// Discovery does not carry HISTORY, so the depth is that of the catalogue's profiles.  Before
+  /// the first reader.  @throws ConfigError when `profiles` lacks one
   void learn_depths(const eprosima::fastdds::dds::Publisher& publisher,
                     const std::filesystem::path& profiles);
 
   void note_participant(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix,
                         const std::string& name);
   void note_participant(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
-  /// @param wanted  whether its topic was asked for  @returns its number when it is a new one
+  /// @param wanted  whether its topic is wanted  @returns its number when it is new
   std::optional<std::size_t> note_writer(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& info,
                                          bool wanted = true);
 
@@ -49,8 +49,8 @@ class FoundWriters {
   std::map<std::string, std::int32_t> depth_of_;  // by profile
 };
 
-/// The writers of one reader's samples, as known at the first sample of each.  Locks only where
-/// the writer is another one than that of the sample before.  One thread.
+/// The writers of one reader's samples, as known at the first sample of each.  Locks only
+/// when the writer differs from that of the sample before.  One thread.
 class SampleWriters {
  public:
   struct Entry {
@@ -60,7 +60,7 @@ class SampleWriters {
 
   explicit SampleWriters(const FoundWriters& all) : all_(all) {}
 
-  /// Valid as long as this object; nullptr for a writer that DDS never announced.
+  /// Valid as long as this object; nullptr for a writer that discovery did not announce.
   const Entry* of(const FoundWriters::Handle& writer);
 
  private:

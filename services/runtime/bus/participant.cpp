@@ -15,19 +15,6 @@ namespace stillhand::runtime {
 using eprosima::fastrtps::types::ReturnCode_t;
 namespace edds = eprosima::fastdds::dds;
 
-namespace {
-
-void read_in_batches(edds::DomainParticipantQos& qos, const TakeDatagram& take) {
-  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-  for (auto& transport : qos.transport().user_transports) {
-    if (auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport)) {
-      transport = std::make_shared<BatchedUdpDescriptor>(std::move(udp), take);
-    }
-  }
-}
-
-}  // namespace
-
 // The factory keeps profiles for the whole process and refuses a file it has already read.
 void load_profiles(const std::filesystem::path& file) {
   static std::mutex mutex;
@@ -41,7 +28,7 @@ void load_profiles(const std::filesystem::path& file) {
   if (edds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(path) !=
       ReturnCode_t::RETCODE_OK) {
     throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
-                      "XML as in qos/profiles.xml");
+                      "an XML file such as qos/profiles.xml");
   }
   loaded.insert(path);
 }
@@ -49,14 +36,14 @@ void load_profiles(const std::filesystem::path& file) {
 ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,
                             std::string_view name) {
   return {profiles.string(), "no " + std::string(kind) + " profile",
-          "one named \"" + std::string(name) + "\""};
+          "a profile named \"" + std::string(name) + "\""};
 }
 
 edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
                                             std::uint32_t domain, const std::string& name,
                                             bool marked, const Identity& identity,
                                             edds::DomainParticipantListener* listener,
-                                            const TakeDatagram& take) {
+                                            const AdaptQos& adapt) {
   if (domain > kMaxDomain) {
     throw ConfigError("domain", std::to_string(domain), "0 to " + std::to_string(kMaxDomain));
   }
@@ -73,18 +60,18 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   if (marked) qos.user_data().data_vec(replay_mark());
   if (!identity.none()) {
     secure(qos, identity);
-  } else if (take) {
-    read_in_batches(qos, take);
+  } else if (adapt) {
+    adapt(qos);
   }
   auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
   if (participant == nullptr) {
-    throw BusError("Fast DDS opened no participant on domain " + std::to_string(domain) +
-                   ": are its UDP ports free and the addresses in " + profiles.string() +
-                   " those of this machine?");
+    throw BusError("Fast DDS created no participant on domain " + std::to_string(domain) +
+                   ": are its UDP ports free, and does this machine have the addresses in " +
+                   profiles.string() + "?");
   }
   if (!identity.none() && !is_secured(*participant, identity)) {
     factory->delete_participant(participant);
-    throw BusError("Fast DDS opened a participant without the security of " +
+    throw BusError("Fast DDS created a participant without the security of " +
                    identity.folder.string());
   }
   return participant;

@@ -15,17 +15,17 @@
 
 namespace stillhand::runtime {
 
-/// Who is on the bus: names of participants by GUID, which services show a life sign, and who plays
-/// a recording.  A participant of Stillhand is named "stillhand/<rig>/<service>"; a replay, and
-/// whoever answers one, carries kReplayMark in the user data of its participant and of each of its
-/// writers.  DDS tells a writer's user data before it matches the writer, so a reader knows the
-/// mark before the first sample.  Called from DDS's threads and the owner's; every call locks, none
+/// The participants on the bus: their names by GUID, the services with a life sign, and replays.  A
+/// participant of Stillhand is named "stillhand/<rig>/<service>".  A replay, and a process that
+/// answers one, carries kReplayMark in the user data of its participant and of each of its writers.
+/// DDS announces a writer's user data before it matches the writer, so a reader knows the mark
+/// before the first sample.  Called from DDS's threads and the owner's; every call locks, none
 /// is made in the control path except alive(), replay_seen() and replay_present().
 class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  /// @param answers_replay  this process takes what a replay writes, and is marked itself
-  /// @param writers  to be told of every writer, or nullptr
-  /// @param secured  anybody may announce any name; only who has shown a certificate counts
+  /// @param answers_replay  this process accepts samples of a replay, and is marked itself
+  /// @param writers  notified of every writer, or nullptr
+  /// @param secured  names are not proof; only authenticated participants count
   Peers(std::string self, std::uint32_t rig, bool answers_replay = false,
         FoundWriters* writers = nullptr, bool secured = false);
 

@@ -58,7 +58,7 @@ Playback::Playback(const std::filesystem::path& profiles, std::uint32_t domain,
     : impl_(std::make_unique<Impl>()) {
   impl_->participant = create_participant(profiles, domain, name, true, {}, nullptr);
   impl_->publisher = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
-  if (impl_->publisher == nullptr) throw BusError("Fast DDS gave no publisher");
+  if (impl_->publisher == nullptr) throw BusError("Fast DDS created no publisher");
 }
 
 Playback::~Playback() = default;

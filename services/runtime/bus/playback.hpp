@@ -15,7 +15,7 @@ namespace stillhand::runtime {
 
 /// Writes recorded samples to a domain, as bytes, with the QoS they were recorded with.  Its
 /// participant and every writer carry the replay's mark (replay_mark.hpp): processes of a session
-/// drop what it writes, and no rig permits a motor force while it is there.  One thread.
+/// drop its samples, and no rig permits a motor force while it is on the domain.  One thread.
 class Playback {
  public:
   /// @throws ConfigError for a bad domain or profile file; BusError when DDS refuses.
@@ -27,9 +27,9 @@ class Playback {
 
   /// idl/ defines this type.
   [[nodiscard]] static bool knows(const std::string& type);
-  /// What a writer profile of the file offers; nothing when it is missing.
+  /// The QoS of a writer profile of the file; nothing when it is missing.
   [[nodiscard]] std::optional<WriterQos> profile(const std::string& name) const;
-  /// @param type  one that knows() knows  @returns its number  @throws BusError
+  /// @param type  a type for which knows() is true  @returns its number  @throws BusError
   std::size_t add_writer(const std::string& topic, const std::string& type, const WriterQos& qos);
   /// CDR with its encapsulation header.  @returns false when DDS did not take it.
   bool write(std::size_t writer, std::span<const std::byte> bytes);

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 namespace edds = eprosima::fastdds::dds;
 
 constexpr int kWarnDays = 30;
-constexpr const char* kMaker = "a folder that deploy/security/make.sh wrote";
+constexpr const char* kMaker = "a folder written by deploy/security/make.sh";
 
 template <auto Free>
 struct Freed {
@@ -56,17 +56,18 @@ Bytes opened(const fs::path& file) {
   std::error_code ignored;
   Bytes bytes(std::filesystem::is_regular_file(file, ignored) ? BIO_new_file(file.c_str(), "r")
                                                               : nullptr);
-  if (bytes == nullptr) throw ConfigError("security", "no " + file.string() + " to read", kMaker);
+  if (bytes == nullptr) throw ConfigError("security", "no readable " + file.string(), kMaker);
   return bytes;
 }
 
 Certificate certificate_in(const fs::path& file) {
   Certificate certificate(PEM_read_bio_X509(opened(file).get(), nullptr, nullptr, nullptr));
-  if (certificate == nullptr) throw ConfigError(file.string(), "no certificate", "one in PEM");
+  if (certificate == nullptr)
+    throw ConfigError(file.string(), "no certificate", "a certificate in PEM");
   return certificate;
 }
 
-/// What OpenSSL wrote into memory.
+/// The text that OpenSSL wrote into memory.
 std::string text_of(BIO& memory) {
   char* bytes = nullptr;
   const long size = BIO_get_mem_data(&memory, &bytes);
@@ -97,17 +98,17 @@ void verify(const Identity& identity, X509& certificate, X509_STORE& authority) 
   if (error == X509_V_ERR_CERT_HAS_EXPIRED) {
     throw ConfigError(file.string(),
                       "a certificate that expired on " + time_text(X509_get0_notAfter(named)),
-                      "one that is valid: make a new folder with deploy/security/make.sh");
+                      "a valid one: make a new folder with deploy/security/make.sh");
   }
   if (error == X509_V_ERR_CERT_NOT_YET_VALID) {
     throw ConfigError(file.string(),
                       "a certificate not valid before " + time_text(X509_get0_notBefore(named)),
-                      "one that is valid, or this machine's clock set right");
+                      "a valid one, or a correct clock of this machine");
   }
   throw ConfigError(file.string(),
                     std::string("a certificate that cannot be verified (") +
                         X509_verify_cert_error_string(error) + ")",
-                    "one of the authority in " + authority_file(identity).string());
+                    "a certificate of the authority in " + authority_file(identity).string());
 }
 
 /// The text of a document that the authority signed.
@@ -119,8 +120,8 @@ std::string signed_text(const fs::path& file, X509_STORE& authority, const Ident
   if (document == nullptr ||
       PKCS7_verify(document.get(), nullptr, &authority, content, text.get(), PKCS7_TEXT) != 1) {
     ERR_clear_error();
-    throw ConfigError(file.string(), "a document without its signature",
-                      "one signed by the authority in " + authority_file(identity).string());
+    throw ConfigError(file.string(), "a document with no valid signature",
+                      "a document signed by the authority in " + authority_file(identity).string());
   }
   return text_of(*text);
 }
@@ -129,7 +130,8 @@ std::string signed_text(const fs::path& file, X509_STORE& authority, const Ident
 void check_private(const fs::path& file) {
   constexpr fs::perms kOthers = fs::perms::others_read | fs::perms::others_write;
   if ((fs::status(file).permissions() & kOthers) == fs::perms::none) return;
-  throw ConfigError(file.string(), "a private key that everybody on this machine may read or write",
+  throw ConfigError(file.string(),
+                    "a private key that every user of this machine may read or write",
                     "chmod o= " + file.string());
 }
 
@@ -142,7 +144,7 @@ void check_domain(const fs::path& file, const std::string& text, std::uint32_t d
   if (domain < std::stoul(match[1]) || domain > std::stoul(match[2])) {
     throw ConfigError(
         "domain", std::to_string(domain),
-        match[1].str() + " to " + match[2].str() + ", which " + file.string() + " is made for");
+        match[1].str() + " to " + match[2].str() + ", the domains of " + file.string());
   }
 }
 
@@ -182,7 +184,7 @@ void discover_in_one_thread(edds::DomainParticipantQos& qos) {
   constexpr const char* kLoopback = "127.0.0.1";
   const std::optional<std::string> address = only_address(qos);
   if (!address) {
-    throw ConfigError("security", "a participant's profile with several ways to be heard",
+    throw ConfigError("security", "a participant profile with several transports or addresses",
                       "one transport, UDPv4, with at most one address in its interfaceWhiteList");
   }
   auto& builtin = qos.wire_protocol().builtin;
@@ -191,8 +193,8 @@ void discover_in_one_thread(edds::DomainParticipantQos& qos) {
   if (!builtin.metatrafficUnicastLocatorList.empty() && !group) return;
   if (group || *address != kLoopback) {
     throw ConfigError(
-        "security", "discovery by multicast in the participant's profile",
-        "initial peers and a metatrafficUnicastLocatorList alone, as `stillhand deploy "
+        "security", "discovery by multicast in the participant profile",
+        "only initial peers and a metatrafficUnicastLocatorList, as `stillhand deploy "
         "generate` writes them");
   }
   builtin.metatrafficUnicastLocatorList.push_back(Locator_t());  // the port that the standard names
@@ -221,13 +223,13 @@ void check_identity(const Identity& identity, std::uint32_t domain) {
   verify(identity, *certificate, *store);
 
   const fs::path key_file = own_file(identity, "key.pem");
-  // A service asks nobody for a password.
+  // A service has no terminal to ask for a password.
   const auto no_password = [](char*, int, int, void*) { return -1; };
   const Key key(PEM_read_bio_PrivateKey(opened(key_file).get(), nullptr, no_password, nullptr));
   if (key == nullptr || X509_check_private_key(certificate.get(), key.get()) != 1) {
     ERR_clear_error();
-    throw ConfigError(key_file.string(), "another key",
-                      "that of " + own_file(identity, "certificate.pem").string());
+    throw ConfigError(key_file.string(), "the key of another certificate",
+                      "the key of " + own_file(identity, "certificate.pem").string());
   }
   check_private(key_file);
 
@@ -251,7 +253,7 @@ std::string expiry_warning(const Identity& identity) {
   ASN1_TIME_diff(&days, &seconds, nullptr, X509_get0_notAfter(certificate.get()));
   if (days >= kWarnDays) return "";
   return file.string() + " expires on " + time_text(X509_get0_notAfter(certificate.get())) +
-         ": make a new folder with deploy/security/make.sh before";
+         ": make a new folder with deploy/security/make.sh before that date";
 }
 
 void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
@@ -261,9 +263,9 @@ void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
   if (server_in_profile || std::getenv("ROS_DISCOVERY_SERVER") != nullptr) {
     throw ConfigError("security",
                       std::string("a discovery server in ") +
-                          (server_in_profile ? "the participant's profile"
+                          (server_in_profile ? "the participant profile"
                                              : "the environment (ROS_DISCOVERY_SERVER)"),
-                      "initial peers: it would let strangers in");
+                      "initial peers: a discovery server would admit strangers");
   }
   discover_in_one_thread(qos);
   const auto set = [&qos](const std::string& name, const std::string& value) {

@@ -2,10 +2,8 @@
 #include "services/runtime/bus/tap.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
-#include <cstring>
 #include <deque>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -15,21 +13,20 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 
 #include "idl/topics.hpp"
+#include "services/runtime/bus/batched/batched_reader.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/rtps_sample.hpp"
 #include "services/runtime/bus/serialized_type.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
 
-using eprosima::fastrtps::rtps::GuidPrefix_t;
-using eprosima::fastrtps::rtps::octet;
 using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 using eprosima::fastrtps::types::ReturnCode_t;
@@ -37,7 +34,7 @@ namespace edds = eprosima::fastdds::dds;
 
 namespace {
 
-/// What a reader asks for; a writer belongs to the reader of its own class.
+/// What a reader requests; a writer belongs to the reader of its own class.
 enum class ReaderClass : std::uint8_t { kBestEffort, kReliable, kReliableLatched };
 
 ReaderClass class_of(const WriterQos& qos) {
@@ -64,7 +61,9 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   using ReaderKey = std::pair<std::string, ReaderClass>;
   struct Reader;
 
-  explicit Impl(Options given) : options(std::move(given)) {}
+  explicit Impl(Options given) : options(std::move(given)) {
+    if (options.batched) batched.emplace(writers, options.on_sample);
+  }
   // Also when the constructor of Tap throws: the participant calls this as long as it is there.
   ~Impl() override {
     if (participant == nullptr) return;
@@ -78,7 +77,6 @@ struct Tap::Impl final : edds::DomainParticipantListener {
                                 ParticipantDiscoveryInfo&& info) override;
   void on_publisher_discovery(edds::DomainParticipant* participant,
                               WriterDiscoveryInfo&& info) override;
-  bool take_datagram(std::span<const std::byte> datagram, std::int64_t arrived_ns);
   void open_readers(const std::stop_token& stop);
   void open_reader(const ReaderKey& key, const std::string& type);
   void tell(std::string line);
@@ -90,7 +88,8 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   std::set<ReaderKey> asked_for;
   std::deque<std::pair<ReaderKey, std::string>> waiting;
   std::vector<std::string> trouble;
-  std::atomic<std::uint64_t> unattributed{0}, past_dds{0};
+  std::atomic<std::uint64_t> unattributed{0};
+  std::optional<BatchedReader> batched;  // Options::batched
 
   // Of the opening thread alone.
   std::map<std::string, edds::Topic*> topics;
@@ -98,16 +97,6 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   edds::DomainParticipant* participant = nullptr;
   edds::Subscriber* subscriber = nullptr;
   std::jthread opening;
-
-  // Of the batched transport's thread, and of stop().
-  struct Heard {
-    const SampleWriters::Entry* writer = nullptr;
-    std::int64_t newest = 0;  // sequence number
-  };
-  std::mutex taking;
-  bool listening = false;
-  SampleWriters writer_of{writers};
-  std::map<FoundWriters::Handle, Heard> heard;
 };
 
 struct Tap::Impl::Reader final : edds::DataReaderListener {
@@ -131,12 +120,12 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
 
   void on_requested_incompatible_qos(edds::DataReader* /*reader*/,
                                      const edds::RequestedIncompatibleQosStatus& status) override {
-    // A writer of another class is another reader's.
+    // A writer of another class belongs to another reader.
     if (status.last_policy_id == edds::RELIABILITY_QOS_POLICY_ID ||
         status.last_policy_id == edds::DURABILITY_QOS_POLICY_ID) {
       return;
     }
-    owner.tell(key.first + ": a writer offers what no reader here asks for (QoS policy " +
+    owner.tell(key.first + ": the QoS of a writer matches no reader (QoS policy " +
                std::to_string(status.last_policy_id) + ")");
   }
 
@@ -163,7 +152,7 @@ void Tap::Impl::on_publisher_discovery(edds::DomainParticipant* /*participant*/,
   const std::lock_guard lock(mutex);
   if (!partitions.empty()) {
     trouble.push_back(writer.topic + ": a writer in the partition \"" + partitions.front() +
-                      "\" is not heard");
+                      "\" is not received");
   }
   if (writer.type_known && asked_for.insert(key).second) {
     waiting.emplace_back(key, writer.type);
@@ -171,7 +160,7 @@ void Tap::Impl::on_publisher_discovery(edds::DomainParticipant* /*participant*/,
   }
 }
 
-// DDS holds locks of its own while it tells of a writer, so readers are made in this thread.
+// DDS holds its own locks while it announces a writer, so readers are created in this thread.
 void Tap::Impl::open_readers(const std::stop_token& stop) {
   for (;;) {
     std::pair<ReaderKey, std::string> next;
@@ -193,7 +182,7 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
     topics[name] = participant->create_topic(name, type, edds::TOPIC_QOS_DEFAULT);
   }
   if (topics[name] == nullptr || topics[name]->get_type_name() != type) {
-    return tell(name + ": there with two types, " + type + " is not recorded");
+    return tell(name + ": the topic has two types; " + type + " is not recorded");
   }
   edds::DataReaderQos qos;
   if (subscriber->get_datareader_qos_from_profile(profile_of(key.second), qos) !=
@@ -207,43 +196,6 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
   readers.push_back(std::move(reader));
 }
 
-// What DDS would do with a best-effort sample, without what it keeps for those who read later.
-bool Tap::Impl::take_datagram(std::span<const std::byte> datagram, std::int64_t arrived_ns) {
-  const auto sample = only_sample(datagram);
-  if (!sample) return false;
-  const std::lock_guard lock(taking);
-  if (!listening) return false;
-  const GuidPrefix_t& own = participant->guid().guidPrefix;
-  const auto* meant = reinterpret_cast<const octet*>(sample->destination.data());
-  if (std::memcmp(meant, own.value, GuidPrefix_t::size) != 0 &&
-      sample->destination != RtpsSample{}.destination) {
-    return false;
-  }
-  FoundWriters::Handle handle;
-  std::memcpy(static_cast<octet*>(handle.value), sample->writer.data(), sample->writer.size());
-  const auto known = heard.find(handle);
-  if (known == heard.end()) {
-    // Also the samples of discovery itself, which nobody ever announced.
-    const SampleWriters::Entry* writer = writer_of.of(handle);
-    if (writer == nullptr) return false;
-    const bool ours = writer->writer.wanted && writer->writer.type_known &&
-                      class_of(writer->writer.qos) == ReaderClass::kBestEffort;
-    if (!ours) return false;
-  }
-  Heard& mine = known == heard.end() ? heard[handle] : known->second;
-  if (mine.writer == nullptr) mine.writer = writer_of.of(handle);
-  // The same once more by another address, or overtaken.
-  if (sample->sequence <= mine.newest) return true;
-  mine.newest = sample->sequence;
-  past_dds.fetch_add(1, std::memory_order_relaxed);
-  eprosima::fastrtps::rtps::Time_t sent;
-  sent.seconds(sample->sent_s);
-  sent.fraction(sample->sent_fraction);
-  options.on_sample(mine.writer->writer, {mine.writer->number, sample->sequence, sent.to_ns(),
-                                          arrived_ns, sample->bytes});
-  return true;
-}
-
 void Tap::Impl::tell(std::string line) {
   const std::lock_guard lock(mutex);
   if (std::find(trouble.begin(), trouble.end(), line) == trouble.end()) {
@@ -252,18 +204,17 @@ void Tap::Impl::tell(std::string line) {
 }
 
 Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
-  // Checked before the run: the readers themselves come when their writers do.
-  impl_->participant = create_participant(
-      impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
-      {impl_->options.security, std::string(topics::kTap)}, impl_.get(),
-      impl_->options.batched ? TakeDatagram([impl = impl_.get()](auto datagram, auto arrived_ns) {
-        return impl->take_datagram(datagram, arrived_ns);
-      })
-                             : TakeDatagram());
+  // Profiles are checked before the run; the readers are created when their writers are found.
+  impl_->participant =
+      create_participant(impl_->options.profiles, impl_->options.domain, impl_->options.name, false,
+                         {impl_->options.security, std::string(topics::kTap)}, impl_.get(),
+                         [this](edds::DomainParticipantQos& qos) {
+                           if (impl_->batched) impl_->batched->install(qos);
+                         });
   impl_->subscriber = impl_->participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT);
   edds::Publisher* profiles = impl_->participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT);
   if (impl_->subscriber == nullptr || profiles == nullptr) {
-    throw BusError("Fast DDS gave no subscriber");
+    throw BusError("Fast DDS created no subscriber");
   }
   impl_->writers.learn_depths(*profiles, impl_->options.profiles);
   for (const auto each :
@@ -277,10 +228,7 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
 }
 
 void Tap::start() {
-  {
-    const std::lock_guard lock(impl_->taking);
-    impl_->listening = true;
-  }
+  if (impl_->batched) impl_->batched->start(*impl_->participant);
   impl_->opening =
       std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->open_readers(stop); });
 }
@@ -288,10 +236,7 @@ void Tap::start() {
 Tap::~Tap() { stop(); }
 
 void Tap::stop() {
-  {
-    const std::lock_guard lock(impl_->taking);
-    impl_->listening = false;
-  }
+  if (impl_->batched) impl_->batched->stop();
   if (impl_->opening.joinable()) {
     impl_->opening.request_stop();
     impl_->opening.join();
@@ -309,7 +254,7 @@ std::vector<std::string> Tap::trouble() const {
   return impl_->trouble;
 }
 
-std::uint64_t Tap::past_dds() const { return impl_->past_dds.load(std::memory_order_relaxed); }
+std::uint64_t Tap::past_dds() const { return impl_->batched ? impl_->batched->samples() : 0; }
 
 std::uint64_t Tap::unattributed() const {
   return impl_->unattributed.load(std::memory_order_relaxed);

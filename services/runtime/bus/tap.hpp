@@ -16,7 +16,7 @@ namespace stillhand::runtime {
 /// waits for.  Readers are made for each wanted topic as its writers are found, one for each
 /// combination of reliability and durability, so that every writer matches and none is read twice.
 ///
-/// Made, it has looked at all that can be refused; it hears nothing before start().
+/// The constructor checks everything that can be refused; no sample arrives before start().
 /// on_sample() runs in a receiving thread, one call at a time for each reader; writers() is for
 /// any thread.  Endpoint errors after the start are in trouble().
 class Tap {
@@ -26,8 +26,9 @@ class Tap {
     std::uint32_t domain = 0;        ///< DDS domain, 0 to 232
     std::filesystem::path profiles;  ///< qos/profiles.xml
     std::filesystem::path security;  ///< see Bus::Options; it shows topics::kTap's certificate
-    /// For a listener to many topics: what comes is read in batches (batched_udp.hpp), which costs
-    /// it and the senders less.  Not with security, whose samples only DDS can read.
+    /// For a listener to many topics: best-effort samples are read in batches, past Fast DDS
+    /// (batched/batched_reader.hpp), which costs the listener and the senders less.  Without effect
+    /// on a secured domain, whose samples only Fast DDS can decrypt.
     bool batched = false;
     std::function<bool(const std::string& topic)> wanted;
     std::function<void(const FoundWriter&, const TappedSample&)> on_sample;
@@ -46,11 +47,11 @@ class Tap {
   void stop();
   /// Every writer found so far, in the order of finding; those that left stay.
   [[nodiscard]] std::vector<FoundWriter> writers() const;
-  /// What could not be subscribed to, and why; one line each.
+  /// Topics that could not be subscribed to, with the reason; one line each.
   [[nodiscard]] std::vector<std::string> trouble() const;
-  /// Samples that were read in batches, Options::batched.
+  /// Samples that were read in batches; 0 without Options::batched.
   [[nodiscard]] std::uint64_t past_dds() const;
-  /// Samples of writers that DDS never announced; 0 unless DDS is at fault.
+  /// Samples of writers that discovery did not announce; 0 unless DDS is at fault.
   [[nodiscard]] std::uint64_t unattributed() const;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace stillhand::runtime {
 
-/// What TypeTag stands for; only the .cpp files of this folder see it.
+/// The content of TypeTag; only the .cpp files of this folder see it.
 struct TypeTag {
   eprosima::fastdds::dds::TypeSupport support;
 };

@@ -11,7 +11,7 @@ inline constexpr std::int64_t kForever_ns = INT64_MAX;
 enum class Durability : std::uint8_t { kVolatile, kTransientLocal, kTransient, kPersistent };
 enum class Liveliness : std::uint8_t { kAutomatic, kManualByParticipant, kManualByTopic };
 
-/// What a writer offers its readers: the policies that a recording keeps and a replay offers again.
+/// The policies of a writer that a recording keeps and a replay offers again.
 /// Plain, without DDS.
 struct WriterQos {
   bool reliable = false;
@@ -21,7 +21,7 @@ struct WriterQos {
   std::int64_t deadline_ns = kForever_ns;
   std::int64_t lifespan_ns = kForever_ns;
   std::int64_t lease_ns = kForever_ns;  ///< of LIVELINESS
-  /// HISTORY does not travel in discovery: 0 unless the writer's profile is known here.
+  /// Discovery does not carry HISTORY: 0 unless the writer's profile is known.
   std::int32_t depth = 0;  ///< [-] KEEP_LAST, -1: KEEP_ALL, 0: not known
   bool operator==(const WriterQos&) const = default;
 };

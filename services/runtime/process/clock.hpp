@@ -16,7 +16,7 @@ inline std::int64_t monotonic_ns() noexcept {
   return now.tv_sec * kNsPerSecond + now.tv_nsec;
 }
 
-/// CLOCK_REALTIME [ns]: what time it is, for files and for other hosts; it may jump.
+/// CLOCK_REALTIME [ns]: the time of day, for files and for other hosts; it may jump.
 inline std::int64_t system_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);

@@ -8,8 +8,8 @@ namespace stillhand::runtime {
 /// Share of a second's worth of something that was used, over the last whole second.  Pure.
 class ShareMeter {
  public:
-  /// @param used   what was used so far
-  /// @param whole  what there was so far, in the same unit
+  /// @param used   amount used so far
+  /// @param whole  amount available so far, in the same unit
   /// @param least  of `whole` that makes a new value
   /// @return the newest share; NaN before the first
   double step(std::int64_t used, std::int64_t whole, std::int64_t least) noexcept;
@@ -33,7 +33,8 @@ class ProcessCpu {
 /// Share of all processors of this host that are busy, from /proc/stat.  One thread.
 class HostCpu {
  public:
-  /// @return over the last second or more, 0 to 1; NaN before the first, and where it isn't told
+  /// @return over the last second or more, 0 to 1; NaN before the first, and if /proc/stat cannot
+  /// be read
   double step();
 
  private:

@@ -7,7 +7,7 @@ namespace stillhand::runtime {
 
 /// Real-time priority of the control path: below the kernel's threaded interrupts at 50.
 inline constexpr int kControlPriority = 40;
-/// [B] What lock_memory() wants to be allowed: some times what a process uses.
+/// [B] The RLIMIT_MEMLOCK that lock_memory() needs: several times the memory of a process.
 inline constexpr std::uint64_t kMemoryToLock = std::uint64_t{1} << 30;
 
 /// Asks for SCHED_FIFO for the calling thread and those it starts from now on (Fast DDS 2.9.1 has
@@ -22,7 +22,7 @@ bool become_real_time(bool secured = false) noexcept;
 
 /// Keeps every page of this process that is or will be in use from being swapped out, where the
 /// limit (RLIMIT_MEMLOCK) has room for a process: with less, later allocations would fail.
-/// @return false when it hasn't, or the system does not grant it.
+/// @return false if the limit is too low or the system refuses.
 bool lock_memory() noexcept;
 
 /// Whose locks a thread takes.
@@ -31,7 +31,7 @@ enum class Locks : bool { kOwn, kFastDds };
 /// Lowers a real-time thread below the control path, for threads that report or write files.  They
 /// stay real-time: they share locks with the control path inside Fast DDS (its send resources), and
 /// an ordinary thread that is preempted while it holds one stalls the loop for as long as the
-/// machine is busy (measured 2026-11: up to 200 ms beside a parallel build).  Of a secured process
+/// machine is busy (measured 2026-11: up to 200 ms during a parallel build).  Of a secured process
 /// only those go lower that share none: see become_real_time().
 void become_background(Locks locks = Locks::kFastDds) noexcept;
 
@@ -49,7 +49,7 @@ class OrdinaryWhile {
   int priority_;
 };
 
-/// SIGTERM for this process when its parent ends, so that a killed lab leaves nobody behind.
+/// SIGTERM for this process when its parent ends, so that a killed lab leaves no process behind.
 void end_with_parent() noexcept;
 
 }  // namespace stillhand::runtime

@@ -149,8 +149,8 @@ TEST(BusHealthConfigTest, AWarningAboveItsCriticalValueIsRefused) {
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(),
-                testing::StrEq("dashboard.silent_warning_ms: got 400, want at most 300, from which "
-                               "on it is critical"));
+                testing::StrEq("dashboard.silent_warning_ms: got 400, want at most 300, the "
+                               "critical value"));
   }
 }
 

@@ -119,9 +119,9 @@ TEST_F(RecoverTest, NoFileIsWrittenOver) {
     ASSERT_TRUE(recording::write_file_atomically(path(name), "kept").ok());
   }
   EXPECT_THAT(config_error_of([&] { recover(path("a.mcap"), {path("taken")}); }),
-              HasSubstr("taken: got a file that is there, want a name that is free"));
+              HasSubstr("taken: got a file that exists, want a name that does not exist"));
   EXPECT_THAT(config_error_of([&] { recover(path("a.mcap"), {}); }),
-              HasSubstr("a.mcap.damaged: got a file that is there"));
+              HasSubstr("a.mcap.damaged: got a file that exists"));
   EXPECT_EQ(recording::read_file(path("a.mcap")), before);
   EXPECT_EQ(recording::read_file(path("taken")), "kept");
   EXPECT_EQ(file_count(), 3u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/bus/batched_udp.hpp"
+#include "services/runtime/bus/batched/batched_udp.hpp"
 
 #include <arpa/inet.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -26,8 +26,8 @@ namespace {
 
 constexpr std::int64_t kTurn_ns = 4'000'000;
 constexpr std::size_t kSlots = 64;
-// Of one socket in a turn, 256,000 datagrams a second: a flood that fills every batch keeps neither
-// the other sockets nor an end waiting, and what is too much the kernel drops.
+// Of one socket in a turn, 256,000 datagrams a second: a flood that fills every batch delays
+// neither the other sockets nor the end, and the kernel drops the excess.
 constexpr int kMostBatches = 16;
 constexpr std::size_t kLargest = 65536;  // a datagram's, by UDP itself
 
@@ -64,7 +64,7 @@ class Socket {
 
 }  // namespace
 
-/// What one locator's port is listened to with, and for whom.
+/// The sockets of one locator's port, and their receiver.
 struct BatchedUdp::Channel {
   Locator local;
   std::vector<Socket> sockets;
@@ -86,7 +86,7 @@ class BatchedUdp::Slots {
     }
   }
 
-  /// Takes what has come, at most kSlots.  @returns how many
+  /// Takes the datagrams that have arrived, at most kSlots.  @returns their number
   std::size_t fill(int socket) {
     for (std::size_t i = 0; i < kSlots; ++i) {
       messages_[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
@@ -163,7 +163,7 @@ bool BatchedUdp::OpenInputChannel(const Locator& locator, Receiver* receiver, st
                                     descriptor_.udp->receiveBufferSize);
     }
   } catch (const std::system_error&) {
-    return false;  // taken, as a rule: DDS tries the next port
+    return false;  // usually taken: DDS tries the next port
   }
   const std::lock_guard lock(mutex_);
   channels_.push_back(std::move(channel));
@@ -185,7 +185,7 @@ bool BatchedUdp::CloseInputChannel(const Locator& locator) {
     closed = std::move(*found);
     channels_.erase(found);
   }
-  const std::lock_guard lock(closed->mutex);  // until whoever is in the receiver has left it
+  const std::lock_guard lock(closed->mutex);  // until a running call of the receiver has returned
   closed->receiver = nullptr;
   return true;
 }

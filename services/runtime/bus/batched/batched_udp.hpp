@@ -16,15 +16,16 @@
 
 namespace stillhand::runtime {
 
-/// Sees every datagram before DDS does.  @param arrived_ns  [ns] system clock, the kernel's stamp
-/// @returns true when it took it: DDS then never sees it
+/// Receives every datagram before DDS does.
+/// @param arrived_ns  [ns] system clock, the kernel's stamp
+/// @returns true to keep the datagram from DDS
 using TakeDatagram =
     std::function<bool(std::span<const std::byte> datagram, std::int64_t arrived_ns)>;
 
-/// UDPv4 for a listener to much: what has come is read every 4 ms, many datagrams a call, in one
-/// thread.  Fast DDS's own transport sleeps in a call for each datagram, and every *sender* pays
-/// for waking it (README, "Batched UDP").  When a datagram came,
-/// the kernel tells, so the waiting shows in no latency.  Sends and joins groups as Fast DDS's.
+/// UDPv4 for a listener to many topics: one thread reads every socket each 4 ms, many datagrams a
+/// call.  Fast DDS's own transport sleeps in a call for each datagram, and every *sender* pays for
+/// waking it (README, "Batched UDP").  The kernel's stamp says when a datagram arrived, so the wait
+/// does not appear in a latency.  Sending and multicast groups stay Fast DDS's.
 struct BatchedUdpDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   BatchedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_,
                        TakeDatagram take_)
@@ -61,7 +62,7 @@ class BatchedUdp final : public eprosima::fastdds::rtps::ChainingTransport {
   class Slots;
 
   void run(const std::stop_token& stop);
-  /// @returns how many datagrams came
+  /// @returns the number of datagrams
   std::size_t take_batch(const Channel& channel, int socket, Slots& slots);
 
   BatchedUdpDescriptor descriptor_;
