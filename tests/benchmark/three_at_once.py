@@ -23,7 +23,8 @@ BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", "build"))
 
 
 def run(program, *words):
-    done = subprocess.run([str(BUILD / "bin" / program), *map(str, words)], capture_output=True, text=True)
+    folder = "tests" if program == "planted_recordings" else "bin"
+    done = subprocess.run([str(BUILD / folder / program), *map(str, words)], capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"three_at_once: {program}: {done.stderr.strip()}")
 
