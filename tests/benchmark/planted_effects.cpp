@@ -248,8 +248,8 @@ constexpr Selection kWhole;
 // right and one of 200 an alarm on 2026-11-22; 2 in 46 may be the wrong ones of the whole, 3 aren't
 // (p = 0.05).
 constexpr Selection kTenth{11, 0, 10, 40, 10, 44, 1};
-// Steps of 61 meet nine kinds, both strengths and both noise levels.  With the whole's rate of wrong
-// ones, 1.8 %, one sample of nine in a hundred holds two wrong ones.
+// Steps of 61 meet nine kinds, both strengths and both noise levels.  With the whole's rate of
+// wrong ones, 1.8 %, one sample of nine in a hundred holds two wrong ones.
 constexpr Selection kShort{61, 0, 100, 0, 1, 8, 0};
 
 int run(const Selection& selection) {
