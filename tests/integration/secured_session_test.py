@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand lab --security`: a session of processes with keys, next to a stranger that has none (stranger.cpp).
 
-The stranger receives nothing and nobody hears it. Keys with a fault are refused before anything starts. With `--campaign`
-the results are compared with those of a session without keys, on one machine and over three (network.py).
+The stranger receives nothing and nobody hears it. Keys with a fault are refused before anything starts. With
+`--campaign` the results are compared with those of a session without keys, on one machine and over three (network.py).
 """
 import os
 import re
@@ -18,9 +18,10 @@ STRANGER = BUILD / "tests" / "stranger"
 SESSION_LIMIT_S = 150
 WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
 MOST_LOST_TICKS = 400  # of 175,000; with many more, less is cancelled, with keys or without
-# A secured session takes nearly all of two cores. One that falls behind ends by the interlock, as it should, and is tried
-# again, once. Alone on two cores seven of seven sessions were completed (deploy/security/README.md), so that a single
-# session fails in less than 35 % of the cases (at 95 % confidence): the second try hides a failure rate up to that.
+# A secured session takes nearly all of two cores. One that falls behind ends by the interlock, as it should, and is
+# tried again, once. Alone on two cores seven of seven sessions were completed (deploy/security/README.md), so that a
+# single session fails in less than 35 % of the cases (at 95 % confidence): the second try hides a failure rate up to
+# that.
 TRIES = 2
 LATE = "a process is missing|ticks of the pegged trial were lost"
 CANCELLED_SHARE, CANCELLED_TOLERANCE = 0.853, 0.026  # as in lab_session_test.py, which derives the tolerance
