@@ -93,7 +93,7 @@ class FullDiskTest(unittest.TestCase):
         # All of it but the chunk that did not fit.
         self.assertLess(info["lost_bytes"], 400_000)
         self.assertIn("cut off", told.stderr)
-        # A copy finds no room beside it, and the old file stays.
+        # A copy finds no room next to the file, which stays.
         there = run(STILLHAND, "recover", file)
         self.assertEqual(there.returncode, 1, there.stderr)
         self.assertIn("No space left on device", there.stderr)

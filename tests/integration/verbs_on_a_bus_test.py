@@ -263,23 +263,23 @@ class ReplayTest(Bus):
         wait_for("an answer", lambda: self.remote("replay", "loop-off").returncode == 0)
         return replay
 
-    def told(self, command):
+    def answer(self, command):
         return ANSWER.search(self.obeyed("replay", command))
 
     def test_each_command_is_obeyed_and_answered(self):
         replay = self.replay("--paused")
-        self.assertIn("paused", self.told("pause")["flags"])
-        at_start = self.told("seek 5")
+        self.assertIn("paused", self.answer("pause")["flags"])
+        at_start = self.answer("seek 5")
         self.assertEqual((at_start["at"], at_start["count"]), ("5.000", "0"))
-        step = self.told("step")
+        step = self.answer("step")
         self.assertEqual(step["count"], "1")
         self.assertGreaterEqual(float(step["at"]), 5.0)
-        self.assertEqual(self.told("rate 10")["rate"], "10")
-        self.assertNotIn("paused", self.told("play")["flags"])
-        self.assertIn("looping", self.told("loop 2 3")["flags"])
-        positions = [float(self.told("play")["at"]) for _ in range(5)]
+        self.assertEqual(self.answer("rate 10")["rate"], "10")
+        self.assertNotIn("paused", self.answer("play")["flags"])
+        self.assertIn("looping", self.answer("loop 2 3")["flags"])
+        positions = [float(self.answer("play")["at"]) for _ in range(5)]
         self.assertTrue(all(2.0 <= at <= 3.1 for at in positions), positions)
-        self.assertNotIn("looping", self.told("loop-off")["flags"])
+        self.assertNotIn("looping", self.answer("loop-off")["flags"])
         self.obeyed("replay", "pause")  # or it is over before the last command
         for refused in ("seek 1000", "loop 3 2", "rate 1000"):
             answer = self.remote("replay", refused)
@@ -296,7 +296,7 @@ class ReplayTest(Bus):
         self.obeyed("replay", "loop 4 5")
         self.obeyed("replay", "play")
         # 100 messages a second of this topic: a second time round after 200.
-        wait_for("three rounds", lambda: int(self.told("play")["count"]) > 300)
+        wait_for("three rounds", lambda: int(self.answer("play")["count"]) > 300)
         self.obeyed("replay", "stop")
         replay.wait(timeout=LIMIT_S)
         self.interrupted(recorder)

@@ -12,7 +12,7 @@
 
 namespace stillhand::planted {
 
-/// One number of a planted effect, as the truth tells it.
+/// One number of a planted effect, as the truth file gives it.
 struct Parameter {
   std::string name;
   double value = 0.0;
@@ -34,7 +34,7 @@ struct Effect {
   std::string variant;  ///< where and how, for example "grip spring, hardening"
   std::vector<std::string>
       channels;                   ///< the ones it depends on, without a_y unless it is the point
-  std::vector<std::string> also;  ///< channels that tell nearly the same: not wrong to name
+  std::vector<std::string> also;  ///< channels that carry nearly the same: not wrong to name
   bool any_size = false;  ///< the sensible range lies beyond the strengths asked for: size is drawn
   bool reads_noise = false;  ///< the noise arises before the reading stages, which act on it too
   /// Changes the plant; size in 0 (barely there) .. 1 (largest sensible), stronger as it grows.

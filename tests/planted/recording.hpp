@@ -49,7 +49,7 @@ struct PlantedEffect {
   double left_by_order_4 = 0.0;  ///< alone: see Truth
   double evidence = 0.0;         ///< alone: see Truth
   /// of the parts of two contributions that no linear model of a_y explains: the largest
-  /// correlation with another planted effect, 0 .. 1; near 1 nobody can tell the two apart
+  /// correlation with another planted effect, 0 .. 1; near 1 the two cannot be distinguished
   double overlap = 0.0;
   double marginal = 0.0;  ///< rms(f with all - f with all but this) / rms(f without any)
 };
@@ -64,7 +64,7 @@ struct Truth {
   /// NaN when not computed (more than 100 000 samples)
   double left_by_order_4 = 0.0;
   /// samples (left_by_order_4 force_rms / noise_rms)^2: twice the log-likelihood that white noise
-  /// of this size leaves to tell the effects from nothing; below some tens nobody can
+  /// of this size leaves to distinguish the effects from none; below some tens that is impossible
   double evidence = 0.0;
   double force_rms_n = 0.0;  ///< noise-free, effects included, mean left out
   double noise_rms_n = 0.0;  ///< the noise floor: rms(f recorded - f noise-free)
