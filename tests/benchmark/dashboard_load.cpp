@@ -38,7 +38,7 @@ const topics::Topic& plain(const topics::Topic& topic) {
   return row;
 }
 
-/// One rig's processes, as far as a listener can tell.
+/// One rig's processes, as a listener sees them.
 class Rig {
  public:
   Rig(std::uint32_t number, std::uint32_t domain) : bus_(options(number, domain)) { bus_.start(); }
@@ -144,7 +144,7 @@ int publish(std::uint32_t domain, std::uint32_t rigs, Tick ticks) {
   const double took_s = static_cast<double>(runtime::monotonic_ns() - begin_ns) / 1e9;
   std::cout << "sent " << ticks * rigs * kTopics << " messages in " << took_s
             << " s, worst tick late by " << worst_ns / 1000 << " us" << std::endl;
-  // The writers stay until whoever counted them has been asked.
+  // The writers stay until the count has been read.
   std::cin.get();
   return 0;
 }

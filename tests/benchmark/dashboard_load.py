@@ -5,9 +5,9 @@
     STILLHAND_BUILD=build tests/benchmark/dashboard_load.py [--rigs 15] [--seconds 20] [--clients 24]
 
 Each rig has seven topics at 1 kHz, written by one process on the real bus (dashboard_load.cpp); each client reads the
-stream of events. Processor time is the dashboard's own, of all its threads, user and system, while all of that runs; counted
-is what its page tells of every rig in the end. Prints a row of a table; exit status 1 above 25 % of a core or when a count
-is not what was sent.
+stream of events. Processor time is that of all the dashboard's threads, user and system, meanwhile. *Counted* are the
+samples that its page shows for all rigs at the end. Prints a row of a table; exit status 1 above 25 % of a core, or if a
+count differs from the samples sent.
 """
 import argparse
 import json
@@ -34,7 +34,7 @@ def cpu_s(pid):
 
 
 class Client(threading.Thread):
-    """Reads events until it is told to end, and counts them."""
+    """Reads and counts events until it is stopped."""
 
     def __init__(self, address):
         super().__init__(daemon=True)
@@ -94,7 +94,7 @@ def main():
         rate = (sum(client.events for client in clients) - events) / (time.monotonic() - began)
         told = load.stdout.readline().strip()
         sent = int(re.match(r"sent (\d+)", told)[1])
-        # What is on its way arrives; the row tells when it does not.
+        # Samples on their way arrive; the row shows it if they do not.
         wait_for("all that was sent", lambda: counted_of(snapshot(address)) == sent, fails=False)
         seen = snapshot(address)
     finally:

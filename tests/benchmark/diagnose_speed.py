@@ -31,7 +31,7 @@ def band_noise(random, count, rate_hz, highest_hz, rms):
 
 
 def through_body(x, rate_hz):
-    """Modes at 2 and 5 Hz beside each other, in the frequency domain: no code in common with the engine's."""
+    """Modes at 2 and 5 Hz next to each other, in the frequency domain: no code in common with the engine's."""
     spectrum = numpy.fft.rfft(x)
     s = 2j * numpy.pi * numpy.fft.rfftfreq(len(x), 1.0 / rate_hz)
     response = 0.0

@@ -2,7 +2,7 @@
 // What it costs the processes of a lab to find each other, by each discovery that an inventory may
 // name (deploy/README.md).
 // As root: build/tests/discovery_cost [ROUNDS [PARTICIPANTS...]]
-// 5 rounds of 2, 8, 32 and 64 participants unless told otherwise, on one host in a network
+// 5 rounds of 2, 8, 32 and 64 participants by default, on one host in a network
 // namespace of its own.  Each participant is a process with the profiles that `stillhand deploy
 // generate` makes for a lab of as many services; it writes and reads the 10 Hz status that every
 // service has, and nothing else.  All start at once.  Then 2 s with the status and 2 s without.

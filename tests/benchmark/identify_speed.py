@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The paper's least squares beside NumPy's, in one run, on the same 120 s recording at 100 Hz.
+"""The paper's least squares next to NumPy's, in one run, on the same 120 s recording at 100 Hz.
 
     STILLHAND_BUILD=build python3 tests/benchmark/identify_speed.py
 
@@ -101,13 +101,13 @@ def main():
 
     rows = [("samples at 50 Hz (6000) to nine parameters", ours["fit"], theirs["fit"]),
             ("samples at 100 Hz (12000) to nine parameters", ours["fit_all_samples"], theirs["fit_all_samples"]),
-            ("the same at 50 Hz beside numpy.linalg.solve(A.T @ A, A.T @ f)", ours["fit"], theirs["normal"]),
+            ("the same at 50 Hz next to numpy.linalg.solve(A.T @ A, A.T @ f)", ours["fit"], theirs["normal"]),
             ("all of fit_arx(), which also checks the excitation, fits again without\n  the last quarter and judges "
-             "both runs on it, beside the same bare lstsq", ours["checked"], theirs["fit"])]
+             "both runs on it, next to the same bare lstsq", ours["checked"], theirs["fit"])]
     if scipy:
         rows += [("10 Hz low-pass, every second sample, nine parameters", ours["low_pass_and_fit"],
                   theirs["low_pass_and_fit"]),
-                 ("low-pass and fit_arx(), beside low-pass and bare lstsq", ours["low_pass_and_checked"],
+                 ("low-pass and fit_arx(), next to low-pass and bare lstsq", ours["low_pass_and_checked"],
                   theirs["low_pass_and_fit"])]
     else:
         print("scipy isn't installed: no low-pass to compare with; the samples at 50 Hz are every second one")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing a recording to a file, beside a plain write() of the same messages, and reading it back:
+// Writing a recording to a file, next to a plain write() of the same messages, and reading it back:
 //   build/tests/mcap_write_benchmark            files in /tmp, or in TMPDIR
 //
 // Messages are 92 bytes, the size of a Sensed sample in CDR, filled like one: a slow sine per

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The residual engine on measured recordings: what it names, and its error beside published figures.
+"""The residual engine on measured recordings: what it names, and its error next to published figures.
 
-STILLHAND_DATA is the folder of the recordings (default: shared/data beside the checkout; they are not part of the project;
+STILLHAND_DATA is the folder of the recordings (default: shared/data next to the checkout; they are not part of the project;
 without them this says so and ends with 77, "skipped").
 
     STILLHAND_BUILD=build python3 tests/benchmark/measured_data.py            # all, two minutes
@@ -102,7 +102,7 @@ class Table:
 
 
 # The belt's false pitch moment: what its acceleration alone leaves repeats with the belt's way, once every 0.632 m, the
-# same in both trials: a turn of a roller of 0.2 m, or the belt's own structure; no channel tells which.
+# same in both trials: a turn of a roller of 0.2 m, or the belt's own structure; no channel shows which.
 def treadmill(folder, table):
     for name, static in (("fast1", 1.70), ("slow1", 1.27)):
         study = Study(folder, [f"treadmill_{name}"], "belt_acceleration", "pitch_moment")
@@ -171,7 +171,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="without Silverbox")
     quick = parser.parse_args().quick
     if not (DATA / "emps_estimation.csv").is_file():
-        print(f"skipped: no recordings in {DATA}; STILLHAND_DATA tells where they are")
+        print(f"skipped: no recordings in {DATA}; STILLHAND_DATA names their folder")
         sys.exit(SKIPPED)
     table = Table()
     with tempfile.TemporaryDirectory() as holder:

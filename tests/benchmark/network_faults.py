@@ -87,7 +87,7 @@ class Witness:
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def rig(self, file):
-        """Its recording as inspect_recording tells it; None when the machine is gone."""
+        """Its recording as inspect_recording prints it; None if the machine is gone."""
         with contextlib.suppress(RuntimeError):
             self.machine.run("sh", "-c", "kill -INT $(cat /tmp/witness.pid)")
         self.process.wait(timeout=20)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What DDS Security costs, beside the same without (qos/README.md).
+// The cost of DDS Security, next to the same without (qos/README.md).
 // build/tests/security_cost [ROUNDS]
-// Each round, 5 unless told otherwise: 4000 samples at 1 kHz from sensing's bus to another process
+// Each round, 5 by default: 4000 samples at 1 kHz from sensing's bus to another process
 // and back as motor commands, then the start of a whole session's nine processes at once; without
 // security, as configured, and with everything encrypted.  Every process asks for SCHED_FIFO, as a
 // lab's do.  Medians over the rounds; ratios are of one round.

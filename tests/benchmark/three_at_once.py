@@ -5,10 +5,12 @@
     STILLHAND_BUILD=build python3 tests/benchmark/three_at_once.py            # twelve recordings, seed 5; ten minutes
     STILLHAND_BUILD=build python3 tests/benchmark/three_at_once.py --together 2 --count 20 --seed 1
 
-Named: the kind is the planted one's and, where that hangs on a channel besides the input, the channel is it or one that tells
-nearly the same (`also_right` of tests/planted).  In order: those that were named come in the order of the size that they have
-beside the others (`marginal_strength`); that holds what the linear body takes on, so beside it the order of what a body of
-fourth order leaves of each alone (`left_by_order_4`).  Over noise: held-out error of the final model over the RMS of the noise.
+Named: the kind is the planted one. If the effect depends on another channel than the input, the channel is the planted one
+or one that carries nearly the same (`also_right` of tests/planted).
+In order: the named effects come in the order of their size among the others (`marginal_strength`). This size includes the
+part that the linear body explains; a second column therefore gives the order of what a body of fourth order leaves of each
+effect alone (`left_by_order_4`).
+Over noise: held-out error of the final model over the RMS of the noise.
 """
 import argparse
 import json
@@ -23,7 +25,8 @@ BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", "build"))
 
 
 def run(program, *words):
-    done = subprocess.run([str(BUILD / "bin" / program), *map(str, words)], capture_output=True, text=True)
+    folder = "tests" if program == "planted_recordings" else "bin"
+    done = subprocess.run([str(BUILD / folder / program), *map(str, words)], capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"three_at_once: {program}: {done.stderr.strip()}")
 

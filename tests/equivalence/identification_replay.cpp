@@ -43,6 +43,7 @@ Replay replay_identification(const SessionRecording& session, const SessionSetti
   const ByTick sensed("sensed", session.sensed);
   Replay result;
   result.core = "identification";
+  result.recorded = std::ssize(session.models);
   try {
     for (const msgs::FeedthroughModel& model : session.models) {
       const Trial trial = runtime::from_idl(of_trial(session.trial_controls, model.trial()));

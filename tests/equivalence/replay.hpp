@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -23,6 +24,7 @@ class NotRecorded : public std::runtime_error {
 struct Replay {
   std::string core;
   Tick first_tick = -1;         ///< the core started from rest here
+  std::int64_t recorded = 0;    ///< outputs in the recording
   std::int64_t compared = 0;    ///< outputs, all their bytes but rig number and stamp
   std::int64_t different = 0;   ///< of these
   std::int64_t unseen = 0;      ///< ticks that did not reach the live core: it flagged a gap
@@ -84,6 +86,7 @@ Replay replay(const std::string& core, const std::vector<Output>& outputs, const
               const Agree& agree) {
   Replay result;
   result.core = core;
+  result.recorded = std::ssize(outputs);
   const Output* before = nullptr;
   try {
     for (const Output& recorded : outputs) {

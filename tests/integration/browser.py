@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A real Chromium without a screen, and what a test asks of a page in it: Selenium and Chromium's own driver."""
+"""A real Chromium without a screen, and the questions that a test asks a page in it: Selenium, Chromium's driver."""
 import json
 import os
 import pathlib
@@ -7,17 +7,19 @@ import pathlib
 CHROMIUM = "/usr/bin/chromium"
 DRIVER = "/usr/bin/chromedriver"
 SIZES = {"wall": (1920, 1080), "laptop": (1280, 720), "phone": (390, 844)}
-KEPT = os.environ.get("STILLHAND_SCREENSHOTS")  # folder for what the test saw
+KEPT = os.environ.get("STILLHAND_SCREENSHOTS")  # folder for pictures of the page
 
-# What the page shows, with the time, each time it changes: an eye that is not slowed down by being asked.
+# Records what the page shows, with the time, each time it changes: the strip with the alarms' text, and each alarm. So a
+# test sees also what the page shows only for a moment, between two questions.
 WATCH = """
 window.seen = [];
 const look = () => window.seen.push([Date.now(), document.getElementById("strip").innerText + "\\n" +
-                                     document.getElementById("alarms").innerText]);
+                                     document.getElementById("alarms").innerText,
+                                     [...document.querySelectorAll("#alarms li")].map(({ textContent }) => textContent)]);
 for (const id of ["strip", "alarms"])
   new MutationObserver(look).observe(document.getElementById(id), { childList: true, subtree: true, characterData: true });
 """
-# Of everything that a person may operate: what it is called, and whether it shows that it has the focus.
+# The name of the element that has the focus, and whether it shows the focus.
 FOCUSED = """
 const node = document.activeElement, style = getComputedStyle(node), box = node.getBoundingClientRect();
 return { name: node.id || node.dataset.ask || node.getAttribute("aria-labelledby") || node.textContent.trim().slice(0, 40),
@@ -60,7 +62,7 @@ class Browser:
         for word in ("--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--disable-background-networking"):
             options.add_argument(word)
         if os.geteuid() == 0:
-            options.add_argument("--no-sandbox")  # it refuses root else
+            options.add_argument("--no-sandbox")  # without it, it refuses root
         options.set_capability("goog:loggingPrefs", {"performance": "ALL", "browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
         self.address = address
@@ -93,14 +95,18 @@ class Browser:
 
     def first_seen(self, after_ms, shown):
         """When the page first showed what a condition on its text asks for [ms since 1970], or None."""
-        return next((at for at, text in self.run("return window.seen") if at >= after_ms and shown(text)), None)
+        return next((at for at, text, _ in self.run("return window.seen") if at >= after_ms and shown(text)), None)
+
+    def first_alarms_seen(self, after_ms, shown):
+        """When a condition on the texts of the page's alarms was first true [ms since 1970], or None."""
+        return next((at for at, _, alarms in self.run("return window.seen") if at >= after_ms and shown(alarms)), None)
 
     def pictures(self):
         """Every canvas of the page, as its pixels."""
         return self.run("return [...document.querySelectorAll('canvas')].map((canvas) => canvas.toDataURL())")
 
     def gather(self):
-        """Adds to `errors` and `requests` what the browser has logged since the last call."""
+        """Adds the browser's log since the last call to `errors` and `requests`."""
         self.errors += [entry["message"] for entry in self.driver.get_log("browser")
                         if entry["level"] in ("SEVERE", "WARNING")]
         for entry in self.driver.get_log("performance"):
@@ -116,7 +122,7 @@ class Browser:
         return [found for found in self.driver.execute_async_script(AXE) if found["impact"] in ("serious", "critical")]
 
     def walk(self, most=150):
-        """Everything that Tab comes by, from the top until it leaves the page."""
+        """Every place that Tab reaches, from the top until it leaves the page."""
         self.run("document.activeElement.blur(); window.scrollTo(0, 0)")
         places = []
         for _ in range(most):
@@ -135,7 +141,7 @@ class Browser:
         return self.run("return document.documentElement.scrollWidth - window.innerWidth")
 
     def keep(self, name):
-        """A picture of the whole page in each size and colour, where it was asked for."""
+        """Saves a picture of the whole page in each size and colour, if STILLHAND_SCREENSHOTS is set."""
         if not KEPT:
             return
         folder = pathlib.Path(KEPT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand dashboard` among those who mean it no good, beside a session that notices nothing of them."""
+"""`stillhand dashboard` with hostile clients. With `--campaign` also next to a session that they must not disturb."""
 import errno
 import http.client
 import os
@@ -11,9 +11,8 @@ import socket
 import threading
 import time
 
-import lab_process
 from dashboard_test import LIMIT_S, TOKEN, DashboardCase, main, streams, wait_for
-from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, next_domain, quick_session
+from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, campaign, next_domain, quick_session
 
 CONNECTIONS = 10000
 MOST_CONNECTIONS = 64
@@ -73,7 +72,7 @@ class ClientsCase(DashboardCase):
         return client
 
     def say_at_once(self, dashboard, clients, request):
-        """At the same instant: the dashboard finds all of it when it gets its turn."""
+        """Sends to all at the same instant: the dashboard is stopped meanwhile and finds every request."""
         os.kill(dashboard.process.pid, signal.SIGSTOP)
         try:
             for client in clients:
@@ -82,7 +81,7 @@ class ClientsCase(DashboardCase):
             os.kill(dashboard.process.pid, signal.SIGCONT)
 
     def status_of(self, client):
-        """What it was answered with; b"" when it was not."""
+        """The status of its answer; b"" without one."""
         try:
             return client.recv(12).removeprefix(b"HTTP/1.1 ")
         except ConnectionError:
@@ -100,7 +99,7 @@ class CrowdTest(ClientsCase):
         self.assertEqual((answers.count(b"200"), answers.count(b"503")), (MOST_LISTENERS, MOST_CONNECTIONS - MOST_LISTENERS))
         self.assertEqual(dashboard.ask("POST", "/emergency-stop")[0], 409)  # an answer: no rig is there
 
-    def test_who_was_refused_and_stays_takes_nobodys_place(self):
+    def test_a_refused_client_that_stays_takes_no_place(self):
         file = self.folder / "token"
         file.write_text(TOKEN + "\n")
         file.chmod(0o600)
@@ -114,6 +113,7 @@ class CrowdTest(ClientsCase):
 
 
 class HostileClientsTest(ClientsCase):
+    @campaign
     def test_a_session_runs_on_whatever_clients_do(self):
         domain = next_domain()
         dashboard = self.dashboard("--domain", domain)
@@ -126,7 +126,7 @@ class HostileClientsTest(ClientsCase):
             with self.subTest(attack.__name__):
                 attack(dashboard)
                 self.assertEqual(dashboard.ask("GET", "/")[0], 200)
-        wait_for("the end of those who take their time", lambda: all(self.is_closed(each) for each in slow))
+        wait_for("the end of the slow clients", lambda: all(self.is_closed(each) for each in slow))
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())
         over = wait_for("end of the session", lambda: (
             seen := dashboard.snapshot(), seen["session"]["state"] == "ending" and seen)[1])
@@ -149,7 +149,7 @@ class HostileClientsTest(ClientsCase):
             return True
 
     def slow_ones(self, dashboard):
-        """Who tells a header bit by bit holds a place for a while, and no longer."""
+        """Clients that send a header byte by byte; each keeps its place until the limit of a request."""
         slow = [self.connected(dashboard, HEAD) for _ in range(MOST_CONNECTIONS // 2)]
 
         def trickle():
@@ -185,7 +185,7 @@ class HostileClientsTest(ClientsCase):
                     raise
                 answer = b""
             client.close()
-            # No answer or a refusal: of what HTTP itself would excuse none is here.
+            # No answer, or a refusal. None of these requests is one that HTTP allows a server to accept.
             self.assertIn(answer[:12].split(b" ")[1:2], ([], [b"400"], [b"403"], [b"413"], [b"431"]), request[:80])
 
     def pipeline(self, dashboard):
@@ -211,7 +211,7 @@ class HostileClientsTest(ClientsCase):
             greedy = self.connected(dashboard)
             greedy.setblocking(False)
             greedy.send(b"GET /snapshot HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 200)
-        wait_for("end of those who never read", lambda: dashboard.snapshot()["dashboard"]["clients"] == 0)
+        wait_for("end of the clients that never read", lambda: dashboard.snapshot()["dashboard"]["clients"] == 0)
 
     def flood(self, dashboard):
         _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -239,12 +239,12 @@ class HostileClientsTest(ClientsCase):
         honest.stop()
         for client in crowd:
             client.close()
-        print(f"{len(crowd)} connections in {took_s:.1f} s: at most {worst} descriptors; of who asked meanwhile {answered} of {asked} "
+        print(f"{len(crowd)} connections in {took_s:.1f} s: at most {worst} descriptors; of the honest requests meanwhile {answered} of {asked} "
               f"answered, in all {honest.answered} of {honest.asked}")
 
 
 class TokenTest(DashboardCase):
-    def test_no_word_but_the_token_opens(self):
+    def test_nothing_but_the_token_opens(self):
         file = self.folder / "token"
         file.write_text(TOKEN + "\n")
         file.chmod(0o600)

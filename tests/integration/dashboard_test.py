@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand dashboard` beside a session, and against who means it no good.
+"""`stillhand dashboard` next to a session, and with requests that it refuses.
 
-The page's counts must be those of the session's recording: the same numbers, from two listeners.
+The page's counts must be those of the session's recording: the same numbers, counted by two listeners.
 """
 import http.client
 import json
 import os
-import pathlib
 import re
 import signal
 import socket
 import subprocess
 import tempfile
 import time
-import unittest
 
 import lab_process
 from lab_process import BUILD, SERVICES, STILLHAND, LabTestCase, next_domain, quick_session
 
 PAGE = BUILD / "share" / "stillhand" / "dashboard" / "uPlot.esm.js"
 LIMIT_S = 20.0
-POLL_S = 0.05
 STREAMS = ("raw_sample", "sensed", "motor_command", "rig_truth", "platform_command", "tracking_sample",
            "operator_force")
 TOKEN = "0123456789abcdef0123456789abcdef"
 MOST_CONNECTIONS = 64
+# A session does not wait for a dashboard, which may match its writers later than the recorder, by the 0.2 s that matching
+# takes on loopback (qos/README.md), five times that on a busy machine.
+MOST_TICKS_APART = 1000
 
 
 class Dashboard:
@@ -76,12 +76,7 @@ class Dashboard:
 
 
 def wait_for(what, condition):
-    limit = time.monotonic() + LIMIT_S
-    while not (value := condition()):
-        if time.monotonic() > limit:
-            raise AssertionError(f"no {what} within {LIMIT_S} s")
-        time.sleep(POLL_S)
-    return value
+    return lab_process.wait_for(what, condition, LIMIT_S)
 
 
 def streams(snapshot):
@@ -90,7 +85,7 @@ def streams(snapshot):
 
 
 def same_for_every_listener(topic):
-    """Of a topic, what does not rest on arrivals."""
+    """The counts of a topic that do not depend on when its samples arrive."""
     return {name: topic[name] for name in ("samples", "lost", "not_sent", "first_tick", "last_tick")} | {
         "sent late": (topic["sent_late"]["count"], topic["sent_late"]["worst_us"])}
 
@@ -102,26 +97,25 @@ class DashboardCase(LabTestCase):
         return dashboard
 
     def assert_counted_alike(self, pages, files):
-        """Of topics: which could be compared, and which were the same to the last sample.
+        """Compares every topic of two listeners; returns the topics that are the same to the last sample.
 
-        Exactly the same from the first sample to the last that both heard. (What is on its way when its writer leaves,
-        one may hear and the other not: the end may differ, and nothing before it.)
+        A listener counts each tick that it did not receive as lost. So samples and losses together are the same for both,
+        except for the ticks that only one of them heard, before the other's first tick or after its last. A topic that
+        both heard over the same ticks, and of which neither lost a sample on its way, is the same in every count.
         """
-        compared, same = [], []
+        same = []
         for name in STREAMS:
             page, file = pages[name], files[name]
-            if page["first_tick"] != file["first_tick"] or page["lost"] != page["not_sent"] or file["lost"] != file["not_sent"]:
-                continue  # one joined late or lost something on its way: it cannot count the same
-            compared.append(name)
-            end = file["last_tick"] - page["last_tick"]
-            self.assertEqual(file["samples"] + file["lost"] - end, page["samples"] + page["lost"], name)
-            if end == 0:
+            first, last = (file[tick] - page[tick] for tick in ("first_tick", "last_tick"))
+            self.assertLess(max(abs(first), abs(last)), MOST_TICKS_APART, name)
+            self.assertEqual(file["samples"] + file["lost"] + first - last, page["samples"] + page["lost"], name)
+            if first == last == 0 and all(counted["lost"] == counted["not_sent"] for counted in (page, file)):
                 self.assertEqual(same_for_every_listener(page), same_for_every_listener(file), name)
                 same.append(name)
-        return compared, same
+        return same
 
 
-class BesideASessionTest(DashboardCase):
+class SessionTest(DashboardCase):
     def test_the_page_counts_what_the_recording_holds_whatever_clients_do(self):
         domain = next_domain()
         dashboard = self.dashboard("--domain", domain)
@@ -136,7 +130,7 @@ class BesideASessionTest(DashboardCase):
         names = [service["service"] for service in dashboard.snapshot()["services"]]
         self.assertEqual(sorted(names), sorted([*SERVICES, "experiment"]))
 
-        # Neither who never reads nor who comes in hundreds holds anything up.
+        # Neither a client that never reads nor hundreds of connections hold anything up.
         mute = socket.create_connection(("127.0.0.1", dashboard.port))
         self.addCleanup(mute.close)
         mute.sendall(b"GET /events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
@@ -155,7 +149,7 @@ class BesideASessionTest(DashboardCase):
         self.assertGreater(len(rows), 100)
         self.assertTrue(all(tracking["traces"]["predicted_force_n"][row] for row in rows))
         self.assertEqual({tracking["traces"]["motor_force_n"][row] for row in rows}, {None},
-                         "a motor's force tells the condition")
+                         "a motor's force reveals the condition")
 
         self.assertEqual(lab.end_status(lab_process.TRIAL_LIMIT_S), 0, lab.errors())
         over = wait_for("end of the session", lambda: (
@@ -164,9 +158,7 @@ class BesideASessionTest(DashboardCase):
         recorded = self.dashboard("--recording", lab.out / "session.mcap").snapshot()
         ours, theirs = streams(over), streams(recorded)
         self.assertEqual(set(ours), set(STREAMS))
-        compared, same = self.assert_counted_alike(ours, theirs)
-        if not compared:
-            self.skipTest("on this busy machine one of the two lost samples of every topic")
+        same = self.assert_counted_alike(ours, theirs)
         if {"sensed", "motor_command", "rig_truth"} <= set(same):
             self.assertEqual(over["chain"], recorded["chain"])
         def lost(snapshot):
@@ -247,7 +239,7 @@ class RequestsTest(DashboardCase):
         self.assertTrue(headers["Set-Cookie"].startswith(f"stillhand_token_{dashboard.port}="), headers["Set-Cookie"])
         self.assertEqual(dashboard.ask("GET", "/", {"Cookie": headers["Set-Cookie"].split(";")[0]})[0], 200)
 
-    def test_who_never_reads_is_dropped_and_others_go_on(self):
+    def test_a_client_that_never_reads_is_dropped_and_others_go_on(self):
         dashboard = self.dashboard("--domain", next_domain())
         mute = socket.socket()
         mute.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -265,9 +257,9 @@ class RequestsTest(DashboardCase):
             self.assertTrue(json.loads(stream.readline().removeprefix(b"data: ")))
             self.assertEqual(stream.readline(), b"\n")
             return dashboard.snapshot()["dashboard"]["clients"] == 1
-        wait_for("end of the one who never reads", left_alone)
+        wait_for("end of the client that never reads", left_alone)
 
-    def test_what_cannot_be_is_refused_in_one_line(self):
+    def test_wrong_options_are_refused_in_one_line(self):
         file = self.folder / "token"
         file.write_text("short")
         file.chmod(0o600)
@@ -292,8 +284,7 @@ class RequestsTest(DashboardCase):
 
 def main():
     if STILLHAND.is_file() and not PAGE.is_file():
-        print("skipped: npm brought no page")
-        raise SystemExit(lab_process.CTEST_SKIPPED)
+        lab_process.skip("npm installed no page")
     lab_process.main()
 
 

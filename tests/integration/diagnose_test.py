@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand diagnose` and `stillhand predict` as a user meets them: a planted effect named and carried to the recording's
-own inputs, the report, wrong input."""
+"""`stillhand diagnose` and `stillhand predict` as a user runs them: a planted effect is named and predicted from the
+recording's inputs; the report; wrong input."""
 import csv
 import json
 import math
-import os
 import pathlib
 import random
 import subprocess
 import tempfile
 import unittest
 
-BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
-STILLHAND = str(BUILD / "bin" / "stillhand")
-PLANTED = str(BUILD / "bin" / "planted_recordings")
+import lab_process
+
+STILLHAND = str(lab_process.STILLHAND)
+PLANTED = lab_process.BUILD / "tests" / "planted_recordings"
 
 
 def stillhand(*arguments):
@@ -34,7 +34,7 @@ class DiagnoseTest(unittest.TestCase):
         self.folder = pathlib.Path(holder.name)
 
     def planted(self, kind):
-        subprocess.run([PLANTED, "--out", str(self.folder / kind), "--count", "1", "--seed", "7", "--kind", kind,
+        subprocess.run([str(PLANTED), "--out", str(self.folder / kind), "--count", "1", "--seed", "7", "--kind", kind,
                         "--strength", "0.25", "--snr", "40", "--length", "60"], check=True, capture_output=True, timeout=120)
         return next((self.folder / kind).glob("*.csv"))
 
@@ -183,4 +183,4 @@ class DiagnoseTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    lab_process.main(PLANTED)

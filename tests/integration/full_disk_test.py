@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A disk of 20 MB that fills up: recorder and session say so and end, the file is readable and holds what came before.
+"""A disk of 20 MB that fills up: recorder and session report it and end, and the file so far can be read.
 
-The disk is a tmpfs in a mount namespace of this test's own (unshare); skipped where the system allows none.
+The disk is a tmpfs in a mount namespace of this test (unshare). The test is skipped where the system allows none.
 """
 import json
 import os
@@ -93,7 +93,7 @@ class FullDiskTest(unittest.TestCase):
         # All of it but the chunk that did not fit.
         self.assertLess(info["lost_bytes"], 400_000)
         self.assertIn("cut off", told.stderr)
-        # A copy finds no room beside it, and the old file stays.
+        # A copy finds no room next to the file, which stays.
         there = run(STILLHAND, "recover", file)
         self.assertEqual(there.returncode, 1, there.stderr)
         self.assertIn("No space left on device", there.stderr)

@@ -37,10 +37,10 @@ _own_domains = {}  # {domain: its lock}, the oldest first
 
 
 def next_domain():
-    """A DDS domain from 215 to 230 that no other test on this machine has, another one at each call.
+    """A DDS domain from 215 to 230 that no other test on this machine uses; another one at each call.
 
-    From 215 on the UDP ports (7400 + 250 a domain) lie above Linux's ephemeral range, which ends at 60999. A lock on a
-    file of that number keeps others away; of those that a test program took, its last few are still its own.
+    From 215 on, the UDP ports (7400 + 250 a domain) lie above Linux's ephemeral range, which ends at 60999. A lock on a
+    file with the domain's number keeps other tests away. A test program keeps the last few domains that it took.
     """
     global _domains_used
     for _ in range(DOMAINS):
@@ -82,14 +82,29 @@ def shared_memory():
     return {name for name in os.listdir("/dev/shm") if "fast" in name or "stillhand" in name}
 
 
+def loose_settings(folder):
+    """A settings folder in which identification accepts the rough model that a pegged trial of 5 s gives."""
+    shutil.copytree(SOURCE / "deploy" / "config", folder)
+    (folder / "identification.yaml").write_text("max_conversion_error: 1.0\n")
+    return folder
+
+
+def wait_for(what, condition, limit_s, poll_s=POLL_S):
+    """Returns the condition's first true value; fails if there is none within the limit."""
+    limit = time.monotonic() + limit_s
+    while not (value := condition()):
+        if time.monotonic() > limit:
+            raise AssertionError(f"no {what} within {limit_s} s")
+        time.sleep(poll_s)
+    return value
+
+
 def quick_session(folder):
     """Arguments of a session that soon has a motor force: condition C after a pegged trial of 5 s.
 
-    Whoever needs a force, and not a good model, saves the 40 s that a good one costs: a settings folder with a looser
-    bound on the model's conversion error makes sure that the quick one is taken.
+    For tests that need a force and not a good model, which takes a pegged trial of 40 s.
     """
-    shutil.copytree(SOURCE / "deploy" / "config", folder)
-    (folder / "identification.yaml").write_text("max_conversion_error: 1.0\n")
+    loose_settings(folder)
     return ["--conditions", "C", "--identify-seconds", 5, "--trial-seconds", 60, "--seed", 2, "--config", folder]
 
 
@@ -133,7 +148,7 @@ class LabProcess:
         return self._output.read()
 
     def wait_for(self, what, condition, limit_s, poll_s=POLL_S):
-        """Returns the condition's first true value; fails when it takes longer or when the lab ends meanwhile."""
+        """Returns the condition's first true value; fails after the limit, or if the lab ends before."""
         limit = time.monotonic() + limit_s
         while True:
             value = condition()
@@ -162,7 +177,7 @@ class LabProcess:
         return self.process.wait(timeout=limit_s)
 
     def wait_until_alone(self, limit_s=END_LIMIT_S):
-        """Waits until no process of this lab is left; returns who is, when it takes longer."""
+        """Waits until no process of this lab is left; returns those that are left after the limit."""
         limit = time.monotonic() + limit_s
         while (left := running(self.domain)) and time.monotonic() < limit:
             time.sleep(POLL_S)
@@ -190,7 +205,7 @@ class LabProcess:
         return json.loads((self.out / "summary.json").read_text())
 
     def close(self):
-        """Ends whatever is left, by its number."""
+        """Ends every process that is left, by its number."""
         self.process.kill()
         self.process.wait()
         for pid in running(self.domain):
@@ -220,10 +235,46 @@ class LabTestCase(unittest.TestCase):
         self.assertEqual(lab.shared_memory_left(), set(), "files left in /dev/shm")
 
 
-def main():
-    """Runs the calling module's tests; status 77 when the build they test is missing."""
-    missing = [str(path) for path in (STILLHAND, INSPECT) if not path.is_file()]
+def campaign(case):
+    """Marks a test case that runs with `--campaign` alone: it is long, and a shorter one runs by default."""
+    case.campaign = True
+    return case
+
+
+class _Loader(unittest.TestLoader):
+    """Loads the cases marked @campaign, or all the others."""
+
+    def __init__(self, wanted):
+        super().__init__()
+        self._wanted = wanted
+
+    def getTestCaseNames(self, test_case):
+        return [name for name in super().getTestCaseNames(test_case)
+                if getattr(getattr(test_case, name), "campaign", False) == self._wanted]
+
+
+def run_cases():
+    """Runs the calling program's cases, those marked @campaign if its words hold `--campaign`.
+
+    Ends with status 1 if a case failed, and with 77 (ctest: skipped) if none failed and one was skipped.
+    """
+    words = [word for word in sys.argv if word != "--campaign"]
+    result = unittest.main(module="__main__", argv=words, exit=False,
+                           testLoader=_Loader("--campaign" in sys.argv)).result
+    for case, reason in result.skipped:
+        print(f"skipped: {case}: {reason}", flush=True)
+    sys.exit(1 if not result.wasSuccessful() else CTEST_SKIPPED if result.skipped else 0)
+
+
+def skip(reason):
+    """Ends the program: ctest reports it as skipped."""
+    print("skipped:", reason)
+    sys.exit(CTEST_SKIPPED)
+
+
+def main(*needed):
+    """Runs the calling program's cases; skipped if a program that they need is not built."""
+    missing = [str(path) for path in (STILLHAND, INSPECT, *needed) if not path.is_file()]
     if missing:
-        print("skipped, not built:", ", ".join(missing))
-        sys.exit(CTEST_SKIPPED)
-    unittest.main(module="__main__")
+        skip("not built: " + ", ".join(missing))
+    run_cases()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The main job, once: a whole session over DDS, and what it leaves behind in <build>/tests/lab_run.
+"""A whole session over DDS, once, and the results that it leaves in <build>/tests/lab_run.
 
-ctest's fixture `lab_run`: the equivalence test replays this session's recording.
+This is ctest's fixture `lab_run`: other tests read this session's recording.
 """
 import json
 import math
@@ -16,6 +16,10 @@ TRIAL_S = 20
 METRICS = ("rms_error_mm", "dwell_ratio", "crossover_hz")
 STREAMS = {f"stillhand/{name}" for name in ("platform_command", "raw_sample", "rig_truth", "sensed", "motor_command",
                                            "tracking_sample", "operator_force")}
+# The share of the feedthrough force that condition C cancels in this session (README.md). What is left is mostly delay,
+# of which a millisecond leaves at most 2 pi x 2 Hz x 1 ms = 0.013 of the force at the motion's highest frequency, 2 Hz.
+# The tolerance lets the motor act two ticks later or sooner, on average over the trial.
+CANCELLED_SHARE, CANCELLED_TOLERANCE = 0.853, 0.026
 # 40 s and 3 x 20 s measured, ramps and lead of each, matching, two fits, the evaluation: 125 s on two cores.
 SESSION_LIMIT_S = 240
 
@@ -85,7 +89,8 @@ class LabSessionTest(unittest.TestCase):
     def test_model_predicts_unseen_data_and_cancels_most_of_the_force(self):
         self.assertTrue(self.summary["identification"]["usable"])
         self.assertGreater(self.summary["identification"]["heldout_vaf_percent"], 95.0)
-        self.assertGreater(self.summary["conditions"]["C"]["cancelled_share"], 0.5)
+        self.assertAlmostEqual(self.summary["conditions"]["C"]["cancelled_share"], CANCELLED_SHARE,
+                               delta=CANCELLED_TOLERANCE)
         # The motor is off in B.
         self.assertEqual(self.summary["conditions"]["B"]["cancelled_share"], 0.0)
         self.assertIsNone(self.summary["conditions"]["A"]["cancelled_share"])

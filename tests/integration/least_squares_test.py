@@ -2,21 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The paper's Eq. 5 solved by NumPy on the same recording: parameters and frequency response to 1e-9."""
 import json
-import os
-import pathlib
 import subprocess
 import unittest
 
 import numpy
 
-BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
+import lab_process
+
+FIT = lab_process.BUILD / "tests" / "pegged_fit"
 ORDER = 4
 
 
 class LeastSquaresTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        out = subprocess.run([BUILD / "tests" / "pegged_fit"], capture_output=True, text=True, check=True).stdout
+        out = subprocess.run([FIT], capture_output=True, text=True, check=True).stdout
         cls.fit = json.loads(out)
         a = numpy.array(cls.fit["acceleration"])
         f = numpy.array(cls.fit["force"])
@@ -46,4 +46,4 @@ class LeastSquaresTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    lab_process.main(FIT)

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand lab --inventory` over three machines with nothing in common but a network (network.py).
 
-The same session on one machine gives the same results; a cable pulled for two seconds and a machine that loses its power
-take the motor's force away, are told by name, and leave a recording.
+A cable pulled for two seconds takes the motor's force away and leaves a recording; a host that cannot be reached is named.
+With `--campaign`: a session gives the results of one machine; a machine that loses its power; a clock that drifts and
+jumps; services that run already.
 """
 import os
 import subprocess
-import sys
 import time
 
 import lab_process
 import network
-from lab_process import BUILD, CTEST_SKIPPED, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
+from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick_session
 
 SESSION_LIMIT_S = 150
 FORCE_LIMIT_TICKS = 50
-END_LIMIT_S = 90.0  # a host that is gone is waited for, once for each errand
+END_LIMIT_S = 90.0  # the lab waits for a host that is gone, once for each command
 
 
 class MachinesTest(LabTestCase):
@@ -29,6 +29,7 @@ class MachinesTest(LabTestCase):
         return self.lab(*arguments, domain=domain, start=self.network[network.HERE].words(),
                         inventory=self.network.inventory(domain, before))
 
+    @campaign
     def test_a_session_over_three_machines_gives_what_one_machine_gives(self):
         words = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
         across = self.across("--video", *words)
@@ -40,7 +41,7 @@ class MachinesTest(LabTestCase):
         shares = [result["cancelled_share"] for result in results]
         print(f"RMS error {errors_mm[0]:.3f} and {errors_mm[1]:.3f} mm, cancelled {shares[0]:.4f} and {shares[1]:.4f}; "
               f"ticks lost {across.summary()['lost_ticks']} and {one.summary()['lost_ticks']}", flush=True)
-        # The simulated subject hears of a tick a little later or earlier, as from session to session on one machine.
+        # As from session to session on one machine, the simulated subject receives a tick a little sooner or later.
         self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.05 * errors_mm[1])
         self.assertAlmostEqual(shares[0], shares[1], delta=0.02)
         self.assert_clocks_are_known(across.summary()["clocks"])
@@ -61,8 +62,9 @@ class MachinesTest(LabTestCase):
                 self.assertLessEqual(abs(away_us), found["uncertainty_us"], service)
                 self.assertLess(found["uncertainty_us"], 5000.0, service)
 
+    @campaign
     def test_services_that_run_already_are_conducted_from_the_desk(self):
-        # As step 3 and 4 of deploy/README.md bring it about; the recorder on a machine of its own.
+        # As after steps 3 and 4 of deploy/README.md, with the recorder on another machine.
         inventory = self.folder / "lab.yaml"
         domain = next_domain()
         inventory.write_text(self.network.inventory(domain).read_text().replace(", recorder", "").replace(
@@ -77,7 +79,7 @@ class MachinesTest(LabTestCase):
             there = network.BUILD_THERE if name != network.HERE else BUILD
             profiles = f"/tmp/stillhand-units-{domain}.xml"
             machine.run("sh", "-c", f"cat > {profiles}", text=(self.folder / "files" / name / "profiles.xml").read_text())
-            # Sources below /tmp are hidden there, so the settings come along.
+            # A source tree below /tmp is hidden there, so the settings are copied.
             settings = f"/tmp/stillhand-units-{domain}.d"
             machine.run("mkdir", settings)
             for file in (SOURCE / "deploy" / "config").glob("*.yaml"):
@@ -97,7 +99,8 @@ class MachinesTest(LabTestCase):
         self.assertEqual(lab.summary()["recording_damage"], [])
         self.assertGreater(lab.summary()["conditions"]["C"]["cancelled_share"], 0.5)
 
-    def test_a_clock_that_drifts_and_then_jumps_is_told_and_known(self):
+    @campaign
+    def test_a_clock_that_drifts_and_then_jumps_is_reported_and_known(self):
         drift_ppm, step_ms, until_step_s = 50.0, 20.0, 35.0
         screen = self.network["screen-pc"]
         step_at_ns = screen.clock_ns() + int(1e9 * until_step_s)
@@ -137,7 +140,7 @@ class MachinesTest(LabTestCase):
         screen = self.network["screen-pc"]
         screen.unplug()
         self.addCleanup(screen.plug_back)
-        time.sleep(2.0)
+        time.sleep(2.0)  # for so long the cable is out
         screen.plug_back()
         self.assertEqual(lab.end_status(END_LIMIT_S), 1)
         self.assertIn("a process is missing", str(lab.summary()["trials"][-1]) + str(lab.errors()))
@@ -147,6 +150,7 @@ class MachinesTest(LabTestCase):
         self.assertLessEqual(ticks, FORCE_LIMIT_TICKS)
         self.assertEqual(lab.recording(1)["damage"], [])
 
+    @campaign
     def test_a_machine_without_power_ends_the_session_and_leaves_a_recording(self):
         lab = self.across(*quick_session(self.folder / "config"))
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
@@ -181,6 +185,5 @@ class MachinesTest(LabTestCase):
 
 if __name__ == "__main__":
     if reason := network.why_not():
-        print("skipped:", reason)
-        sys.exit(CTEST_SKIPPED)
+        lab_process.skip(reason)
     lab_process.main()

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A person tracks with the mouse: window, picture, pointer and force of `stillhand lab --operator mouse` in an X server.
 
-The pointer holds one place after another while the platform moves. A hand that pulls towards a place at rest exerts
-K x (HO-6), which no simulated subject does; what the stick does with it, the feedthrough included, is in the recording.
+The pointer holds one place after another while the platform moves. A hand that pulls towards a place at rest exerts the
+force K x (HO-6), which no simulated subject does. The recording holds the stick's answer, the feedthrough included.
 """
 import math
 import os
-import shutil
-import sys
 import time
 
 import lab_process
-from lab_process import CTEST_SKIPPED, MATCH_LIMIT_S, SOURCE, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase
+from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, loose_settings
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
@@ -76,9 +74,7 @@ class MouseTestCase(LabTestCase):
         self.addCleanup(self.display.close)
 
     def start(self, **keywords):
-        config = self.folder / "config"
-        shutil.copytree(SOURCE / "deploy" / "config", config)
-        (config / "identification.yaml").write_text("max_conversion_error: 1.0\n")  # as in quick_session()
+        config = loose_settings(self.folder / "config")
         return self.lab("--operator", "mouse", "--conditions", "B", "--identify-seconds", 5, "--trial-seconds", TRIAL_S,
                         "--seed", 2, "--config", config, "--match-seconds", WINDOW_LIMIT_S, headless=False,
                         **{"environment": self.display.environment, **keywords})
@@ -103,7 +99,7 @@ class MouseTest(MouseTestCase):
         for column in HOLDS:
             self.display.xdotool("mousemove", column, 400)
             until = time.monotonic() + HOLD_S
-            while time.monotonic() < until:  # the person's clock; meanwhile the screen is looked at
+            while time.monotonic() < until:  # the person holds the place for this time; the test reads the screen
                 before_ns = time.monotonic_ns()
                 seen = picture(self.display)
                 if seen:
@@ -249,6 +245,5 @@ class NoDisplayTest(LabTestCase):
 
 if __name__ == "__main__":
     if missing_tools():
-        print("skipped, not installed:", ", ".join(missing_tools()))
-        sys.exit(CTEST_SKIPPED)
+        lab_process.skip("not installed: " + ", ".join(missing_tools()))
     lab_process.main()

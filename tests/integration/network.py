@@ -15,7 +15,7 @@ import time
 from lab_process import BUILD
 
 TOOLS = ("ip", "tc", "unshare", "nsenter", "iptables", "mount")
-# Services of the lab under test; the loop of sensor, canceller and motor stays on one machine, as the docs ask for.
+# Services of the lab under test. The loop of sensor, canceller and motor stays on one machine (deploy/README.md).
 SERVICES = {
     "rig-pc": ["rig", "sensing", "motion", "cancellation"],
     "screen-pc": ["display", "human_operator"],
@@ -37,7 +37,7 @@ def run(*words):
 
 
 def why_not():
-    """Why there can be no such lab here, or nothing."""
+    """Why such a lab is not possible here, or ""."""
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
     if missing:
         return "no " + ", ".join(missing)
@@ -104,7 +104,7 @@ class Machine:
         return done.stdout
 
     def give_keys(self, keys):
-        """Those of its services alone, out of a folder of deploy/security/make.sh."""
+        """Gives the machine the keys of its services alone, from a folder of deploy/security/make.sh."""
         mine = ["authority.pem", "governance.p7s", *SERVICES[self.name]]
         packed = subprocess.run(["tar", "-C", keys, "-c", *mine], check=True, capture_output=True).stdout
         subprocess.run([*self.words(), "sh", "-c", f"mkdir -p {KEYS_THERE}; tar -C {KEYS_THERE} -x"], check=True, input=packed)
@@ -114,7 +114,7 @@ class Machine:
         return time.monotonic_ns() + self.clock_ahead_s * 1_000_000_000
 
     def switch_off(self):
-        """As by its power switch: every process there is gone at once."""
+        """Switches its power off: every process there is gone at once."""
         if self._init is not None:
             self._init.kill()  # --kill-child: the first process goes with it, and with that all of its namespace
             self._init.wait()

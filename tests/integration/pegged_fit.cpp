@@ -9,8 +9,11 @@
 #include "services/identification/core/arx.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
 
-int main() {
-  using namespace stillhand;
+namespace {
+
+using namespace stillhand;
+
+nlohmann::json fitted() {
   session::ProtocolOptions options;
   options.conditions = session::parse_conditions("A");
   options.identify_s = 120.0;
@@ -20,16 +23,27 @@ int main() {
   const auto record = identification::preprocessed(loop.run(session::plan(options).front()).pegged);
   const auto fit = identification::fit_arx(record, 4);
   nlohmann::json response = nlohmann::json::array();
-  for (double hz = 0.0; hz <= 25.0; hz += 0.25) {
+  for (int line = 0; line <= 100; ++line) {
+    const double hz = 0.25 * line;
     const auto h = signal::response_at(fit.model, hz);
     response.push_back({hz, h.real(), h.imag()});
   }
-  std::cout << nlohmann::json{
-      {"rate_hz", record.rate_hz},
-      {"acceleration", record.acceleration_m_s2},
-      {"force", record.force_n},
-      {"numerator", fit.model.numerator},
-      {"denominator", fit.model.denominator},
-      {"response",
-       response}}.dump();
+  return {{"rate_hz", record.rate_hz},
+          {"acceleration", record.acceleration_m_s2},
+          {"force", record.force_n},
+          {"numerator", fit.model.numerator},
+          {"denominator", fit.model.denominator},
+          {"response", response}};
+}
+
+}  // namespace
+
+int main() {
+  try {
+    std::cout << fitted().dump();
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "pegged_fit: " << error.what() << '\n';
+    return 1;
+  }
 }

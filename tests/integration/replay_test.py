@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand record` beside a session, `stillhand replay` onto the bus.
+"""`stillhand record` next to a session, `stillhand replay` onto the bus.
 
-One session is recorded twice: by its own recorder and from outside. What was recorded is replayed to a cancellation
-that answers replays, whose motor commands must be the recorded ones, bit for bit. Replayed onto the bus of another
-session in the middle of a cancelled trial, it must take the motor's force away and put none of its own in its place.
+One session is recorded twice: by its own recorder and from outside. The recording is replayed to a cancellation that
+answers replays: its motor commands must be the recorded ones, bit for bit. Replayed onto the bus of another session, in
+the middle of a cancelled trial, the recording must take the motor's force away and must not replace it by another.
 """
 import csv
 import json
@@ -11,14 +11,17 @@ import pathlib
 import signal
 import subprocess
 import tempfile
-import time
-import unittest
 
 import lab_process
-from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session
+from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, next_domain, quick_session, wait_for
 
 COMPARE = BUILD / "tests" / "compare_commands"
 FORCE_LIMIT_TICKS = 50
+# Of the session's motor commands, at least so many are answered bit for bit.
+LEAST_EQUAL_SHARE = 0.95
+# A lost sample changes every answer after it. If one replay of the session loses a sample with probability p, three tries
+# fail with p^3: a test that fails in less than one run of a hundred hides a p of up to 0.21.
+TRIES = 3
 END_LIMIT_S = 20.0
 
 
@@ -53,7 +56,7 @@ class Verb:
         self._errors.close()
 
 
-def counts_told(output):
+def printed_counts(output):
     """The table that `record` prints: {topic: (received, lost, not sent, written)}."""
     rows = {}
     for line in output.splitlines():
@@ -66,7 +69,7 @@ def counts_told(output):
 class ReplayTest(LabTestCase):
     @classmethod
     def setUpClass(cls):
-        """A session with a cancelled trial of 8 s, recorded from outside too."""
+        """A session with a cancelled trial of 5 s, recorded from outside too."""
         folder = tempfile.TemporaryDirectory(prefix="stillhand-")
         cls.addClassCleanup(folder.cleanup)
         cls.shared = pathlib.Path(folder.name)
@@ -76,7 +79,7 @@ class ReplayTest(LabTestCase):
                         "--require", "stillhand/nobody_writes_this")
         cls.addClassCleanup(recorder.close)
         words = quick_session(cls.shared / "config")
-        words[words.index("--trial-seconds") + 1] = 8
+        words[words.index("--trial-seconds") + 1] = 5
         lab = lab_process.LabProcess(cls.shared / "run", *words, domain=domain)
         cls.addClassCleanup(lab.close)
         cls.lab_status = lab.end_status(2 * TRIAL_LIMIT_S)
@@ -95,32 +98,32 @@ class ReplayTest(LabTestCase):
         told = subprocess.run([str(lab_process.INSPECT), str(path), "1"], capture_output=True, text=True, check=True)
         return json.loads(told.stdout)
 
-    def test_the_outside_recording_is_whole_and_nobody_noticed_it(self):
+    def test_the_outside_recording_is_whole_and_the_session_runs_undisturbed(self):
         self.assertEqual(self.lab_status, 0, self.lab_errors)
-        told = counts_told(self.record_output)
+        told = printed_counts(self.record_output)
         found = self.info(self.outside)
         self.assertEqual(found["damage"], [])
         written = {topic: counts[3] for topic, counts in told.items() if counts[3] > 0}
         # inspect_recording knows the session's topics, and not the recorder's own remote control.
         own = {"stillhand/recorder_command", "stillhand/recorder_status"}
         self.assertEqual(found["messages"], {topic: count for topic, count in written.items() if topic not in own})
-        self.assertGreater(written["stillhand/sensed"], 8000)
+        self.assertGreater(written["stillhand/sensed"], 10_000)  # 5 s of each of two trials at 1 kHz
         lost = sum(counts[1] for counts in told.values())
         print("lost on the way to the outside recorder:", lost, flush=True)
         for topic, (received, _, _, in_file) in told.items():
             self.assertEqual(received, in_file, topic)
-        # A topic that was required and never came: told in time, and in the exit status.
+        # A topic that was required and never came is reported, and shows in the exit status.
         self.assertEqual(self.record_status, 1)
         self.assertIn("begins without stillhand/nobody_writes_this", self.record_errors)
         self.assertNotIn("begins without stillhand/sensed", self.record_errors)
 
-    def answers_of_the_cancellation(self, number):
-        """Replays the session to a cancellation; what compare_commands says of its answers."""
+    def answers_of_the_cancellation(self, attempt):
+        """Replays the session to a cancellation; returns how compare_commands compares its answers."""
         domain = next_domain()
         places = ["--profiles", SOURCE / "qos" / "profiles.xml", "--config", self.shared / "config"]
         cancellation = self.verb("--domain", domain, "--answer-replay", "--real-time", *places,
                                  program=STILLHAND.parent / "stillhand-cancellation")
-        answers = self.folder / f"answers{number}.mcap"
+        answers = self.folder / f"answers{attempt}.mcap"
         recorder = self.verb("record", "--out", answers, "--domain", domain, "--topics", "stillhand/motor_command")
         replay = self.verb("replay", self.session, "--domain", domain, "--block", "stillhand/motor_command",
                            "--wait-for", "stillhand/sensed", "--wait-for", "stillhand/trial_assignment",
@@ -134,22 +137,21 @@ class ReplayTest(LabTestCase):
         return json.loads(compared.stdout)
 
     def test_the_cancellation_answers_a_replay_bit_for_bit(self):
-        # The topic is best effort: on a loaded machine a sample may be lost, live or replayed, or a model come later than
-        # the tick that it names. The commands tell both, and from there on the inputs are not the same. Up to there
-        # everything has to be equal; one replay of three has to come through whole.
-        for number in range(3):
-            compared = self.answers_of_the_cancellation(number)
-            print(compared, flush=True)
-            apart = min((compared[name] for name in ("first_gap_tick", "first_other_model_tick") if compared[name] >= 0),
-                        default=-1)
+        # The topic is best effort: on a loaded machine a sample may be lost, live or replayed, or a model may come later
+        # than the tick that it names. The commands show both. From there on the inputs are not the same; before it, every
+        # answer has to be equal in every try. A try in which that covers too little of the session is made again.
+        for attempt in range(1, TRIES + 1):
+            compared = self.answers_of_the_cancellation(attempt)
+            apart = [compared[name] for name in ("first_gap_tick", "first_other_model_tick") if compared[name] >= 0]
+            print(f"try {attempt} of {TRIES}: inputs apart from {min(apart, default='no')} tick on, {compared}", flush=True)
             if compared["different"] > 0:
-                self.assertGreaterEqual(apart, 0, "other answers to the same samples")
-                self.assertGreaterEqual(compared["first_difference_tick"], apart)
-            if apart < 0 and compared["missing"] == 0:
-                self.assertEqual(compared["different"], 0)
-                self.assertGreater(compared["greatest_force_n"], 1.0)  # a force was asked for at all
-                return
-        self.fail("three replays lost samples on their way")
+                self.assertNotEqual(apart, [], "other answers to the same samples")
+                self.assertGreaterEqual(compared["first_difference_tick"], min(apart))
+            equal = compared["compared"] - compared["different"]
+            if equal >= LEAST_EQUAL_SHARE * compared["live"]:
+                break
+        self.assertGreaterEqual(equal, LEAST_EQUAL_SHARE * compared["live"])
+        self.assertGreater(compared["greatest_force_n"], 1.0)  # a force was asked for at all
 
     def rows(self, file, topic):
         """Table of one topic, [{title: text}]; empty when no message of it was recorded."""
@@ -163,11 +165,18 @@ class ReplayTest(LabTestCase):
         with open(tables / (topic.replace("/", "_") + ".csv"), encoding="utf-8", newline="") as table:
             return [{title.split(" [")[0]: cell for title, cell in row.items()} for row in csv.DictReader(table)]
 
+    def rows_so_far(self, file, topic):
+        """Like rows(), of a recording that is still written."""
+        try:
+            return self.rows(file, topic)
+        except (subprocess.CalledProcessError, FileNotFoundError):  # no file yet, or none that can be read
+            return []
+
     def test_behind_a_seek_the_bus_has_the_state_of_that_instant_and_no_event_from_before(self):
         control = self.rows(self.session, "stillhand/trial_control")
         first = int(self.rows(self.session, "stillhand/sensed")[0]["log_time"]) - int(
             1e9 * float(self.rows(self.session, "stillhand/sensed")[0]["t"]))
-        # Half a second behind the last announcement of a trial: nothing of this topic follows soon.
+        # Half a second after the last announcement of a trial: nothing of this topic follows soon.
         announced = [row for row in control if int(row["trial"]) >= 0][-1]
         at_s = (int(announced["log_time"]) - first) * 1e-9 + 0.5
         domain = next_domain()
@@ -179,8 +188,10 @@ class ReplayTest(LabTestCase):
                            "stillhand/trial_control", "--wait-for", "stillhand/event", "--wait-for", "stillhand/sensed")
         for command in (f"seek {at_s:.3f}", "play"):
             subprocess.run([str(STILLHAND), "replay", "--domain", str(domain), "--remote", command], check=True)
-        # What would be wrong is published at once; an event of what follows may or may not be in this second.
-        time.sleep(1.0)
+        # A wrong state or event would be published before the first samples that follow. An event of what follows may come
+        # or not.
+        wait_for("half a second of samples behind the seek", lambda: len(self.rows_so_far(heard, "stillhand/sensed")) > 500,
+                 TRIAL_LIMIT_S, poll_s=0.2)
         subprocess.run([str(STILLHAND), "replay", "--domain", str(domain), "--remote", "stop"], check=True)
         self.assertEqual(replay.end(), 0, replay.errors())
         recorder.interrupt()
@@ -224,7 +235,4 @@ class ReplayTest(LabTestCase):
 
 
 if __name__ == "__main__":
-    if not COMPARE.is_file():
-        print("skipped, not built:", COMPARE)
-        raise SystemExit(lab_process.CTEST_SKIPPED)
-    lab_process.main()
+    lab_process.main(COMPARE)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand lab --security`: a session of processes with keys, and a stranger beside it that has none (stranger.cpp).
+"""`stillhand lab --security`: a session of processes with keys, next to a stranger that has none (stranger.cpp).
 
-It receives nothing and nobody hears it, the results are those of a session without keys, on one machine and over three
-(network.py); keys with a fault are refused before anything starts.
+The stranger receives nothing and nobody hears it. Keys with a fault are refused before anything starts. With
+`--campaign` the results are compared with those of a session without keys, on one machine and over three (network.py).
 """
 import os
 import re
@@ -11,16 +11,20 @@ import subprocess
 
 import lab_process
 import network
-from lab_process import BUILD, END_LIMIT_S, SOURCE, LabTestCase, next_domain
+from lab_process import BUILD, END_LIMIT_S, SOURCE, LabTestCase, campaign, next_domain
 
 MAKE = SOURCE / "deploy" / "security" / "make.sh"
 STRANGER = BUILD / "tests" / "stranger"
 SESSION_LIMIT_S = 150
 WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
-TRIES = 3  # a secured session takes nearly all of two cores, and one that comes to be late ends as it should
-MOST_LOST_TICKS = 400  # of 175,000; with many more less is cancelled, keys or not
+MOST_LOST_TICKS = 400  # of 175,000; with many more, less is cancelled, with keys or without
+# A secured session takes nearly all of two cores. One that falls behind ends by the interlock, as it should, and is
+# tried again, once. Alone on two cores seven of seven sessions were completed (deploy/security/README.md), so that a
+# single session fails in less than 35 % of the cases (at 95 % confidence): the second try hides a failure rate up to
+# that.
+TRIES = 2
 LATE = "a process is missing|ticks of the pegged trial were lost"
-
+CANCELLED_SHARE, CANCELLED_TOLERANCE = 0.853, 0.026  # as in lab_session_test.py, which derives the tolerance
 
 def make_keys(folder, *options):
     subprocess.run([str(MAKE), str(folder), *options], check=True, capture_output=True,
@@ -33,25 +37,35 @@ class SecuredSessionTest(LabTestCase):
         super().setUp()
         self.keys = make_keys(self.folder / "keys")
 
+    def why_late(self, lab):
+        """Why an ended session is tried again, or "" for one that was completed in time; fails for any other end."""
+        if lab.end_status() == 0:
+            lost = sum(lab.summary()["lost_ticks"].values())
+            return f"{lost} ticks lost, at most {MOST_LOST_TICKS} are allowed" if lost > MOST_LOST_TICKS else ""
+        # The sample clock starts when every endpoint has matched. With ticks in the recording, the session was late;
+        # without, its processes did not authenticate each other.
+        self.assertNotEqual(lab.recording(1)["rig"]["tick"], [], lab.errors())
+        self.assertRegex(" ".join(lab.errors()), LATE)
+        return " ".join(lab.errors())
+
     def completed(self, name, one_session):
-        """The lab, and what else one_session(name of it) gives, of the first session that comes to its end."""
-        for left in range(TRIES - 1, -1, -1):
-            lab, told = one_session(f"{name}{left}")
-            if lab.end_status() != 0:
-                self.assertRegex(" ".join(lab.errors()), LATE)
-            elif sum(lab.summary()["lost_ticks"].values()) <= MOST_LOST_TICKS:
+        """Results of the first session that is completed in time, and what else one_session(name of it) returns."""
+        for attempt in range(1, TRIES + 1):
+            lab, more = one_session(f"{name}{attempt}")
+            late = self.why_late(lab)
+            if not late:
                 break
-            print(name, "once more:", *lab.errors()[-1:], flush=True)
-        self.assertEqual(lab.end_status(), 0, lab.errors())
+            print(f"{name}, try {attempt} of {TRIES}: {late}", flush=True)
+        self.assertEqual(late, "", f"{name}: none of {TRIES} sessions was in time")
         self.assertEqual(lab.recording(1)["damage"], [])
         result = lab.summary()["conditions"]["C"]
         found = result["rms_error_mm"]["mean"], result["cancelled_share"]
-        print(f"{name}: {told}, RMS error {found[0]:.3f} mm, cancelled {found[1]:.4f}, ticks lost",
+        print(f"{name}: {more}, RMS error {found[0]:.3f} mm, cancelled {found[1]:.4f}, ticks lost",
               lab.summary()["lost_ticks"], flush=True)
-        return found, told
+        return found, more
 
-    def beside_a_stranger(self, name, stranger_does, *words):
-        """A whole session's results; what a stranger beside it received, and how many readers it had."""
+    def next_to_a_stranger(self, name, stranger_does, *words):
+        """A whole session's results; how much a stranger next to it received, and how many readers it had."""
         def one_session(each):
             domain = next_domain()
             stranger = subprocess.Popen([str(STRANGER), str(domain), stranger_does], stdout=subprocess.PIPE, text=True)
@@ -72,15 +86,21 @@ class SecuredSessionTest(LabTestCase):
         return lab
 
     def assert_same(self, found, plain):
-        # The simulated subject hears of a tick a little later or earlier, as from session to session.
+        # From session to session the simulated subject receives a tick a little sooner or later.
         self.assertAlmostEqual(found[0], plain[0], delta=0.05 * plain[0])
         self.assertAlmostEqual(found[1], plain[1], delta=0.02)
 
-    def test_a_stranger_hears_and_moves_nothing_and_the_results_are_those_without_keys(self):
-        # That its silence is the keys' doing: without them the same program hears.
-        plain, (received, _) = self.beside_a_stranger("plain", "reads")
+    def test_a_stranger_hears_and_moves_nothing(self):
+        (_, share), (received, heard_by) = self.next_to_a_stranger("secured", "writes", "--security", self.keys)
+        self.assertEqual((received, heard_by), (0, 0))
+        self.assertAlmostEqual(share, CANCELLED_SHARE, delta=CANCELLED_TOLERANCE)
+
+    @campaign
+    def test_the_results_are_those_without_keys(self):
+        # Without keys the same program receives: the keys are the reason that it receives nothing with them.
+        plain, (received, _) = self.next_to_a_stranger("plain", "reads")
         self.assertGreater(received, 20_000)
-        secured, (received, heard_by) = self.beside_a_stranger("secured", "writes", "--security", self.keys)
+        secured, (received, heard_by) = self.next_to_a_stranger("secured", "writes", "--security", self.keys)
         self.assertEqual((received, heard_by), (0, 0))
         self.assert_same(secured, plain)
         with self.subTest("over three machines, each with the keys of its own services"):
@@ -107,7 +127,7 @@ class SecuredSessionTest(LabTestCase):
         self.assertEqual(len(lab.errors()), 1, lab.errors())
         for word in words:
             self.assertIn(str(word), lab.errors()[0])
-        self.assertFalse(lab.out.exists(), "results of a session that never was")
+        self.assertFalse(lab.out.exists(), "results of a session that did not take place")
 
     def test_a_missing_key_is_refused(self):
         (self.keys / "display" / "key.pem").unlink()
@@ -141,4 +161,4 @@ class SecuredSessionTest(LabTestCase):
 
 
 if __name__ == "__main__":
-    lab_process.main()
+    lab_process.main(STRANGER)

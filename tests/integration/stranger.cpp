@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // stranger DOMAIN reads|writes
-// A program of nobody's beside a session: plain Fast DDS, without a certificate.  Reads every topic
-// of the catalogue but, with "writes", two of which it writes: it asks the motor for 40 N and tells
-// everybody that the session ends, a hundred times a second.  After SIGTERM it says what it
-// received, and how many readers its writers have had.
+// A program that belongs to no lab, next to a session: plain Fast DDS, without a certificate.  It
+// reads every topic of the catalogue.  With "writes" it writes two of them instead: it asks the
+// motor for 40 N and announces the end of the session, a hundred times a second.  After SIGTERM it
+// prints how many messages it received, and how many readers its writers have had.
 #include <atomic>
 #include <cstdio>
 #include <deque>

@@ -10,11 +10,12 @@ import resource
 import signal
 import subprocess
 import tempfile
-import time
 import unittest
 
-BUILD = pathlib.Path(os.environ["STILLHAND_BUILD"])
-STILLHAND = str(BUILD / "bin" / "stillhand")
+import lab_process
+from lab_process import wait_for
+
+STILLHAND = str(lab_process.STILLHAND)
 SHORT = ["--subjects", "3", "--trial-seconds", "40", "--identify-seconds", "20", "--seed", "5"]
 
 
@@ -139,10 +140,8 @@ class StudyTest(unittest.TestCase):
         out = self.folder / "study"
         run = subprocess.Popen([STILLHAND, "study", "--subjects", "500", "--out", str(out)],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        limit = time.monotonic() + 30.0
-        while not list(out.glob(".unfinished-*")):  # the work, of minutes, has begun
-            self.assertLess(time.monotonic(), limit)
-            time.sleep(0.01)
+        self.addCleanup(run.kill)
+        wait_for("work, of minutes, that has begun", lambda: list(out.glob(".unfinished-*")), 30.0, 0.01)
         run.send_signal(signal.SIGINT)
         _, errors = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1, errors)
@@ -199,4 +198,4 @@ class StudyTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    lab_process.main()

@@ -1,29 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An effect that only the rig is told of: who can know it, what a recording shows of it, how it is opened.
+"""An effect that only the rig knows: which programs hold it, what a recording shows of it, how the truth is opened.
 
-No other service holds its code, no file but the rig's and the in-process loop's includes it, no process of a session
-is told the seed where others can look, and a session's recording has the same shape with it as without.
+No other service holds its code, and only the rig and the programs that step the rig in one process include it. No process
+of a session is given the seed where others can read it. A session's recording has the same shape with the effect as
+without (the recording of ctest's fixture lab_run).
 """
 import hashlib
 import json
 import pathlib
 import re
 import subprocess
-import unittest
 
 import lab_process
-from lab_process import BUILD, SERVICES, SOURCE, STILLHAND, LabTestCase, running
+from lab_process import BUILD, SERVICES, SOURCE, STILLHAND, LabTestCase, loose_settings, running
 
 # Long enough not to come up by chance in a file; its effect acts on the pegged stick already.
 SEED = 90417733560021
 KINDS = ("nonlinear_stiffness", "asymmetry", "dead_zone", "time_varying_gain", "resonance", "position_ripple",
          "coulomb_friction", "coupled_input", "tone", "delay", "output_saturation")
 SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnChain|draw_effect|EffectPlan)")
-SEALED_HEADERS = re.compile(r'#include "rig/(core/(sealed_effect|undeclared_effect|effect_draw|effect_sizing|'
-                            r'chain_effect)|sealed_file)\.hpp"')
-# Whoever steps the rig in one process, and whoever writes the sealed file.
-MAY_INCLUDE = ("services/rig/", "apps/experiment/", "apps/study/", "apps/closed_loop/session.",
-               "apps/closed_loop/closed_loop_command.", "apps/closed_loop/output.", "tests/")
+SEALED_HEADERS = re.compile(r'#include "services/rig/(core/undeclared/\w+|sealed_file)\.hpp"')
+# The programs that step the rig in one process, and those that write the sealed file.
+MAY_INCLUDE = ("services/rig/", "apps/session/", "apps/lab/", "apps/study/", "apps/close_the_loop/session.",
+               "apps/close_the_loop/closed_loop_command.", "apps/close_the_loop/output.", "tests/")
+RECORDED_WITHOUT = BUILD / "tests" / "lab_run" / "session.mcap"  # ctest's fixture lab_run
 SESSION_LIMIT_S = 120
 
 
@@ -61,9 +61,10 @@ class UndeclaredEffectTest(LabTestCase):
         self.assertIn("services/rig/core/rig.hpp", found)
         self.assertEqual([path for path in found if not path.startswith(MAY_INCLUDE)], [])
 
-    def session(self, name, *arguments):
-        lab = self.lab("--conditions", "B", "--identify-seconds", 20, "--trial-seconds", 5, "--seed", 3, *arguments,
-                       out=self.folder / name)
+    def sealed_session(self):
+        """A session with the effect; and where its seed could be read meanwhile, {program: file in /proc}."""
+        lab = self.lab("--conditions", "B", "--identify-seconds", 10, "--trial-seconds", 5, "--seed", 3, "--config",
+                       loose_settings(self.folder / "config"), "--undeclared-effect", SEED, out=self.folder / "sealed")
         told = {}
 
         def over():
@@ -81,15 +82,14 @@ class UndeclaredEffectTest(LabTestCase):
         self.assertEqual(lab.process.returncode, 0, lab.errors())
         return lab, told
 
-    def test_a_recording_does_not_tell_and_the_truth_is_the_committed_one(self):
-        plain, _ = self.session("plain")
-        sealed, told = self.session("sealed", "--undeclared-effect", SEED)
+    def test_a_recording_does_not_reveal_it_and_the_truth_is_the_committed_one(self):
+        sealed, told = self.sealed_session()
 
         # The lab's own command line is the person's.
         self.assertLessEqual(set(told), {"stillhand", None})
 
         # Same topics, schemas and metadata.
-        self.assertEqual(shape(info(plain.out / "session.mcap", self.folder / "plain.json")),
+        self.assertEqual(shape(info(RECORDED_WITHOUT, self.folder / "plain.json")),
                          shape(info(sealed.out / "session.mcap", self.folder / "sealed.json")))
         csv = self.folder / "csv"
         subprocess.run([str(STILLHAND), "export", str(sealed.out / "session.mcap"), "--csv", str(csv)], check=True,
@@ -113,9 +113,9 @@ class UndeclaredEffectTest(LabTestCase):
         # Another truth would not pass.
         other = (sealed.out / "undeclared_effect.json").read_bytes().replace(b'"kind": "', b'"kind": "x')
         self.assertNotIn(hashlib.sha256(other).hexdigest(), (sealed.out / "undeclared_effect.sha256").read_text())
-        self.assertFalse((plain.out / "undeclared_effect.sha256").exists())
+        self.assertFalse((RECORDED_WITHOUT.parent / "undeclared_effect.sha256").exists())
         self.assert_nothing_left(sealed)
 
 
 if __name__ == "__main__":
-    lab_process.main()
+    lab_process.main(RECORDED_WITHOUT)

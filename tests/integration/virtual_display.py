@@ -26,14 +26,14 @@ class VirtualDisplay:
 
     def __init__(self):
         self._folder = tempfile.TemporaryDirectory(prefix="stillhand-screen-")
-        told, tell = os.pipe()
+        number, write_end = os.pipe()
         self._server = subprocess.Popen(
-            # A server begins anew when its last client leaves, and refuses who comes meanwhile: -noreset.
-            ["Xvfb", "-displayfd", str(tell), "-screen", "0", f"{COLUMNS}x{ROWS}x24", "-fbdir", self._folder.name,
-             "-nolisten", "tcp", "-noreset"], pass_fds=(tell,), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            # Without -noreset a server resets when its last client leaves, and refuses new clients meanwhile.
+            ["Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{COLUMNS}x{ROWS}x24", "-fbdir", self._folder.name,
+             "-nolisten", "tcp", "-noreset"], pass_fds=(write_end,), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
-        os.close(tell)
-        with os.fdopen(told) as pipe:
+        os.close(write_end)
+        with os.fdopen(number) as pipe:
             self.number = pipe.readline().strip()  # "" when the server ended instead
         if not self.number:
             self.close()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A service as systemd starts it: its life sign feeds the watchdog, and one that hangs feeds it no more."""
+"""A service as systemd starts it: its life sign feeds the watchdog, and stops when the service hangs."""
 import os
 import signal
 import socket

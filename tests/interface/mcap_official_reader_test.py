@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings as others read them: the MCAP project's own reader, Foxglove's IDL parser and deserialiser.
 
-Installs the npm packages, as their lock file says, into the build tree; status 77 (skipped) when Node.js, npm or the
-packages are not to be had. Reads a live session's recording (fixture lab_run) and one file of each compression.
+Installs the npm packages that their lock file names into the build tree. Skipped (status 77) without Node.js, without npm,
+or if npm cannot install the packages. Reads a live session's recording (fixture lab_run) and one file of each compression.
 """
 import json
 import os

@@ -202,7 +202,8 @@ TEST(SecurityTest, AGroupBesideUnicastIsRefusedAndUnicastAloneIsNot) {
 }
 
 TEST(SecurityTest, SeveralWaysToBeHeardAreRefused) {
-  EXPECT_THAT(refused_discovery({"127.0.0.1", "192.0.2.1"}, false), HasSubstr("several transports"));
+  EXPECT_THAT(refused_discovery({"127.0.0.1", "192.0.2.1"}, false),
+              HasSubstr("several transports"));
   EXPECT_THAT(refused_discovery({"127.0.0.1"}, true), HasSubstr("several transports"));
 }
 

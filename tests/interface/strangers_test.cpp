@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strangers beside a secured pair on loopback: what they get and bring is nothing.  A process's
-// participants are found by others up to the maxInitialPeersRange of qos/profiles.xml, and Fast DDS
-// counts on when one is gone: the 33rd of this program would wait in vain.
+// Strangers next to a secured pair on loopback: they receive nothing, and nothing of theirs is
+// received.  Participant numbers are not reused within a process, and discovery reaches those up to
+// the maxInitialPeersRange of qos/profiles.xml: the 33rd participant of this program would not be
+// discovered.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -159,7 +160,7 @@ TEST(StrangersTest, WithoutACertificateNothingIsHeardOrDelivered) {
   EXPECT_THAT(secured.rig.duplicate_peers(), testing::IsEmpty());
 }
 
-/// Signs a document of a folder anew, altered by a sed script, as `authority` does.
+/// Alters a document of a folder by a sed script and signs it again, as `authority` does.
 void rewrite(const fs::path& folder, const char* file, const std::string& script,
              const fs::path& authority) {
   SecurityFolders::shell(

@@ -27,7 +27,7 @@ std::string without_profile(const std::string& name) {
   return text;
 }
 
-// What hears of others on the bus is gone with the tap; DDS must not call it any more.
+// The listener for others on the bus is destroyed with the tap; DDS must not call it any more.
 TEST(TapTest, RefusedForAProfileItLeavesNoParticipant) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "stillhand_without_record_reliable.xml";

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Debian packages of a finished build: what they hold, and how they run once dpkg has installed them.
 
-They are installed into a copy of this system (an overlay in memory, in a mount namespace of its own), in which source
-tree and build tree are empty folders: what runs there has nothing but its packages and Debian's. That copy has every
-Debian package of this machine, so it can't show that a dependency is missing; dpkg-shlibdeps finds those.
+They are installed into a copy of this system (an overlay in memory, in a mount namespace of its own). In the copy the
+source tree and the build tree are empty folders: what runs there has nothing but its packages and Debian's. The copy has
+every Debian package of this machine, so it cannot show that a dependency is missing; dpkg-shlibdeps finds those.
+
+With `--campaign` a study, a session and a project that links the cores run in the copy.
 """
 import json
 import os
@@ -83,7 +85,7 @@ class Packages:
         self._folder = tempfile.TemporaryDirectory(prefix="stillhand-packages-")
         made = pathlib.Path(self._folder.name)
         subprocess.run(["cpack", "-G", "DEB", "--config", BUILD / "CPackConfig.cmake", "-B", made], check=True,
-                       stdout=subprocess.DEVNULL, umask=0o077)  # whatever the builder's
+                       stdout=subprocess.DEVNULL, umask=0o077)  # a builder may have any umask
         shutil.rmtree(made / "_CPack_Packages")
         self.folder = made
         self.programs, = made.glob("stillhand_*.deb")
@@ -231,12 +233,14 @@ class InstalledTest(unittest.TestCase):
         for verb in ("lab", "record", "replay"):
             self.assertIn("TEXT=/usr/share/stillhand/qos/profiles.xml\n", self.good("stillhand", verb, "--help"))
 
+    @lab_process.campaign
     def test_a_study_runs_as_an_ordinary_user(self):
         self.good("stillhand", "study", "--subjects", 2, "--trial-seconds", 40, "--identify-seconds", 20, "--seed", 5,
                   "--out", "/tmp/study", user="stillhand")
         self.assertIn("report.html", self.good("ls", "/tmp/study"))
         self.assertNotEqual(list((self.system.root / "tmp/study").glob("*.svg")), [])
 
+    @lab_process.campaign
     def test_a_session_runs_with_every_process(self):
         self.good("cp", "-r", "/usr/share/stillhand/deploy/config", "/tmp/config")
         # As in lab_process.quick_session(): takes the model that 5 s give.
@@ -281,6 +285,7 @@ class InstalledTest(unittest.TestCase):
         self.assertEqual(set(completed("lab", "--operator", "")), {"simulated", "mouse"})
         self.assertEqual(completed("lab", "--out", ""), [])  # file names: readline's own
 
+    @lab_process.campaign
     def test_another_project_finds_the_cores(self):
         include = self.system.root / "usr/include/stillhand"
         headers = sorted(str(path.relative_to(include)) for path in include.rglob("*.hpp"))
@@ -296,9 +301,7 @@ class InstalledTest(unittest.TestCase):
 if __name__ == "__main__":
     MISSING = [program for program in sorted(PROGRAMS) if not (BUILD / "bin" / program).is_file()]
     if MISSING:
-        print("skipped, not built:", ", ".join(MISSING))
-        sys.exit(lab_process.CTEST_SKIPPED)
+        lab_process.skip("not built: " + ", ".join(MISSING))
     PACKAGES = Packages()
     unittest.addModuleCleanup(PACKAGES.close)
-    RESULT = unittest.main(exit=False).result
-    sys.exit(1 if not RESULT.wasSuccessful() else lab_process.CTEST_SKIPPED if RESULT.skipped else 0)
+    lab_process.run_cases()

@@ -157,8 +157,8 @@ Start best_of_passes(const Passes& passes, Start from, int count) {
   return from;
 }
 
-/// Each mode of a fourth-order denominator with another beside it, slow ones with little damping
-/// too, best first: the passes may end where one mode is wasted.
+/// Each mode of a fourth-order denominator with another one added, slow ones with little damping
+/// among them, best first: the passes may end where one mode is wasted.
 std::vector<Start> with_other_modes(const Passes& passes, const Eigen::VectorXd& poles) {
   Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(4, 4);
   companion.row(0) = -poles.transpose();

@@ -21,8 +21,8 @@
 
 namespace stillhand::tests {
 
-/// A message's fields in the order of the IDL: name and value.  Doubles are written with as many
-/// digits as tell every two of them apart.
+/// A message's fields in the order of the IDL: name and value.  Doubles are written with so many
+/// digits that any two of them differ in their text.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
 /// CDR bytes without encapsulation header; padding is zero, so equal bytes are equal messages.

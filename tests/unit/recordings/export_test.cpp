@@ -201,11 +201,12 @@ TEST_F(ExportTest, AnotherProgramsRecordingIsExportedAsFarAsItsSchemasAreKnown) 
     ASSERT_TRUE(writer.close().ok());
   };
   write(false);
-  EXPECT_THAT(config_error_of([&] {
-                export_recording(path("ros.mcap"), {path("out"), {}, {}, {}});
-              }),
-              HasSubstr("nothing that can be exported (/flag: got a schema in 'ros2msg', want a schema "
-                        "in 'omgidl')"));
+  EXPECT_THAT(
+      config_error_of([&] {
+        export_recording(path("ros.mcap"), {path("out"), {}, {}, {}});
+      }),
+      HasSubstr("nothing that can be exported (/flag: got a schema in 'ros2msg', want a schema "
+                "in 'omgidl')"));
   EXPECT_EQ(file_count(), 1u) << "no folder of results that never were";
   write(true);
   const Exported sut = export_recording(path("ros.mcap"), {path("out"), {}, {}, {}});
@@ -238,9 +239,8 @@ TEST_F(ExportTest, PlacesAndNamesThatCannotBeAreRefusedBeforeTheWork) {
   EXPECT_THAT(refused({path("out"), path("nowhere/a.mat"), {}, {}}), HasSubstr("--mat"));
   EXPECT_THAT(refused({{}, {}, path("a.mcap"), {}}), HasSubstr("--hdf5"));
   EXPECT_THAT(refused({path("a.mcap"), {}, {}, {}}), HasSubstr("--csv"));
-  EXPECT_THAT(
-      refused({path("out"), {}, {}, {"lab/*"}}),
-      HasSubstr("--topics: got no such topic, want one of stillhand/event, stillhand/"));
+  EXPECT_THAT(refused({path("out"), {}, {}, {"lab/*"}}),
+              HasSubstr("--topics: got no such topic, want one of stillhand/event, stillhand/"));
   EXPECT_EQ(file_count(), 1u);
   EXPECT_EQ(export_recording(path("a.mcap"), {path("out"), {}, {}, {"*/ev?nt"}}).topics.size(), 1u);
 }

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand close-the-loop --live`: the closed loop over DDS with every process, and Ctrl-C during it.
+
+By default the trials last 5 s. With `--campaign` they last 15 s, and the model that the loop ends with runs in the
+canceller of a session of its own.
+"""
+import csv
+import json
+import pathlib
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import lab_process
+from lab_process import INSPECT, campaign, loose_settings, next_domain, wait_for
+
+STILLHAND = str(lab_process.STILLHAND)
+LOOP_LIMIT_S = 240
+START_LIMIT_S = 60.0
+
+
+def run(*words):
+    return subprocess.run([STILLHAND, *map(str, words)], capture_output=True, text=True, timeout=LOOP_LIMIT_S)
+
+
+def measuring(file):
+    """Whether a recording holds the measured part of a trial yet."""
+    inspected = subprocess.run([INSPECT, file, "1"], capture_output=True, text=True)
+    found = json.loads(inspected.stdout) if inspected.returncode == 0 else {"trials": [], "rig": {"tick": []}}
+    return any(trial["start_tick"] < tick for trial in found["trials"] for tick in found["rig"]["tick"][-1:])
+
+
+class CloseTheLoopLiveTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.out = self.folder / "loop"
+
+    def motor_commands(self, recording):
+        """Rows of the motor commands of a recording, {title: text}."""
+        tables = tempfile.mkdtemp(dir=self.folder)
+        exported = run("export", recording, "--csv", tables, "--topics", "stillhand/motor_command")
+        self.assertEqual(exported.returncode, 0, exported.stderr)
+        with open(pathlib.Path(tables) / "stillhand_motor_command.csv", encoding="utf-8", newline="") as table:
+            return list(csv.DictReader(table))
+
+    def assert_loop_closes(self, trial_s):
+        ran = run("close-the-loop", "--live", "--domain", next_domain(), "--undeclared-effect", 9, "--seed", 3,
+                  "--trial-seconds", trial_s, "--identify-seconds", 30, "--out", self.out)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertTrue(summary["live"])
+        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C+"])
+        self.assertTrue(summary["truth"]["verdict_right"], summary["verdict"])
+        # Trials this short show little of the tracking; they show how much of the force is cancelled.
+        shares = {name: condition["cancelled_share"] for name, condition in summary["conditions"].items()}
+        self.assertGreater(shares["C+"], shares["C"])
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
+                                 capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        info = self.folder / "info.json"
+        self.assertEqual(run("info", self.out / "session.mcap", "--json", info).returncode, 0)
+        messages = {topic["topic"]: topic["messages"] for topic in json.loads(info.read_text())["topics"]}
+        self.assertGreaterEqual(messages["stillhand/augmented_model"], 1)
+        models = {row["model [-]"] for row in self.motor_commands(self.out / "session.mcap")}
+        self.assertTrue(models >= {"0", "1000"}, models)
+        self.assertEqual(len(summary["rounds"][0]["weights"]), 2)
+
+    def test_the_loop_closes_over_dds_and_the_recording_is_kept(self):
+        self.assert_loop_closes(trial_s=5)
+
+    @campaign
+    def test_the_model_of_a_closed_loop_runs_in_the_next_session(self):
+        self.assert_loop_closes(trial_s=15)
+        again = self.folder / "again"
+        ran = run("lab", "--model", self.out / "control_model.json", "--conditions", "C", "--seed", 4, "--trial-seconds",
+                  10, "--identify-seconds", 5, "--config", loose_settings(self.folder / "config"), "--headless",
+                  "--domain", next_domain(), "--out", again)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("control_model.json", ran.stdout)
+        condition = json.loads((again / "summary.json").read_text())["conditions"]["C"]
+        self.assertGreater(condition["sensor_to_command_us"]["p50"], 0.0)
+        enabled = {row["model [-]"] for row in self.motor_commands(again / "session.mcap")
+                   if row["enabled [-]"] in ("1", "true")}
+        self.assertEqual(enabled, {"1000"})
+
+    def test_ctrl_c_during_a_trial_leaves_a_whole_recording(self):
+        process = subprocess.Popen([STILLHAND, "close-the-loop", "--live", "--domain", str(next_domain()),
+                                    "--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3",
+                                    "--out", str(self.out)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        file = self.out / "session.mcap"
+        wait_for("a trial's measured part", lambda: process.poll() is not None or measuring(file), START_LIMIT_S, 0.2)
+        self.assertIsNone(process.poll(), "it ended by itself")
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=START_LIMIT_S)
+        self.assertEqual(process.returncode, 1, errors)
+        self.assertIn("interrupted", errors)
+        # The recorder closed the file; a recorder that is killed leaves a file without an end.
+        checked = run("verify", file)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+
+if __name__ == "__main__":
+    lab_process.main()
