@@ -161,9 +161,10 @@ Replay replay_rig(const SessionRecording& session, const SessionSettings& settin
     return rig::to_idl(output, tick, input,
                        {like.command_tick(), like.motor_tick(), like.operator_tick()});
   };
-  // What a lost truth used is known to nobody.
+  // The inputs of a lost truth are not recorded anywhere else.
   const auto never = [](const msgs::RigTruth&, const msgs::RigTruth&) { return false; };
   Replay result = replay("rig", session.rig_truths, step, never);
+  result.recorded += std::ssize(session.raw_samples);
   const ByTick recorded("raw_sample", session.raw_samples);
   for (const msgs::RawSample& raw : raws) {
     if (recorded.has(raw.tick())) {
