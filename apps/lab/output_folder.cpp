@@ -20,6 +20,8 @@ namespace {
 constexpr const char* kResults[]{"session.mcap",
                                  "summary.json",
                                  "model.json",
+                                 "session.png",
+                                 "session.svg",
                                  "screen.avi",
                                  "undeclared_effect.json",
                                  "undeclared_effect.sha256",

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "apps/lab/session_figure.hpp"
 #include "apps/lab/summary_json.hpp"
 #include "services/identification/codec.hpp"
 #include "services/identification/model_file.hpp"
@@ -87,6 +88,16 @@ void write(const std::filesystem::path& path, const std::string& text) {
   if (!status.ok()) throw std::runtime_error(path.string() + ": " + status.text);
 }
 
+// A picture is worth a line, not the session's results.
+void draw(const session::SessionResult& result, const std::filesystem::path& folder) {
+  try {
+    draw_session(result, folder);
+  } catch (const std::exception& error) {
+    std::cerr << "stillhand lab: " << kSessionFigure << ".png is not drawn: " << error.what()
+              << "\n";
+  }
+}
+
 }  // namespace
 
 int report_session(const LabOptions& options, const std::vector<session::TrialOutcome>& outcomes,
@@ -98,6 +109,7 @@ int report_session(const LabOptions& options, const std::vector<session::TrialOu
   }
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
+  draw(result, options.out);
   print_table(result);
   print_models(result, options.model);
   print_motion(outcomes, options.protocol);

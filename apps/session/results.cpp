@@ -63,8 +63,23 @@ std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& se
                               1e-3 * (commanding.uncertainty_ns() + acquiring.uncertainty_ns())};
 }
 
+Excerpt excerpt_of(const std::vector<double>& feedthrough_n, const std::vector<double>& motor_n,
+                   const identification::TrackingRecord& record) {
+  constexpr auto kTicks = static_cast<std::size_t>(12.0 * kControlRateHz);
+  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / 100.0);
+  Excerpt out;
+  for (std::size_t n = 0; n < std::min(kTicks, feedthrough_n.size()); n += kEvery) {
+    out.time_s.push_back(static_cast<double>(n) * kControlPeriod_s);
+    out.feedthrough_n.push_back(feedthrough_n[n]);
+    out.motor_n.push_back(motor_n[n]);
+    out.target_mm.push_back(1e3 * record.target_m[n]);
+    out.cursor_mm.push_back(1e3 * record.cursor_m[n]);
+  }
+  return out;
+}
+
 void judge_cancellation(const SessionRecording& session, const PlannedTrial& planned,
-                        TrialResult& result) {
+                        const identification::TrackingRecord& record, TrialResult& result) {
   const Trial& trial = planned.trial;
   std::int64_t missing = 0;
   const auto feedthrough = measured(
@@ -73,13 +88,14 @@ void judge_cancellation(const SessionRecording& session, const PlannedTrial& pla
   const auto motor = measured(
       session.rig_truths, trial, [](const auto& truth) { return truth.motor_force_n(); }, missing);
   result.cancelled_share = session::cancelled_share(feedthrough, motor);
+  result.excerpt = excerpt_of(feedthrough, motor, record);
   if (!planned.cancellation) return;
   result.counterforce_delay_s = counterforce_delay_s(feedthrough, motor, kControlRateHz);
   result.sensor_to_command = sensor_to_command(session, trial);
 }
 
 TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
-  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}};
+  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}, {}};
   identification::TrackingRecord record;
   record.rate_hz = kControlRateHz;
   record.target_m = measured(
@@ -90,7 +106,7 @@ TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& 
       session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); }, again);
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
   result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
-  if (planned.moving) judge_cancellation(session, planned, result);
+  if (planned.moving) judge_cancellation(session, planned, record, result);
   return result;
 }
 

@@ -12,6 +12,14 @@
 
 namespace stillhand::session {
 
+/// The first 12 s of a trial at 100 Hz, for a figure.  All arrays are equally long.
+struct Excerpt {
+  std::vector<double> time_s;         ///< from the trial's start
+  std::vector<double> feedthrough_n;  ///< f', the force the body would exert with the stick held
+  std::vector<double> motor_n;        ///< f_m, the motor's
+  std::vector<double> target_mm, cursor_mm;
+};
+
 /// One tracking trial, computed from the recording alone.
 struct TrialResult {
   std::int64_t number;
@@ -33,6 +41,7 @@ struct TrialResult {
     double uncertainty_us = 0.0;  ///< of the offset between the two clocks; 0: one clock
   };
   std::optional<Latency> sensor_to_command;
+  Excerpt excerpt;  ///< only where the platform moves
 };
 
 /// What the model predicts of the pegged trial's true feedthrough force, as residual share

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/session_figure.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/report/plot/draw.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using report::Colour;
+
+constexpr double kForceExtent_n = 25.0;  // the motor's limit
+constexpr double kHandExtent_mm = 200.0;
+
+report::Series line(std::string label, Colour colour, const std::vector<double>& x,
+                    std::vector<double> y) {
+  report::Series series;
+  series.label = std::move(label);
+  series.colour = colour;
+  series.x = x;
+  series.y = std::move(y);
+  return series;
+}
+
+report::Panel panel(std::string title, std::string unit, double extent) {
+  report::Panel panel;
+  panel.title = std::move(title);
+  panel.x.label = "time [s]";
+  panel.y.label = std::move(unit);
+  panel.y.low = -extent;
+  panel.y.high = extent;
+  return panel;
+}
+
+std::string title_of(const session::TrialResult& trial) {
+  return std::string(1, trial.label) + (trial.label == 'B' ? ", moving" : ", moving and cancelled");
+}
+
+report::Panel force_panel(const session::TrialResult& trial) {
+  const session::Excerpt& excerpt = trial.excerpt;
+  report::Panel out = panel(title_of(trial), "force [N]", kForceExtent_n);
+  out.series.push_back(
+      line("feedthrough", Colour::kMeasured, excerpt.time_s, excerpt.feedthrough_n));
+  out.series.push_back(line("motor", Colour::kModel, excerpt.time_s, excerpt.motor_n));
+  return out;
+}
+
+report::Panel hand_panel(const session::TrialResult& trial, Colour colour) {
+  const session::Excerpt& excerpt = trial.excerpt;
+  report::Panel out = panel("", "position [mm]", kHandExtent_mm);
+  out.series.push_back(line("target", Colour::kTarget, excerpt.time_s, excerpt.target_mm));
+  out.series.push_back(line("cursor", colour, excerpt.time_s, excerpt.cursor_mm));
+  return out;
+}
+
+}  // namespace
+
+void draw_session(const session::SessionResult& result, const std::filesystem::path& folder) {
+  std::vector<const session::TrialResult*> shown;
+  for (const char label : {'B', 'C'}) {
+    const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
+    if (trial != result.trials.end()) shown.push_back(&*trial);
+  }
+  if (shown.empty()) return;
+  report::Figure figure;
+  figure.name = kSessionFigure;
+  figure.columns = static_cast<int>(shown.size());
+  figure.height_px = 520;
+  for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial));
+  for (const auto* trial : shown) {
+    figure.panels.push_back(
+        hand_panel(*trial, trial->label == 'B' ? Colour::kConditionB : Colour::kConditionC));
+  }
+  report::render({{figure}}, folder);
+}
+
+}  // namespace stillhand::lab
