@@ -83,7 +83,7 @@ TEST(TrialTest, EveryPartIsSoundFromZeroToTwoToTheSixty) {
   }
 }
 
-// What sound() promises: the sums below it stay within 64 bits (3 * 2^60 < 2^63).
+// sound() promises that sums of its parts stay within 64 bits: 3 * 2^60 < 2^63.
 TEST(TrialTest, TheLargestSoundTrialHasItsBoundsWhereTheyBelong) {
   const Trial sut = trial_of(kLast, kLast, kLast);
   EXPECT_TRUE(sut.covers(0));
