@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
 
 #include "services/contract/config_error.hpp"
@@ -15,18 +17,25 @@ namespace {
 
 using diagnosis::Measurement;
 
-// Cubic through the four nearest (Catmull and Rom); the ends are held.
+// Cubic through the four nearest (Catmull and Rom); the ends are held.  decimated() leaves out a
+// stretch that is shorter than one sample of the model: NaN there.
 std::vector<double> spread_out(const std::vector<double>& x, const Measurement& from,
                                const Measurement& to, std::size_t factor) {
   if (factor == 1) return x;
   std::vector<double> y;
-  for (std::size_t s = 0; s < to.stretches.size(); ++s) {
-    const auto first = static_cast<std::ptrdiff_t>(from.stretches[s].first);
-    const auto last = static_cast<std::ptrdiff_t>(from.stretches[s].end) - 1;
+  auto stretch = from.stretches.begin();
+  for (const diagnosis::Stretch& fine : to.stretches) {
+    const std::size_t length = fine.end - fine.first;
+    if (length < factor) {
+      y.insert(y.end(), length, std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    const auto first = static_cast<std::ptrdiff_t>(stretch->first);
+    const auto last = static_cast<std::ptrdiff_t>(stretch->end) - 1;
+    ++stretch;
     const auto at = [&](std::ptrdiff_t n) {
       return x[static_cast<std::size_t>(std::clamp(n, first, last))];
     };
-    const std::size_t length = to.stretches[s].end - to.stretches[s].first;
     for (std::size_t n = 0; n < length; ++n) {
       const auto k = first + static_cast<std::ptrdiff_t>(n / factor);
       const double t = static_cast<double>(n % factor) / static_cast<double>(factor);
@@ -61,6 +70,10 @@ Prediction predict(const diagnosis::Model& model, const Measurement& measurement
   }
   const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
   const Measurement working = factor == 1 ? whole : diagnosis::decimated(whole, factor);
+  if (working.size() == 0) {
+    throw ConfigError(whole.source, "no stretch as long as one sample of the model",
+                      std::to_string(factor) + " samples or more without a gap");
+  }
   const diagnosis::Signals signals(working, model.inputs, model.output);
   diagnosis::FreeRun run;
   try {
@@ -79,10 +92,19 @@ Prediction predict(const diagnosis::Model& model, const Measurement& measurement
   const auto values = spread_out(run.prediction, working, whole, factor);
   const std::vector<double> time_s = whole.time_s();
   recording::Column column{model.output + "_model", model.output_unit, {}};
+  std::size_t left_out = 0;
   for (std::size_t n = 0; n < whole.size(); ++n) {
     if (whole.weight[n] <= 0.0) continue;
+    if (std::isnan(values[n])) {
+      ++left_out;
+      continue;
+    }
     prediction.table.time_s.push_back(time_s[n]);
     column.values.push_back(values[n]);
+  }
+  if (left_out > 0) {
+    prediction.notes.push_back(std::to_string(left_out) +
+                               " rows left out, in stretches shorter than one sample of the model");
   }
   prediction.table.columns.push_back(std::move(column));
   return prediction;

@@ -28,7 +28,7 @@ std::uint64_t derived_seed(std::uint64_t seed, SeedUse use, std::int64_t trial) 
 
 void check_duration(const char* key, double value_s) {
   if (!(value_s >= 5.0 && value_s <= 3600.0)) {
-    throw ConfigError(key, fmt::format("{:.6g}", value_s), "5 to 3600 seconds");
+    throw ConfigError(key, fmt::format("{}", value_s), "5 to 3600 seconds");
   }
 }
 
@@ -44,8 +44,7 @@ void check_road(const ProtocolOptions& options) {
                       "A (very good) to H");
   }
   if (!(options.road_speed_m_s >= 0.5 && options.road_speed_m_s <= 70.0)) {
-    throw ConfigError("--speed-m-s", fmt::format("{:.6g}", options.road_speed_m_s),
-                      "0.5 to 70 m/s");
+    throw ConfigError("--speed-m-s", fmt::format("{}", options.road_speed_m_s), "0.5 to 70 m/s");
   }
 }
 

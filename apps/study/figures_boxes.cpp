@@ -33,7 +33,8 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
     series.boxes = {
         {place, box.minimum, box.lower_quartile, box.median, box.upper_quartile, box.maximum, {}}};
     series.show_in_legend = false;
-    panel.series.push_back(series);
+    // Without a known value the box's zeros are no result.
+    if (metrics[metric].known > 0) panel.series.push_back(series);
     panel.x.ticks.push_back({place, label_of(condition)});
     if (condition <= 'C') {
       paper.x.push_back(place);

@@ -153,5 +153,117 @@ INSTANTIATE_TEST_SUITE_P(Seconds, BadDurationTest,
                                          std::numeric_limits<double>::infinity(),
                                          std::numeric_limits<double>::quiet_NaN()));
 
+// "got 3600, want 5 to 3600 seconds" would leave the operator without the reason.
+TEST(ProtocolTest, ARefusedNumberIsShownWithTheDigitsThatMakeItWrong) {
+  ProtocolOptions options = three_conditions(1);
+  options.trial_s = 3600.0001;
+  EXPECT_THAT(road_error(options), testing::StartsWith("--trial-seconds: got 3600.0001, "));
+  EXPECT_THAT(road_error(road("A", 70.000001)),
+              testing::StartsWith("--speed-m-s: got 70.000001, "));
+}
+
+TEST(ProtocolTest, TheShortestAndTheLongestTrialAreAccepted) {
+  ProtocolOptions options = three_conditions(1);
+  options.trial_s = 5.0;
+  options.identify_s = 3600.0;
+  const auto trials = plan(options);
+  EXPECT_EQ(trials[0].trial.duration_ticks, 3'600'000);
+  EXPECT_EQ(trials[1].trial.duration_ticks, 5'000);
+  EXPECT_EQ(trials[1].trial.ramp_ticks, 2'000);
+}
+
+// Paper III-A: 0.7 to 4 Hz, peak 0.75 g; III-C: 0.7 to 2 Hz, 1.6 m/s^2 RMS, 7.5 m/s^2 peak.
+TEST(ProtocolTest, TheMotionIsThePapers) {
+  const auto trials = plan(three_conditions(1));
+  EXPECT_EQ(trials[0].band_low_hz, 0.7);
+  EXPECT_EQ(trials[0].band_high_hz, 4.0);
+  EXPECT_NEAR(trials[0].peak_m_s2, 7.355, 5e-4);
+  EXPECT_LT(trials[0].rms_m_s2, trials[0].peak_m_s2);
+  const PlannedTrial& moving = moving_trial(trials);
+  EXPECT_EQ(moving.band_low_hz, 0.7);
+  EXPECT_EQ(moving.band_high_hz, 2.0);
+  EXPECT_EQ(moving.rms_m_s2, 1.6);
+  EXPECT_EQ(moving.peak_m_s2, 7.5);
+}
+
+TEST(ProtocolTest, TheHigherHalfOfASeedCounts) {
+  const auto low = plan(three_conditions(1));
+  const auto high = plan(three_conditions(1 + (std::uint64_t{1} << 32)));
+  EXPECT_NE(low[0].motion_seed, high[0].motion_seed);
+  EXPECT_NE(low[1].reference_seed, high[1].reference_seed);
+}
+
+TEST(ProtocolTest, TrialsAreNumberedInTheirOrder) {
+  const auto trials = plan(three_conditions(5));
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    EXPECT_EQ(trials[i].trial.number, static_cast<std::int64_t>(i));
+  }
+}
+
+TEST(ProtocolTest, OfAStudysConditionsOnlyCCancelsAndOnlyDFilters) {
+  ProtocolOptions options;
+  options.conditions = parse_conditions("F,E,D,C,B,A", kStudyConditions);
+  const auto trials = plan(options);
+  ASSERT_EQ(trials.size(), 7u);
+  for (const PlannedTrial& trial : trials) {
+    EXPECT_EQ(trial.cancellation, trial.label == 'C') << trial.label;
+    EXPECT_EQ(trial.command_filter, trial.label == 'D') << trial.label;
+    EXPECT_EQ(trial.moving, trial.label != 'A') << trial.label;
+  }
+}
+
+TEST(ProtocolTest, ConditionsOfAStudyAreNotThoseOfALab) {
+  EXPECT_EQ(parse_conditions("F", kStudyConditions).front(), Condition::kArmRest);
+  EXPECT_THROW(parse_conditions("F", kLabConditions), ConfigError);
+  EXPECT_THROW(parse_conditions("G", kStudyConditions), ConfigError);
+}
+
+TEST(ProtocolTest, EveryConditionHasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (const char letter : std::string(kStudyConditions)) {
+    names.insert(condition_name(static_cast<Condition>(letter)));
+  }
+  EXPECT_EQ(names.size(), 6u);
+  EXPECT_FALSE(names.contains(condition_name(static_cast<Condition>('Z'))));
+}
+
+TEST(MotionProfileTest, IsStillWhereThePlatformDoesNotMove) {
+  for (const PlannedTrial& trial : plan(three_conditions(1))) {
+    const motion::MotionProfile sut = motion_profile(trial);
+    EXPECT_EQ(sut.kind,
+              trial.label == 'A' ? motion::MotionKind::kStill : motion::MotionKind::kBandNoise);
+    EXPECT_EQ(sut.seed, trial.motion_seed);
+    EXPECT_EQ(sut.rms_m_s2, trial.rms_m_s2);
+    EXPECT_EQ(sut.peak_m_s2, trial.peak_m_s2);
+    EXPECT_EQ(sut.duration_ticks, trial.trial.duration_ticks);
+    EXPECT_EQ(sut.ramp_ticks, trial.trial.ramp_ticks);
+  }
+}
+
+TEST(MotionProfileTest, ARoadAndARideStayWhatTheyAre) {
+  EXPECT_EQ(motion_profile(moving_trial(plan(road("C", 10.0)))).kind, motion::MotionKind::kRoad);
+  ProtocolOptions options = three_conditions(1);
+  options.motion = Motion::kRide;
+  const motion::MotionProfile sut = motion_profile(moving_trial(plan(options)));
+  EXPECT_EQ(sut.kind, motion::MotionKind::kRide);
+  EXPECT_EQ(sut.band_low_hz, 0.05);
+  EXPECT_EQ(sut.band_high_hz, 6.0);
+}
+
+TEST(CheckSeedTest, EveryWholeNumberOfSixtyThreeBitsIsOne) {
+  for (const char* word : {"0", "1", "007", "9223372036854775807"}) {
+    EXPECT_EQ(check_seed(word), "") << word;
+  }
+}
+
+TEST(CheckSeedTest, AnythingElseIsRefusedWithTheWordAndTheLargest) {
+  for (const char* word : {"", "-1", "+1", " 1", "1 ", "1.0", "1e3", "0x10", "one",
+                           "9223372036854775808", "99999999999999999999999"}) {
+    EXPECT_THAT(check_seed(word),
+                testing::AllOf(testing::HasSubstr(word), testing::HasSubstr("9223372036854775807")))
+        << word;
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::session

@@ -42,5 +42,24 @@ TEST(DescribeTest, EveryFieldIsARowInTheOrderOfTheConfig) {
             "| `delay_ticks` | 3 | 0 to 50 | [ticks] delay |\n");
 }
 
+struct LockedConfig {
+  bool locked = true;
+  double tiny = 5e-324;  // the smallest double
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("locked", self.locked, Range{1.0, 1.0}, "locked");
+    visit("tiny", self.tiny, Range{-1.0 / 3.0, 1e300}, "[-] tiny");
+  }
+};
+
+TEST(DescribeTest, ASwitchWithOnePositionShowsItAndANumberKeepsAllItsDigits) {
+  EXPECT_EQ(describe(LockedConfig{}),
+            "| name | default | range | doc |\n"
+            "| --- | --- | --- | --- |\n"
+            "| `locked` | true | true | locked |\n"
+            "| `tiny` | 5e-324 | -0.3333333333333333 to 1e+300 | [-] tiny |\n");
+}
+
 }  // namespace
 }  // namespace stillhand::settings

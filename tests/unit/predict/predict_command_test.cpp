@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The verb as a person types it: files in, one file out, or none.
+#include "apps/predict/predict_command.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/model_file.hpp"
+#include "services/recording/core/csv.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::predict {
+namespace {
+
+namespace fs = std::filesystem;
+namespace made = diagnosis::made;
+using testing::HasSubstr;
+
+class PredictCommandTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    diagnosis::Model model = made::model_of({{{2.0}}, {1.0}, 0.5});
+    write("model.json", diagnosis::model_json(model));
+    write("ride.csv", csv_at(100.0));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const char* name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  [[nodiscard]] std::string text_of(const char* name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  // 3 s of a seeded input.
+  static std::string csv_at(double rate_hz) {
+    recording::Recording table;
+    const auto count = static_cast<std::size_t>(3.0 * rate_hz);
+    for (std::size_t n = 0; n < count; ++n) {
+      table.time_s.push_back(static_cast<double>(n) / rate_hz);
+    }
+    table.columns = {{"u", "V", made::white(count, 20)}};
+    return recording::to_csv(table);
+  }
+
+  // What the verb prints.
+  static std::string run(std::vector<std::string> words) {
+    CLI::App cli;
+    int status = -1;
+    add_predict_command(cli, status);
+    std::vector<std::string> reversed(words.rbegin(), words.rend());
+    reversed.emplace_back("predict");
+    testing::internal::CaptureStdout();
+    try {
+      cli.parse(reversed);
+    } catch (...) {
+      testing::internal::GetCapturedStdout();
+      throw;
+    }
+    std::fflush(stdout);
+    EXPECT_EQ(status, 0);
+    return testing::internal::GetCapturedStdout();
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      (std::string("predict_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(PredictCommandTest, WritesAsManyRowsAsItSays) {
+  const std::string printed = run({path("model.json"), path("ride.csv"), "--out", path("out.csv")});
+  EXPECT_THAT(printed, HasSubstr("300 samples"));
+  const auto in = recording::parse_csv(text_of("ride.csv"), "in");
+  const auto out = recording::parse_csv(text_of("out.csv"), "out");
+  EXPECT_THAT(text_of("out.csv"), testing::StartsWith("t [s],y_model [N]\n"));
+  ASSERT_EQ(out.row_count(), 300u);
+  for (std::size_t n = 0; n < 300; ++n) {
+    // The reader may put times onto its grid: equal to the rounding of 3 s.
+    ASSERT_NEAR(out.time_s[n], in.time_s[n], 1e-12);
+    ASSERT_NEAR(out.columns[0].values[n], 2.0 * in.columns[0].values[n] + 0.5, 1e-12) << n;
+  }
+}
+
+TEST_F(PredictCommandTest, TheNoteOnAnEffectThatWasLeftOutIsPrinted) {
+  write("model.json", diagnosis::model_json(made::model_of({{{2.0}}, {1.0}, 0.5},
+                                                           {{"drift", "linear", {}, {}, {5.0}}})));
+  EXPECT_THAT(run({path("model.json"), path("ride.csv"), "--out", path("out.csv")}),
+              HasSubstr("note: drift"));
+}
+
+TEST_F(PredictCommandTest, ARefusedRecordingLeavesTheEarlierFileAsItWas) {
+  write("out.csv", "earlier");
+  write("ride.csv", csv_at(150.0));
+  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", path("out.csv")}), ConfigError);
+  EXPECT_EQ(text_of("out.csv"), "earlier");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3);
+}
+
+TEST_F(PredictCommandTest, TheOutputMayNotBeOneOfTheInputs) {
+  const std::string model = text_of("model.json");
+  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", path("model.json")}),
+               ConfigError);
+  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", path("ride.csv")}), ConfigError);
+  EXPECT_EQ(text_of("model.json"), model);
+}
+
+TEST_F(PredictCommandTest, AFileThatIsMissingOrNoModelIsNamed) {
+  const auto message_of = [&](const char* model, const char* ride) -> std::string {
+    try {
+      run({path(model), path(ride), "--out", path("out.csv")});
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(message_of("absent.json", "ride.csv"), HasSubstr("absent.json"));
+  EXPECT_THAT(message_of("model.json", "absent.csv"), HasSubstr("absent.csv"));
+  EXPECT_THAT(message_of("ride.csv", "ride.csv"), HasSubstr("ride.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "out.csv"));
+}
+
+TEST_F(PredictCommandTest, AnOutputIsAskedForByName) {
+  EXPECT_THROW(run({path("model.json"), path("ride.csv")}), CLI::RequiredError);
+  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", ""}), CLI::ValidationError);
+  EXPECT_THROW(run({path("model.json"), "--out", path("out.csv")}), CLI::RequiredError);
+}
+
+}  // namespace
+}  // namespace stillhand::predict

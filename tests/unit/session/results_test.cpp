@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results of a recording whose samples the test has written.
+#include "apps/session/results.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/unit/session/recorded_session.hpp"
+
+namespace stillhand::session {
+namespace {
+
+using made::acceleration_m_s2;
+using made::kTrial_ticks;
+using made::outcome_of;
+using made::Tape;
+
+constexpr Tick kStart = 1000;
+constexpr Tick kEnd = kStart + kTrial_ticks;
+
+TEST(EvaluateTest, ACursorThatIsOffByTheSameEverywhereHasThatError) {
+  for (const double off_m : {0.0, 0.010, -0.014, 0.016}) {
+    Tape tape;
+    tape.whole_tracking(kStart, kEnd, off_m);
+    const auto sut = evaluate(tape.close(), {outcome_of(2, 'A', kStart)});
+    ASSERT_EQ(sut.trials.size(), 1u);
+    EXPECT_EQ(sut.trials[0].number, 2);
+    EXPECT_EQ(sut.trials[0].label, 'A');
+    // Target and cursor are below 0.05 m: their difference is exact to 1e-17 m.
+    EXPECT_NEAR(sut.trials[0].metrics.rms_error_mm, 1000.0 * std::abs(off_m), 1e-11);
+    EXPECT_EQ(sut.trials[0].metrics.dwell_ratio, std::abs(off_m) < 0.015 ? 1.0 : 0.0);
+    EXPECT_EQ(sut.trials[0].missing_ticks, 0);
+  }
+}
+
+// A sample before or after the trial would add an error of a metre.
+TEST(EvaluateTest, OnlyTheMeasuredTicksCount) {
+  Tape tape;
+  for (Tick tick = kStart - 100; tick < kStart; ++tick) tape.tracking(tick, 1.0, 0.0);
+  tape.whole_tracking(kStart, kEnd, 0.010);
+  for (Tick tick = kEnd; tick < kEnd + 100; ++tick) tape.tracking(tick, 1.0, 0.0);
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  EXPECT_NEAR(sut.trials.at(0).metrics.rms_error_mm, 10.0, 1e-11);
+}
+
+// The sample before is held: 500 ticks of the error 0, then 20 lost ones that hold it, then 12 mm.
+TEST(EvaluateTest, ALostSampleHoldsTheOneBeforeAndIsCounted) {
+  Tape tape;
+  for (Tick tick = kStart; tick < kEnd; ++tick) {
+    const Tick n = tick - kStart;
+    if (n >= 500 && n < 520) continue;
+    tape.tracking(tick, n < 500 ? 0.0 : 0.012, 0.0);
+  }
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  EXPECT_EQ(sut.trials.at(0).missing_ticks, 20);
+  EXPECT_NEAR(sut.trials[0].metrics.rms_error_mm, 12.0 * std::sqrt(4480.0 / 5000.0), 1e-11);
+  EXPECT_EQ(sut.lost_ticks.at(std::string(topics::kTrackingSample.name)), 20);
+}
+
+TEST(EvaluateTest, SamplesMissingAtBothEndsAreCountedToo) {
+  Tape tape;
+  tape.whole_tracking(kStart + 30, kEnd - 7, 0.0);
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  EXPECT_EQ(sut.trials.at(0).missing_ticks, 37);
+}
+
+TEST(EvaluateTest, ASampleThatComesTwiceCountsOnce) {
+  Tape tape;
+  for (Tick tick = kStart; tick < kEnd; ++tick) {
+    tape.tracking(tick, 0.010, 0.0);
+    if (tick % 3 == 0) tape.tracking(tick, 0.010, 0.0);
+  }
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  EXPECT_EQ(sut.trials.at(0).missing_ticks, 0);
+  EXPECT_NEAR(sut.trials[0].metrics.rms_error_mm, 10.0, 1e-11);
+}
+
+TEST(EvaluateTest, OnlyCompletedTrackingTrialsAreEvaluated) {
+  Tape tape;
+  tape.whole_tracking(kStart, kStart + 2 * kTrial_ticks, 0.0);
+  std::vector<TrialOutcome> outcomes{outcome_of(0, 'I', kStart), outcome_of(1, 'A', kStart),
+                                     outcome_of(2, 'A', kEnd)};
+  outcomes[0].planned.trial.phase = TrialPhase::kPegged;
+  outcomes[1].completed = false;
+  outcomes[1].aborted = "stopped";
+  const std::string path = tape.close();
+  const auto sut = evaluate(path, outcomes);
+  ASSERT_EQ(sut.trials.size(), 1u);
+  EXPECT_EQ(sut.trials[0].number, 2);
+  EXPECT_TRUE(evaluate(path, {}).trials.empty());
+}
+
+// f' of the body, and a motor that takes off `share` of it `late` ticks late.
+void force(Tape& tape, double share, Tick late) {
+  const auto feedthrough_n = [](Tick tick) { return -3.2 * acceleration_m_s2(tick); };
+  for (Tick tick = kStart; tick < kEnd; ++tick) {
+    tape.truth(tick, feedthrough_n(tick), -share * feedthrough_n(tick - late));
+  }
+}
+
+TEST(EvaluateTest, TheCancelledShareIsThePartThatTheMotorRemoves) {
+  for (const double share : {0.0, 0.25, 1.0, 1.5}) {
+    Tape tape;
+    tape.whole_tracking(kStart, kEnd, 0.0);
+    force(tape, share, 0);
+    const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+    EXPECT_NEAR(sut.trials.at(0).cancelled_share.value(), 1.0 - std::abs(1.0 - share), 1e-12);
+  }
+}
+
+// A tone of f Hz that is opposed in full tau late leaves 2 sin(pi f tau) of it: 2 Hz, 10 ms.
+TEST(EvaluateTest, AMotorThatComesLateCancelsLessAndItsDelayIsFound) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 1.0, 10);
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const double left = 2.0 * std::sin(std::numbers::pi * 2.0 * 0.010);
+  // 10 whole cycles a trial: the RMS of both is exact but for rounding.
+  EXPECT_NEAR(sut.trials.at(0).cancelled_share.value(), 1.0 - left, 1e-9);
+  EXPECT_NEAR(sut.trials[0].counterforce_delay_s.value(), 0.010, 1e-4);
+}
+
+TEST(EvaluateTest, ATrialThatDoesNotMoveHasNoShareAndOneThatDoesNotCancelHasNoDelay) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 0.0, 0);
+  const std::string path = tape.close();
+  const auto still = evaluate(path, {outcome_of(1, 'A', kStart)});
+  EXPECT_FALSE(still.trials.at(0).cancelled_share.has_value());
+  const auto moving = evaluate(path, {outcome_of(1, 'B', kStart)});
+  EXPECT_NEAR(moving.trials.at(0).cancelled_share.value(), 0.0, 1e-12);
+  EXPECT_FALSE(moving.trials[0].counterforce_delay_s.has_value());
+  EXPECT_FALSE(moving.trials[0].sensor_to_command.has_value());
+}
+
+// 1 us, 2 us, ... 5000 us, in another order; commands outside the trial, and one that answers no
+// sample, would be the largest.
+TEST(EvaluateTest, LatenciesAreQuantilesOverTheTrialsCommands) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 1.0, 0);
+  tape.motor(kStart - 1, 1'000'000, 999'000'000);
+  for (Tick n = 0; n < kTrial_ticks; ++n) {
+    const std::int64_t late_us = 1 + (n * 1237) % kTrial_ticks;  // 1237 is prime: each once
+    tape.motor(kStart + n, 1'000'000, 1'000'000 + 1000 * late_us);
+  }
+  tape.motor(kStart, 0, 999'000'000);
+  tape.motor(kEnd, 1'000'000, 999'000'000);
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto latency = sut.trials.at(0).sensor_to_command.value();
+  EXPECT_NEAR(latency.p50_us, 2500.0, 1.0);
+  EXPECT_NEAR(latency.p99_us, 4950.0, 1.0);
+  EXPECT_DOUBLE_EQ(latency.max_us, 5000.0);
+  EXPECT_EQ(latency.uncertainty_us, 0.0);
+}
+
+// The rig's clock is 5 ms ahead, the cancellation's 2 ms behind: 300 us stay 300 us.
+TEST(EvaluateTest, StampsOfOtherHostsAreTakenOverToOneClock) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 1.0, 0);
+  tape.clock("rig", 0, 5'000'000, 40'000.0);
+  tape.clock("cancellation", 0, -2'000'000, 25'000.0);
+  tape.clock("display", 0, 77, 1e9);
+  for (Tick tick = kStart; tick < kEnd; ++tick) {
+    const std::int64_t at_ns = 1'000'000'000 + 1'000'000 * tick;
+    tape.motor(tick, at_ns + 5'000'000, at_ns + 300'000 - 2'000'000);
+  }
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto latency = sut.trials.at(0).sensor_to_command.value();
+  EXPECT_DOUBLE_EQ(latency.p50_us, 300.0);
+  EXPECT_DOUBLE_EQ(latency.max_us, 300.0);
+  EXPECT_DOUBLE_EQ(latency.uncertainty_us, 65.0);
+  EXPECT_EQ(sut.clocks.at("rig").offset_ns(), 5'000'000);
+  EXPECT_EQ(sut.clocks.size(), 3u);
+}
+
+stillhand_msgs::FeedthroughModel static_model(double gain, bool usable) {
+  stillhand_msgs::FeedthroughModel message;
+  message.fit_rate_hz(50.0);
+  message.fit_numerator({gain, 0.0});
+  message.fit_denominator({1.0, 0.0});
+  message.control_rate_hz(1000.0);
+  message.control_numerator({gain, 0.0});
+  message.control_denominator({1.0, 0.0});
+  message.usable(usable);
+  return message;
+}
+
+// A static model that is right: at 1 kHz nothing is left, and what 50 Hz and a hold leave is
+// written out here, sample by sample from the second second on.
+TEST(EvaluateTest, TheCostOfAHoldIsTheErrorOfTheHeldFiftyHertzModel) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 0.0, 0);
+  for (Tick tick = kStart; tick < kEnd; ++tick) tape.sensed(tick, acceleration_m_s2(tick));
+  tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  double left = 0.0;
+  double all = 0.0;
+  for (Tick n = 2000; n < kTrial_ticks; ++n) {
+    const double now = acceleration_m_s2(kStart + n);
+    const double held = acceleration_m_s2(kStart + n / 20 * 20);
+    left += (now - held) * (now - held);
+    all += now * now;
+  }
+  ASSERT_TRUE(sut.conversion.has_value());
+  EXPECT_NEAR(sut.conversion->control_filter, 0.0, 1e-12);
+  EXPECT_NEAR(sut.conversion->zero_order_hold, std::sqrt(left / all), 1e-12);
+}
+
+TEST(EvaluateTest, TheNewestModelIsTakenAndAnUnusableOneIsNotJudged) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 0.0, 0);
+  tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
+  tape.file.add(topics::kFeedthroughModel, static_model(-1.0, false));
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  ASSERT_TRUE(sut.model.has_value());
+  EXPECT_FALSE(sut.model->usable());
+  EXPECT_FALSE(sut.conversion.has_value());
+}
+
+TEST(EvaluateTest, WithoutAModelThereIsNoneAndNoCost) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 0.0, 0);
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'B', kStart)});
+  EXPECT_FALSE(sut.model.has_value());
+  EXPECT_FALSE(sut.conversion.has_value());
+}
+
+}  // namespace
+}  // namespace stillhand::session

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// One subject's session, with trials of five seconds.
+#include "apps/study/subject_session.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "apps/study/output.hpp"
+#include "apps/study/study.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/sealed_file.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using testing::HasSubstr;
+
+StudyOptions short_study(const std::string& conditions) {
+  StudyOptions options;
+  options.subjects = 2;
+  options.protocol.conditions = session::parse_conditions(conditions, session::kStudyConditions);
+  options.protocol.trial_s = 5.0;
+  options.protocol.identify_s = 10.0;
+  options.threads = 1;
+  return options;
+}
+
+TEST(StudyOptionsTest, AreCalibratedWithTheirDefaultsAndThePapersLengthsOnly) {
+  StudyOptions options;
+  options.protocol.identify_s = 120.0;
+  EXPECT_TRUE(is_calibrated(options));
+  options.subjects = 3;
+  options.seed = 99;
+  EXPECT_TRUE(is_calibrated(options));
+  options.protocol.trial_s = 179.0;
+  EXPECT_FALSE(is_calibrated(options));
+  options.protocol.trial_s = 180.0;
+  options.population.remnant_cv = std::nextafter(options.population.remnant_cv, 1.0);
+  EXPECT_FALSE(is_calibrated(options));
+}
+
+TEST(SubjectSessionTest, EveryConditionRunsOnceInTheOrderThatIsReported) {
+  const SubjectResult sut = run_subject(short_study("A,B,C,D,E,F"), 0);
+  std::string order = sut.order;
+  std::ranges::sort(order);
+  EXPECT_EQ(order, "ABCDEF");
+  EXPECT_EQ(sut.trials.size(), 6u);
+  for (const auto& [condition, trial] : sut.trials) {
+    EXPECT_TRUE(std::isfinite(trial.metrics.rms_error_mm)) << condition;
+    // Five seconds at 20 Hz; the paper's excerpt of twenty is longer than the trial.
+    EXPECT_EQ(trial.target_m.size(), 100u) << condition;
+    EXPECT_EQ(trial.cursor_m.size(), 100u) << condition;
+    EXPECT_EQ(trial.cancelled_share != 0.0, condition == 'C') << condition;
+  }
+  EXPECT_LT(sut.trials.at('A').feedthrough_rms_n, 0.01 * sut.trials.at('B').feedthrough_rms_n);
+}
+
+// Conditions differ in what is added only: with nothing added, E and F have the rig of B, and the
+// motion and the noise that go with the trial's number.
+TEST(SubjectSessionTest, AStickWithoutAddedDampingAndAnArmWithoutARestAreThoseOfB) {
+  StudyOptions options = short_study("B");
+  const double b = run_subject(options, 1).trials.at('B').feedthrough_rms_n;
+  options.damped_stick_n_s_m = 0.0;
+  options.protocol.conditions = session::parse_conditions("E", session::kStudyConditions);
+  const double plain = run_subject(options, 1).trials.at('E').feedthrough_rms_n;
+  // The own rig of E has no pegged trial behind it: noise and start differ, the motion does not.
+  EXPECT_NEAR(plain / b, 1.0, 0.05);
+  options.damped_stick_n_s_m = 40.0;
+  const TrackedTrial damped = run_subject(options, 1).trials.at('E');
+  EXPECT_NE(damped.metrics.rms_error_mm, 0.0);
+  EXPECT_NEAR(damped.feedthrough_rms_n / b, 1.0, 0.05);  // a force with the stick held: no say
+}
+
+TEST(SubjectSessionTest, AnotherModelMeetsTheSameMotionAndTarget) {
+  const StudyOptions options = short_study("C");
+  const SubjectResult own = run_subject(options, 0);
+  const TrackedTrial sut = run_with_model(options, own, 0, own.identification.control.model);
+  EXPECT_EQ(sut.target_m, own.trials.at('C').target_m);
+  EXPECT_NEAR(sut.feedthrough_rms_n / own.trials.at('C').feedthrough_rms_n, 1.0, 0.05);
+  EXPECT_NEAR(sut.cancelled_share, own.trials.at('C').cancelled_share, 0.05);
+  EXPECT_EQ(sut.cursor_m,
+            run_with_model(options, own, 0, own.identification.control.model).cursor_m);
+}
+
+TEST(SubjectSessionTest, AModelThatTheCancellerRefusesIsNotRunUnseen) {
+  const StudyOptions options = short_study("C");
+  const SubjectResult own = run_subject(options, 0);
+  signal::DifferenceModel unstable = own.identification.control.model;
+  unstable.denominator.at(1) -= 1.0;
+  EXPECT_THROW(run_with_model(options, own, 0, unstable), ConfigError);
+}
+
+// An arm rest of negative stiffness stands for any subject that the rig refuses.
+TEST(SubjectSessionTest, ASubjectThatNoRigTakesIsNamedByNumberBeforeTheStudy) {
+  StudyOptions options = short_study("F");
+  options.subjects = 20;
+  options.arm_rest_stiffness_n_m = -1.0;
+  try {
+    check_subject(options, 4);
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("population: got "));
+    EXPECT_THAT(error.what(), HasSubstr("subject 5 "));
+    EXPECT_THAT(error.what(), HasSubstr("arm_rest_stiffness_n_m"));
+  }
+  EXPECT_THROW(run_study(options, [](auto, auto) { return true; }), ConfigError);
+}
+
+TEST(SubjectSessionTest, TheUndeclaredEffectIsOneForAllSubjectsOfASeed) {
+  StudyOptions options = short_study("B");
+  options.undeclared_effect = 5;
+  const auto text = [](const StudyOptions& of) {
+    return rig::sealed_text(sealed_effect(of).open(), "nonce");
+  };
+  const std::string sut = text(options);
+  EXPECT_EQ(text(options), sut);
+  options.undeclared_effect = 6;
+  EXPECT_NE(text(options), sut);
+  const double plain = run_subject(short_study("B"), 0).trials.at('B').metrics.rms_error_mm;
+  const double changed = run_subject(options, 0).trials.at('B').metrics.rms_error_mm;
+  EXPECT_NE(plain, changed);
+}
+
+TEST(WrongModelsTest, NeedAnotherSubjectAndTheConditionsBetweenWhichAGainLies) {
+  const OnProgress go_on = [](std::int64_t, std::int64_t) { return true; };
+  const auto message_of = [&](const StudyOptions& options) -> std::string {
+    try {
+      run_study(options, go_on);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  StudyOptions options = short_study("B,C");
+  options.wrong_models = true;
+  options.subjects = 1;
+  EXPECT_THAT(message_of(options), testing::StartsWith("--wrong-models: got "));
+  for (const char* conditions : {"A,B", "A,C", "A"}) {
+    options = short_study(conditions);
+    options.wrong_models = true;
+    EXPECT_THAT(message_of(options), testing::StartsWith("--wrong-models: got ")) << conditions;
+  }
+}
+
+// With two subjects the mean of all others is the other one: one least squares on one record.
+TEST(WrongModelsTest, TheMeanOfOneOtherIsThatOther) {
+  StudyOptions options = short_study("B,C");
+  options.wrong_models = true;
+  std::int64_t last = 0;
+  std::int64_t whole = 0;
+  const auto results = run_study(options, [&](std::int64_t done, std::int64_t all) {
+    EXPECT_GE(done, last);
+    last = done;
+    whole = all;
+    return true;
+  });
+  EXPECT_EQ(whole, 4);
+  for (const SubjectResult& result : results) {
+    if (!result.identification.paper_unusable.empty()) continue;
+    const double other = result.wrong.at('O').cancelled_share;
+    const double mean = result.wrong.at('M').cancelled_share;
+    EXPECT_NEAR(other, mean, 1e-3);
+  }
+}
+
+TEST(WrongModelsTest, ARealStudysTablesHaveAsManyCellsAsTheirHeaders) {
+  StudyRecord record;
+  record.options = short_study("A,B");
+  record.results = run_study(record.options, [](auto, auto) { return true; });
+  record.analysis = analyse(record.results);
+  for (const CsvFile& file : csv_files(record)) {
+    const std::string header = file.text.substr(0, file.text.find('\n'));
+    const auto wanted = std::ranges::count(header, ',');
+    std::istringstream lines(file.text);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_EQ(std::ranges::count(line, ','), wanted) << file.name << ": " << line;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::study
