@@ -17,6 +17,7 @@
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/settings/check_name.hpp"
+#include "services/settings/check_number.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::close_the_loop {
@@ -86,7 +87,7 @@ void add_control_model_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--lead-ms", words->lead_ms,
                    "delay of the motor [ms]: the prediction comes as much sooner")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(settings::number_between(0.0, 100.0))
       ->capture_default_str();
   verb->add_flag("--as-it-is", words->as_it_is, "gain and phase do not adapt while it runs");
   verb->add_option("--config", words->config,

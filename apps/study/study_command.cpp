@@ -19,6 +19,7 @@
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "services/settings/check_name.hpp"
+#include "services/settings/check_number.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::study {
@@ -93,7 +94,7 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
   study
       .add_option("--stick-damping", options.damped_stick_n_s_m,
                   "condition E: damping added to the stick [N s/m]")
-      ->check(CLI::Range(0.0, 49.0))
+      ->check(settings::number_between(0.0, 49.0))
       ->capture_default_str();
   study
       .add_option("--undeclared-effect", options.undeclared_effect,

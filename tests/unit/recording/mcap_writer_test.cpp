@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "places.hpp"
 #include "services/recording/core/mcap/memory_bytes.hpp"
 #include "tests/support/recorded_file.hpp"
 
@@ -18,8 +18,7 @@ using tests::Bytes;
 
 // The worked example of FORMAT.md: lines "<offset>  <bytes>  # <meaning>" between ```hex fences.
 Bytes worked_example() {
-  const auto repository = std::filesystem::path(__FILE__).parent_path() / "../../..";
-  std::ifstream file(repository / "services/recording/FORMAT.md");
+  std::ifstream file(STILLHAND_SOURCE "/services/recording/FORMAT.md");
   Bytes bytes;
   bool inside = false;
   for (std::string line; std::getline(file, line);) {

@@ -126,7 +126,7 @@ TEST_F(InfoTest, ADamagedHeaderIsSaid) {
     const RecordingInfo sut = info_of(recording);
     EXPECT_FALSE(sut.whole) << at;
     EXPECT_EQ(sut.messages, 204u) << at;
-    EXPECT_THAT(info_text(sut), HasSubstr("damaged where nothing is lost")) << at;
+    EXPECT_THAT(info_text(sut), HasSubstr("damaged, but nothing is lost")) << at;
     const bool text_alone = at == 22u;  // still a header, of another profile: the checksum tells
     EXPECT_EQ(sut.damage.front().offset, text_alone ? 0u : 8u) << at;
     EXPECT_EQ(sut.program, text_alone ? "stillhand" : "") << at;

@@ -93,7 +93,7 @@ TEST_F(RecoverTest, WhereNothingCanBeReadNothingIsWritten) {
     for (const std::string& out : {path("b.mcap"), std::string()}) {
       EXPECT_THAT([&] { recover(path("a.mcap"), {out}); },
                   testing::ThrowsMessage<std::runtime_error>(
-                      HasSubstr("a.mcap: no message and no metadata in it can be read")));
+                      HasSubstr("a.mcap: no message and no metadata can be read")));
       EXPECT_EQ(recording::read_file(path("a.mcap")), bytes);
       EXPECT_EQ(file_count(), 1u);
     }
