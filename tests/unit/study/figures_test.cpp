@@ -80,7 +80,9 @@ TEST(StudyFiguresTest, TheArraysOfOneSeriesAreEquallyLong) {
             if (series.kind == Kind::kBox) continue;
             const bool band = series.kind == Kind::kBand;
             EXPECT_EQ(series.x.size(), band ? series.y_low.size() : series.y.size()) << figure.name;
-            if (band) EXPECT_EQ(series.x.size(), series.y_high.size()) << figure.name;
+            if (band) {
+              EXPECT_EQ(series.x.size(), series.y_high.size()) << figure.name;
+            }
           }
         }
       }
@@ -244,7 +246,9 @@ TEST(FigureEstimateTest, TheBandHoldsItsDotsAndAnIntervalToZeroEndsTwentyDecibel
     EXPECT_LE(band.y_low[i], dots.y[i]);
     EXPECT_GE(band.y_high[i], dots.y[i]);
     // Odd lines of the made estimate are uncertain by 150 %.
-    if (estimate.magnitude_ci95[i + 1] > 1.0) EXPECT_NEAR(band.y_low[i], dots.y[i] - 20.0, 1e-9);
+    if (estimate.magnitude_ci95[i + 1] > 1.0) {
+      EXPECT_NEAR(band.y_low[i], dots.y[i] - 20.0, 1e-9);
+    }
   }
 }
 
