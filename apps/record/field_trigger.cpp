@@ -32,7 +32,7 @@ struct FieldTrigger::Decoder {
   }
   recording::IdlSchema schema;
   recording::MessageColumns columns;
-  std::size_t column = 0;
+  std::optional<std::size_t> column;  // none: the type has no such number
   std::vector<recording::Cell> row;
 };
 
@@ -76,9 +76,9 @@ bool FieldTrigger::prepare(const std::string& type) {
 
 bool FieldTrigger::step(const runtime::FoundWriter& writer, const runtime::TappedSample& sample) {
   if (writer.topic != topic_) return false;
-  if (!decoder_ && !prepare(writer.type)) return false;
-  if (!decoder_->columns.read(sample.bytes, decoder_->row)) return false;
-  return step(number_of(decoder_->row[decoder_->column]));
+  if (!decoder_) prepare(writer.type);
+  if (!decoder_->column || !decoder_->columns.read(sample.bytes, decoder_->row)) return false;
+  return step(number_of(decoder_->row[*decoder_->column]));
 }
 
 bool FieldTrigger::step(double value) noexcept {

@@ -31,9 +31,9 @@ Player::Player(MessageSource& source, std::uint64_t first_ns, std::uint64_t last
       loop_from_ns_(first_ns) {}
 
 void Player::begin(bool paused) {
+  if (paused) clock_.pause(0);  // before it runs: the position is the first instant exactly
   jump(first_ns_);
   began_ns_ = monotonic_ns();
-  if (paused) clock_.pause(began_ns_);
 }
 
 // The clock starts again when the first stretch has been read: reading is not lateness.

@@ -126,8 +126,14 @@ stillhand_msgs::ReplayCommand parse_command(const std::string& text) {
   words >> word;
   const auto form = forms.find(word);
   std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  if (form == forms.end() || !words.eof() || numbers.size() != form->second.numbers) {
+  bool sound = form != forms.end();
+  for (std::string each; words >> each;) {
+    std::istringstream text_of_number(each);
+    double number = 0;
+    sound = sound && text_of_number >> number && text_of_number.eof();
+    numbers.push_back(number);
+  }
+  if (!sound || numbers.size() != form->second.numbers) {
     throw ConfigError("--remote", text,
                       "play, pause, step, stop, loop-off, \"seek S\", \"rate R\" or \"loop S S\"");
   }

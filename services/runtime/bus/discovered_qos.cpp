@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/bus/discovered_qos.hpp"
 
+#include <cstdint>
+
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::runtime {
@@ -16,8 +18,9 @@ std::int64_t ns_of(const Duration_t& duration) {
   return duration.seconds * kNsPerSecond + duration.nanosec;
 }
 
+// A recording may hold a duration that DDS's 32 bits of seconds do not: 68 years are for ever.
 Duration_t duration_of(std::int64_t ns) {
-  if (ns == kForever_ns) return c_TimeInfinite;
+  if (ns / kNsPerSecond >= INT32_MAX) return c_TimeInfinite;
   return {static_cast<std::int32_t>(ns / kNsPerSecond),
           static_cast<std::uint32_t>(ns % kNsPerSecond)};
 }
@@ -60,7 +63,7 @@ edds::DataWriterQos offered_qos(const WriterQos& wanted) {
                               : edds::TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.liveliness().kind = static_cast<edds::LivelinessQosPolicyKind>(wanted.liveliness);
   qos.liveliness().lease_duration = duration_of(wanted.lease_ns);
-  if (wanted.lease_ns != kForever_ns) {
+  if (qos.liveliness().lease_duration != c_TimeInfinite) {
     qos.liveliness().announcement_period = duration_of(wanted.lease_ns * 3 / 10);
   }
   qos.ownership().kind =
@@ -77,7 +80,9 @@ edds::DataWriterQos offered_qos(const WriterQos& wanted) {
     constexpr std::int32_t kInstances = 64;
     qos.resource_limits().max_instances = kInstances;
     qos.resource_limits().max_samples_per_instance = depth;
-    qos.resource_limits().max_samples = depth * kInstances;
+    // The same from a recording may be too many for a product: no limit then.
+    qos.resource_limits().max_samples =
+        depth <= INT32_MAX / kInstances ? depth * kInstances : edds::LENGTH_UNLIMITED;
   }
   qos.data_sharing().off();
   qos.endpoint().history_memory_policy =

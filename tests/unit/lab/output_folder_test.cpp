@@ -111,5 +111,50 @@ TEST_F(OutputFolderTest, WhatIsInTheWayIsNamed) {
   EXPECT_THAT(refusal(), HasSubstr("logs is no folder"));
 }
 
+// A link may lead to a file of another program: the link goes, its target stays.
+TEST_F(OutputFolderTest, ALinkAmongTheResultsIsRemovedAndItsTargetIsKept) {
+  write("kept.txt");
+  std::filesystem::create_symlink(folder / "kept.txt", folder / "summary.json");
+  std::filesystem::create_symlink(folder / "kept.txt", folder / ".stillhand-probe");
+  std::filesystem::create_symlink(folder / "nowhere", folder / "model.json");
+  EXPECT_EQ(refusal(), "no error");
+  EXPECT_THAT(content(), ElementsAre("kept.txt", "logs"));
+  std::string text;
+  std::ifstream(folder / "kept.txt") >> text;
+  EXPECT_EQ(text, "x");
+}
+
+TEST_F(OutputFolderTest, TheFilesOfASessionOverSeveralMachinesAreTakenAway) {
+  for (const char* name : {"logs/profiles.xml", "logs/host_rig-pc.log", "logs/host_notes.txt",
+                           "logs/ghost_rig-pc.log", "verdict.json", "report.html"}) {
+    write(name);
+  }
+  const OutputFolder sut(folder, {});
+  EXPECT_THAT(content(), ElementsAre("logs", "logs/ghost_rig-pc.log", "logs/host_notes.txt"));
+}
+
+TEST_F(OutputFolderTest, AFolderThatWasThereStaysWhenTheSessionIsDiscarded) {
+  std::filesystem::create_directories(folder);
+  {
+    const OutputFolder sut(folder, {});
+    write("session.mcap");
+    sut.discard();
+  }
+  EXPECT_TRUE(std::filesystem::is_directory(folder));
+  EXPECT_THAT(content(), IsEmpty());
+}
+
+TEST_F(OutputFolderTest, AFileInThePlaceOfTheFolderAndAnEmptyNameAreRefused) {
+  std::ofstream(folder.string()) << "x";
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--out: got "), HasSubstr(folder.string())));
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder));
+  try {
+    const OutputFolder sut("", {});
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), StartsWith("--out: "));
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::lab

@@ -45,6 +45,67 @@ TEST(FieldTriggerTest, ReadsTheFieldFromTheBytesOfItsTopicOnly) {
   EXPECT_FALSE(sut.step(writer, {0, 2, 0, 0, std::span(bytes).first(10)}));
 }
 
+/// A sample of a topic that the catalogue lacks, as its type says.
+template <typename Message>
+bool step(FieldTrigger& sut, const std::string& topic, const std::string& type,
+          const Message& message) {
+  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  for (const char c : tests::cdr_of(message)) bytes.push_back(static_cast<std::byte>(c));
+  runtime::FoundWriter writer;
+  writer.topic = topic;
+  writer.type = type;
+  return sut.step(writer, {0, 1, 0, 0, bytes});
+}
+
+// A lost field is no number; the sample after it crosses again.
+TEST(FieldTriggerTest, AfterANaNTheNextSampleBeyondTheThresholdFires) {
+  FieldTrigger sut("stillhand/sensed.|accel_y_m_s2|>5");
+  EXPECT_TRUE(sut.step(6.0));
+  EXPECT_FALSE(sut.step(std::nan("")));
+  EXPECT_TRUE(sut.step(-6.0));
+  EXPECT_FALSE(sut.step(INFINITY));
+}
+
+TEST(FieldTriggerTest, AFieldBelowItsThresholdFromTheFirstSampleOnFiresThere) {
+  FieldTrigger sut("stillhand/sensed.force_n<1e-3");
+  EXPECT_TRUE(sut.step(0.0));
+  EXPECT_FALSE(sut.step(-INFINITY));
+}
+
+TEST(FieldTriggerTest, WholeNumbersAreReadWithTheirSign) {
+  stillhand_msgs::MotorCommand message;
+  message.model(-1);
+  message.tick(1'000'000);
+  FieldTrigger model("bench/motor.model<0");
+  FieldTrigger tick("bench/motor.tick>999999");
+  FieldTrigger flags("bench/motor.flags>2147483647");
+  const std::string type = "stillhand_msgs::MotorCommand";
+  EXPECT_TRUE(step(model, "bench/motor", type, message));
+  EXPECT_TRUE(step(tick, "bench/motor", type, message));
+  EXPECT_FALSE(step(flags, "bench/motor", type, message));
+  message.flags(1u << 31);
+  EXPECT_TRUE(step(flags, "bench/motor", type, message));
+}
+
+TEST(FieldTriggerTest, AFieldThatTheFirstSamplesTypeLacksNeverFires) {
+  FieldTrigger sut("bench/motor.no_such_field>-1");
+  stillhand_msgs::MotorCommand message;
+  message.rig(7);  // the first field: above the threshold
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(step(sut, "bench/motor", "stillhand_msgs::MotorCommand", message)) << i;
+  }
+}
+
+TEST(FieldTriggerTest, ACopyTriggersOnItsOwn) {
+  FieldTrigger sut("stillhand/sensed.force_n>5");
+  EXPECT_TRUE(sut.step(6.0));
+  FieldTrigger copy = sut;
+  EXPECT_FALSE(copy.step(7.0));
+  EXPECT_FALSE(copy.step(0.0));
+  EXPECT_FALSE(sut.step(8.0));
+  EXPECT_TRUE(copy.step(6.0));
+}
+
 TEST(FieldTriggerTest, EveryOtherTextIsRefused) {
   for (const char* bad : {"", "stillhand/sensed", "stillhand/sensed>5", "stillhand/sensed.>5",
                           ".x>5", "stillhand/sensed.accel_y_m_s2=5", "stillhand/sensed.theta_rad>",

@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <random>
 
 #include "services/recording/core/mcap/mcap_writer.hpp"
 
@@ -113,6 +116,82 @@ TEST_F(MessageSourceTest, AfterASeekNothingOfBeforeComes) {
     const auto found = rest(sut);
     ASSERT_EQ(found.size(), 60 - from);
     EXPECT_EQ(found.front().time_ns, from * kSecond);
+  }
+}
+
+TEST_F(MessageSourceTest, AnEndBeforeTheStartIsAnEmptyLastStretch) {
+  recording::FileSource file(file_of({{0, 1}, {0, 5}, {0, 9}}));
+  MessageSource sut(file, {0}, {});
+  sut.seek(6, 4);
+  EXPECT_TRUE(rest(sut).empty());
+}
+
+TEST_F(MessageSourceTest, OfStatesAtTheSameTimeTheLaterInTheFileCounts) {
+  const std::string path = (folder_ / "tie.mcap").string();
+  {
+    recording::FileSink sink(path, recording::Existing::kReplace);
+    recording::McapWriter writer(sink, {});
+    writer.add_channel("a", 0, "cdr");
+    for (std::uint32_t sequence = 1; sequence <= 3; ++sequence) {
+      ASSERT_TRUE(writer.write(0, sequence, 7, 0, {}).ok());
+    }
+    ASSERT_TRUE(writer.close().ok());
+  }
+  recording::FileSource file(path);
+  MessageSource sut(file, {0}, {0});
+  sut.seek(8, UINT64_MAX);
+  const Stretch state = sut.wait_next();
+  ASSERT_EQ(state.batch.messages.size(), 1u);
+  EXPECT_EQ(state.batch.messages[0].sequence, 3u);
+}
+
+TEST_F(MessageSourceTest, DamageIsReportedAndTheOtherChunksStillCome) {
+  std::vector<Note> notes;
+  for (std::uint64_t i = 0; i < 200; ++i) notes.push_back({0, i});
+  const std::string path = file_of(notes);
+  {
+    // A chunk of eight messages and its index take some 280 bytes: at least one chunk is hit.
+    std::fstream bytes(path, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path) / 4));
+    bytes << std::string(400, '\xff');
+  }
+  recording::FileSource file(path);
+  MessageSource sut(file, {0}, {});
+  sut.seek(0, UINT64_MAX);
+  const auto found = rest(sut);
+  EXPECT_FALSE(sut.damage().empty());
+  EXPECT_GT(found.size(), 100u);
+  EXPECT_LT(found.size(), 200u);
+}
+
+// Oracle: the same selection by the definition, over the whole list.
+TEST_F(MessageSourceTest, AnySeekGivesTheStateOfBeforeAndTheMessagesOfItsSpan) {
+  std::mt19937 random(20261123);
+  const auto below = [&](std::uint64_t limit) {
+    return std::uniform_int_distribution<std::uint64_t>(0, limit - 1)(random);
+  };
+  std::vector<Note> notes;
+  for (int i = 0; i < 400; ++i) {
+    notes.push_back({static_cast<recording::ChannelId>(below(2)), below(30 * kSecond)});
+  }
+  recording::FileSource file(file_of(notes));
+  MessageSource sut(file, {0, 1}, {1});
+  for (int turn = 0; turn < 20; ++turn) {
+    const std::uint64_t from = below(32 * kSecond), to = from + below(10 * kSecond);
+    sut.seek(from, to);
+    std::vector<Note> want;
+    std::optional<std::uint64_t> newest;
+    for (const Note& note : notes) {
+      if (note.time_ns >= from && note.time_ns <= to) want.push_back(note);
+      if (note.channel == 1 && note.time_ns < from) {
+        newest = std::max(newest.value_or(0), note.time_ns);
+      }
+    }
+    std::ranges::stable_sort(want, {}, &Note::time_ns);
+    const Stretch state = sut.wait_next();
+    ASSERT_EQ(state.batch.messages.size(), newest ? 1u : 0u) << "from " << from;
+    for (const auto& message : state.batch.messages) EXPECT_EQ(message.log_time_ns, from);
+    ASSERT_EQ(rest(sut), want) << "from " << from << " to " << to;
   }
 }
 

@@ -64,5 +64,47 @@ TEST(HandoverTest, KeepsTheOldOneWhenThereIsNoNewOne) {
   EXPECT_TRUE(support::eventually([&] { return sut.current()->number == 8; }));
 }
 
+TEST(HandoverTest, ARequestThatWasNotBegunIsReplacedByTheNext) {
+  Handover<Counted> sut;
+  std::atomic<bool> making{false}, go_on{false}, second_made{false};
+  sut.prepare([&] {
+    making = true;
+    support::eventually([&] { return go_on.load(); });
+    return std::make_unique<Counted>(1);
+  });
+  ASSERT_TRUE(support::eventually([&] { return making.load(); }));
+  sut.prepare([&] {
+    second_made = true;
+    return std::make_unique<Counted>(2);
+  });
+  sut.prepare([] { return std::make_unique<Counted>(3); });
+  go_on = true;
+  EXPECT_TRUE(support::eventually([&] {
+    const Counted* now = sut.current();
+    return now != nullptr && now->number == 3;
+  }));
+  EXPECT_FALSE(second_made.load());
+}
+
+// The control path holds the pointer for the length of a step: current() alone may change it.
+TEST(HandoverTest, WhatWasTakenLivesUntilTheNextTake) {
+  {
+    Handover<Counted> sut;
+    sut.prepare([] { return std::make_unique<Counted>(1); });
+    ASSERT_TRUE(support::eventually([&] { return sut.current() != nullptr; }));
+    const Counted* held = sut.current();
+    std::atomic<int> made{1};
+    for (int i = 2; i <= 6; ++i) {
+      sut.prepare([i, &made] {
+        made = i;
+        return std::make_unique<Counted>(i);
+      });
+      ASSERT_TRUE(support::eventually([&] { return made.load() == i; }));
+      EXPECT_EQ(held->number, 1);
+    }
+  }
+  EXPECT_EQ(Counted::alive.load(), 0);
+}
+
 }  // namespace
 }  // namespace stillhand::runtime

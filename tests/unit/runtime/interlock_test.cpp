@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace stillhand::runtime {
 namespace {
 
@@ -50,6 +52,35 @@ TEST(InterlockTest, NeverClosesAfterAStop) {
   EXPECT_FALSE(sut.step(trial_number(4, 500), 500, true));
   EXPECT_TRUE(sut.latched(trial_number(4, 500)));
   EXPECT_TRUE(sut.latched(Trial{}));
+}
+
+// Oracle: the doc comment, over the whole history of the run.
+TEST(InterlockTest, NoSequenceOfTrialsDeathsAndStopsGivesAForceByItsOwnRules) {
+  std::mt19937 random(20261123);
+  int permitted = 0;
+  for (int run = 0; run < 200; ++run) {
+    Interlock sut;
+    bool stopped = false, missed = false;
+    Trial trial;
+    for (Tick tick = 0; tick < 1000; ++tick) {
+      if (tick % 250 == 0) {
+        trial = trial_number(tick / 250, tick + 60);
+        missed = false;
+      }
+      const bool alive = random() % 300 != 0;
+      if (random() % 3000 == 0) {
+        sut.stop();
+        stopped = true;
+      }
+      const bool covered = tick >= trial.start_tick - 10 && tick < trial.start_tick + 110;
+      missed = missed || (covered && !alive);
+      const bool want = covered && alive && !missed && !stopped;
+      ASSERT_EQ(sut.step(trial, tick, alive), want) << "run " << run << " tick " << tick;
+      ASSERT_EQ(sut.latched(trial), missed || stopped) << "run " << run << " tick " << tick;
+      permitted += want ? 1 : 0;
+    }
+  }
+  EXPECT_GT(permitted, 20'000);
 }
 
 }  // namespace

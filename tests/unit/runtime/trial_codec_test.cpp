@@ -43,5 +43,29 @@ TEST(TrialCodecTest, TicksThatCannotBeAddedAreNoTrial) {
   }
 }
 
+TEST(TrialCodecTest, TheLargestTicksThatCanBeAddedAreATrial) {
+  auto control = message();
+  control.start_tick(Tick{1} << 60);
+  control.duration_ticks(Tick{1} << 60);
+  control.ramp_ticks(Tick{1} << 60);
+  const Trial trial = from_idl(control);
+  EXPECT_EQ(trial.number, 4);
+  EXPECT_TRUE(trial.covers(3 * (Tick{1} << 60) - 1));
+  EXPECT_FALSE(trial.covers(3 * (Tick{1} << 60)));
+}
+
+// A phase of another version must not move anything.
+TEST(TrialCodecTest, APhaseOfAnotherVersionCoversNoTick) {
+  auto control = message();
+  for (const auto phase : {stillhand_msgs::PHASE_IDLE, static_cast<stillhand_msgs::Phase>(77)}) {
+    control.phase(phase);
+    EXPECT_EQ(from_idl(control).phase, TrialPhase::kIdle);
+    EXPECT_FALSE(from_idl(control).covers(5000));
+    EXPECT_FALSE(from_idl(control).measures(5000));
+  }
+  control.phase(stillhand_msgs::PHASE_PEGGED);
+  EXPECT_EQ(from_idl(control).phase, TrialPhase::kPegged);
+}
+
 }  // namespace
 }  // namespace stillhand::runtime

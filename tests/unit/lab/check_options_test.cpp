@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/check_options.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "tests/unit/deploy/sample_inventory.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class CheckOptionsTest : public testing::Test {
+ protected:
+  CheckOptionsTest() {
+    options_.protocol.conditions = session::parse_conditions("A,B");
+    options_.protocol.trial_s = options_.protocol.identify_s = 5.0;
+    options_.profiles = STILLHAND_SOURCE "/qos/profiles.xml";
+    options_.config = STILLHAND_SOURCE "/deploy/config";
+  }
+  [[nodiscard]] std::string refusal() const {
+    try {
+      check_options(options_);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "taken";
+  }
+  /// A ride of one sine: 1 m/s^2 at 2 Hz.
+  std::string ride(double seconds) {
+    const auto file = folder_.path() / "ride.csv";
+    std::ofstream stream(file);
+    stream << "t [s],a_y [m/s^2]\n";
+    for (int i = 0; i <= static_cast<int>(100.0 * seconds); ++i) {
+      stream << i / 100 << '.' << i / 10 % 10 << i % 10 << ','
+             << std::sin(2.0 * 3.14159265358979 * 2.0 * i / 100.0) << '\n';
+    }
+    return file;
+  }
+
+  deploy::SampleFolder folder_;
+  LabOptions options_;
+};
+
+TEST_F(CheckOptionsTest, TheDefaultsAreTakenAndEveryMovingTrialIsRehearsed) {
+  EXPECT_EQ(check_options(options_).size(), 2u);  // identification and B
+}
+
+TEST_F(CheckOptionsTest, ARideAndItsMotionGoTogether) {
+  options_.ride = "x.csv";
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: got x.csv"), HasSubstr("--motion ride")));
+  options_.ride.clear();
+  options_.protocol.motion = session::Motion::kRide;
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: got nothing"), HasSubstr("--motion ride")));
+}
+
+TEST_F(CheckOptionsTest, ARideAsLongAsTheTrialIsTakenAndAShorterOneIsNot) {
+  options_.protocol.motion = session::Motion::kRide;
+  options_.ride = ride(5.5);
+  EXPECT_EQ(refusal(), "taken");
+  options_.ride = ride(4.5);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("ride.csv: got 4.5"), HasSubstr("--trial-seconds 5")));
+}
+
+TEST_F(CheckOptionsTest, AMouseNeedsAWindow) {
+  options_.who = Operator::kMouse;
+  EXPECT_EQ(refusal(), "taken");
+  options_.headless = true;
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--operator: got mouse"), HasSubstr("--headless")));
+}
+
+// They are arguments of services that run already.
+TEST_F(CheckOptionsTest, ArgumentsOfTheServicesAreRefusedWhereTheyRunAlready) {
+  options_.attach = true;
+  EXPECT_EQ(refusal(), "taken");
+  const LabOptions good = options_;
+  options_.undeclared_effect = 7;
+  EXPECT_THAT(refusal(), StartsWith("--attach: "));
+  options_ = good;
+  options_.video = true;
+  EXPECT_THAT(refusal(), StartsWith("--attach: "));
+  options_ = good;
+  options_.who = Operator::kMouse;
+  EXPECT_THAT(refusal(), StartsWith("--attach: "));
+  options_ = good;
+  options_.protocol.motion = session::Motion::kRoad;
+  EXPECT_THAT(refusal(), StartsWith("--attach: "));
+}
+
+TEST_F(CheckOptionsTest, ADomainHasPortsUpTo232) {
+  options_.domain = 232;
+  EXPECT_EQ(refusal(), "taken");
+  options_.domain = 233;
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--domain: got 233"), HasSubstr("232")));
+}
+
+TEST_F(CheckOptionsTest, ThePatienceIsPositiveAndAtMostAnHour) {
+  for (const double good_s : {1e-3, 3600.0}) {
+    options_.match_s = good_s;
+    EXPECT_EQ(refusal(), "taken") << good_s;
+  }
+  for (const double bad_s : {0.0, -1.0, 3600.1, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+    options_.match_s = bad_s;
+    EXPECT_THAT(refusal(), AllOf(StartsWith("--match-seconds: "), HasSubstr("3600"))) << bad_s;
+  }
+}
+
+TEST_F(CheckOptionsTest, AProfileFileThatIsMissingOrAFolderIsNamed) {
+  for (const char* bad : {"/no/such/profiles.xml", STILLHAND_SOURCE "/qos"}) {
+    options_.profiles = bad;
+    EXPECT_THAT(refusal(), AllOf(StartsWith("--profiles: "), HasSubstr(bad)));
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::lab

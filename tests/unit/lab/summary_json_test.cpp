@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/summary_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace stillhand::lab {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::ElementsAre;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+session::TrialResult trial(char label, double rms_error_mm, double dwell, double crossover_hz) {
+  session::TrialResult result{};
+  result.label = label;
+  result.metrics.rms_error_mm = rms_error_mm;
+  result.metrics.dwell_ratio = dwell;
+  result.metrics.crossover_hz = crossover_hz;
+  result.metrics.crossover_reference_hz = crossover_hz + 0.01;
+  return result;
+}
+
+/// The means of the paper's Table I.
+session::SessionResult papers_session() {
+  session::SessionResult result;
+  for (const char label : {'A', 'B', 'C'}) {
+    const auto of = [label](const session::Metric& metric) {
+      return label == 'A' ? metric.paper_a : label == 'B' ? metric.paper_b : metric.paper_c;
+    };
+    result.trials.push_back(
+        trial(label, of(session::kMetrics[0]), of(session::kMetrics[1]), of(session::kMetrics[2])));
+  }
+  return result;
+}
+
+session::TrialOutcome outcome(std::int64_t number, char label) {
+  session::TrialOutcome outcome{};
+  outcome.planned.trial = {number, TrialPhase::kTracking, 3100, 5000, 2000};
+  outcome.planned.label = label;
+  outcome.completed = true;
+  return outcome;
+}
+
+ordered_json json_of(const session::SessionResult& result,
+                     const std::vector<session::TrialOutcome>& outcomes = {},
+                     const LabOptions& options = {}, bool interrupted = false) {
+  return summary_json(options, outcomes, result, interrupted);
+}
+
+// The paper prints whole percents of unrounded means; ours come from its rounded means, each off by
+// up to 0.005.  The dwell ratio's denominator is 0.25: 0.005 (1/0.25 + 1/0.25) = 4 %, with the
+// crossover's 0.15 6.7 %.
+TEST(SummaryJsonTest, TheRestorationOfThePapersMeansIsThePapers) {
+  const auto json = json_of(papers_session())["restoration"];
+  for (const session::Metric& metric : session::kMetrics) {
+    EXPECT_NEAR(100.0 * json[metric.restoration_key].get<double>(), metric.paper_restored_percent,
+                6.7)
+        << metric.key;
+  }
+  EXPECT_DOUBLE_EQ(json["rms_error"], (9.62 - 7.01) / (9.62 - 4.04));
+}
+
+TEST(SummaryJsonTest, WithoutAllThreeConditionsNothingIsRestored) {
+  for (std::size_t missing = 0; missing < 3; ++missing) {
+    session::SessionResult result = papers_session();
+    result.trials.erase(result.trials.begin() + static_cast<std::ptrdiff_t>(missing));
+    const auto json = json_of(result);
+    for (const session::Metric& metric : session::kMetrics) {
+      EXPECT_TRUE(json["restoration"][metric.restoration_key].is_null()) << metric.key;
+    }
+    EXPECT_EQ(json["conditions"].size(), 2u);
+  }
+}
+
+// B as good as A: there was nothing to restore, and no number says how much of it was.
+TEST(SummaryJsonTest, ARestorationThatIsNoNumberIsNull) {
+  session::SessionResult result = papers_session();
+  result.trials[1].metrics = result.trials[0].metrics;
+  result.trials[2].metrics.crossover_hz = kNaN;
+  const auto json = json_of(result)["restoration"];
+  EXPECT_TRUE(json["rms_error"].is_null());
+  EXPECT_TRUE(json["dwell_ratio"].is_null());
+  EXPECT_TRUE(json["crossover"].is_null());
+}
+
+TEST(SummaryJsonTest, AConditionHasTheStudysShapeForOneSubject) {
+  const auto json = json_of(papers_session())["conditions"]["B"];
+  EXPECT_DOUBLE_EQ(json["rms_error_mm"]["mean"], 9.62);
+  EXPECT_TRUE(json["rms_error_mm"]["std"].is_null());
+  EXPECT_EQ(json["rms_error_mm"]["per_subject"], ordered_json::array({9.62}));
+  EXPECT_DOUBLE_EQ(json["crossover_reference_hz"], 0.11);
+  EXPECT_TRUE(json["cancelled_share"].is_null());
+  EXPECT_FALSE(json.contains("counterforce_delay_ms"));
+  EXPECT_FALSE(json.contains("sensor_to_command_us"));
+}
+
+TEST(SummaryJsonTest, DelaysAreInTheUnitsOfTheirKeys) {
+  session::SessionResult result = papers_session();
+  result.trials[2].cancelled_share = 0.87;
+  result.trials[2].counterforce_delay_s = 0.0065;
+  result.trials[2].sensor_to_command = {120.0, 340.0, 900.0, 15.0};
+  const auto json = json_of(result)["conditions"]["C"];
+  EXPECT_DOUBLE_EQ(json["cancelled_share"], 0.87);
+  EXPECT_DOUBLE_EQ(json["counterforce_delay_ms"], 6.5);
+  EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["p50"], 120.0);
+  EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["p99"], 340.0);
+  EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["max"], 900.0);
+  EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["uncertainty"], 15.0);
+}
+
+TEST(SummaryJsonTest, ANumberThatCouldNotBeComputedIsNull) {
+  session::SessionResult result = papers_session();
+  result.trials[0].metrics.crossover_hz = kNaN;
+  result.trials[0].metrics.crossover_reference_hz = INFINITY;
+  const auto json = json_of(result)["conditions"]["A"];
+  EXPECT_TRUE(json["crossover_hz"]["mean"].is_null());
+  EXPECT_TRUE(json["crossover_hz"]["per_subject"][0].is_null());
+  EXPECT_TRUE(json["crossover_reference_hz"].is_null());
+}
+
+TEST(SummaryJsonTest, ATrialHasItsTicksMissesAndMarks) {
+  session::TrialOutcome marked = outcome(2, 'C');
+  marked.completed = false;
+  marked.aborted = "rig: \"peer gone\"\n";
+  marked.misses = {1, 2, 3};
+  marked.marks = {{"deadline missed", "rig", "stillhand/sensed", "sensing", "late", 4000, 7, 12.5}};
+  const auto json = json_of({}, {outcome(1, 'A'), marked})["trials"];
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_TRUE(json[0]["aborted"].is_null());
+  EXPECT_EQ(json[0]["condition"], "A");
+  EXPECT_TRUE(json[0]["marks"].empty());
+  EXPECT_TRUE(json[0]["motion"].is_null());
+  EXPECT_EQ(json[1]["number"], 2);
+  EXPECT_EQ(json[1]["start_tick"], 3100);
+  EXPECT_EQ(json[1]["duration_ticks"], 5000);
+  EXPECT_EQ(json[1]["completed"], false);
+  EXPECT_EQ(json[1]["deadline_misses"], 1);
+  EXPECT_EQ(json[1]["cycle_misses"], 2);
+  EXPECT_EQ(json[1]["lost_ticks"], 3);
+  const auto mark = json[1]["marks"][0];
+  EXPECT_EQ(mark["what"], "deadline missed");
+  EXPECT_EQ(mark["peer"], "sensing");
+  EXPECT_EQ(mark["count"], 7);
+  EXPECT_EQ(mark["worst_us"], 12.5);
+  EXPECT_EQ(ordered_json::parse(json.dump())[1]["aborted"], marked.aborted);
+}
+
+TEST(SummaryJsonTest, AMotionSaysWhatItsKindNeeds) {
+  LabOptions options;
+  options.protocol.road_class = "D";
+  options.protocol.road_speed_m_s = 12.5;
+  const auto motion_of = [&](session::Motion kind) {
+    session::TrialOutcome moving = outcome(1, 'B');
+    moving.planned.motion = kind;
+    moving.asked = motion::MotionReport{};
+    moving.asked->rms_m_s2 = 1.25;
+    moving.asked->corner_hz = 0.2;
+    return json_of({}, {moving}, options)["trials"][0]["motion"];
+  };
+  EXPECT_EQ(motion_of(session::Motion::kBandNoise)["kind"], "noise");
+  EXPECT_EQ(motion_of(session::Motion::kBandNoise)["rms_m_s2"], 1.25);
+  EXPECT_FALSE(motion_of(session::Motion::kBandNoise).contains("corner_hz"));
+  EXPECT_EQ(motion_of(session::Motion::kRoad)["kind"], "road");
+  EXPECT_EQ(motion_of(session::Motion::kRoad)["road_class"], "D");
+  EXPECT_EQ(motion_of(session::Motion::kRoad)["speed_m_s"], 12.5);
+  EXPECT_EQ(motion_of(session::Motion::kRide)["kind"], "ride");
+  EXPECT_EQ(motion_of(session::Motion::kRide)["corner_hz"], 0.2);
+  EXPECT_FALSE(motion_of(session::Motion::kRide).contains("road_class"));
+}
+
+TEST(SummaryJsonTest, AnIdentificationThatFailedSaysWhy) {
+  session::SessionResult result;
+  EXPECT_TRUE(json_of(result)["identification"].is_null());
+  result.model.emplace();
+  result.model->usable(false);
+  result.model->text("VAF 12 %");
+  result.model->heldout_vaf_percent(kNaN);
+  const auto failed = json_of(result)["identification"];
+  EXPECT_EQ(failed["usable"], false);
+  EXPECT_EQ(failed["text"], "VAF 12 %");
+  EXPECT_TRUE(failed["heldout_vaf_percent"].is_null());
+  EXPECT_FALSE(failed.contains("residual_share"));
+  result.conversion = {0.02, 0.11};
+  EXPECT_EQ(json_of(result)["identification"]["residual_share"]["filter_at_1_khz"], 0.02);
+  EXPECT_EQ(json_of(result)["identification"]["residual_share"]["zero_order_hold_of_50_hz"], 0.11);
+}
+
+TEST(SummaryJsonTest, AClockIsInSecondsAndMicroseconds) {
+  session::SessionResult result;
+  stillhand_msgs::ClockOffset offset;
+  offset.offset_ns(-2'500'000'000);
+  offset.uncertainty_ns(1500.0);
+  offset.round_trip_ns(250'000);
+  offset.drift_ppm(-3.5);
+  offset.drift_sigma_ppm(INFINITY);  // while the window is short
+  offset.steps(2);
+  result.clocks["rig"] = offset;
+  const auto json = json_of(result)["clocks"]["rig"];
+  EXPECT_DOUBLE_EQ(json["offset_s"], -2.5);
+  EXPECT_DOUBLE_EQ(json["uncertainty_us"], 1.5);
+  EXPECT_DOUBLE_EQ(json["round_trip_us"], 250.0);
+  EXPECT_DOUBLE_EQ(json["drift_ppm"], -3.5);
+  EXPECT_TRUE(json["drift_sigma_ppm"].is_null());
+  EXPECT_EQ(json["steps"], 2);
+  EXPECT_EQ(json["same_clock"], false);
+}
+
+TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
+  LabOptions options;
+  options.protocol.seed = std::numeric_limits<std::uint64_t>::max();
+  options.protocol.trial_s = 20.0;
+  options.protocol.identify_s = 30.0;
+  options.model = "m/control_model.json";
+  session::SessionResult result;
+  result.lost_ticks = {{"stillhand/sensed", 4}};
+  result.damage = {"a chunk at byte 7"};
+  const auto json = json_of(result, {}, options, true);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_THAT(keys, ElementsAre("conditions", "t_tests", "manova", "restoration", "identification",
+                                "control_model", "trials", "lost_ticks", "clocks",
+                                "recording_damage", "interrupted", "seed", "trial_seconds",
+                                "identify_seconds", "reference_note", "version"));
+  EXPECT_EQ(json["conditions"], ordered_json::object());
+  EXPECT_EQ(json["clocks"], ordered_json::object());
+  EXPECT_EQ(json["trials"], ordered_json::array());
+  EXPECT_EQ(json["seed"], options.protocol.seed);
+  EXPECT_EQ(json["control_model"], "m/control_model.json");
+  EXPECT_EQ(json["lost_ticks"]["stillhand/sensed"], 4);
+  EXPECT_EQ(json["recording_damage"][0], "a chunk at byte 7");
+  EXPECT_EQ(json["interrupted"], true);
+  EXPECT_TRUE(json_of(result)["control_model"].is_null());
+  EXPECT_NE(json_of(result)["reference_note"], json["reference_note"]);  // 180 s and 20 s
+}
+
+}  // namespace
+}  // namespace stillhand::lab

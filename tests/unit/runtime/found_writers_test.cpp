@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/bus/found_writers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/runtime/announced.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+using announced::handle_of;
+using announced::Participant;
+using announced::prefix_of;
+using announced::Writer;
+using announced::rtps::ParticipantDiscoveryInfo;
+using announced::rtps::WriterDiscoveryInfo;
+
+Writer sensed(std::uint8_t participant, std::uint8_t number = 1) {
+  return {participant, number, "stillhand/sensed", "stillhand_msgs::Sensed"};
+}
+
+TEST(FoundWritersTest, WritersAreNumberedInTheOrderOfDiscoveryAndKeepTheirNumber) {
+  FoundWriters sut;
+  EXPECT_EQ(sut.note_writer(sensed(7).info()), 0u);
+  EXPECT_EQ(sut.note_writer(sensed(3).info()), 1u);
+  EXPECT_EQ(sut.note_writer(sensed(7, 2).info()), 2u);
+  EXPECT_EQ(sut.note_writer(sensed(7).info()), std::nullopt);  // known
+  EXPECT_EQ(sut.note_writer(sensed(3).info(WriterDiscoveryInfo::CHANGED_QOS_WRITER)), std::nullopt);
+  EXPECT_EQ(sut.all().size(), 3u);
+  EXPECT_EQ(sut.find(handle_of(3)), 1u);
+  EXPECT_EQ(sut.find(handle_of(7, 2)), 2u);
+  EXPECT_EQ(sut.find(handle_of(7, 3)), std::nullopt);
+}
+
+TEST(FoundWritersTest, AWriterIsDescribedAsItWasAnnounced) {
+  FoundWriters sut;
+  Writer writer(7, 1, "stillhand/sensed", "stillhand_msgs::Sensed", replay_mark());
+  writer.data().m_qos.m_reliability.kind = eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS;
+  sut.note_writer(writer.info(), false);
+  const FoundWriter found = sut.at(0);
+  EXPECT_EQ(found.topic, "stillhand/sensed");
+  EXPECT_EQ(found.type, "stillhand_msgs::Sensed");
+  EXPECT_EQ(found.profile, "stream_1khz");
+  EXPECT_TRUE(found.type_known);
+  EXPECT_TRUE(found.replayed);
+  EXPECT_TRUE(found.present);
+  EXPECT_FALSE(found.wanted);
+  EXPECT_TRUE(found.qos.reliable);
+  EXPECT_EQ(found.qos.depth, 0);  // discovery does not carry it
+}
+
+TEST(FoundWritersTest, AStrangersTopicHasNoProfileAndItsTypeIsNotKnown) {
+  FoundWriters sut;
+  sut.note_writer(Writer(7, 1, "chatter", "std_msgs::String", {1, 2, 3}).info());
+  EXPECT_EQ(sut.at(0).profile, "");
+  EXPECT_FALSE(sut.at(0).type_known);
+  EXPECT_FALSE(sut.at(0).replayed);
+  EXPECT_TRUE(sut.at(0).wanted);
+}
+
+TEST(FoundWritersTest, EveryWriterHasAnIdOfItsOwn) {
+  FoundWriters sut;
+  std::set<std::string> ids;
+  for (std::uint8_t participant = 1; participant <= 20; ++participant) {
+    for (std::uint8_t number = 1; number <= 3; ++number) {
+      sut.note_writer(sensed(participant, number).info());
+    }
+  }
+  for (const FoundWriter& writer : sut.all()) ids.insert(writer.id);
+  EXPECT_EQ(ids.size(), 60u);
+}
+
+// DDS announces the two in either order.
+TEST(FoundWritersTest, TheParticipantsNameReachesItsWritersBeforeAndAfterThem) {
+  FoundWriters sut;
+  sut.note_writer(sensed(7).info());
+  sut.note_writer(sensed(8).info());
+  EXPECT_EQ(sut.at(0).participant, "");
+  sut.note_participant(Participant(7, "stillhand/1/sensing").info());
+  EXPECT_EQ(sut.at(0).participant, "stillhand/1/sensing");
+  EXPECT_EQ(sut.at(1).participant, "");
+  sut.note_writer(sensed(7, 2).info());
+  EXPECT_EQ(sut.at(2).participant, "stillhand/1/sensing");
+  sut.note_participant(prefix_of(8), "renamed");
+  EXPECT_EQ(sut.at(1).participant, "renamed");
+}
+
+TEST(FoundWritersTest, AWriterThatLeftStaysWithItsNumberAndIsNotPresent) {
+  FoundWriters sut;
+  sut.note_writer(sensed(7).info());
+  sut.note_writer(sensed(8).info());
+  EXPECT_EQ(sut.note_writer(sensed(7).info(WriterDiscoveryInfo::REMOVED_WRITER)), std::nullopt);
+  EXPECT_FALSE(sut.at(0).present);
+  EXPECT_TRUE(sut.at(1).present);
+  EXPECT_EQ(sut.find(handle_of(7)), 0u);
+  EXPECT_EQ(sut.note_writer(sensed(9).info(WriterDiscoveryInfo::REMOVED_WRITER)), std::nullopt);
+  EXPECT_EQ(sut.all().size(), 2u);  // the end of a writer that was never found adds none
+}
+
+TEST(FoundWritersTest, AParticipantThatLeavesTakesItsWritersAlong) {
+  for (const auto how : {ParticipantDiscoveryInfo::REMOVED_PARTICIPANT,
+                         ParticipantDiscoveryInfo::DROPPED_PARTICIPANT}) {
+    FoundWriters sut;
+    sut.note_writer(sensed(7, 1).info());
+    sut.note_writer(sensed(7, 2).info());
+    sut.note_writer(sensed(8).info());
+    sut.note_participant(Participant(7, "").info(how));
+    EXPECT_FALSE(sut.at(0).present);
+    EXPECT_FALSE(sut.at(1).present);
+    EXPECT_TRUE(sut.at(2).present);
+  }
+}
+
+TEST(FoundWritersTest, ANumberThatWasNotGivenIsRefused) {
+  const FoundWriters sut;
+  EXPECT_THROW(static_cast<void>(sut.at(0)), std::out_of_range);
+}
+
+TEST(SampleWritersTest, AnEntryIsTheWriterOfTheSampleAndStaysWhereItIs) {
+  FoundWriters all;
+  SampleWriters sut(all);
+  EXPECT_EQ(sut.of(handle_of(7)), nullptr);
+  all.note_writer(sensed(7).info());
+  all.note_writer(sensed(8).info());
+  const SampleWriters::Entry* seven = sut.of(handle_of(7));
+  ASSERT_NE(seven, nullptr);
+  EXPECT_EQ(seven->number, 0u);
+  const SampleWriters::Entry* eight = sut.of(handle_of(8));
+  ASSERT_NE(eight, nullptr);
+  EXPECT_EQ(eight->number, 1u);
+  EXPECT_EQ(sut.of(handle_of(9)), nullptr);
+  EXPECT_EQ(sut.of(handle_of(7)), seven);
+  EXPECT_EQ(sut.of(handle_of(8)), eight);
+}
+
+}  // namespace
+}  // namespace stillhand::runtime

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who counts as alive decides whether the motor may push.
+#include "services/runtime/bus/peers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "idl/topics.hpp"
+#include "tests/unit/runtime/announced.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+using announced::handle_of;
+using announced::Participant;
+using announced::Writer;
+using announced::rtps::ParticipantAuthenticationInfo;
+using announced::rtps::ParticipantDiscoveryInfo;
+using announced::rtps::WriterDiscoveryInfo;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr std::uint32_t kRig = 3;
+constexpr std::uint8_t kReplay = 99;
+
+class PeersTest : public testing::Test {
+ protected:
+  static void join(Peers& sut, std::uint8_t number, const std::string& name, bool marked = false) {
+    sut.on_participant_discovery(nullptr, Participant(number, name, marked).info());
+  }
+  static void leave(Peers& sut, std::uint8_t number,
+                    ParticipantDiscoveryInfo::DISCOVERY_STATUS how =
+                        ParticipantDiscoveryInfo::REMOVED_PARTICIPANT) {
+    sut.on_participant_discovery(nullptr, Participant(number, "").info(how));
+  }
+  /// Number of a service's participant.
+  static std::uint8_t number_of(std::string_view service) {
+    const auto found = std::ranges::find(topics::kServices, service);
+    return static_cast<std::uint8_t>(1 + (found - topics::kServices.begin()));
+  }
+  static void live(Peers& sut, std::string_view service) {
+    const std::uint8_t number = number_of(service);
+    join(sut, number, Peers::participant_name(kRig, std::string(service)));
+    sut.set_alive(handle_of(number), true);
+  }
+  /// Every service but the rig, which asks.
+  static void all_live(Peers& sut) {
+    for (const std::string_view service : topics::kServices) {
+      if (service != "rig") live(sut, service);
+    }
+  }
+  static void authenticate(Peers& sut, std::uint8_t number) {
+    ParticipantAuthenticationInfo info;
+    info.guid = announced::guid_of(number);
+    info.status = ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT;
+    sut.onParticipantAuthentication(nullptr, std::move(info));
+  }
+
+  Peers sut_{"rig", kRig};
+};
+
+TEST_F(PeersTest, EverybodyIsAliveOnceEachOtherServiceShowsItsLifeSign) {
+  for (const std::string_view service : topics::kServices) {
+    if (service == "rig") continue;
+    EXPECT_FALSE(sut_.alive()) << "before " << service;
+    live(sut_, service);
+  }
+  EXPECT_TRUE(sut_.alive());
+  EXPECT_THAT(sut_.lost(), IsEmpty());
+}
+
+TEST_F(PeersTest, ALifeSignThatEndsIsNamedUntilItComesBack) {
+  all_live(sut_);
+  EXPECT_TRUE(sut_.set_alive(handle_of(number_of("motion")), false));
+  EXPECT_FALSE(sut_.alive());
+  EXPECT_THAT(sut_.lost(), ElementsAre("motion"));
+  EXPECT_FALSE(sut_.set_alive(handle_of(number_of("motion")), false));  // nothing new
+  EXPECT_TRUE(sut_.set_alive(handle_of(number_of("motion")), true));
+  EXPECT_TRUE(sut_.alive());
+  EXPECT_THAT(sut_.lost(), IsEmpty());
+}
+
+TEST_F(PeersTest, AnotherRigsServiceAndAStrangerGiveNoLifeSign) {
+  all_live(sut_);
+  sut_.set_alive(handle_of(number_of("motion")), false);
+  join(sut_, 50, Peers::participant_name(kRig + 1, "motion"));
+  join(sut_, 51, Peers::participant_name(kRig * 10, "motion"));
+  join(sut_, 52, "motion");
+  // 53 was never announced.
+  for (const std::uint8_t stranger : std::array<std::uint8_t, 4>{50, 51, 52, 53}) {
+    EXPECT_FALSE(sut_.set_alive(handle_of(stranger), true));
+    EXPECT_EQ(sut_.service_of(handle_of(stranger)), "");
+  }
+  EXPECT_FALSE(sut_.alive());
+}
+
+// A service that was started again has a new writer; the end of the old one comes later.
+TEST_F(PeersTest, ASecondLifeSignOfAServiceKeepsItAlive) {
+  all_live(sut_);
+  join(sut_, 60, Peers::participant_name(kRig, "motion"));
+  EXPECT_TRUE(sut_.set_alive(handle_of(60), true));
+  sut_.set_alive(handle_of(number_of("motion")), false);
+  EXPECT_TRUE(sut_.alive());
+  EXPECT_THAT(sut_.lost(), IsEmpty());
+}
+
+TEST_F(PeersTest, AServiceThatIsThereTwiceIsNamedAlsoIfItIsOneself) {
+  all_live(sut_);
+  EXPECT_THAT(sut_.duplicates(), IsEmpty());
+  join(sut_, 60, Peers::participant_name(kRig, "rig"));
+  join(sut_, 61, Peers::participant_name(kRig, "motion"));
+  join(sut_, 62, Peers::participant_name(kRig + 1, "display"));
+  EXPECT_THAT(sut_.duplicates(), ElementsAre("motion", "rig"));
+  leave(sut_, 61);
+  leave(sut_, 60, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
+  EXPECT_THAT(sut_.duplicates(), IsEmpty());
+}
+
+TEST_F(PeersTest, AnnouncedAgainAParticipantIsStillOne) {
+  all_live(sut_);
+  const Participant again(number_of("motion"), Peers::participant_name(kRig, "motion"));
+  sut_.on_participant_discovery(nullptr,
+                                again.info(ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT));
+  EXPECT_THAT(sut_.duplicates(), IsEmpty());
+}
+
+TEST_F(PeersTest, WhileAReplayIsThereNobodyCountsAsAlive) {
+  all_live(sut_);
+  join(sut_, kReplay, "stillhand-replay/1", true);
+  EXPECT_TRUE(sut_.replay_present());
+  EXPECT_FALSE(sut_.alive());
+  leave(sut_, kReplay);
+  EXPECT_FALSE(sut_.replay_present());
+  EXPECT_TRUE(sut_.replay_seen());
+  EXPECT_TRUE(sut_.alive());
+}
+
+// DDS announces a writer before its participant, and its last samples may come after its end.
+TEST_F(PeersTest, AMarkedWritersSamplesAreRefusedForGood) {
+  EXPECT_FALSE(sut_.refuses(handle_of(kReplay)));
+  sut_.on_publisher_discovery(nullptr, Writer(kReplay, 1, "stillhand/motor_command",
+                                              "stillhand_msgs::MotorCommand", replay_mark())
+                                           .info());
+  EXPECT_TRUE(sut_.replay_present());
+  EXPECT_TRUE(sut_.refuses(handle_of(kReplay, 1)));
+  EXPECT_TRUE(sut_.refuses(handle_of(kReplay, 2)));  // any writer of that participant
+  EXPECT_FALSE(sut_.refuses(handle_of(kReplay - 1)));
+  leave(sut_, kReplay);
+  EXPECT_TRUE(sut_.refuses(handle_of(kReplay)));
+}
+
+TEST_F(PeersTest, TheEndOfAMarkedWriterAloneMarksNobody) {
+  const Writer writer(kReplay, 1, "t", "T", replay_mark());
+  sut_.on_publisher_discovery(nullptr, writer.info(WriterDiscoveryInfo::REMOVED_WRITER));
+  EXPECT_FALSE(sut_.replay_seen());
+}
+
+TEST_F(PeersTest, AProcessThatAnswersReplaysIsAliveWithOneAndRefusesNone) {
+  Peers sut("identification", kRig, true);
+  all_live(sut);
+  live(sut, "rig");
+  EXPECT_FALSE(sut.alive());
+  join(sut, kReplay, "stillhand-replay/1", true);
+  EXPECT_TRUE(sut.alive());
+  EXPECT_FALSE(sut.refuses(handle_of(kReplay)));
+}
+
+// On a secured bus a name or a mark is no proof: a stranger must not open the interlock.
+TEST_F(PeersTest, OnASecuredBusOnlyAnAuthenticatedParticipantCounts) {
+  Peers sut("rig", kRig, false, nullptr, true);
+  all_live(sut);
+  join(sut, kReplay, "stillhand-replay/1", true);
+  join(sut, 60, Peers::participant_name(kRig, "rig"));
+  EXPECT_FALSE(sut.replay_present());
+  EXPECT_TRUE(sut.alive());
+  EXPECT_THAT(sut.duplicates(), IsEmpty());
+  ParticipantAuthenticationInfo refused;
+  refused.guid = announced::guid_of(kReplay);
+  sut.onParticipantAuthentication(nullptr, std::move(refused));
+  EXPECT_FALSE(sut.replay_present());
+  authenticate(sut, kReplay);
+  authenticate(sut, 60);
+  EXPECT_TRUE(sut.replay_present());
+  EXPECT_FALSE(sut.alive());
+  EXPECT_THAT(sut.duplicates(), ElementsAre("rig"));
+  leave(sut, kReplay);
+  join(sut, kReplay, "stillhand-replay/1", true);  // back, and not yet authenticated
+  EXPECT_FALSE(sut.replay_present());
+}
+
+// Oracle: the set of live writers, from which the answers follow by their definition.
+TEST_F(PeersTest, AnyOrderOfLifeSignsGivesTheSameAnswers) {
+  std::mt19937 random(20261123);
+  std::uniform_int_distribution<std::size_t> any(0, topics::kServices.size() - 1);
+  std::set<std::string> live_now, ever;
+  for (const std::string_view service : topics::kServices) {
+    join(sut_, number_of(service), Peers::participant_name(kRig, std::string(service)));
+  }
+  int all_alive = 0;
+  for (int turn = 0; turn < 2000; ++turn) {
+    const std::string service(topics::kServices[any(random)]);
+    const bool comes = random() % 8 != 0;
+    EXPECT_EQ(sut_.set_alive(handle_of(number_of(service)), comes),
+              comes != live_now.contains(service));
+    if (comes) {
+      live_now.insert(service);
+      ever.insert(service);
+    } else {
+      live_now.erase(service);
+    }
+    std::vector<std::string> gone;
+    std::ranges::set_difference(ever, live_now, std::back_inserter(gone));
+    std::set<std::string> others = live_now;
+    others.erase("rig");
+    const bool alive = others.size() == topics::kServices.size() - 1;
+    ASSERT_EQ(sut_.lost(), gone) << "turn " << turn;
+    ASSERT_EQ(sut_.alive(), alive) << "turn " << turn;
+    all_alive += alive ? 1 : 0;
+  }
+  EXPECT_GT(all_alive, 100);  // both answers did occur
+  EXPECT_LT(all_alive, 1900);
+}
+
+}  // namespace
+}  // namespace stillhand::runtime
