@@ -58,7 +58,7 @@ TEST(LossLineTest, AWholeRecordingHasNone) {
   EXPECT_EQ(loss_line("a.mcap", std::vector<Damage>{}, 12, false), "");
 }
 
-TEST(LossLineTest, ARecordingInWritingIsSaidToBeWhateverItsEndLooksLike) {
+TEST(LossLineTest, ARecordingInWritingIsReportedAsSuchWhateverItsEnd) {
   const std::string line =
       loss_line("a.mcap", {damage(DamageKind::kCutOff, 5, 100)}, std::nullopt, true);
   EXPECT_THAT(line, AllOf(HasSubstr("a.mcap: "), HasSubstr("written"), Not(HasSubstr("100"))));
