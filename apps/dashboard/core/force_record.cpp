@@ -9,7 +9,7 @@ namespace stillhand::dashboard {
 
 ForceRecord::Row* ForceRecord::row_of(Tick tick) noexcept {
   if (tick < 0) return nullptr;
-  if (tick < newest_ - static_cast<Tick>(kTicks)) {  // another session
+  if (tick <= newest_ - static_cast<Tick>(kTicks)) {  // another session
     std::ranges::fill(rows_, Row{});
     newest_ = -1;
   }

@@ -37,7 +37,7 @@ class Traces {
 
   void put(Tick tick, Signal signal, double value) noexcept {
     if (tick < 0 || tick % kEvery != 0) return;
-    if (tick < newest_ - static_cast<Tick>(kRows) * kEvery) *this = {};  // another session
+    if (tick <= newest_ - static_cast<Tick>(kRows) * kEvery) *this = {};  // another session
     Row& row = rows_[static_cast<std::size_t>(tick / kEvery) % kRows];
     if (row.tick != tick) {
       row.tick = tick;

@@ -244,6 +244,7 @@ void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::
   const ServiceView& before = services_[number];
   ServiceView view;
   view.host = before.host;
+  view.host_at_ns = before.host_at_ns;
   if (before.status && before.status->pid() == status.pid()) {
     view.reads = before.reads;
   } else {

@@ -23,8 +23,8 @@ class LossCount {
     const std::int64_t by_tick = tick >= 0 && tick_ >= 0 ? tick - tick_ - 1 : 0;
     const std::int64_t on_the_way = std::max<std::int64_t>(by_sequence, 0);
     const std::int64_t before = std::max<std::int64_t>(by_tick - on_the_way, 0);
-    lost_ += on_the_way + before;
-    not_sent_ += before;
+    add(lost_, on_the_way + before);
+    add(not_sent_, before);
     sequence_ = started_ ? std::max(sequence, sequence_) : sequence;
     started_ = true;
     if (tick >= 0) tick_ = tick;
@@ -36,6 +36,11 @@ class LossCount {
   [[nodiscard]] std::int64_t not_sent() const noexcept { return not_sent_; }
 
  private:
+  // Ticks come from the bus or a file: a sum stays at its limit instead of overflowing.
+  static void add(std::int64_t& sum, std::int64_t count) noexcept {
+    if (__builtin_add_overflow(sum, count, &sum)) sum = INT64_MAX;
+  }
+
   std::int64_t received_ = 0, lost_ = 0, not_sent_ = 0, sequence_ = 0;
   Tick tick_ = -1;
   bool started_ = false;

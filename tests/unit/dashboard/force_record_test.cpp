@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace stillhand::dashboard {
 namespace {
 
@@ -54,6 +57,39 @@ TEST(ForceRecordTest, TicksThatGoFarBackAreAnotherSession) {
   for (Tick tick = 0; tick < 100; ++tick) both(sut, tick, 1.0, 0.0);
   const auto signals = sut.newest();
   EXPECT_EQ(signals.force_n, std::vector<double>(40, 1.0));
+}
+
+// The row of tick 0 would take the place of the newest row, and later ticks would look recent.
+TEST(ForceRecordTest, ASessionThatRestartsExactlyTheLengthOfTheRecordLaterIsAnother) {
+  ForceRecord sut;
+  for (Tick tick = 0; tick <= static_cast<Tick>(ForceRecord::kTicks); ++tick) {
+    both(sut, tick, 7.0, 0.0);
+  }
+  for (Tick tick = 0; tick < 100; ++tick) both(sut, tick, 1.0, 0.0);
+  EXPECT_EQ(sut.newest().force_n, std::vector<double>(40, 1.0));
+}
+
+TEST(ForceRecordTest, AForceThatIsNotFiniteIsAGap) {
+  ForceRecord sut;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (Tick tick = 0; tick < 200; ++tick) {
+    both(sut, tick, tick == 50 ? std::nan("") : 2.0, tick == 60 ? kInf : 0.5);
+  }
+  const auto signals = sut.newest();
+  EXPECT_EQ(signals.bridged, 2u);
+  EXPECT_EQ(signals.force_n, std::vector<double>(140, 2.0));
+  EXPECT_EQ(signals.residual_n, std::vector<double>(140, 1.5));
+}
+
+TEST(ForceRecordTest, WithoutATickOfBothTopicsItIsEmpty) {
+  ForceRecord sut;
+  EXPECT_TRUE(sut.newest().force_n.empty());
+  sut.measured(-1, 1.0);
+  for (Tick tick = 0; tick < 500; ++tick) {
+    if (tick % 2 == 0) sut.measured(tick, 1.0);
+    if (tick % 2 == 1) sut.predicted(tick, 1.0);
+  }
+  EXPECT_TRUE(sut.newest().force_n.empty());
 }
 
 }  // namespace

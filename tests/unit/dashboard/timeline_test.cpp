@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <map>
+#include <random>
 
 namespace stillhand::dashboard {
 namespace {
@@ -82,6 +85,67 @@ TEST_F(TimelineTest, ATrialThatNeverBeganIsNone) {
   sut_.announce(trial(2, -5, 10'000), kBegin);
   sut_.tick(3001, kBegin);
   EXPECT_TRUE(sut_.trials().empty());
+}
+
+// Reference: marks grouped by the 2000th part of the recording in which they fall, then searched.
+TEST_F(TimelineTest, InAnyOrderAPartShowsItsFirstInstantItsNumberAndItsWorst) {
+  std::mt19937_64 random(41);
+  std::vector<Mark> all;
+  for (int i = 0; i < 3000; ++i) {
+    const auto at_ms = static_cast<std::int64_t>(random() % 100'000);
+    const auto level = random() % 2 == 0 ? Level::kWarning : Level::kCritical;
+    all.push_back(mark(at_ms, level, static_cast<double>(i), std::to_string(i)));  // amounts differ
+  }
+  for (const Mark& each : all) sut_.mark(MarkKind::kAlarm, each);
+  std::map<std::int64_t, std::vector<Mark>> parts;
+  for (const Mark& each : all) parts[(each.at_ns - kBegin) / (50 * kMs)].push_back(each);
+  const auto marks = sut_.marks(MarkKind::kAlarm);
+  ASSERT_EQ(marks.size(), parts.size());
+  std::size_t n = 0;
+  for (const auto& [part, group] : parts) {
+    const Mark& found = marks[n++];
+    const auto worst = std::ranges::max_element(
+        group, {}, [](const Mark& each) { return std::pair(each.level, each.amount); });
+    ASSERT_EQ(found.count, group.size()) << part;
+    ASSERT_EQ(found.at_ns, std::ranges::min(group, {}, &Mark::at_ns).at_ns) << part;
+    ASSERT_EQ(found.subject, worst->subject) << part;
+    ASSERT_EQ(found.level, worst->level) << part;
+    ASSERT_EQ(found.amount, worst->amount) << part;
+  }
+}
+
+TEST(TimelineLimitsTest, ARecordingWithoutALengthStillHoldsItsMarks) {
+  for (const std::int64_t length_ns : {std::int64_t{0}, std::int64_t{-5}, std::int64_t{1}}) {
+    Timeline sut(kBegin, kBegin + length_ns);
+    EXPECT_GE(sut.end_ns(), sut.begin_ns());
+    sut.mark(MarkKind::kLost, {kBegin, Level::kWarning, 1, "a", "", 1.0});
+    sut.mark(MarkKind::kLost, {kBegin - 1, Level::kWarning, 1, "b", "", 2.0});
+    ASSERT_EQ(sut.marks(MarkKind::kLost).size(), 1u);
+    EXPECT_EQ(sut.marks(MarkKind::kLost)[0].count, 2u);
+    EXPECT_EQ(sut.marks(MarkKind::kLost)[0].subject, "b");
+  }
+}
+
+TEST(TimelineLimitsTest, TheNumberOfTrialsIsBounded) {
+  Timeline sut(kBegin, kBegin + 100'000 * kMs);
+  for (std::int64_t number = 0; number < 1500; ++number) {
+    sut.announce(trial(number, number * 10, 5), kBegin + number * 10);
+    sut.tick(number * 10, kBegin + number * 10);
+    sut.tick(number * 10 + 5, kBegin + number * 10 + 5);
+  }
+  ASSERT_EQ(sut.trials().size(), 1000u);
+  EXPECT_EQ(sut.trials().back().number, 999);
+  EXPECT_EQ(sut.trials().back().to_ns - sut.trials().back().from_ns, 5);
+}
+
+TEST_F(TimelineTest, ATrialWhoseFirstTicksAreLostBeginsWithTheFirstThatCame) {
+  sut_.announce(trial(4, 3000, 1000), kBegin);
+  sut_.tick(3500, kBegin + 3500 * kMs);
+  sut_.tick(9000, kBegin + 9000 * kMs);
+  sut_.tick(9001, kBegin + 9001 * kMs);
+  ASSERT_EQ(sut_.trials().size(), 1u);
+  EXPECT_EQ(sut_.trials()[0].from_ns, kBegin + 3500 * kMs);
+  EXPECT_EQ(sut_.trials()[0].to_ns, kBegin + 9000 * kMs);
 }
 
 }  // namespace

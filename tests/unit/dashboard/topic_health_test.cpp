@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <random>
+
 namespace stillhand::dashboard {
 namespace {
 
@@ -157,6 +162,68 @@ TEST(TopicHealthTest, WritersWithoutEndAreNoMemoryWithoutEnd) {
     EXPECT_EQ(sut.step({writer, 1, -1, 0, at, at}).lost, 0);
   }
   EXPECT_EQ(sut.report(kBegin + kSecond).samples, 10'000u);
+}
+
+// Reference: sums over the list of samples itself.
+TEST(TopicHealthTest, OverRandomLossesItsReportIsWhatTheSamplesAddUpTo) {
+  std::mt19937_64 random(51);
+  constexpr std::int64_t kPeriod_ns = 1'000'000, kDeadline_ns = 2'000'000;
+  for (int round = 0; round < 20; ++round) {
+    TopicHealth sut({"sensed", kPeriod_ns, kDeadline_ns});
+    std::uint64_t samples = 0, lost = 0, late = 0;
+    std::int64_t worst_ns = 0, before_ns = 0, first_gap_ns = 0;
+    Tick before = -1;
+    for (Tick tick = 0; tick < 2500; ++tick) {
+      if (tick > 0 && random() % 20 == 0) continue;  // lost on the way
+      const std::int64_t delay_ns =
+          random() % 50 == 0 ? static_cast<std::int64_t>(random() % 5'000'000) : 0;
+      const std::int64_t sent_ns = 5'000'000'000 + tick * kPeriod_ns + delay_ns;
+      const Verdict verdict = sut.step({0, tick + 1, tick, sent_ns, sent_ns, sent_ns + 70'000});
+      const std::int64_t gap = samples == 0 ? 0 : tick - before - 1;
+      ASSERT_EQ(verdict.lost, gap);
+      if (gap > 0 && lost == 0) first_gap_ns = sent_ns + 70'000;
+      lost += static_cast<std::uint64_t>(gap);
+      const std::int64_t by_ns =
+          samples == 0 ? 0 : sent_ns - before_ns - gap * kPeriod_ns - kDeadline_ns;
+      ASSERT_EQ(verdict.sent_late_ns, std::max<std::int64_t>(by_ns, 0));
+      ASSERT_EQ(verdict.arrived_late_ns, verdict.sent_late_ns) << "the way takes 70 us each time";
+      if (by_ns > 0) ++late;
+      worst_ns = std::max(worst_ns, by_ns);
+      ++samples;
+      before = tick;
+      before_ns = sent_ns;
+    }
+    const TopicReport report = sut.report(5'000'000'000);
+    ASSERT_EQ(report.samples, samples);
+    ASSERT_EQ(report.lost, lost);
+    ASSERT_EQ(report.lost_since_ns, first_gap_ns);
+    ASSERT_EQ(report.sent.count, late);
+    ASSERT_EQ(report.sent.worst_ns, worst_ns);
+    ASSERT_EQ(report.first_tick, 0);
+    ASSERT_EQ(report.last_tick, before);
+    ASSERT_EQ(report.latency.count, samples);
+    ASSERT_EQ(report.latency.max_ns, 70'000);
+    ASSERT_EQ(report.jitter.count, samples - 1);
+  }
+}
+
+// Times and ticks come from the bus or a file: they can be anything.
+TEST(TopicHealthTest, ExtremeTimesAndTicksNeitherOverflowNorGiveNegativeLateness) {
+  const std::array<std::int64_t, 7> extremes{INT64_MIN, INT64_MIN + 1, -1,       0,
+                                             1,         INT64_MAX - 1, INT64_MAX};
+  std::mt19937_64 random(52);
+  const auto any = [&] { return extremes[random() % extremes.size()]; };
+  TopicHealth sut({"sensed", 1'000'000, 2'000'000});
+  for (int i = 0; i < 1000; ++i) {
+    const Tick tick = std::max<Tick>(any(), -1);
+    const Verdict verdict = sut.step(
+        {random() % 3, static_cast<std::int64_t>(random() % 1000), tick, any(), any(), any()});
+    ASSERT_GE(verdict.sent_late_ns, 0);
+    ASSERT_GE(verdict.arrived_late_ns, 0);
+    ASSERT_GE(verdict.lost, 0);
+    (void)sut.report(any());
+    ASSERT_GE(sut.recent_latency_p99_ns(any()), 0);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
 #include <vector>
 
 namespace stillhand::recording {
@@ -54,6 +56,48 @@ TEST(EventWindowTest, WhatHasNoRoomLeavesAndIsCounted) {
   for (std::uint64_t at_ns = 1; at_ns <= 4; ++at_ns) sut.add(batch({at_ns}, 10));
   EXPECT_EQ(sut.crowded_out(), 2u);
   EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{3, 4}));
+}
+
+TEST(EventWindowTest, AnEmptyBatchChangesNothing) {
+  EventWindow sut(100, 10);
+  sut.add({});
+  EXPECT_EQ(sut.held_messages(), 0u);
+  sut.add(batch({5}));
+  sut.add({});
+  EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{5}));
+}
+
+TEST(EventWindowTest, TheNewestBatchStaysHoweverLargeItIs) {
+  EventWindow sut(100, 10);
+  sut.add(batch({1}, 8));
+  sut.add(batch({2, 3}, 500));
+  EXPECT_EQ(sut.held_messages(), 2u);
+  EXPECT_EQ(sut.crowded_out(), 1u);
+  EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{2, 3}));
+}
+
+TEST(EventWindowTest, WithoutALackOfRoomItHoldsEveryMessageOfTheWindow) {
+  std::mt19937_64 random(8);
+  for (int round = 0; round < 100; ++round) {
+    EventWindow sut(1000, SIZE_MAX);
+    std::vector<std::uint64_t> added;
+    std::uint64_t at_ns = 0;
+    for (int i = 0; i < 50; ++i) {
+      std::vector<std::uint64_t> times;
+      for (std::uint64_t n = random() % 5; n > 0; --n) times.push_back(at_ns += random() % 200);
+      sut.add(batch(times));
+      added.insert(added.end(), times.begin(), times.end());
+    }
+    const std::uint64_t held = sut.held_messages();
+    const auto times = times_of(sut);
+    ASSERT_EQ(times.size(), held);
+    ASSERT_EQ(sut.crowded_out(), 0u);
+    // The newest of those that were added, in their order, and all of the last 1000 ns.
+    ASSERT_TRUE(std::equal(times.rbegin(), times.rend(), added.rbegin()));
+    const auto young =
+        std::ranges::count_if(added, [&](std::uint64_t t) { return t + 1000 >= at_ns; });
+    ASSERT_GE(times.size(), static_cast<std::size_t>(young));
+  }
 }
 
 }  // namespace

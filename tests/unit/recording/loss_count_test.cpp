@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace stillhand::recording {
 namespace {
 
@@ -49,6 +51,40 @@ TEST(LossCountTest, AnotherSessionOfTheSameWriterIsNoLoss) {
   sut.step(2, 0);
   sut.step(3, 1);
   EXPECT_EQ(sut.lost(), 0);
+}
+
+// The writer drops ticks before DDS, the network drops sequence numbers: the count of each is
+// known.
+TEST(LossCountTest, OverRandomLossesTheCountsAreThoseThatWereMade) {
+  std::mt19937_64 random(21);
+  for (int round = 0; round < 200; ++round) {
+    const auto network = random() % 4, writer = random() % 4;
+    LossCount sut;
+    std::int64_t sequence = static_cast<std::int64_t>(random() % 1000), received = 0, lost = 0,
+                 not_sent = 0;
+    std::int64_t lost_since = 0, not_sent_since = 0;  // losses at the end are not known yet
+    for (Tick tick = 0; tick < 500; ++tick) {
+      const bool reaches_dds = random() % 8 >= writer;
+      if (!reaches_dds) {
+        ++not_sent_since;
+        continue;
+      }
+      ++sequence;
+      if (random() % 8 < network) {
+        ++lost_since;
+        continue;
+      }
+      sut.step(sequence, tick);
+      if (++received > 1) {
+        lost += lost_since + not_sent_since;
+        not_sent += not_sent_since;
+      }
+      lost_since = not_sent_since = 0;
+    }
+    ASSERT_EQ(sut.received(), received);
+    ASSERT_EQ(sut.lost(), lost) << round;
+    ASSERT_EQ(sut.not_sent(), not_sent) << round;
+  }
 }
 
 }  // namespace

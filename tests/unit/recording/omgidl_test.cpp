@@ -128,6 +128,70 @@ TEST(IdlSchemaTest, MistakesAreNamedWithLineAndColumn) {
   mistake("\x01\xff", "want");
 }
 
+TEST(IdlSchemaTest, LengthsAreComputedAsWrittenOrRefused) {
+  const auto length_of = [](const std::string& expression) {
+    const IdlSchema schema =
+        parse_idl("const long n = 7; struct A { octet x[" + expression + "]; };", "F");
+    return schema.types.at(schema.find("A")->members.at(0).type).length;
+  };
+  EXPECT_EQ(length_of("2+3*4"), 14u);
+  EXPECT_EQ(length_of("(2+3)*4"), 20u);
+  EXPECT_EQ(length_of("10-2-3"), 5u);
+  EXPECT_EQ(length_of("-(-5)"), 5u);
+  EXPECT_EQ(length_of("-2*-3"), 6u);
+  EXPECT_EQ(length_of("010"), 8u) << "octal";
+  EXPECT_EQ(length_of("0xFf"), 255u);
+  EXPECT_EQ(length_of("n*n"), 49u);
+  EXPECT_EQ(length_of("4294967295"), 4294967295u);
+  EXPECT_EQ(length_of("65537*65535"), 4294967295u);
+  for (const char* wrong : {"4294967296",
+                            "4294967295+1",
+                            "4294967295*4294967295",
+                            "3037000500*3037000500",
+                            "-4294967295*4294967295",
+                            "65536*65536*65536*65536",
+                            "1-1",
+                            "-3",
+                            "08",
+                            "0x",
+                            "0xG",
+                            "1.5",
+                            "9x",
+                            "99999999999999999999",
+                            "m",
+                            "",
+                            "2+",
+                            "*2",
+                            "(2",
+                            "2)"}) {
+    EXPECT_THROW((void)length_of(wrong), ConfigError) << wrong;
+  }
+}
+
+TEST(IdlSchemaTest, ANameIsFoundFromItsOwnModuleOutwards) {
+  const IdlSchema sut = parse_idl(R"(
+struct T { double outside; };
+module a {
+  struct T { double inside; };
+  module b { struct U { T nearest; ::T first; a::T scoped; }; };
+};
+module a { struct V { b::U opened_again; T t; }; };
+)",
+                                  "F");
+  const auto member_of = [&](const IdlStruct& of, std::size_t member) {
+    return sut.structs.at(type_of(sut, of, member).of).name;
+  };
+  const IdlStruct* u = sut.find("a::b::U");
+  ASSERT_NE(u, nullptr);
+  EXPECT_EQ(member_of(*u, 0), "a::T");
+  EXPECT_EQ(member_of(*u, 1), "T");
+  EXPECT_EQ(member_of(*u, 2), "a::T");
+  const IdlStruct* v = sut.find("a/V");
+  ASSERT_NE(v, nullptr);
+  EXPECT_EQ(member_of(*v, 0), "a::b::U");
+  EXPECT_EQ(member_of(*v, 1), "a::T");
+}
+
 // Whatever bytes a file holds: an answer or an error, no crash and no endless loop.
 TEST(IdlSchemaTest, CutAndChangedTextsEndInAnAnswerOrAnError) {
   const std::string whole =

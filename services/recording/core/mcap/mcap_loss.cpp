@@ -16,11 +16,12 @@ bool is_harmless(const Damage& damage) {
 }  // namespace
 
 std::string byte_count(std::uint64_t bytes) {
-  constexpr std::array<const char*, 4> kUnits{"kB", "MB", "GB", "TB"};
+  constexpr std::array<const char*, 6> kUnits{"kB", "MB", "GB", "TB", "PB", "EB"};
+  constexpr double kRoundsTo1000 = 999.5;  // three digits would show it as 1e+03
   if (bytes < 1000) return std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes");
   double value = static_cast<double>(bytes) / 1000.0;
   std::size_t unit = 0;
-  for (; value >= 1000.0 && unit + 1 < kUnits.size(); ++unit) value /= 1000.0;
+  for (; value >= kRoundsTo1000 && unit + 1 < kUnits.size(); ++unit) value /= 1000.0;
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g %s", value, kUnits[unit]);
   return text.data();

@@ -59,8 +59,10 @@ class Parser {
     return scope_.empty() ? name : scope_ + "::" + name;
   }
   template <typename Value>
-  const Value* look_up(const std::map<std::string, Value>& values, const std::string& name) const {
-    for (std::string scope = scope_;;) {
+  const Value* look_up(const std::map<std::string, Value>& values, std::string name) const {
+    const bool global = name.starts_with("::");
+    if (global) name.erase(0, 2);
+    for (std::string scope = global ? "" : scope_;;) {
       const auto found = values.find(scope.empty() ? name : scope + "::" + name);
       if (found != values.end()) return &found->second;
       if (scope.empty()) return nullptr;
@@ -88,7 +90,11 @@ class Parser {
   }
   std::int64_t product(int depth) {
     std::int64_t value = factor(depth);
-    while (in_.accept("*")) value = bounded(value * factor(depth));
+    while (in_.accept("*")) {
+      std::int64_t result = 0;
+      if (__builtin_mul_overflow(value, factor(depth), &result)) result = INT64_MAX;
+      value = bounded(result);
+    }
     return value;
   }
   std::int64_t factor(int depth) {
@@ -119,7 +125,7 @@ class Parser {
     in_.take();
     return bounded(value);
   }
-  // Keeps products of two of them inside 64 bits.
+  // Keeps sums of two of them inside 64 bits.
   std::int64_t bounded(std::int64_t value) const {
     if (value > kMaxLength || value < -kMaxLength) in_.refuse("a number of at most 32 bits");
     return value;

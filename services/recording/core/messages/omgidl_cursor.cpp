@@ -52,8 +52,8 @@ std::string IdlCursor::name() {
 }
 
 std::string IdlCursor::scoped_name() {
-  accept("::");
-  std::string text = name();
+  std::string text = accept("::") ? "::" : "";
+  text += name();
   while (accept("::")) text += "::" + name();
   return text;
 }

@@ -25,7 +25,7 @@ class IdlCursor {
   /// @throws stillhand::ConfigError with line and column of the next token.
   [[noreturn]] void refuse(const std::string& want) const;
   std::string name();
-  /// "a::b", with or without :: in front.
+  /// "a::b", or "::a::b" for a name of the outermost scope.
   std::string scoped_name();
   /// Skips from an opening bracket to after its closing bracket.
   void skip_balanced();
