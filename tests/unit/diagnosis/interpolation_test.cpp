@@ -87,6 +87,53 @@ TEST(InterpolationTest, ADelayMayChangeWithTime) {
   EXPECT_LE(largest_error(5.0, drift), halfway_error(5.0) + 1e-12);
 }
 
+// Six points hold a polynomial of degree five: exact but for rounding, weights of at most 1 each.
+TEST(InterpolationTest, AQuinticIsReproduced) {
+  const auto quintic = [](double t_s) {
+    return 1.0 + t_s * (-2.0 + t_s * (0.5 + t_s * (0.3 + t_s * (-0.2 + 0.04 * t_s))));
+  };
+  std::vector<double> x(kCount);
+  for (std::size_t n = 0; n < kCount; ++n) x[n] = quintic(static_cast<double>(n) / made::kRateHz);
+  for (const double delay_s : {0.0013, 0.0049, 0.0267, -0.0071}) {
+    const auto sut = delayed(x, signals_of(x), [&](double) { return delay_s; });
+    for (std::size_t n = 10; n + 10 < kCount; ++n) {
+      const double want = quintic(static_cast<double>(n) / made::kRateHz - delay_s);
+      // Values below 12: some ulps of 2e-15.
+      ASSERT_NEAR(sut[n], want, 1e-13) << n << ", " << delay_s << " s";
+    }
+  }
+}
+
+TEST(InterpolationTest, DelaysOfSumsAreSumsOfDelays) {
+  const auto x = made::white(kCount, 3);
+  const auto y = made::white(kCount, 4);
+  std::vector<double> sum(kCount);
+  for (std::size_t n = 0; n < kCount; ++n) sum[n] = 2.0 * x[n] - y[n];
+  const Signals signals = signals_of(x);
+  const auto late = [](double t_s) { return 0.0137 + 1e-3 * t_s; };
+  const auto of_x = delayed(x, signals, late);
+  const auto of_y = delayed(y, signals, late);
+  const auto of_sum = delayed(sum, signals, late);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    ASSERT_NEAR(of_sum[n], 2.0 * of_x[n] - of_y[n], 1e-14 * 10.0) << n;
+  }
+}
+
+TEST(InterpolationTest, WithoutADelayNothingChanges) {
+  const auto x = made::white(kCount, 5);
+  EXPECT_EQ(delayed(x, signals_of(x), [](double) { return 0.0; }), x);
+}
+
+// A constant has no time: the weights add up to 1 wherever the point lies.
+TEST(InterpolationTest, AConstantStaysWhateverTheDelay) {
+  std::vector<double> x(kCount, 3.0);
+  x[0] = 2.0;
+  const Signals signals = signals_of(x);
+  x[0] = 3.0;
+  const auto sut = delayed(x, signals, [](double t_s) { return 0.05 * std::sin(9.0 * t_s); });
+  for (std::size_t n = 0; n < kCount; ++n) ASSERT_NEAR(sut[n], 3.0, 1e-14) << n;
+}
+
 TEST(InterpolationTest, TheEdgesOfAStretchAreHeldAndNothingLeaksOver) {
   Measurement measurement =
       made::measurement_of({{"u", "m/s^2", {1.0, 2.0, 3.0, 4.0, 50.0, 60.0, 70.0, 80.0}},

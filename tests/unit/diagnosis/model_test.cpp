@@ -7,9 +7,11 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 
 #include "services/signal/difference_model.hpp"
-#include "tests/unit/diagnosis/made_measurement.hpp"
+#include "services/signal/random.hpp"
+#include "tests/unit/diagnosis/every_effect.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -179,6 +181,62 @@ TEST(ModelTest, StabilisingAStableBodyChangesNothing) {
   stabilise(sut);
   // Poles of a well separated fourth-order polynomial and back: a few hundred roundings.
   EXPECT_THAT(sut.denominator, Pointwise(DoubleNear(1e-13), before));
+}
+
+// Poles anywhere within twice the unit circle, orders 1 to 8.
+TEST(ModelTest, AnyBodyIsStableOnceItIsStabilised) {
+  signal::Gaussian next(5, 0);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::complex<double>> poles;
+    const int order = 1 + round % 8;
+    while (static_cast<int>(poles.size()) + 1 < order) {
+      const auto pole = std::polar(2.0 * next.uniform(), std::numbers::pi * next.uniform());
+      poles.insert(poles.end(), {pole, std::conj(pole)});
+    }
+    if (static_cast<int>(poles.size()) < order) poles.emplace_back(4.0 * next.uniform() - 2.0);
+    Body sut = with_poles(poles);
+    sut.largest_radius = 0.99;
+    sut.slowest_radius = 0.95;
+    sut.least_turn = 0.05;
+    stabilise(sut);
+    EXPECT_TRUE(is_stable(sut)) << "round " << round << ", order " << order;
+    EXPECT_EQ(sut.denominator.front(), 1.0);
+  }
+}
+
+TEST(ModelTest, AStaticBodyIsStable) {
+  Body sut;
+  sut.numerators = {{2.0}};
+  EXPECT_TRUE(is_stable(sut));
+  stabilise(sut);
+  EXPECT_THAT(sut.denominator, ElementsAre(1.0));
+}
+
+TEST(ModelTest, ANumberThatIsInfiniteIsNotStable) {
+  Body sut = made::four_pole_body();
+  sut.denominator[3] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(is_stable(sut));
+}
+
+// What the search alone moves is chosen by the data, but is no number of the joint fit.
+TEST(ModelTest, EveryKindPacksWhatIsFittedAndComesBackBitForBit) {
+  for (const Effect& effect : made::every_effect()) {
+    const Model model = made::model_of(made::two_pole_body(), {effect});
+    std::size_t searched = 0;
+    for (const Parameter& each : effect.parameters) {
+      searched += !each.fitted && each.lower < each.upper ? 1u : 0u;
+    }
+    const Eigen::VectorXd numbers = packed(model);
+    EXPECT_EQ(static_cast<std::size_t>(numbers.size()), complexity(model) - searched)
+        << effect.kind << ", " << effect.form;
+    Model sut = model;
+    unpack(Eigen::VectorXd::Constant(numbers.size(), 0.01), sut);
+    unpack(numbers, sut);
+    EXPECT_EQ(sut.effects[0].coefficients, effect.coefficients) << effect.kind;
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      EXPECT_EQ(sut.effects[0].value(i), effect.value(i)) << effect.kind << ", " << effect.form;
+    }
+  }
 }
 
 }  // namespace

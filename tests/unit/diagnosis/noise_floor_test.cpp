@@ -97,5 +97,82 @@ TEST(NoiseFloorTest, WithoutRoomAboveTheBandThereIsNoHighFrequencyEstimate) {
   EXPECT_NEAR(estimate(sut, "between blocks"), 0.05, 0.004);
 }
 
+// A residual that is known, and answers that are made up.
+struct Known {
+  Known() : studied(made_with(made::ride(kCount, 1), made::white(kCount, 2)), 2) {}
+  [[nodiscard]] NoiseFloor floor(const DetectionResult& after, const ErrorBounds& bounds) const {
+    return noise_floor_of(after, studied.screening, bounds);
+  }
+  made::Studied studied;
+};
+
+const Known& known() {
+  static const Known kKnown;
+  return kKnown;
+}
+
+Detection explains(double share, bool found) { return {"linear in", "v", share, 1e-9, found, {}}; }
+
+// 0.36 of the squared error explained: 0.8 of the error is left.
+TEST(NoiseFloorTest, WhatAQuestionExplainsIsNoNoise) {
+  const double all = known().floor({}, {}).rmse;
+  DetectionResult after;
+  after.detections = {explains(0.36, true), explains(0.2, true), explains(0.9, false)};
+  EXPECT_NEAR(known().floor(after, {}).rmse, 0.8 * all, 1e-12 * all);
+  after.detections = {explains(1.5, true)};
+  EXPECT_EQ(known().floor(after, {}).rmse, 0.0) << "a share is at most all";
+}
+
+// Freed of its numbers: rmse sqrt(w/(w - k)), w the samples that count, k = 1 + 3 + 2.
+TEST(NoiseFloorTest, TheFinalModelsErrorIsFreedOfItsNumbers) {
+  const auto& screening = known().studied.screening;
+  double weight = 0.0;
+  for (const double each : screening.weight()) weight += each;
+  EXPECT_NEAR(known().floor({}, {}).rmse, screening.rmse() * std::sqrt(weight / (weight - 6.0)),
+              1e-12);
+}
+
+TEST(NoiseFloorTest, TheIntervalHoldsTheEstimateWhateverTheBounds) {
+  const double rmse = known().floor({}, {}).rmse;
+  for (const ErrorBounds& bounds :
+       {ErrorBounds{0.9 * rmse, 1.2 * rmse, 0.0}, ErrorBounds{1.1 * rmse, 1.2 * rmse, 0.0},
+        ErrorBounds{0.8 * rmse, 0.9 * rmse, 0.0},
+        ErrorBounds{0.9 * rmse, 1.2 * rmse, 0.5 * rmse}}) {
+    const NoiseFloor sut = known().floor({}, bounds);
+    EXPECT_LE(sut.low, sut.rmse);
+    EXPECT_GE(sut.high, sut.rmse);
+    EXPECT_LE(sut.low, bounds.low);
+  }
+  EXPECT_DOUBLE_EQ(known().floor({}, {0.9 * rmse, 1.5 * rmse, 1.1 * rmse}).high, 1.1 * rmse)
+      << "noise is at most what a long impulse response leaves";
+}
+
+TEST(NoiseFloorTest, TheIntervalReachesDownToTheLowestEstimate) {
+  const double rmse = known().floor({}, {}).rmse;
+  DetectionResult after;
+  after.coherence.incoherent_rms = 0.25 * rmse;
+  const NoiseFloor sut = known().floor(after, {0.9 * rmse, 1.2 * rmse, 0.0});
+  EXPECT_EQ(sut.low, 0.25 * rmse);
+  EXPECT_EQ(sut.rmse, rmse);
+  after.coherence.incoherent_rms = 5.0 * rmse;
+  EXPECT_EQ(known().floor(after, {0.9 * rmse, 1.2 * rmse, 0.0}).high, 1.2 * rmse)
+      << "noise cannot be more than is left";
+}
+
+// A density of 0.04 N^2/Hz above the band, and a thousand times as much within it: the level above
+// is taken for the band as well.  sqrt(0.04 50) = 1.41, less the two lowest lines and half a line.
+TEST(NoiseFloorTest, HighFrequenciesAreTakenForTheBandAsWell) {
+  const Signals& signals = known().studied.signals;
+  DetectionResult after;
+  for (double at_hz = 1.0; at_hz <= 50.0; at_hz += 0.5) {
+    after.coherence.frequency_hz.push_back(at_hz);
+    const bool above = at_hz > 1.2 * signals.highest_excited_hz();
+    after.coherence.residual_density.push_back(above ? 0.04 : 40.0);
+  }
+  const NoiseFloor sut = known().floor(after, {});
+  EXPECT_NEAR(estimate(sut, "high frequencies"), std::sqrt(0.04 * 50.0), 0.02);
+  EXPECT_THAT(sut.method, HasSubstr("1000 times"));
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the loop writes: verdict, summary and truth, from a result that is made up.
+#include "apps/close_the_loop/output.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "services/rig/sealed_file.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+using nlohmann::json;
+
+TrialRun trial(const char* label, double rms_mm, double dwell, double crossover_hz) {
+  TrialRun run;
+  run.label = label;
+  run.metrics.rms_error_mm = rms_mm;
+  run.metrics.dwell_ratio = dwell;
+  run.metrics.crossover_hz = crossover_hz;
+  run.metrics.crossover_reference_hz = 0.5;
+  run.cancelled_share = 0.75;
+  run.counterforce_delay_s = 0.004;
+  return run;
+}
+
+Finding finding(const char* kind, const char* channel) {
+  return {kind, channel, "body", 0.5, 2.0, 1.0, "it is there"};
+}
+
+LoopRecord made() {
+  LoopRecord record;
+  LoopResult& result = record.result;
+  result.paper_model.fit = {50.0, {1.0, 2.0}, {1.0, -0.5}};
+  result.trials = {trial("I", 0.0, 0.0, 0.0), trial("A", 4.0, 0.5, 0.25),
+                   trial("B", 10.0, 0.25, 0.125), trial("C", 7.0, 0.375, 0.1875)};
+  Round round;
+  round.trial = trial("C+", 5.5, 0.4375, 0.25);
+  round.trial.weights = {{1.0, 0.0}, {0.9, -0.1}};
+  round.verdict.findings = {finding("coulomb_friction", "omega"), finding("tone", "")};
+  round.verdict.control.treatments = {{"tone", true, "a law"}, {"drift", false, "no law"}};
+  round.verdict.body.noise_floor.rmse = 0.5;
+  round.verdict.body.final_error.rmse = 1.0;
+  round.augmented = true;
+  round.kept = true;
+  round.outcome = "kept";
+  result.rounds = {round};
+  return record;
+}
+
+json summary_of(const LoopRecord& record) { return json::parse(summary_json(record)); }
+
+// (B - X)/(B - A): (10 - 7)/(10 - 4); dyadic numbers, exact.
+TEST(OutputTest, RestorationIsTheShareOfAsAdvantage) {
+  const LoopRecord sut = made();
+  const LoopResult& result = sut.result;
+  EXPECT_EQ(restoration(result, result.trial("C"), 0), 0.5);
+  EXPECT_EQ(restoration(result, result.plus(), 0), 0.75);
+  EXPECT_EQ(restoration(result, result.trial("A"), 0), 1.0);
+  EXPECT_EQ(restoration(result, result.trial("B"), 0), 0.0);
+  // A ratio that rises with quality restores as well: (0.25 - 0.375)/(0.25 - 0.5).
+  EXPECT_EQ(restoration(result, result.trial("C"), 1), 0.5);
+  EXPECT_EQ(restoration(result, result.plus(), 2), 1.0);
+}
+
+TEST(OutputTest, AVerdictIsItsStrongestFinding) {
+  LoopRecord record = made();
+  const json sut = json::parse(verdict_json(record.result));
+  EXPECT_EQ(sut["kind"], "coulomb_friction");
+  EXPECT_EQ(sut["channel"], "omega");
+  ASSERT_EQ(sut["findings"].size(), 2u);
+  EXPECT_EQ(sut["findings"][0]["explained_rms_n"], 0.5);
+  EXPECT_EQ(sut["findings"][0]["heldout_rmse_before"], 2.0);
+  EXPECT_EQ(sut["findings"][0]["heldout_rmse_after"], 1.0);
+  EXPECT_TRUE(sut["findings"][1]["channel"].is_null());
+  record.result.rounds[0].verdict.findings.clear();
+  const json none = json::parse(verdict_json(record.result));
+  EXPECT_EQ(none["kind"], "none");
+  EXPECT_TRUE(none["channel"].is_null());
+  EXPECT_TRUE(none["findings"].empty());
+}
+
+TEST(OutputTest, TheSummaryHasEveryConditionAndItsRestoration) {
+  const json sut = summary_of(made());
+  ASSERT_EQ(sut["conditions"].size(), 4u);
+  EXPECT_EQ(sut["conditions"]["B"]["rms_error_mm"]["mean"], 10.0);
+  EXPECT_EQ(sut["conditions"]["C+"]["rms_error_mm"]["per_subject"], json({5.5}));
+  EXPECT_EQ(sut["restoration"]["rms_error"], 0.5);
+  EXPECT_EQ(sut["restoration_c_plus"]["rms_error"], 0.75);
+  EXPECT_EQ(sut["restoration_c_plus"]["crossover"], 1.0);
+  EXPECT_EQ(sut["verdict"], json::parse(verdict_json(made().result)));
+  EXPECT_EQ(sut["force_prediction"]["after_over_noise"], 2.0);
+  EXPECT_EQ(sut["identification"]["order"], 1);
+}
+
+// A and B run with the motor off.
+TEST(OutputTest, OnlyTrialsThatCancelHaveAShareAndADelay) {
+  const json sut = summary_of(made())["conditions"];
+  for (const char* label : {"A", "B"}) {
+    EXPECT_TRUE(sut[label]["cancelled_share"].is_null()) << label;
+    EXPECT_FALSE(sut[label].contains("counterforce_delay_ms")) << label;
+  }
+  for (const char* label : {"C", "C+"}) {
+    EXPECT_EQ(sut[label]["cancelled_share"], 0.75) << label;
+    EXPECT_EQ(sut[label]["counterforce_delay_ms"], 4.0) << label;
+  }
+}
+
+TEST(OutputTest, WhatCouldNotBeComputedIsNull) {
+  LoopRecord record = made();
+  record.result.trials[2].metrics.crossover_hz = std::numeric_limits<double>::quiet_NaN();
+  // Where the motion costs nothing, there is nothing to restore.
+  record.result.trials[1].metrics.rms_error_mm = 10.0;
+  const json sut = summary_of(record);
+  EXPECT_TRUE(sut["conditions"]["B"]["crossover_hz"]["mean"].is_null());
+  EXPECT_TRUE(sut["restoration"]["crossover"].is_null());
+  EXPECT_TRUE(sut["restoration"]["rms_error"].is_null());
+  EXPECT_EQ(sut["restoration"]["dwell_ratio"], 0.5);
+}
+
+TEST(OutputTest, ARoundShowsItsLastWeightsAndWhatItDid) {
+  LoopRecord record = made();
+  const json sut = summary_of(record)["rounds"][0];
+  EXPECT_EQ(sut["weights"], json({0.9, -0.1}));
+  EXPECT_EQ(sut["treatments"][0]["cancelled"], true);
+  EXPECT_EQ(sut["treatments"][0]["how"], "a law");
+  EXPECT_EQ(sut["treatments"][1]["cancelled"], false);
+  EXPECT_TRUE(sut["latency"].is_null());
+  // A model that did not run cancelled nothing.
+  record.result.rounds[0].augmented = false;
+  record.result.rounds[0].trial.weights.clear();
+  record.result.rounds[0].verdict.latency = Latency{0.03, 0.002, 1.0, 0.5};
+  const json without = summary_of(record)["rounds"][0];
+  EXPECT_TRUE(without["weights"].is_null());
+  EXPECT_EQ(without["treatments"][0]["cancelled"], false);
+  EXPECT_EQ(without["treatments"][0]["how"], "kept") << "the outcome says why";
+  EXPECT_EQ(without["latency"]["motor_path_s"], 0.03);
+  EXPECT_EQ(without["latency"]["load_cell_s"], 0.002);
+}
+
+TEST(OutputTest, TheBestRoundSpeaksForTheLoop) {
+  LoopRecord record = made();
+  record.result.rounds.push_back(record.result.rounds[0]);
+  record.result.rounds[1].trial.metrics.rms_error_mm = 4.75;
+  record.result.rounds[1].verdict.findings = {finding("delay", "")};
+  record.result.final_round = 1;
+  const json sut = summary_of(record);
+  EXPECT_EQ(sut["conditions"]["C+"]["rms_error_mm"]["mean"], 4.75);
+  EXPECT_EQ(sut["verdict"]["kind"], "delay");
+  EXPECT_EQ(sut["rounds"].size(), 2u);
+}
+
+TEST(OutputTest, AVerdictIsRightWhenItNamesTheTruthsKind) {
+  LoopRecord sut = made();
+  EXPECT_FALSE(sut.right()) << "nothing was sealed";
+  EXPECT_TRUE(summary_of(sut)["truth"].is_null());
+  sut.truth = Truth{"tone", "", "the platform", ""};
+  EXPECT_FALSE(sut.right());
+  sut.truth->kind = "coulomb_friction";
+  EXPECT_TRUE(sut.right());
+  const json truth = summary_of(sut)["truth"];
+  EXPECT_EQ(truth["verdict_right"], true);
+  EXPECT_TRUE(truth["channel"].is_null());
+  EXPECT_EQ(truth["place"], "the platform");
+  sut.result.rounds[0].verdict.findings.clear();
+  sut.truth->kind = "none";
+  EXPECT_TRUE(sut.right()) << "nothing sealed into the rig, and nothing found";
+}
+
+TEST(OutputTest, TheSealedTextIsReadBack) {
+  rig::OpenedEffect effect;
+  effect.seed = 7;
+  effect.kind = "dead_zone";
+  effect.channel = "theta";
+  effect.place = "stick";
+  effect.parameters = {{"half_width", "m", 0.25}, {"ratio", "-", 3.0}};
+  const Truth sut = truth_of(rig::sealed_text(effect, "00ff"));
+  EXPECT_EQ(sut.kind, "dead_zone");
+  EXPECT_EQ(sut.channel, "theta");
+  EXPECT_EQ(sut.place, "stick");
+  EXPECT_EQ(sut.numbers, "half_width 0.25 m, ratio 3");
+  const Truth none = truth_of(rig::sealed_text({}, "00ff"));
+  EXPECT_EQ(none.kind, "none");
+  EXPECT_EQ(none.channel, "");
+  EXPECT_EQ(none.numbers, "");
+}
+
+TEST(OutputTest, EveryFileIsNamedOnceAndIsNoPath) {
+  const auto names = every_name();
+  const std::set<std::string> sut(names.begin(), names.end());
+  EXPECT_EQ(sut.size(), names.size());
+  for (const char* name : {"report.html", "summary.json", kVerdictFile, kControlModelFile,
+                           rig::kSealedFile, rig::kCommitmentFile}) {
+    EXPECT_TRUE(sut.contains(name)) << name;
+  }
+  for (const std::string& name : names) EXPECT_EQ(name.find('/'), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace stillhand::close_the_loop

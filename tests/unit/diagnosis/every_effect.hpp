@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/diagnosis/core/model/effect.hpp"
+#include "tests/unit/diagnosis/effects_next_to_the_body.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+/// One effect of every kind and form, ready to run next to made::two_pole_body().
+namespace stillhand::diagnosis::made {
+
+/// The channels that they read: u (input), a_x, theta, omega, temp; and the output y.
+inline Measurement every_channel(std::size_t count, std::uint64_t seed) {
+  return measurement_of({{"u", "m/s^2", ride(count, seed)},
+                         {"a_x", "m/s^2", ride(count, seed + 1)},
+                         {"theta", "rad", ride(count, seed + 2, 0.1, 1.0)},
+                         {"omega", "rad/s", ride(count, seed + 3, 0.2, 2.0)},
+                         {"temp", "degC", ride(count, seed + 4, 0.1, 0.5)},
+                         {"y", "N", ride(count, seed + 5)}});
+}
+
+inline std::vector<Effect> effects_before_the_body() {
+  return {
+      {"delay", "of the input", {}, {{"delay", "s", 0.0371, -0.1, 0.5}}, {}},
+      {"clock_drift",
+       "of the output",
+       {},
+       {{"drift", "us/s", 900.0, -2e4, 2e4}, constant("reference_time", "s", 3.0)},
+       {}},
+      {"input_saturation", "hard", {"u"}, {{"limit", "m/s^2", 0.9, 0.02, 9.0}}, {}},
+      {"input_saturation", "soft", {"u"}, {{"limit", "m/s^2", 1.3, 0.02, 9.0}}, {}},
+      {"dead_zone", "at the input", {"u"}, {{"half_width", "m/s^2", 0.3, 0.0, 3.0}}, {}},
+      {"asymmetry", "slopes at the input", {"u"}, {{"slope_change", "-", 0.3, -0.9, 0.9}}, {}},
+  };
+}
+
+// Two coefficients of a loop around the output, eight of one inside a body of order 2.
+inline std::vector<Effect> effects_inside_the_body() {
+  const std::vector<double> inside{0.02, -0.01, 0.005, 0.4, 0.1, 0.0, -0.01, 0.002};
+  return {
+      {"nonlinear_stiffness",
+       "bent of the output",
+       {},
+       {{"threshold", "N", 0.6, 0.01, 30.0}},
+       {-0.02, 0.01}},
+      {"nonlinear_stiffness", "levelled inside the body", {}, {}, inside},
+      {"nonlinear_stiffness",
+       "cubic of the output",
+       {},
+       {constant("threshold", "N", 1.0)},
+       {-1e-3, 0.0}},
+      {"asymmetry", "slopes of the output", {}, {constant("threshold", "N", 1.0)}, {0.01, -0.005}},
+      {"asymmetry", "square of the output", {}, {constant("threshold", "N", 1.0)}, {1e-3, 0.0}},
+      {"hysteresis",
+       "elastic-plastic of the output",
+       {},
+       {{"threshold", "N", 0.5, 0.01, 25.0}},
+       {-0.03, 0.02}},
+      {"hysteresis", "smooth inside the body", {}, {}, inside},
+      {"dead_zone", "play of the output", {}, {{"threshold", "N", 0.4, 0.01, 20.0}}, {0.03, -0.01}},
+  };
+}
+
+inline std::vector<Effect> effects_on_the_gain() {
+  return {
+      {"time_varying_gain", "linear", {}, {{"change", "-", 0.2, -3.0, 3.0}}, {}},
+      {"time_varying_gain",
+       "slow cosines",
+       {},
+       {{"half_cosine_1", "-", 0.1, -3.0, 3.0}, {"half_cosine_2", "-", -0.2, -3.0, 3.0}},
+       {}},
+      {"time_varying_gain",
+       "sinusoidal",
+       {},
+       {{"cycles_per_record", "-", 2.0, 0.5, 12.0},
+        {"sine", "-", 0.3, -3.0, 3.0},
+        {"cosine", "-", -0.1, -3.0, 3.0}},
+       {}},
+      {"regime_change",
+       "step of the gain",
+       {},
+       {{"time", "s", 4.0, 0.0, 60.0, false}, {"change", "-", 0.25, -5.0, 5.0}},
+       {}},
+      {"bilinear",
+       "gain of the body",
+       {"temp"},
+       {{"sensitivity", "1/(degC)", 0.3, -10.0, 10.0}, constant("centre", "degC", 0.1)},
+       {}},
+  };
+}
+
+inline std::vector<Effect> effects_behind_the_body() {
+  return {
+      {"nonlinear_stiffness", "at the output", {}, {{"cubic", "1/N^2", 0.05, -1.0, 1.0}}, {}},
+      {"asymmetry", "slopes at the output", {}, {{"slope_change", "-", -0.3, -0.9, 0.9}}, {}},
+      {"dead_zone", "at the output", {}, {{"half_width", "N", 0.1, 0.0, 3.0}}, {}},
+      {"output_saturation", "hard", {}, {{"limit", "N", 0.3, 0.01, 9.0}}, {}},
+      {"output_saturation", "soft", {}, {{"limit", "N", 0.5, 0.01, 9.0}}, {}},
+      {"output_saturation",
+       "hard, two limits",
+       {},
+       {{"upper_limit", "N", 0.4, 0.01, 9.0}, {"lower_limit", "N", -0.2, -9.0, -0.01}},
+       {}},
+  };
+}
+
+inline Effect one_burst() {
+  return {"transients",
+          "isolated bursts",
+          {},
+          {{"begin_1", "s", 3.0, -0.15, 60.0, false}, {"end_1", "s", 3.5, -0.15, 60.0, false}},
+          {}};
+}
+
+inline std::vector<Effect> every_effect() {
+  std::vector<Effect> all;
+  for (const auto& part :
+       {effects_before_the_body(), effects_inside_the_body(), effects_on_the_gain(),
+        effects_next_to_the_body(), effects_behind_the_body()}) {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  all.push_back(one_burst());
+  return all;
+}
+
+}  // namespace stillhand::diagnosis::made

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Invariants that every kind and form of effect keeps, each run next to the same body.
+#include "tests/unit/diagnosis/every_effect.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/evaluation.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kCount = 800;
+
+std::string name_of(const Effect& effect) { return effect.kind + ", " + effect.form; }
+
+Signals signals_of(const Measurement& measurement) { return {measurement, {"u"}, "y"}; }
+
+std::vector<double> prediction_of(const std::vector<Effect>& effects, const Signals& signals) {
+  const FreeRun run = free_run(made::model_of(made::two_pole_body(), effects), signals);
+  EXPECT_TRUE(run.finite);
+  return run.prediction;
+}
+
+TEST(EveryEffectTest, NoKindIsMissingFromTheList) {
+  std::set<std::string> listed;
+  for (const Effect& sut : made::every_effect()) listed.insert(sut.kind);
+  for (const EffectKind* kind : effect_kinds()) {
+    EXPECT_TRUE(listed.contains(std::string(kind->name()))) << kind->name();
+  }
+}
+
+TEST(EveryEffectTest, EachChangesThePredictionOrTheWeight) {
+  const Signals signals = signals_of(made::every_channel(kCount, 11));
+  const FreeRun linear = free_run(made::model_of(made::two_pole_body()), signals);
+  for (const Effect& sut : made::every_effect()) {
+    const FreeRun run = free_run(made::model_of(made::two_pole_body(), {sut}), signals);
+    EXPECT_TRUE(run.finite) << name_of(sut);
+    const bool weighs = effect_kind(sut.kind).stage(sut) == Stage::kWeight;
+    EXPECT_EQ(run.prediction != linear.prediction, !weighs) << name_of(sut);
+    EXPECT_EQ(run.weight != linear.weight, weighs) << name_of(sut);
+  }
+}
+
+// Zero times a finite column adds a zero: bit for bit.  A loop runs by another recursion than the
+// plain body: 800 roundings of 1e-16, amplified by poles of radius 0.95 at most 20 times.
+TEST(EveryEffectTest, WithoutItsCoefficientsALinearTermTakesNothing) {
+  const Signals signals = signals_of(made::every_channel(kCount, 12));
+  const auto linear = prediction_of({}, signals);
+  for (Effect sut : made::every_effect()) {
+    const Stage stage = effect_kind(sut.kind).stage(sut);
+    if (stage != Stage::kTerm && stage != Stage::kFeedback) continue;
+    std::ranges::fill(sut.coefficients, 0.0);
+    const auto without = prediction_of({sut}, signals);
+    const double allowed = stage == Stage::kTerm ? 0.0 : 1e-11;
+    for (std::size_t n = 0; n < kCount; ++n) {
+      ASSERT_NEAR(without[n], linear[n], allowed) << name_of(sut) << ", sample " << n;
+    }
+  }
+}
+
+// Terms are linear in their coefficients: twice as large, twice the contribution.
+TEST(EveryEffectTest, TwiceTheCoefficientsOfATermIsTwiceItsContribution) {
+  const Signals signals = signals_of(made::every_channel(kCount, 13));
+  const auto linear = prediction_of({}, signals);
+  for (Effect sut : made::effects_next_to_the_body()) {
+    const auto once = prediction_of({sut}, signals);
+    for (double& c : sut.coefficients) c *= 2.0;
+    const auto twice = prediction_of({sut}, signals);
+    for (std::size_t n = 0; n < kCount; ++n) {
+      // Sums of numbers below 100: a few roundings of 1e-14.
+      ASSERT_NEAR(twice[n] - linear[n], 2.0 * (once[n] - linear[n]), 1e-12)
+          << name_of(sut) << ", sample " << n;
+    }
+  }
+}
+
+// What came before a gap is unknown: the first stretch must not show in the second.
+TEST(EveryEffectTest, NothingReachesOverAGap) {
+  constexpr std::size_t kCut = 350;
+  const Measurement one = made::cut_in_two(made::every_channel(kCount, 14), kCut, 7.0);
+  Measurement other = one;
+  for (std::size_t c = 0; c < other.channels.size(); ++c) {
+    const auto more = made::white(kCut, 90 + c);
+    for (std::size_t n = 0; n < kCut; ++n) other.channels[c].values[n] += 0.5 * more[n];
+  }
+  const Signals before = signals_of(one);
+  const Signals after = signals_of(other);
+  for (const Effect& sut : made::every_effect()) {
+    const auto left = prediction_of({sut}, before);
+    const auto right = prediction_of({sut}, after);
+    EXPECT_TRUE(std::equal(left.begin() + kCut, left.end(), right.begin() + kCut)) << name_of(sut);
+  }
+}
+
+// The model knows the past alone, but for two kinds: a delay is interpolated between six samples,
+// three of them ahead, and the sign of a rate is its mean over half a sample on each side.
+TEST(EveryEffectTest, TheFutureDoesNotShowInThePast) {
+  constexpr std::size_t kFrom = 500;
+  const Measurement one = made::every_channel(kCount, 15);
+  Measurement other = one;
+  for (std::size_t c = 0; c < other.channels.size(); ++c) {
+    const auto more = made::white(kCount, 80 + c);
+    for (std::size_t n = kFrom; n < kCount; ++n) other.channels[c].values[n] += 0.5 * more[n];
+  }
+  const Signals before = signals_of(one);
+  const Signals after = signals_of(other);
+  for (const Effect& sut : made::every_effect()) {
+    const bool of_time = effect_kind(sut.kind).stage(sut) == Stage::kInputTime;
+    const std::ptrdiff_t ahead = of_time ? 4 : (sut.kind == "coulomb_friction" ? 1 : 0);
+    const auto left = prediction_of({sut}, before);
+    const auto right = prediction_of({sut}, after);
+    const auto until = static_cast<std::ptrdiff_t>(kFrom) - ahead;
+    EXPECT_TRUE(std::equal(left.begin(), left.begin() + until, right.begin())) << name_of(sut);
+  }
+}
+
+TEST(EveryEffectTest, WhatTheInputsDoNotDetermineIsExactlyWhatPredictionLeavesOut) {
+  const Signals signals = signals_of(made::every_channel(kCount, 16));
+  const auto linear = prediction_of({}, signals);
+  for (const Effect& sut : made::every_effect()) {
+    const Model model = made::model_of(made::two_pole_body(), {sut});
+    const FreeRun determined = free_run(model, signals, false);
+    const bool left_out = effect_kind(sut.kind).time_only(sut);
+    EXPECT_EQ(determined.prediction, left_out ? linear : prediction_of({sut}, signals))
+        << name_of(sut);
+  }
+}
+
+// A position summed up from a rate begins anywhere, a measured one does not.
+TEST(EveryEffectTest, ARippleOfADerivedPositionIsTimeAlone) {
+  Effect sut{"position_ripple", "one harmonic", {"theta"}, {{"f", "1/rad", 2.0}}, {1.0, 0.0}};
+  EXPECT_FALSE(effect_kind(sut.kind).time_only(sut));
+  sut.channels = {"position of omega"};
+  EXPECT_TRUE(effect_kind(sut.kind).time_only(sut));
+}
+
+TEST(EveryEffectTest, EvidenceIsOneClauseWithFiniteNumbers) {
+  for (const Effect& sut : made::every_effect()) {
+    const std::string text = effect_kind(sut.kind).evidence(sut);
+    EXPECT_FALSE(text.empty()) << name_of(sut);
+    EXPECT_FALSE(text.ends_with(".")) << text;
+    EXPECT_EQ(text.find(" nan"), std::string::npos) << text;
+    EXPECT_EQ(text.find(" inf"), std::string::npos) << text;
+  }
+}
+
+TEST(EveryEffectTest, EvidenceGivesTheNumberInItsUnit) {
+  const auto says = [](const Effect& effect) { return effect_kind(effect.kind).evidence(effect); };
+  // Seconds in the model, milliseconds in the sentence.
+  EXPECT_NE(says({"delay", "", {}, {{"delay", "s", 0.0371}}, {}}).find("37.1 ms"),
+            std::string::npos);
+  // From 1 - 0.25 to 1 + 0.25: 5/3.
+  const Effect step{"regime_change", "", {}, {{"time", "s", 4.0}, {"change", "-", 0.25}}, {}};
+  EXPECT_NE(says(step).find("1.67"), std::string::npos);
+  EXPECT_NE(says(step).find("4 s"), std::string::npos);
+  // A frequency of 2.5 per rad: a period of 0.4 rad; amplitude hypot(3, 4) = 5.
+  const Effect ripple{
+      "position_ripple", "one harmonic", {"theta"}, {{"f", "1/rad", 2.5}}, {3.0, 4.0}};
+  EXPECT_NE(says(ripple).find("0.4 rad"), std::string::npos);
+  EXPECT_NE(says(ripple).find("theta"), std::string::npos);
+  EXPECT_NE(says(ripple).find("5 (output unit)"), std::string::npos);
+  // The sign of a friction is in the words, its size in the number.
+  const Effect friction{"coulomb_friction", "sign", {"omega"}, {}, {-0.4}};
+  EXPECT_NE(says(friction).find("0.4 (output unit) against"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
