@@ -99,7 +99,7 @@ TEST(EffectTermsTest, ARippleRepeatsWithThePosition) {
 
 // x(n) = x(n-1) + (1 - e^(-T/lag)) (u(n) - x(n-1)), settled on the mean of a stretch's first
 // second.
-TEST(EffectTermsTest, ALaggedPathSettlesAnewInEveryStretch) {
+TEST(EffectTermsTest, ALaggedPathSettlesAgainInEveryStretch) {
   constexpr double kLag_s = 0.15;
   const Effect effect{"coupled_input", "lagged", {"theta"}, {{"lag", "s", kLag_s, 0.0, 9.0}}, {}};
   const Signals signals = wandering();
