@@ -37,7 +37,7 @@ report::Panel panel(std::string title, std::string unit, double extent) {
 }
 
 std::string title_of(const session::TrialResult& trial) {
-  return std::string(1, trial.label) + (trial.label == 'B' ? ", moving" : ", moving and cancelled");
+  return std::string(1, trial.label) + (trial.label == 'B' ? ", moving" : ", cancelled");
 }
 
 report::Panel force_panel(const session::TrialResult& trial) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes the pictures of README.md: runs one session over DDS (two minutes), takes its figure, a frame of its screen, and
-# the dashboard's page of its recording.  Needs a build in build/, chromium and ffmpeg.
+# the dashboard's page of its recording.  Needs a build in build/, chromium with its driver, and ffmpeg.
 # Usage: deploy/pictures/make.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -16,9 +16,5 @@ ffmpeg -loglevel error -y -ss 75 -i "$work/session/screen.avi" -frames:v 1 "$pic
 build/bin/stillhand dashboard --recording "$work/session/session.mcap" --port 8341 >"$work/dashboard.log" 2>&1 &
 dashboard=$!
 trap 'kill $dashboard 2>/dev/null; rm -rf "$work"' EXIT
-root=()
-[ "$(id -u)" -ne 0 ] || root=(--no-sandbox)
-chromium --headless=new "${root[@]}" --disable-gpu --disable-background-networking --user-data-dir="$work/chromium" \
-  --window-size=1280,900 --timeout=8000 --screenshot="$PWD/$pictures/dashboard.png" http://127.0.0.1:8341/ \
-  2>"$work/chromium.log"
+PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 deploy/pictures/photograph.py http://127.0.0.1:8341/ "$pictures/dashboard.png"
 echo "pictures: done"

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "places.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/motion/core/motion_trajectory.hpp"
 
@@ -146,9 +147,7 @@ Column column_of(const std::filesystem::path& file, const std::string& name) {
 
 std::filesystem::path measured_recordings() {
   if (const char* folder = std::getenv("STILLHAND_DATA")) return folder;
-  const auto checkout =
-      std::filesystem::path(__FILE__).parent_path().parent_path().parent_path().parent_path();
-  return checkout.parent_path() / "shared" / "data";
+  return std::filesystem::path(STILLHAND_SOURCE).parent_path() / "shared" / "data";
 }
 
 // A measured car ride (comma2k19, MIT), lateral acceleration `a_y [m/s^2]`; gravity is on a_z only.
