@@ -80,7 +80,7 @@ void Shell::run() {
       const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
       if (late_ns > kMaxCatchUp_ns) {
         due_ns += late_ns;
-        service_.note_event(stillhand_msgs::EVENT_CYCLE_MISSED, "sample clock delayed",
+        service_.note_event(stillhand_msgs::EVENT_CYCLE_MISSED, "sample clock late",
                             static_cast<double>(late_ns) / 1000.0);
       }
       tick_once(tick++);
