@@ -16,5 +16,5 @@ ffmpeg -loglevel error -y -ss 75 -i "$work/session/screen.avi" -frames:v 1 "$pic
 build/bin/stillhand dashboard --recording "$work/session/session.mcap" --port 8341 >"$work/dashboard.log" 2>&1 &
 dashboard=$!
 trap 'kill $dashboard 2>/dev/null; rm -rf "$work"' EXIT
-PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 deploy/pictures/photograph.py http://127.0.0.1:8341/ "$pictures/dashboard.png"
+PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 deploy/pictures/photograph.py http://127.0.0.1:8341/ 62 "$pictures/dashboard.png"
 echo "pictures: done"
