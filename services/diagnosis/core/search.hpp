@@ -10,14 +10,9 @@
 #include "services/diagnosis/core/fitting/fit.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/selection.hpp"
+#include "services/diagnosis/core/trials.hpp"
 
 namespace stillhand::diagnosis {
-
-/// Calls task(0) to task(count - 1), in any order or in parallel; returns when all are done.
-using ForEach =
-    std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
-/// One after the other.
-void in_order(std::size_t count, const std::function<void(std::size_t)>& task);
 
 /// One effect that was added, and the candidates that it was chosen from.
 struct Addition {

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/trials.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "services/diagnosis/core/fitting/screening.hpp"
+#include "services/diagnosis/core/fitting/shape_exchange.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kNear = 1.35;  // of the best error: worth fitting to the end
+
+// Held-out error of a model at its fit, without refitting.
+HeldOut judged(const Model& model, const Signals& signals, const Blocks& blocks) {
+  const Linearisation line = linearised(model, signals);
+  if (!line.finite) return {};
+  return held_out_linearised(grams_of(line.jacobian, line.residual, line.run.weight, blocks),
+                             blocks);
+}
+
+}  // namespace
+
+Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, int iterations,
+                   bool refitting) {
+  Trial trial;
+  FitOptions options;
+  options.max_iterations = iterations;
+  options.relative_tolerance = 1e-8;
+  fit(model, signals, blocks, options);
+  trial.held_out = refitting ? held_out(model, signals, blocks) : judged(model, signals, blocks);
+  trial.rmse =
+      trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
+  trial.added = model.effects.empty() ? 0 : model.effects.size() - 1;
+  trial.model = std::move(model);
+  return trial;
+}
+
+namespace {
+
+// The body that was fitted without the effect may be in a local minimum.  A body estimated again
+// from what the effect leaves of the output replaces it where it is better.  The full order is
+// tried too: the effect may have hidden poles of a body whose order was reduced.
+void start_afresh(Model& model, const Signals& signals, int order) {
+  constexpr double kWorthPoles = 0.98;  // of the squared error
+  std::vector<double> left = signals.output().values;
+  std::vector<std::vector<double>> inputs;
+  if (!without_effects(model, signals, inputs, left)) return;
+  const bool bound_to_order = std::ranges::any_of(model.effects, [](const Effect& effect) {
+    return effect_kind(effect.kind).through_body(effect);
+  });
+  FreeRun run;
+  double least = residual_of(model, signals, run).squaredNorm();
+  const auto own = static_cast<int>(model.body.order());
+  for (const int p : {own, order}) {
+    if (p > own && bound_to_order) break;
+    Model other = model;
+    other.body = started_body(inputs, left, {}, signals, p);
+    if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);
+    const double square = residual_of(other, signals, run).squaredNorm();
+    if (run.finite && square < (p > own ? kWorthPoles : 1.0) * least) {
+      least = square;
+      model = std::move(other);
+    }
+    if (p == order) break;
+  }
+}
+
+bool same_shape(const Model& a, const Model& b) {
+  return a.effects.back().kind == b.effects.back().kind &&
+         a.effects.back().form == b.effects.back().form;
+}
+
+// Nonlinearities inside the body differ in their shape alone, and their fits often end in a local
+// minimum.  Each is tried again from the linear parts of the best of them, and from those of
+// another that this has made the best.  The first may have hidden poles of a body whose order was
+// reduced.
+void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals& signals,
+                     const Blocks& blocks, int order, const SearchOptions& options,
+                     const ForEach& for_each) {
+  constexpr double kWorthPoles = 0.99;  // of the held-out error
+  constexpr double kGains = 0.97;       // of the present one
+  constexpr int kPasses = 2;
+  const auto inside = [](const Trial& trial) { return ends_inside_body(trial.model); };
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto best = std::ranges::find_if(all, inside);
+    if (best == all.end() || best->rmse > kGains * current_rmse) return;
+    const bool bound = std::ranges::any_of(best->model.effects, [](const Effect& effect) {
+      return effect_kind(effect.kind).through_body(effect);
+    });
+    while (!bound && static_cast<int>(best->model.body.order()) < order) {
+      Trial richer =
+          judged_trial(lifted(best->model), signals, blocks, options.fit_iterations, true);
+      if (!(richer.rmse < kWorthPoles * best->rmse)) break;
+      *best = std::move(richer);
+    }
+    const Model from = best->model;
+    for_each(all.size(), [&](std::size_t i) {
+      if (!inside(all[i]) || &all[i] == &*best) return;
+      const auto start = with_shape_of(all[i].model.effects.back(), from, signals);
+      if (!start) return;
+      Trial other = judged_trial(*start, signals, blocks, options.screening_iterations, false);
+      if (!(other.rmse < std::min(kNear * best->rmse, all[i].rmse))) return;
+      other = judged_trial(std::move(other.model), signals, blocks, options.fit_iterations, true);
+      if (other.rmse < all[i].rmse) all[i] = std::move(other);
+    });
+    std::ranges::stable_sort(all, by_rmse);
+    if (same_shape(std::ranges::find_if(all, inside)->model, from)) return;
+  }
+}
+
+}  // namespace
+
+bool passes_over_samples(const Trial& trial) {
+  const Effect& effect = trial.model.effects.back();
+  return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+}
+
+std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
+                          const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
+                          const SearchOptions& options, const ForEach& for_each) {
+  constexpr double kGains = 0.985;
+  constexpr double kExplainsMuch = 0.85;
+  constexpr std::size_t kFewest = 5;
+  const Screening screening(current, signals, blocks, impulse_response);
+  const auto& kinds = effect_kinds();
+  std::vector<std::vector<Proposal>> proposals(kinds.size());
+  for_each(kinds.size(), [&](std::size_t k) { proposals[k] = kinds[k]->proposed(screening); });
+  std::vector<Model> models;
+  for (const auto& of_kind : proposals) {
+    for (const Proposal& proposal : of_kind) {
+      Model model = current;
+      if (proposal.body) model.body = *proposal.body;
+      model.effects.push_back(proposal.effect);
+      models.push_back(std::move(model));
+    }
+  }
+  std::vector<Trial> all(models.size());
+  for_each(models.size(), [&](std::size_t i) {
+    all[i] =
+        judged_trial(std::move(models[i]), signals, blocks, options.screening_iterations, false);
+  });
+  std::ranges::stable_sort(all, by_rmse);
+  // Where nothing gains, a few are carried to the end all the same: some begin slowly.
+  std::size_t near = 0;
+  while (near < all.size() && all[near].rmse < kNear * all.front().rmse &&
+         (near < kFewest || all[near].rmse < kGains * current_rmse)) {
+    ++near;
+  }
+  for_each(std::min(near, kFewest),
+           [&](std::size_t i) { start_afresh(all[i].model, signals, order); });
+  for_each(near, [&](std::size_t i) {
+    all[i] = judged_trial(std::move(all[i].model), signals, blocks, options.fit_iterations, true);
+  });
+  std::ranges::stable_sort(all, by_rmse);
+  exchange_shapes(all, current_rmse, signals, blocks, order, options, for_each);
+  // To pass over samples explains nothing: only where no effect explains much.
+  const auto explains = std::ranges::find_if_not(all, passes_over_samples);
+  if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
+    std::erase_if(all, passes_over_samples);
+  }
+  return all;
+}
+
+void in_order(std::size_t count, const std::function<void(std::size_t)>& task) {
+  for (std::size_t i = 0; i < count; ++i) task(i);
+}
+
+}  // namespace stillhand::diagnosis
