@@ -37,12 +37,12 @@ fi
 # Each part runs, whatever the parts before it found.
 failed=()
 tests build "$@" || failed+=("tests")
-.ci/tidy build || failed+=("clang-tidy")
 for preset in asan-ubsan tsan; do
   # The recordings of the MCAP project's reader come from a live session, which no sanitizer lets run in time.
   { deploy/build.sh "$preset" &&
     tests "build-$preset" -L '^(unit|interface)$' -E mcap_official_reader "$@"; } || failed+=("$preset")
 done
+.ci/tidy build-asan-ubsan || failed+=("clang-tidy")
 if [ ${#failed[@]} -gt 0 ]; then
   echo "run: failed: ${failed[*]}" >&2
   exit 1

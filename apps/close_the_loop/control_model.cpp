@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "services/cancellation/core/command_filter.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
+#include "services/contract/units.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/diagnosis/core/model/loop.hpp"
@@ -22,8 +22,6 @@ namespace {
 
 namespace control = diagnosis::control;
 using diagnosis::Effect;
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // One try at carrying a model over, with one denominator.
 class Conversion {

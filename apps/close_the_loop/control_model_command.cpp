@@ -23,7 +23,7 @@
 namespace stillhand::close_the_loop {
 namespace {
 
-struct Words {
+struct ControlModelWords {
   std::filesystem::path model;
   std::string recording;
   measurement::ReadOptions read;
@@ -34,7 +34,7 @@ struct Words {
   bool as_it_is = false;
 };
 
-int run(const Words& words) {
+int run(const ControlModelWords& words) {
   report::ResultFiles files({{"--save", words.save}}, {words.model, words.recording});
   const diagnosis::Model model =
       diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
@@ -65,7 +65,7 @@ int run(const Words& words) {
 }  // namespace
 
 void add_control_model_command(CLI::App& cli, int& status) {
-  auto words = std::make_shared<Words>();
+  auto words = std::make_shared<ControlModelWords>();
   lab::LabOptions places;
   lab::set_places(places);
   words->config = places.config;

@@ -4,10 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
+#include "services/contract/units.hpp"
 #include "services/diagnosis/core/fitting/modes.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
@@ -21,7 +21,6 @@ namespace {
 using diagnosis::Effect;
 using Complex = std::complex<double>;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr Eigen::Index kPoints = 241;  // of a response, each with a real and an imaginary part
 constexpr double kOuterWeight = 0.2;
 

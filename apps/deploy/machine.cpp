@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Empty if the file does not exist or cannot be read.
-std::string text_of(const fs::path& file) {
+std::string read_of(const fs::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -64,7 +64,7 @@ std::map<std::uint64_t, std::string> owners_of_sockets() {
       const std::string target = fs::read_symlink(file.path(), error).string();
       constexpr std::string_view kSocket = "socket:[";
       if (error || !target.starts_with(kSocket)) continue;
-      std::string name = text_of(process.path() / "comm");
+      std::string name = read_of(process.path() / "comm");
       owners[std::stoull(target.substr(kSocket.size()))] = name.substr(0, name.find('\n'));
     }
   }
@@ -73,7 +73,7 @@ std::map<std::uint64_t, std::string> owners_of_sockets() {
 
 std::vector<TakenPort> taken_ports_with_owners(std::uint32_t first, std::uint32_t last) {
   std::vector<TakenPort> taken =
-      taken_ports(text_of("/proc/net/udp") + text_of("/proc/net/udp6"), first, last);
+      taken_ports(read_of("/proc/net/udp") + read_of("/proc/net/udp6"), first, last);
   if (taken.empty()) return taken;
   const auto owners = owners_of_sockets();
   for (TakenPort& each : taken) {
@@ -88,7 +88,7 @@ std::vector<std::string> governors() {
   std::vector<std::string> texts;
   std::error_code ignored;
   for (const auto& cpu : fs::directory_iterator("/sys/devices/system/cpu", ignored)) {
-    std::string text = text_of(cpu.path() / "cpufreq" / "scaling_governor");
+    std::string text = read_of(cpu.path() / "cpufreq" / "scaling_governor");
     if (!text.empty()) texts.push_back(std::move(text));
   }
   return texts;
@@ -149,10 +149,10 @@ std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
       check_clock(clock_state()),
       check_real_time(granted),
       check_memory_lock(granted),
-      check_buffers(text_of(net / "core/rmem_max"), text_of(net / "core/wmem_max"), buffers),
+      check_buffers(read_of(net / "core/rmem_max"), read_of(net / "core/wmem_max"), buffers),
       check_ports(taken_ports_with_owners(ports.first, last)),
-      check_ephemeral_ports(text_of(net / "ipv4/ip_local_port_range"),
-                            text_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
+      check_ephemeral_ports(read_of(net / "ipv4/ip_local_port_range"),
+                            read_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
       check_governor(governors()),
       reachability_commands(inventory, host)};
   if (!inventory.security.empty()) findings.push_back(check_keys_of(inventory, host));

@@ -11,34 +11,34 @@
 namespace stillhand::lab {
 namespace {
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
-Words shared_words(const LabOptions& options, const Hosts& hosts, const Place& place) {
-  Words words{"--domain",
-              fmt::to_string(hosts.domain()),
-              "--rig",
-              fmt::to_string(options.rig),
-              "--seed",
-              fmt::to_string(options.protocol.seed),
-              "--profiles",
-              place.profiles.string(),
-              "--config",
-              place.config.string(),
-              "--end-with-parent"};
+Arguments shared_words(const LabOptions& options, const Hosts& hosts, const Place& place) {
+  Arguments words{"--domain",
+                  fmt::to_string(hosts.domain()),
+                  "--rig",
+                  fmt::to_string(options.rig),
+                  "--seed",
+                  fmt::to_string(options.protocol.seed),
+                  "--profiles",
+                  place.profiles.string(),
+                  "--config",
+                  place.config.string(),
+                  "--end-with-parent"};
   if (options.real_time) words.push_back("--real-time");
   if (!place.security.empty()) words.insert(words.end(), {"--security", place.security.string()});
   return words;
 }
 
-Words recorder_words(const LabOptions& options, const Place& place) {
-  Words words{"--out", (place.out / "session.mcap").string()};
-  const Words keep = recording::keep_words(options.keep);
+Arguments recorder_words(const LabOptions& options, const Place& place) {
+  Arguments words{"--out", (place.out / "session.mcap").string()};
+  const Arguments keep = recording::keep_words(options.keep);
   words.insert(words.end(), keep.begin(), keep.end());
   return words;
 }
 
 // What the assignment on the bus does not say.
-Words motion_words(const LabOptions& options) {
+Arguments motion_words(const LabOptions& options) {
   const session::ProtocolOptions& protocol = options.protocol;
   switch (protocol.motion) {
     case session::Motion::kRide:
@@ -53,8 +53,8 @@ Words motion_words(const LabOptions& options) {
   return {};
 }
 
-Words display_words(const LabOptions& options, const Place& place) {
-  Words words;
+Arguments display_words(const LabOptions& options, const Place& place) {
+  Arguments words;
   if (options.headless) words.push_back("--headless");
   if (options.video) words.insert(words.end(), {"--video", (place.out / "screen.avi").string()});
   if (options.who == Operator::kMouse) words.push_back("--pointer");
@@ -62,7 +62,7 @@ Words display_words(const LabOptions& options, const Place& place) {
 }
 
 // Most services need none.
-Words own_words(std::string_view service, const LabOptions& options, const Place& place) {
+Arguments own_words(std::string_view service, const LabOptions& options, const Place& place) {
   if (service == "recorder") return recorder_words(options, place);
   if (service == "motion") return motion_words(options);
   if (service == "display") return display_words(options, place);
@@ -82,7 +82,7 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
     launch.executable = options.programs / ("stillhand-" + launch.name);
     launch.log = options.out / "logs" / (launch.name + ".log");
     launch.arguments = shared_words(options, hosts, place);
-    const Words own = own_words(service, options, place);
+    const Arguments own = own_words(service, options, place);
     launch.arguments.insert(launch.arguments.end(), own.begin(), own.end());
     if (service == "rig" && !sealed.empty()) {
       launch.arguments.insert(launch.arguments.end(),

@@ -10,6 +10,7 @@
 
 #include "apps/replay/replay.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 
 namespace stillhand::replay {
 namespace {
@@ -17,15 +18,14 @@ namespace {
 using stillhand_msgs::ReplayAction;
 
 constexpr std::int64_t kAnswer_ns = 5 * runtime::kNsPerSecond;
-constexpr double kNs = 1e9;
 
 bool inside(double at_s, const Played& played) {
-  const double length_s = static_cast<double>(played.end_ns - played.start_ns) / kNs;
+  const double length_s = static_cast<double>(played.end_ns - played.start_ns) / kNsPerS;
   return std::isfinite(at_s) && at_s >= 0.0 && at_s <= length_s;
 }
 
 std::int64_t log_time(double at_s, const Played& played) {
-  return static_cast<std::int64_t>(played.start_ns) + std::llround(at_s * kNs);
+  return static_cast<std::int64_t>(played.start_ns) + std::llround(at_s * kNsPerS);
 }
 
 /// @returns why the command is refused, or ""
@@ -88,8 +88,9 @@ stillhand_msgs::ReplayStatus status_of(const Player& player, const Played& playe
   stillhand_msgs::ReplayStatus status;
   status.paused(player.paused());
   status.position_s(
-      static_cast<double>(player.position_ns() - static_cast<std::int64_t>(played.start_ns)) / kNs);
-  status.length_s(static_cast<double>(played.end_ns - played.start_ns) / kNs);
+      static_cast<double>(player.position_ns() - static_cast<std::int64_t>(played.start_ns)) /
+      kNsPerS);
+  status.length_s(static_cast<double>(played.end_ns - played.start_ns) / kNsPerS);
   status.rate(static_cast<double>(player.rate().per_mille) / 1000.0);
   status.looping(player.looping());
   status.released(player.released());

@@ -13,6 +13,7 @@
 #include "apps/replay/route_plan.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "services/recording/core/mcap/mcap_loss.hpp"
 #include "services/runtime/bus/playback.hpp"
 #include "services/runtime/process/clock.hpp"
@@ -28,7 +29,6 @@ constexpr std::int64_t kPrintInterval_ns = runtime::kNsPerSecond / 4;
 constexpr std::int64_t kStatusInterval_ns = runtime::kNsPerSecond / 10;
 constexpr std::int64_t kMatchPoll_ns = 10'000'000;
 constexpr std::int64_t kAcknowledge_ns = 2 * runtime::kNsPerSecond;
-constexpr double kNs = 1e9;
 
 /// Every writer of the topic has a reader: discovery finds each writer separately.
 bool has_readers(const std::string& topic, const RoutePlan& plan,
@@ -46,7 +46,7 @@ void wait_for_readers(const ReplayOptions& options, const RoutePlan& plan,
       if (runtime::monotonic_ns() > limit_ns) {
         throw std::runtime_error(fmt::format("--wait-for {}: no reader on domain {} within {:g} s",
                                              topic, options.domain,
-                                             static_cast<double>(options.wait_limit_ns) / kNs));
+                                             static_cast<double>(options.wait_limit_ns) / kNsPerS));
       }
       runtime::sleep_until_ns(runtime::monotonic_ns() + kMatchPoll_ns);
     }
@@ -88,7 +88,7 @@ struct PlaySpan {
 void print_progress(const Player& player, const PlaySpan& span) {
   if (isatty(STDERR_FILENO) != 1) return;
   const auto seconds = [&span](std::int64_t at_ns) {
-    return static_cast<double>(at_ns - static_cast<std::int64_t>(span.first_ns)) / kNs;
+    return static_cast<double>(at_ns - static_cast<std::int64_t>(span.first_ns)) / kNsPerS;
   };
   fmt::print(stderr, "\r\033[K{:.2f} of {:.2f} s  rate {}{}  {} messages",
              seconds(player.position_ns()), seconds(static_cast<std::int64_t>(span.last_ns)),
@@ -97,7 +97,7 @@ void print_progress(const Player& player, const PlaySpan& span) {
 
 /// "12.5", "0.000000001"
 std::string seconds(std::uint64_t ns) {
-  std::string text = fmt::format("{:.9f}", static_cast<double>(ns) / kNs);
+  std::string text = fmt::format("{:.9f}", static_cast<double>(ns) / kNsPerS);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;

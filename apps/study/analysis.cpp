@@ -14,7 +14,6 @@ namespace {
 
 using session::kMetrics;
 
-constexpr const char* kPaperConditions = "ABC";
 constexpr Eigen::Index kThirds = 3;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Least gain of the own model, Eq. SU-4: a quotient of gains is meaningless without a gain.

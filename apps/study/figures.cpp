@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "apps/session/protocol.hpp"
+#include "apps/study/analysis.hpp"
 
 namespace stillhand::study {
 namespace {
 
 using report::Colour;
-
-constexpr const char* kPaperConditions = "ABC";
 
 }  // namespace
 

@@ -16,7 +16,6 @@ using report::Panel;
 using report::Scale;
 using report::Series;
 
-constexpr const char* kPaperConditions = "ABC";
 constexpr double kMmPerM = 1000.0;
 constexpr double kExcerptRate_hz = 20.0;
 constexpr std::size_t kFittedLines = 11;  // paper III-C

@@ -7,7 +7,6 @@
 
 namespace stillhand::recording {
 
-using runtime::Durability;
 using runtime::kForever_ns;
 using runtime::Liveliness;
 
@@ -60,7 +59,7 @@ std::optional<runtime::WriterQos> qos_of(const TextMap& texts) {
   };
   runtime::WriterQos qos;
   qos.reliable = text("qos.reliability") == "reliable";
-  qos.durability = enum_of(kDurability, text("qos.durability"), Durability::kVolatile);
+  qos.durability = enum_of(kDurability, text("qos.durability"), runtime::Durability::kVolatile);
   qos.liveliness = enum_of(kLiveliness, text("qos.liveliness"), Liveliness::kAutomatic);
   qos.lease_ns = number_of(text("qos.liveliness_lease_ns"), kForever_ns);
   qos.exclusive = text("qos.ownership") == "exclusive";

@@ -15,7 +15,7 @@ std::string shortest(double value) {
   return {text.data(), end};
 }
 
-std::string interval(Range range) { return shortest(range.min) + " to " + shortest(range.max); }
+std::string allowed(Range range) { return shortest(range.min) + " to " + shortest(range.max); }
 
 // A bar would end the cell of the table.
 std::string escaped(std::string_view text) {
@@ -31,12 +31,12 @@ std::string escaped(std::string_view text) {
 
 void TableWriter::operator()(std::string_view name, double value, Range range,
                              std::string_view doc) {
-  row(name, shortest(value), interval(range), doc);
+  row(name, shortest(value), allowed(range), doc);
 }
 
 void TableWriter::operator()(std::string_view name, std::int64_t value, Range range,
                              std::string_view doc) {
-  row(name, std::to_string(value), interval(range), doc);
+  row(name, std::to_string(value), allowed(range), doc);
 }
 
 void TableWriter::operator()(std::string_view name, bool value, Range range, std::string_view doc) {
@@ -46,7 +46,7 @@ void TableWriter::operator()(std::string_view name, bool value, Range range, std
 
 void TableWriter::operator()(std::string_view name, const std::string& value, Range range,
                              std::string_view doc) {
-  row(name, "\"" + value + "\"", interval(range) + " characters", doc);
+  row(name, "\"" + value + "\"", allowed(range) + " characters", doc);
 }
 
 void TableWriter::row(std::string_view name, const std::string& value, const std::string& range,

@@ -3,16 +3,14 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 
 namespace stillhand::signal {
 namespace {
-
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 void check(const Component& component, std::int64_t samples_per_period, std::size_t index) {
   const std::string key = "multisine.components[" + std::to_string(index) + "].";
@@ -52,8 +50,8 @@ MotionSample Multisine::at(std::int64_t n) const noexcept {
   const std::int64_t within = n % samples_per_period_;
   for (const Component& c : components_) {
     const std::int64_t step = c.harmonic * within % samples_per_period_;
-    const double angle_rad = kTurn_rad * (static_cast<double>(step) / period) + c.phase_rad;
-    const double w_rad_s = kTurn_rad * static_cast<double>(c.harmonic) * rate_hz_ / period;
+    const double angle_rad = kTwoPi * (static_cast<double>(step) / period) + c.phase_rad;
+    const double w_rad_s = kTwoPi * static_cast<double>(c.harmonic) * rate_hz_ / period;
     const double accel_m_s2 = c.amplitude_m_s2 * std::sin(angle_rad);
     sum.accel_m_s2 += accel_m_s2;
     sum.vel_m_s -= c.amplitude_m_s2 / w_rad_s * std::cos(angle_rad);
@@ -72,7 +70,7 @@ std::vector<double> schroeder_phases(const std::vector<double>& amplitudes) {
   double turns = 0.0;
   for (const double a : amplitudes) {
     turns -= power_below;
-    phases_rad.push_back(kTurn_rad * (turns - std::floor(turns)));
+    phases_rad.push_back(kTwoPi * (turns - std::floor(turns)));
     if (total > 0.0) power_below += a * a / total;
   }
   return phases_rad;

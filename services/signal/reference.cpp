@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "services/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kPaperDuration_s = 180.0;
 constexpr std::array<std::int64_t, kReferenceLines> kPaperMultiples{
     2, 3, 5, 7, 11, 17, 23, 37, 59, 87, 131, 199, 310, 467, 719};
@@ -70,7 +69,7 @@ void add_line(std::vector<double>& table, std::int64_t harmonic, double phase_ra
   const std::size_t count = table.size();
   const auto angle = [&](std::size_t n) {
     const std::size_t cycles = static_cast<std::size_t>(harmonic) * n % count;
-    return kTurn_rad * (static_cast<double>(cycles) / static_cast<double>(count));
+    return kTwoPi * (static_cast<double>(cycles) / static_cast<double>(count));
   };
   const std::size_t block = block_of(count);
   std::vector<double> sines(block);
@@ -118,7 +117,7 @@ ReferenceSignal::ReferenceSignal(const ReferenceDesign& design, Tick duration_ti
   table_m_.assign(static_cast<std::size_t>(duration_ticks), 0.0);
   Gaussian draw(seed, kPhaseStream);
   for (std::size_t k = 0; k < kReferenceLines; ++k) {
-    phases_rad_[k] = kTurn_rad * draw.uniform();
+    phases_rad_[k] = kTwoPi * draw.uniform();
     add_line(table_m_, design.harmonics[k], phases_rad_[k], scale_m * design.amplitudes[k]);
   }
 }

@@ -5,16 +5,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <unsupported/Eigen/FFT>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 
 namespace stillhand::signal {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 // Two-sided 95 % quantile of the normal distribution.
 constexpr double kNormal95 = 1.959963984540054;
 
@@ -29,8 +28,7 @@ std::size_t block_of(std::size_t count) {
 std::vector<double> hann(std::size_t length) {
   std::vector<double> window(length);
   for (std::size_t i = 0; i < length; ++i) {
-    window[i] =
-        0.5 - 0.5 * std::cos(kTurn_rad * static_cast<double>(i) / static_cast<double>(length));
+    window[i] = 0.5 - 0.5 * std::cos(kTwoPi * static_cast<double>(i) / static_cast<double>(length));
   }
   return window;
 }
@@ -136,7 +134,7 @@ Complex line_at(const std::vector<double>& x, std::int64_t cycles_in_record) {
   const std::size_t block = block_of(count);
   const auto rotation = [&](std::size_t n) {
     const std::size_t cycles = static_cast<std::size_t>(cycles_in_record) * n % count;
-    const double angle_rad = kTurn_rad * (static_cast<double>(cycles) / static_cast<double>(count));
+    const double angle_rad = kTwoPi * (static_cast<double>(cycles) / static_cast<double>(count));
     return Complex(std::cos(angle_rad), -std::sin(angle_rad));
   };
   std::vector<Complex> within(block);

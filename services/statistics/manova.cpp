@@ -10,6 +10,7 @@
 #include <string>
 
 #include "services/contract/config_error.hpp"
+#include "services/statistics/sample_check.hpp"
 
 namespace stillhand::statistics {
 namespace {
@@ -20,8 +21,6 @@ using Eigen::VectorXd;
 
 // Smallest pivot of the residuals, with columns of unit length; R's summary.manova has the same.
 constexpr double kDependent = 1e-7;
-// As in sample_check.cpp: sums and squares stay far from overflow.
-constexpr double kLargestMagnitude = 1e100;
 
 // Square roots of the cross products of Eq. ST-7: H = effect' effect, E = error' error.
 struct Parts {

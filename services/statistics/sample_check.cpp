@@ -6,12 +6,6 @@
 #include "services/contract/config_error.hpp"
 
 namespace stillhand::statistics {
-namespace {
-
-constexpr double kLargestMagnitude = 1e100;
-
-}  // namespace
-
 void require_sample(const std::vector<double>& values, std::size_t least, const std::string& name) {
   if (values.size() < least) {
     throw ConfigError(name, std::to_string(values.size()) + " values",

@@ -7,6 +7,9 @@
 
 namespace stillhand::statistics {
 
+/// Sums and squares of values up to this one stay far from overflow.
+inline constexpr double kLargestMagnitude = 1e100;
+
 /// What every function here asks of a sample: at least `least` values, all finite and at most 1e100
 /// in magnitude, so that neither a sum nor a square of them overflows.  Pure.
 /// @param name  what the message begins with, for example "t_test.first"

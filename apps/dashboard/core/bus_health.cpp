@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "services/contract/time_difference.hpp"
+#include "services/contract/units.hpp"
 
 namespace stillhand::dashboard {
 
 namespace {
 
-constexpr double kNsPerMs = 1e6;
 constexpr double kInTime = -1.0;  // below every threshold: late_warning_ms may be 0
 
 Threshold checked(const char* key, double warning, double critical) {

@@ -8,6 +8,7 @@
 #include "idl/control_loop.h"
 #include "idl/session_state.hpp"
 #include "services/contract/time_difference.hpp"
+#include "services/contract/units.hpp"
 #include "services/recording/sample_clock.hpp"
 
 namespace stillhand::dashboard {
@@ -16,9 +17,7 @@ namespace {
 
 constexpr std::size_t kNone = SIZE_MAX;
 constexpr std::size_t kMostEvents = 50;
-constexpr double kNsPerS = 1e9;
 constexpr Tick kLastTick = 1'000'000'000'000;  // 30 years: no session's
-constexpr double kNsPerMs = 1e6;
 
 // In the order in which a fault is looked for: round the loop from the sensor on.
 constexpr std::array kTopics{

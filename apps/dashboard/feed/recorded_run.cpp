@@ -7,6 +7,7 @@
 #include "apps/dashboard/view/words.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/time_difference.hpp"
+#include "services/contract/units.hpp"
 #include "services/runtime/trial_codec.hpp"
 
 namespace stillhand::dashboard {
@@ -16,7 +17,6 @@ namespace {
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kStep_ns = kSecond_ns / 10;
 constexpr std::int64_t kLongest_ns = 60 * kSecond_ns;  // bounds the cost of a wrong log time
-constexpr double kNsPerMs = 1e6;
 
 Source source_of(const recording::MessageView& message) {
   const auto text = [&](const char* key) {

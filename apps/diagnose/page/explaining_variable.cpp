@@ -17,7 +17,7 @@ using diagnosis::Parameter;
 using diagnosis::Signal;
 using diagnosis::Stage;
 
-constexpr std::size_t kBins = 40;
+constexpr std::size_t kVariableBins = 40;
 constexpr double kWorthMore = 0.05;        // a later candidate must explain this much more
 constexpr double kDirectionMatters = 0.1;  // and the direction this much
 constexpr double kLags_s[] = {0.0, 0.01, 0.02, 0.04, 0.06, 0.09, 0.13, 0.2, 0.3, 0.5};
@@ -123,10 +123,10 @@ std::vector<double> split(const std::vector<double>& x, const BinAxis& axis) {
 }
 
 void judge(Variable& variable, const EffectTrace& trace, const std::vector<double>& weight) {
-  const BinAxis axis = axis_over(variable.values, weight, kBins);
+  const BinAxis axis = axis_over(variable.values, weight, kVariableBins);
   variable.share = share_between_bins(axis, variable.values, trace.contribution, weight);
   const std::vector<double> both = split(variable.values, axis);
-  const BinAxis twice{axis.low, axis.low + 2.001 * (axis.high - axis.low), 2 * kBins};
+  const BinAxis twice{axis.low, axis.low + 2.001 * (axis.high - axis.low), 2 * kVariableBins};
   const double share = share_between_bins(twice, both, trace.contribution, weight);
   if (share < variable.share + kDirectionMatters) return;
   variable.share = share;

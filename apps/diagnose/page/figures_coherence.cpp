@@ -16,7 +16,7 @@ using report::Panel;
 using report::Scale;
 using report::Series;
 
-constexpr double kOffset = 0.14;  // of a place, so that two points do not hide each other
+constexpr double kCoherenceOffset = 0.14;  // of a place, so that two points do not hide each other
 
 // Channels, then inputs.
 std::vector<const ChannelCoherence*> all_of(const CoherenceResult& result) {
@@ -62,7 +62,8 @@ Panel by_channel(const CoherenceResult& before, const CoherenceResult* after) {
   panel.series.push_back(threshold);
   panel.series.push_back(highest_series(before, "baseline's residual", kBefore, 0.0));
   if (after != nullptr) {
-    panel.series.push_back(highest_series(*after, "residual with the effects", kAfter, kOffset));
+    panel.series.push_back(
+        highest_series(*after, "residual with the effects", kAfter, kCoherenceOffset));
   }
   return panel;
 }

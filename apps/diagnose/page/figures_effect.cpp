@@ -15,7 +15,7 @@ using report::Kind;
 using report::Panel;
 using report::Series;
 
-constexpr std::size_t kBins = 24;
+constexpr std::size_t kEffectBins = 24;
 
 std::string effect_figure_name(std::size_t which) { return "effect_" + std::to_string(which + 1); }
 
@@ -56,8 +56,8 @@ bool predicts(const Evidence& evidence, std::size_t which, const EffectTrace& tr
 Panel against_prediction(const Evidence& evidence, const EffectTrace& trace) {
   const std::vector<double>& weight = evidence.after.run.weight;
   const std::string& unit = evidence.found.output_unit;
-  const BinAxis axis =
-      axis_over(trace.contribution, weight, bins_for(weight, evidence.correlation_samples, kBins));
+  const BinAxis axis = axis_over(trace.contribution, weight,
+                                 bins_for(weight, evidence.correlation_samples, kEffectBins));
   const BinnedMeans means =
       binned_means(axis, trace.contribution, trace.without, weight, evidence.correlation_samples);
   Series bars{.label = "without it",

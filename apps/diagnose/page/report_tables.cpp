@@ -28,10 +28,6 @@ using report::Table;
 constexpr std::size_t kMostTried = 10;
 constexpr std::size_t kMostQuestions = 15;
 
-std::string interval(double low, double high) {
-  return short_number(low) + " to " + short_number(high);
-}
-
 std::vector<Cell> error_row(const std::string& name, const HeldOutError& error,
                             const HeldOutError& before, double floor) {
   const double change = error.rmse / before.rmse - 1.0;

@@ -26,10 +26,6 @@ bool is_plain(std::string_view unit) { return unit.empty() || unit == "-" || uni
 
 bool is_compound(std::string_view unit) { return unit.find_first_of("/* ") != std::string::npos; }
 
-std::string interval(double low, double high) {
-  return short_number(low) + " to " + short_number(high);
-}
-
 std::string model_name(const Diagnosis& diagnosis) {
   const std::size_t order = diagnosis.baseline.model.body.order();
   if (order == 0) return "a static linear model";
@@ -57,6 +53,10 @@ std::string error_in_words(const Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+std::string interval(double low, double high) {
+  return short_number(low) + " to " + short_number(high);
+}
 
 std::string shown_unit(std::string_view unit) {
   std::string text(unit);

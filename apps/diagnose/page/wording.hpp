@@ -23,6 +23,8 @@ std::string shown_sentence(std::string_view sentence, std::string_view output_un
 std::string effect_title(const diagnosis::FoundEffect& effect);
 std::string spaced(std::string_view kind);
 
+/// "1.2 to 3.4"
+std::string interval(double low, double high);
 /// p as text; "< 10⁻³⁰⁰" where a double cannot hold it.
 std::string p_value(double p);
 /// "12.3 %"; an en dash for a number that is not finite.

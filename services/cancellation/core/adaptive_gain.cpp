@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "services/contract/tick.hpp"
+#include "services/contract/units.hpp"
 
 namespace stillhand::cancellation {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kDt = kControlPeriod_s;
 // Paper III-C: the platform moves between 0.7 and 2 Hz; the middle in log frequency is 1.2 Hz.
 constexpr double kBandLow_hz = 0.5;

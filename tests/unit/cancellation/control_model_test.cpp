@@ -5,15 +5,14 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "services/cancellation/core/canceller.hpp"
+#include "services/contract/units.hpp"
 #include "services/signal/random.hpp"
 
 namespace stillhand::cancellation {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kA_y = static_cast<std::size_t>(Channel::kAccelY);
 constexpr std::size_t kRoll_i = static_cast<std::size_t>(Channel::kRoll);
 constexpr ModelBounds kBounds{60.0, 10.0};

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
@@ -19,7 +19,6 @@ namespace {
 using diagnosis::Effect;
 
 constexpr std::size_t kSlow = 10;  // control ticks a sample of the diagnosed model
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Motion at 1 kHz, and every tenth of it as a measurement.
 struct Motion {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/contract/units.hpp"
 #include "services/diagnosis/core/fitting/modes.hpp"
 #include "services/signal/difference_model.hpp"
 
@@ -17,7 +18,6 @@ using Complex = std::complex<double>;
 using diagnosis::mode_denominator;
 using diagnosis::product;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kRateHz = 100.0;
 
 diagnosis::Model model_of(std::vector<double> denominator, std::vector<double> numerator) {

@@ -5,15 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "services/contract/units.hpp"
 #include "services/signal/delay_line.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 struct Late {
   std::size_t motor = 2;

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "services/contract/units.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
@@ -15,7 +15,6 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kCount = 400;
 constexpr std::size_t kCut = 150;
 constexpr double kPause_s = 0.503;

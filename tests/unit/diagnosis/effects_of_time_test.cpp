@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/contract/units.hpp"
 #include "tests/unit/diagnosis/proposed.hpp"
 
 // Effects of time alone.  Each on a recording of its own.
@@ -15,7 +16,6 @@ using made::Planted;
 
 constexpr std::size_t kCount = 6000;
 constexpr double kLength_s = 59.99;
-constexpr double kTurn = 2.0 * std::numbers::pi;
 const std::vector<double> kU = made::ride(kCount, 1);
 const Body kBody = made::two_pole_body();
 
@@ -55,7 +55,7 @@ std::vector<double> answer_with_noise(const std::vector<double>& noise) {
 TEST(EffectsOfTimeTest, ATone) {
   Planted sut =
       planted("tone", "beside the body",
-              answer_and([](double t_s) { return 0.1 * std::sin(kTurn * 7.3217 * t_s + 0.4); }));
+              answer_and([](double t_s) { return 0.1 * std::sin(kTwoPi * 7.3217 * t_s + 0.4); }));
   // Lines are tried in quarters of 1/60 Hz.
   sut.wanted = {{0, 7.3217, 0.13 / kLength_s, 1e-4}};
   expect_proposed(sut);
@@ -97,7 +97,7 @@ TEST(EffectsOfTimeTest, AGainThatChangesSlowly) {
   ramp.wanted = {{0, 0.2, 0.02, 0.004}};
   expect_proposed(ramp);
   Planted wave = planted("time_varying_gain", "sinusoidal", answer_times([](double t_s) {
-                           return 1.0 + 0.2 * std::sin(kTurn * 2.8 * t_s / kLength_s);
+                           return 1.0 + 0.2 * std::sin(kTwoPi * 2.8 * t_s / kLength_s);
                          }));
   // 2 and 3 cycles are tried; 3 instead of 2.8 turn the phase by 0.2 pi in the middle of the
   // record, and 0.2 sin(0.2 pi) = 0.118.
@@ -124,7 +124,7 @@ TEST(EffectsOfTimeTest, AGainThatChangesAtOnce) {
 TEST(EffectsOfTimeTest, IsolatedBursts) {
   const auto shape = [](double t_s, double begin_s) {
     const double since_s = t_s - begin_s;
-    return since_s > 0.0 && since_s < 0.3 ? std::sin(kTurn * 10.0 * since_s) : 0.0;
+    return since_s > 0.0 && since_s < 0.3 ? std::sin(kTwoPi * 10.0 * since_s) : 0.0;
   };
   Planted sut =
       planted("transients", "isolated bursts",
@@ -146,7 +146,7 @@ TEST(EffectsOfTimeTest, NoiseIsNoBurst) {
     std::vector<double> heavy = noise;
     signal::Gaussian draw(seed, 1);
     for (std::size_t n = 0; n < kCount; ++n) {
-      uneven[n] *= 2.0 + std::sin(kTurn * static_cast<double>(n) / 1500.0);
+      uneven[n] *= 2.0 + std::sin(kTwoPi * static_cast<double>(n) / 1500.0);
       if (draw.uniform() < 0.01) heavy[n] *= 8.0;
     }
     EXPECT_TRUE(proposed_by("transients", answer_with_noise(uneven)).empty()) << seed;

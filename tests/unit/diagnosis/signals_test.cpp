@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
@@ -17,12 +18,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr std::size_t kCount = 3000;
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // amplitude sin(2 pi f t + phase), its first or second derivative.
 std::vector<double> sine(double frequency_hz, int derivative = 0, double phase_rad = 0.4) {
   std::vector<double> x(kCount);
-  const double w = kTurn * frequency_hz;
+  const double w = kTwoPi * frequency_hz;
   for (std::size_t n = 0; n < kCount; ++n) {
     const double angle = w * static_cast<double>(n) / made::kRateHz + phase_rad;
     x[n] = std::pow(w, derivative) * std::sin(angle + derivative * std::numbers::pi / 2.0);
@@ -97,10 +97,10 @@ TEST(SignalsTest, APositionImpliesItsRate) {
   EXPECT_EQ(rate.source, "theta");
   EXPECT_TRUE(rate.derived);
   const auto want = sine(1.0, 1);
-  const double sinc = std::sin(kTurn / 100.0) / (kTurn / 100.0);
+  const double sinc = std::sin(kTwoPi / 100.0) / (kTwoPi / 100.0);
   for (std::size_t n = 1; n + 1 < kCount; ++n) ASSERT_NEAR(rate.values[n], sinc * want[n], 1e-10);
   // At the ends over one interval: half a sample off.
-  EXPECT_NEAR(rate.values.front(), want.front(), kTurn * kTurn / 200.0);
+  EXPECT_NEAR(rate.values.front(), want.front(), kTwoPi * kTwoPi / 200.0);
   EXPECT_EQ(sut.rate_of(sut.at("theta")), &rate);
 }
 
@@ -112,7 +112,7 @@ TEST(SignalsTest, ARateImpliesItsPosition) {
   EXPECT_EQ(position.unit, "rad");
   EXPECT_EQ(position.quantity, Quantity::kPosition);
   const auto want = sine(1.0);
-  const double half = kTurn / 200.0;
+  const double half = kTwoPi / 200.0;
   for (std::size_t n = 0; n < kCount; ++n) {
     ASSERT_NEAR(position.values[n], half / std::tan(half) * (want[n] - want[0]), 1e-10) << n;
   }
@@ -129,7 +129,7 @@ TEST(SignalsTest, AnAccelerationImpliesItsRateWithoutDrift) {
   EXPECT_EQ(rate.unit, "m/s");
   double largest = 0.0;
   for (std::size_t n = 2000; n < kCount; ++n) largest = std::max(largest, std::abs(rate.values[n]));
-  EXPECT_NEAR(largest, kTurn, 0.02 * kTurn);
+  EXPECT_NEAR(largest, kTwoPi, 0.02 * kTwoPi);
   EXPECT_NEAR(rate.mean, 0.0, 0.05) << "0.05 m/s^2 for 30 s would be 0.75 m/s in the mean";
 }
 

@@ -7,17 +7,16 @@
 #include <numbers>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "tests/support/feedthrough_records.hpp"
 
 namespace stillhand::identification {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-
 std::vector<double> sine(double frequency_hz, double rate_hz, double seconds) {
   std::vector<double> out;
   for (double n = 0.0; n < seconds * rate_hz; n += 1.0) {
-    out.push_back(std::sin(kTurn_rad * frequency_hz * n / rate_hz));
+    out.push_back(std::sin(kTwoPi * frequency_hz * n / rate_hz));
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "services/signal/random.hpp"
 #include "services/signal/spectrum.hpp"
 
@@ -15,7 +16,6 @@ namespace stillhand::identification {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 // A record whose lines obey x_p = wc/(jw) e^(-jw Td) x_e exactly, every line by itself.
 TrackingRecord crossover_model(double crossover_hz, double delay_s, double duration_s,
@@ -25,14 +25,13 @@ TrackingRecord crossover_model(double crossover_hz, double delay_s, double durat
   TrackingRecord record{rate_hz, std::vector<double>(count), std::vector<double>(count)};
   for (std::size_t k = 0; k < signal::kReferenceLines; ++k) {
     const double f = static_cast<double>(design.harmonics[k]) / duration_s;
-    const Complex gain =
-        crossover_hz / f * std::polar(1.0, -kTurn_rad * f * delay_s) / Complex(0, 1);
+    const Complex gain = crossover_hz / f * std::polar(1.0, -kTwoPi * f * delay_s) / Complex(0, 1);
     const Complex target = std::polar(0.02 * design.amplitudes[k], 0.7 * static_cast<double>(k));
     const Complex cursor = target * gain / (1.0 + gain);
     for (std::size_t n = 0; n < count; ++n) {
       const auto cycles = static_cast<std::size_t>(design.harmonics[k]) * n % count;
       const Complex turn =
-          std::polar(1.0, kTurn_rad * static_cast<double>(cycles) / static_cast<double>(count));
+          std::polar(1.0, kTwoPi * static_cast<double>(cycles) / static_cast<double>(count));
       record.target_m[n] += (target * turn).real();
       record.cursor_m[n] += (cursor * turn).real();
     }
@@ -58,7 +57,7 @@ TEST(TrackingMetricsTest, LinesCarryGainAndPhase) {
       tracking_metrics(crossover_model(0.25, 0.2, 60.0, 100.0), signal::reference_design(60.0));
   for (const auto& line : sut.lines) {
     const Complex expected = 0.25 / line.frequency_hz *
-                             std::polar(1.0, -kTurn_rad * line.frequency_hz * 0.2) / Complex(0, 1);
+                             std::polar(1.0, -kTwoPi * line.frequency_hz * 0.2) / Complex(0, 1);
     EXPECT_LT(std::abs(line.gain - expected), 1e-9 * std::abs(expected)) << line.frequency_hz;
   }
 }
@@ -90,7 +89,7 @@ TrackingRecord run(const Loop& loop, const signal::ReferenceDesign& design, std:
       record.cursor_m.push_back(x_p);
     }
     const double seen = error[static_cast<std::size_t>(n + 12'001) % error.size()];
-    x_p += kTurn_rad * loop.crossover_hz * 0.01 * (seen + loop.remnant_m * noise());
+    x_p += kTwoPi * loop.crossover_hz * 0.01 * (seen + loop.remnant_m * noise());
   }
   return record;
 }
@@ -186,7 +185,7 @@ TEST(TrackingMetricsTest, DwellAndRmsOfASawtoothAreKnown) {
 
 TEST(TrackingMetricsTest, DwellOfASineIsItsArcsine) {
   std::vector<double> error;
-  for (int n = 0; n < 6000; ++n) error.push_back(0.04 * std::sin(kTurn_rad * 7.0 * n / 6000.0));
+  for (int n = 0; n < 6000; ++n) error.push_back(0.04 * std::sin(kTwoPi * 7.0 * n / 6000.0));
   const auto sut = tracking_metrics(with_error(error), signal::reference_design(60.0));
   // 28 crossings of the edge, each placed to within a sample.
   EXPECT_NEAR(sut.dwell_ratio, 2.0 / std::numbers::pi * std::asin(15.0 / 40.0), 28.0 / 6000.0);

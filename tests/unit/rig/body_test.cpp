@@ -8,12 +8,12 @@
 #include <numbers>
 #include <vector>
 
+#include "services/contract/units.hpp"
 #include "services/rig/core/body_response.hpp"
 
 namespace stillhand::rig {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kDt_s = kControlPeriod_s;
 constexpr int kSecond = 1000;
 

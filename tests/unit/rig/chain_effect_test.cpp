@@ -6,18 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "services/contract/units.hpp"
 #include "services/rig/core/body.hpp"
 
 namespace stillhand::rig {
 namespace {
 
 using Spring = ChainEffect::Spring;
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 ChainEffect effect_of(Spring spring) {
   ChainEffect effect;

@@ -9,10 +9,11 @@
 #include <numbers>
 #include <random>
 
+#include "services/contract/units.hpp"
+
 namespace stillhand::rig {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kDt_s = kControlPeriod_s;
 
 PlatformDemand sinusoid(double amplitude_m, double frequency_hz, int n) {

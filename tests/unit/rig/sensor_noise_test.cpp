@@ -10,7 +10,7 @@
 namespace stillhand::rig {
 namespace {
 
-constexpr int kCount = 2000000;
+constexpr int kDraws = 2000000;
 
 /// Probability that the magnitude of a normal deviate exceeds x.
 double beyond(double x) { return std::erfc(x / std::numbers::sqrt2); }
@@ -43,15 +43,15 @@ TEST(SensorNoiseTest, IsWhiteWithUnitVariance) {
   double fourth = 0.0;
   double lagged = 0.0;
   double before = sut();
-  for (int n = 0; n < kCount; ++n) {
+  for (int n = 0; n < kDraws; ++n) {
     const double x = sut();
-    mean += x / kCount;
-    variance += x * x / kCount;
-    fourth += x * x * x * x / kCount;
-    lagged += x * before / kCount;
+    mean += x / kDraws;
+    variance += x * x / kDraws;
+    fourth += x * x * x * x / kDraws;
+    lagged += x * before / kDraws;
     before = x;
   }
-  const double root = std::sqrt(static_cast<double>(kCount));
+  const double root = std::sqrt(static_cast<double>(kDraws));
   EXPECT_NEAR(mean, 0.0, 5.0 / root);
   EXPECT_NEAR(variance, 1.0, 5.0 * std::numbers::sqrt2 / root);
   EXPECT_NEAR(fourth, 3.0, 5.0 * std::sqrt(96.0) / root);

@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "services/contract/units.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/rig/core/undeclared/effect_draw.hpp"
 #include "services/rig/core/undeclared/effect_sizing.hpp"
@@ -17,7 +17,6 @@
 namespace stillhand::rig {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr PlatformState kMoving{0.0, 0.1, 1.0};
 constexpr PlatformState kStanding{};
 

@@ -11,10 +11,11 @@
 #include <random>
 #include <vector>
 
+#include "services/contract/units.hpp"
+
 namespace stillhand::sensing {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kDt_s = kControlPeriod_s;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

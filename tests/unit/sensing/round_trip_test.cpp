@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "services/contract/units.hpp"
 #include "services/rig/core/body_response.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/sensing/core/conditioner.hpp"
@@ -13,9 +13,6 @@
 
 namespace stillhand::sensing {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kDt_s = kControlPeriod_s;
 
 DeviceSample device_sample(Tick tick, const rig::RawSample& raw) {
   return {tick,          raw.accel_x_v,   raw.accel_y_v,
@@ -25,7 +22,7 @@ DeviceSample device_sample(Tick tick, const rig::RawSample& raw) {
 
 /// Drives the rig with a 1 Hz motion and a person at 0.4 Hz.
 rig::RigInput motion(Tick tick, bool pegged) {
-  const double t_s = static_cast<double>(tick) * kDt_s;
+  const double t_s = static_cast<double>(tick) * kControlPeriod_s;
   rig::RigInput input;
   input.command_valid = true;
   input.command_position_m = 0.03 * std::sin(kTwoPi * t_s);
@@ -57,7 +54,8 @@ Errors round_trip(int ticks) {
     const auto sensed = sut.step(device_sample(n, out.raw));
     const double accel = accel_filter.step(out.truth.platform_acceleration_m_s2);
     const double force = force_filter.step(out.truth.hand_force_n);
-    const double omega = rate_filter.step((out.truth.theta_rad - theta_before_rad) / kDt_s);
+    const double omega =
+        rate_filter.step((out.truth.theta_rad - theta_before_rad) / kControlPeriod_s);
     theta_before_rad = out.truth.theta_rad;
     if (n < 1000) continue;
     ++counted;
@@ -91,7 +89,8 @@ TEST(RoundTripTest, LeavesTheEncodersRoundingOnAngleAndRate) {
   const auto errors = round_trip(20000);
   const double count_rad = kTwoPi / 4096.0;
   EXPECT_LE(errors.theta_max_rad, 0.5 * count_rad * (1.0 + 1e-9));
-  EXPECT_LT(errors.omega_rms_rad_s, count_rad / kDt_s / std::sqrt(6.0) * std::sqrt(33.3 / 500.0));
+  EXPECT_LT(errors.omega_rms_rad_s,
+            count_rad / kControlPeriod_s / std::sqrt(6.0) * std::sqrt(33.3 / 500.0));
 }
 
 // What identification will see in a pegged trial: force over acceleration at the excited line is
@@ -107,7 +106,7 @@ TEST(RoundTripTest, KeepsTheFeedthroughOfAPeggedTrial) {
     const auto out = rig.step(motion(n, true));
     const auto sensed = sut.step(device_sample(n, out.raw));
     if (n < 5000) continue;
-    const auto turn = std::polar(1.0, -kTwoPi * static_cast<double>(n) * kDt_s);
+    const auto turn = std::polar(1.0, -kTwoPi * static_cast<double>(n) * kControlPeriod_s);
     accel += sensed.accel_y_m_s2 * turn;
     force += sensed.force_n * turn;
   }

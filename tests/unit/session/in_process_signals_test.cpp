@@ -14,14 +14,14 @@
 namespace stillhand::session {
 namespace {
 
-constexpr double kTrial_s = 5.0;
+constexpr double kShortTrial_s = 5.0;
 constexpr std::size_t kTrial_ticks = 5000;
 
 PlannedTrial planned(const std::string& condition, std::uint64_t seed = 1) {
   ProtocolOptions options;
   options.conditions = parse_conditions(condition, kStudyConditions);
-  options.trial_s = kTrial_s;
-  options.identify_s = kTrial_s;
+  options.trial_s = kShortTrial_s;
+  options.identify_s = kShortTrial_s;
   options.seed = seed;
   return plan(options).at(1);
 }
@@ -29,7 +29,7 @@ PlannedTrial planned(const std::string& condition, std::uint64_t seed = 1) {
 PlannedTrial pegged(std::uint64_t seed = 1) {
   ProtocolOptions options;
   options.conditions = parse_conditions("A");
-  options.identify_s = kTrial_s;
+  options.identify_s = kShortTrial_s;
   options.seed = seed;
   return plan(options).at(0);
 }

@@ -7,12 +7,11 @@
 #include <numbers>
 
 #include "services/contract/config_error.hpp"
+#include "services/contract/units.hpp"
 #include "services/signal/random.hpp"
 
 namespace stillhand::signal {
 namespace {
-
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 std::vector<double> white(std::size_t count, std::uint64_t seed) {
   Gaussian draw(seed, 1);
@@ -28,7 +27,7 @@ std::vector<double> through_fir(const std::vector<double>& x) {
   return y;
 }
 std::complex<double> fir_response(double frequency_hz, double rate_hz) {
-  const auto back = std::polar(1.0, -kTurn_rad * frequency_hz / rate_hz);
+  const auto back = std::polar(1.0, -kTwoPi * frequency_hz / rate_hz);
   return 1.0 + 0.5 * back - 0.3 * back * back;
 }
 
@@ -38,7 +37,7 @@ TEST(SpectrumTest, DensityOfASineIntegratesToItsPower) {
   constexpr double kRate = 100.0;
   std::vector<double> x(4000);
   for (std::size_t n = 0; n < x.size(); ++n) {
-    x[n] = 3.0 * std::sin(kTurn_rad * 25.0 * static_cast<double>(n) / kRate + 0.4);
+    x[n] = 3.0 * std::sin(kTwoPi * 25.0 * static_cast<double>(n) / kRate + 0.4);
   }
   const auto sut = cross_spectra(x, x, kRate, 400);
   const double width_hz = kRate / 400.0;
@@ -121,7 +120,7 @@ TEST(SpectrumTest, LineIsExactForWholeCycles) {
   std::vector<double> x(180'000);
   for (std::size_t n = 0; n < x.size(); ++n) {
     const auto cycles = [&](std::size_t h) {
-      return kTurn_rad * static_cast<double>(h * n % x.size()) / static_cast<double>(x.size());
+      return kTwoPi * static_cast<double>(h * n % x.size()) / static_cast<double>(x.size());
     };
     x[n] = 0.02 * std::cos(cycles(719) + 1.1) + 3.0 * std::cos(cycles(718) - 0.3) + 5.0;
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kImpulseResponse_s = 1.5;
 constexpr std::size_t kMostLags = 200;
-constexpr double kRidge = 1e-9;
+constexpr double kTapRidge = 1e-9;
 
 // Sums over a stretch's rows of products of lagged signals, by the shift recursion
 // G(i+1, j+1) = G(i, j) + the row before the first - the last row: samples times lags, not lags
@@ -101,7 +101,7 @@ ImpulseResponse fit_impulse_response(const Signals& signals) {
   result.rmse = std::numeric_limits<double>::quiet_NaN();
   if (long_enough.empty()) return result;
   // Ridge on the diagonal's size: an input that excites a narrow band leaves the rest open.
-  for (Eigen::Index i = 1; i < size; ++i) normal(i, i) *= 1.0 + kRidge;
+  for (Eigen::Index i = 1; i < size; ++i) normal(i, i) *= 1.0 + kTapRidge;
   const Eigen::VectorXd h = signal::solve_symmetric(normal, right);
   double square = 0.0;
   double rows = 0.0;

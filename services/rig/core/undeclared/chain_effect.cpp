@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "services/contract/units.hpp"
 
 namespace stillhand::rig {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 using Spring = ChainEffect::Spring;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/contract/units.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/rig/core/undeclared/effect_sizing.hpp"
 #include "services/signal/random.hpp"
@@ -14,7 +15,6 @@ namespace stillhand::rig {
 namespace {
 
 constexpr std::uint64_t kDrawStream = 0x66610000;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kNone = 0.1;  // share of the seeds that have no effect
 

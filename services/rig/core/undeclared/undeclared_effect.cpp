@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "services/contract/units.hpp"
 #include "services/rig/core/sensors.hpp"
 
 namespace stillhand::rig {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Streams of the effect's seed.
 constexpr std::uint64_t kForeAftStream = 0x66610001;
