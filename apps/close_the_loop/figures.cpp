@@ -16,6 +16,8 @@ using report::Colour;
 using session::kMetrics;
 
 constexpr double kExcerpt_s = 12.0;
+constexpr std::size_t kEvery = 20;  // samples at 1 kHz that a line of the screen shows
+constexpr double kMmPerM = 1e3;
 
 struct Shown {
   const TrialRun* trial;
@@ -65,24 +67,35 @@ report::Figure tracking_figure(const LoopResult& result) {
   return figure;
 }
 
-std::vector<double> part(const std::vector<double>& values, std::size_t from, std::size_t count,
-                         std::size_t stride, double factor) {
-  std::vector<double> out;
-  for (std::size_t n = from; n < std::min(from + count, values.size()); n += stride) {
-    out.push_back(factor * values[n]);
+// Twelve seconds from the middle of a record; the whole of a shorter one.
+class Excerpt {
+ public:
+  /// @param stride  samples from one that is shown to the next
+  Excerpt(const std::vector<double>& time_s, double rate_hz, std::size_t stride) : stride_(stride) {
+    const auto count = std::min(static_cast<std::size_t>(kExcerpt_s * rate_hz), time_s.size());
+    from_ = (time_s.size() - count) / 2;
+    end_ = from_ + count;
+    time_s_ = of(time_s);
+    const double begin_s = time_s_.empty() ? 0.0 : time_s_.front();
+    for (double& t : time_s_) t -= begin_s;
   }
-  return out;
-}
 
-report::Series line(const char* label, Colour colour, std::vector<double> x,
-                    std::vector<double> y) {
-  report::Series series;
-  series.label = label;
-  series.colour = colour;
-  series.x = std::move(x);
-  series.y = std::move(y);
-  return series;
-}
+  [[nodiscard]] std::vector<double> of(const std::vector<double>& values,
+                                       double factor = 1.0) const {
+    std::vector<double> out;
+    for (std::size_t n = from_; n < end_; n += stride_) out.push_back(factor * values[n]);
+    return out;
+  }
+  [[nodiscard]] report::Series line(const char* label, Colour colour, std::vector<double> y) const {
+    return {.label = label, .colour = colour, .x = time_s_, .y = std::move(y)};
+  }
+
+ private:
+  std::size_t stride_;
+  std::size_t from_ = 0;
+  std::size_t end_ = 0;
+  std::vector<double> time_s_;  // [s] since its begin
+};
 
 // Part of the pegged force, and what the models leave of it.
 report::Figure force_figure(const LoopRecord& record) {
@@ -97,17 +110,10 @@ report::Figure force_figure(const LoopRecord& record) {
   const std::vector<double> before = run(verdict.body.baseline.model);
   const std::vector<double> after = run(verdict.body.model);
   const std::vector<double>& force = signals.output().values;
-  const auto count = static_cast<std::size_t>(kExcerpt_s * signals.rate_hz());
-  const std::size_t from = (signals.size() - std::min(count, signals.size())) / 2;
-  std::vector<double> time = part(signals.time_s(), from, count, 1, 1.0);
-  const double begin = time.empty() ? 0.0 : time.front();
-  for (double& t : time) t -= begin;
-  const auto left = [&](const std::vector<double>& predicted) {
-    std::vector<double> out;
-    for (std::size_t n = from; n < std::min(from + count, signals.size()); ++n) {
-      out.push_back(force[n] - predicted[n]);
-    }
-    return out;
+  const Excerpt excerpt(signals.time_s(), signals.rate_hz(), 1);
+  const auto left = [&](std::vector<double> predicted) {
+    for (std::size_t n = 0; n < predicted.size(); ++n) predicted[n] = force[n] - predicted[n];
+    return excerpt.of(predicted);
   };
   report::Figure figure;
   figure.name = "force";
@@ -117,13 +123,13 @@ report::Figure force_figure(const LoopRecord& record) {
   figure.height_px = 520;
   report::Panel top;
   top.y.label = "force [N]";
-  top.series = {line("measured", Colour::kMeasured, time, part(force, from, count, 1, 1.0)),
-                line("augmented model", Colour::kAccent, time, part(after, from, count, 1, 1.0))};
+  top.series = {excerpt.line("measured", Colour::kMeasured, excerpt.of(force)),
+                excerpt.line("augmented model", Colour::kAccent, excerpt.of(after))};
   report::Panel bottom;
   bottom.x.label = "time [s]";
   bottom.y.label = "left [N]";
-  bottom.series = {line("linear model", Colour::kWarning, time, left(before)),
-                   line("augmented model", Colour::kAccent, time, left(after))};
+  bottom.series = {excerpt.line("linear model", Colour::kWarning, left(before)),
+                   excerpt.line("augmented model", Colour::kAccent, left(after))};
   figure.panels = {top, bottom};
   return figure;
 }
@@ -152,7 +158,7 @@ report::Figure adaptation_figure(const LoopResult& result) {
     const auto [low, high] = std::ranges::minmax(values);
     panel.y.low = std::min(low, static_cast<double>(1 - k)) - 0.1;
     panel.y.high = std::max(high, static_cast<double>(1 - k)) + 0.1;
-    panel.series = {line("", Colour::kConditionCPlus, time, values)};
+    panel.series = {{.colour = Colour::kConditionCPlus, .x = time, .y = values}};
     figure.panels.push_back(std::move(panel));
   }
   return figure;
@@ -169,18 +175,14 @@ report::Figure motion_figure(const LoopResult& result) {
   double largest = 0.0;  // one scale for all: they are to be compared
   for (const Shown& each : conditions) {
     const recording::Recording& rows = each.trial->measured;
-    const auto count = static_cast<std::size_t>(kExcerpt_s * rows.rate_hz);
-    const std::size_t from = (rows.row_count() - std::min(count, rows.row_count())) / 2;
-    std::vector<double> time = part(rows.time_s, from, count, 20, 1.0);
-    const double begin = time.empty() ? 0.0 : time.front();
-    for (double& t : time) t -= begin;
+    const Excerpt excerpt(rows.time_s, rows.rate_hz, kEvery);
     report::Panel panel;
     panel.title = each.trial->label;
     panel.y.label = "[mm]";
     if (&each == &conditions.back()) panel.x.label = "time [s]";
-    panel.series = {
-        line("target", Colour::kTarget, time, part(rows.find("x_r")->values, from, count, 20, 1e3)),
-        line("cursor", each.colour, time, part(rows.find("x_p")->values, from, count, 20, 1e3))};
+    const auto mm = [&](const char* name) { return excerpt.of(rows.find(name)->values, kMmPerM); };
+    panel.series = {excerpt.line("target", Colour::kTarget, mm("x_r")),
+                    excerpt.line("cursor", each.colour, mm("x_p"))};
     for (const report::Series& series : panel.series) {
       for (const double y : series.y) largest = std::max(largest, std::abs(y));
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/output.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "apps/report/or_null.hpp"
 #include "apps/report/text.hpp"
 #include "apps/session/paper_table.hpp"
 #include "services/rig/sealed_file.hpp"
@@ -14,45 +14,40 @@ namespace stillhand::close_the_loop {
 namespace {
 
 using nlohmann::ordered_json;
+using report::or_null;
 using session::kMetrics;
-
-// JSON has no NaN: what could not be computed is null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
 
 ordered_json condition_json(const TrialRun& trial) {
   ordered_json condition;
   for (const session::Metric& metric : kMetrics) {
     const double value = metric.of(trial.metrics);
-    condition[metric.key] = {{"mean", number(value)},
+    condition[metric.key] = {{"mean", or_null(value)},
                              {"std", nullptr},
-                             {"per_subject", ordered_json::array({number(value)})}};
+                             {"per_subject", ordered_json::array({or_null(value)})}};
   }
-  condition["crossover_reference_hz"] = number(trial.metrics.crossover_reference_hz);
+  condition["crossover_reference_hz"] = or_null(trial.metrics.crossover_reference_hz);
   const bool cancels = trial.label.front() == 'C';
-  condition["cancelled_share"] = cancels ? number(trial.cancelled_share) : ordered_json(nullptr);
-  if (cancels) condition["counterforce_delay_ms"] = number(1e3 * trial.counterforce_delay_s);
+  condition["cancelled_share"] = cancels ? or_null(trial.cancelled_share) : ordered_json(nullptr);
+  if (cancels) condition["counterforce_delay_ms"] = or_null(1e3 * trial.counterforce_delay_s);
   return condition;
 }
 
 ordered_json restoration_json(const LoopResult& result, const TrialRun& of) {
   ordered_json json;
   for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    json[kMetrics[k].restoration_key] = number(restoration(result, of, k));
+    json[kMetrics[k].restoration_key] = or_null(restoration(result, of, k));
   }
   return json;
 }
 
 ordered_json finding_json(const Finding& finding) {
-  return {
-      {"kind", finding.kind},
-      {"channel", finding.channel.empty() ? ordered_json(nullptr) : ordered_json(finding.channel)},
-      {"where", finding.where},
-      {"explained_rms_n", finding.explained_n},
-      {"heldout_rmse_before", finding.before_n},
-      {"heldout_rmse_after", finding.after_n},
-      {"evidence", finding.evidence}};
+  return {{"kind", finding.kind},
+          {"channel", or_null(finding.channel)},
+          {"where", finding.where},
+          {"explained_rms_n", finding.explained_n},
+          {"heldout_rmse_before", finding.before_n},
+          {"heldout_rmse_after", finding.after_n},
+          {"evidence", finding.evidence}};
 }
 
 ordered_json findings_json(const Verdict& verdict) {
@@ -90,7 +85,7 @@ ordered_json round_json(const Round& round) {
                     {"augmented", round.augmented},
                     {"kept", round.kept},
                     {"outcome", round.outcome},
-                    {"rms_error_mm", number(round.trial.metrics.rms_error_mm)},
+                    {"rms_error_mm", or_null(round.trial.metrics.rms_error_mm)},
                     {"weights", nullptr}};
   if (!round.trial.weights.empty()) json["weights"] = round.trial.weights.back();
   return json;
@@ -145,17 +140,15 @@ std::string summary_json(const LoopRecord& record) {
   for (const Round& round : result.rounds) summary["rounds"].push_back(round_json(round));
   summary["truth"] = nullptr;
   if (record.truth) {
-    summary["truth"] = {
-        {"kind", record.truth->kind},
-        {"channel", record.truth->channel.empty() ? ordered_json(nullptr)
-                                                  : ordered_json(record.truth->channel)},
-        {"place", record.truth->place},
-        {"verdict_right", record.right()}};
+    summary["truth"] = {{"kind", record.truth->kind},
+                        {"channel", or_null(record.truth->channel)},
+                        {"place", record.truth->place},
+                        {"verdict_right", record.right()}};
   }
   summary["identification"] = {
       {"order", result.paper_model.fit.order()},
-      {"heldout_vaf_percent", number(result.paper_model.heldout.free_run_vaf_percent)},
-      {"conversion_error", number(result.paper_model.conversion_error)}};
+      {"heldout_vaf_percent", or_null(result.paper_model.heldout.free_run_vaf_percent)},
+      {"conversion_error", or_null(result.paper_model.conversion_error)}};
   const session::ProtocolOptions& protocol = record.options.protocol;
   summary["live"] = record.live;
   summary["seed"] = protocol.seed;

@@ -19,7 +19,7 @@
 #include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/identity.hpp"
 
 namespace stillhand::deploy {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "apps/diagnose/detection_json.hpp"
+#include "apps/report/or_null.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
@@ -16,17 +16,14 @@ namespace {
 using diagnosis::Diagnosis;
 using diagnosis::FoundEffect;
 using nlohmann::ordered_json;
+using report::or_null;
 
 std::string inputs_of(const Diagnosis& diagnosis) {
   return fmt::format("{}", fmt::join(diagnosis.options.inputs, ","));
 }
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json with_unit(double value, const std::string& unit) {
-  return {{"value", number(value)}, {"unit", unit}};
+  return {{"value", or_null(value)}, {"unit", unit}};
 }
 
 // Nonlinear parameters by name; linear ones of effects next to the body, where each multiplies a
@@ -57,7 +54,7 @@ std::string with_ties(const FoundEffect& found) {
 
 ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
   return {{"kind", found.effect.kind},
-          {"channel", found.channel.empty() ? ordered_json(nullptr) : ordered_json(found.channel)},
+          {"channel", or_null(found.channel)},
           {"parameters", parameters_json(diagnosis, found)},
           {"heldout_rmse_before", found.before.rmse},
           {"heldout_rmse_after", found.after.rmse},
@@ -76,8 +73,8 @@ ordered_json baseline_json(const Diagnosis& diagnosis) {
                     {"vaf_percent", diagnosis.baseline_error.vaf_percent},
                     {"ci95", {diagnosis.baseline_error.low, diagnosis.baseline_error.high}},
                     {"order", body.order()},
-                    {"equation_error_rmse", number(diagnosis.baseline.equation_error_rmse)},
-                    {"impulse_response_rmse", number(diagnosis.baseline.impulse_response_rmse)}};
+                    {"equation_error_rmse", or_null(diagnosis.baseline.equation_error_rmse)},
+                    {"impulse_response_rmse", or_null(diagnosis.baseline.impulse_response_rmse)}};
   return json;
 }
 

@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "apps/lab/remote.hpp"
-#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/identity.hpp"
 
 namespace stillhand::lab {
 

@@ -16,16 +16,6 @@ using report::Colour;
 constexpr double kForceExtent_n = 25.0;  // the motor's limit
 constexpr double kHandExtent_mm = 200.0;
 
-report::Series line(std::string label, Colour colour, const std::vector<double>& x,
-                    std::vector<double> y) {
-  report::Series series;
-  series.label = std::move(label);
-  series.colour = colour;
-  series.x = x;
-  series.y = std::move(y);
-  return series;
-}
-
 report::Panel panel(std::string title, std::string unit, double extent) {
   report::Panel panel;
   panel.title = std::move(title);
@@ -43,17 +33,21 @@ std::string title_of(const session::TrialResult& trial) {
 report::Panel force_panel(const session::TrialResult& trial) {
   const session::Excerpt& excerpt = trial.excerpt;
   report::Panel out = panel(title_of(trial), "force [N]", kForceExtent_n);
-  out.series.push_back(
-      line("feedthrough", Colour::kMeasured, excerpt.time_s, excerpt.feedthrough_n));
-  out.series.push_back(line("motor", Colour::kModel, excerpt.time_s, excerpt.motor_n));
+  out.series = {
+      {.label = "feedthrough",
+       .colour = Colour::kMeasured,
+       .x = excerpt.time_s,
+       .y = excerpt.feedthrough_n},
+      {.label = "motor", .colour = Colour::kModel, .x = excerpt.time_s, .y = excerpt.motor_n}};
   return out;
 }
 
 report::Panel hand_panel(const session::TrialResult& trial, Colour colour) {
   const session::Excerpt& excerpt = trial.excerpt;
   report::Panel out = panel("", "position [mm]", kHandExtent_mm);
-  out.series.push_back(line("target", Colour::kTarget, excerpt.time_s, excerpt.target_mm));
-  out.series.push_back(line("cursor", colour, excerpt.time_s, excerpt.cursor_mm));
+  out.series = {
+      {.label = "target", .colour = Colour::kTarget, .x = excerpt.time_s, .y = excerpt.target_mm},
+      {.label = "cursor", .colour = colour, .x = excerpt.time_s, .y = excerpt.cursor_mm}};
   return out;
 }
 

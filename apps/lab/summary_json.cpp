@@ -2,8 +2,8 @@
 #include "apps/lab/summary_json.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "apps/report/or_null.hpp"
 #include "apps/session/paper_table.hpp"
 #include "version.hpp"
 
@@ -11,26 +11,21 @@ namespace stillhand::lab {
 namespace {
 
 using nlohmann::ordered_json;
-
-// JSON has no NaN: what could not be computed is null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
+using report::or_null;
 
 // The study's shape with one subject: a standard deviation needs two.
 ordered_json condition_json(const session::TrialResult& trial) {
   ordered_json condition;
   for (const session::Metric& metric : session::kMetrics) {
     const double value = value_of(trial, metric);
-    condition[metric.key] = {{"mean", number(value)},
+    condition[metric.key] = {{"mean", or_null(value)},
                              {"std", nullptr},
-                             {"per_subject", ordered_json::array({number(value)})}};
+                             {"per_subject", ordered_json::array({or_null(value)})}};
   }
-  condition["crossover_reference_hz"] = number(trial.metrics.crossover_reference_hz);
-  condition["cancelled_share"] =
-      trial.cancelled_share ? number(*trial.cancelled_share) : ordered_json(nullptr);
+  condition["crossover_reference_hz"] = or_null(trial.metrics.crossover_reference_hz);
+  condition["cancelled_share"] = or_null(trial.cancelled_share);
   if (trial.counterforce_delay_s) {
-    condition["counterforce_delay_ms"] = number(1e3 * *trial.counterforce_delay_s);
+    condition["counterforce_delay_ms"] = or_null(1e3 * *trial.counterforce_delay_s);
   }
   if (const auto& latency = trial.sensor_to_command) {
     condition["sensor_to_command_us"] = {{"p50", latency->p50_us},
@@ -47,8 +42,8 @@ ordered_json clocks_json(const session::SessionResult& result) {
     clocks[service] = {{"same_clock", offset.same_clock()},
                        {"offset_s", 1e-9 * static_cast<double>(offset.offset_ns())},
                        {"uncertainty_us", 1e-3 * offset.uncertainty_ns()},
-                       {"drift_ppm", number(offset.drift_ppm())},
-                       {"drift_sigma_ppm", number(offset.drift_sigma_ppm())},
+                       {"drift_ppm", or_null(offset.drift_ppm())},
+                       {"drift_sigma_ppm", or_null(offset.drift_sigma_ppm())},
                        {"round_trip_us", 1e-3 * static_cast<double>(offset.round_trip_ns())},
                        {"steps", offset.steps()}};
   }
@@ -58,8 +53,7 @@ ordered_json clocks_json(const session::SessionResult& result) {
 ordered_json restoration_json(const session::SessionResult& result) {
   ordered_json restoration;
   for (const session::Metric& metric : session::kMetrics) {
-    const std::optional<double> share = restoration_of(result, metric);
-    restoration[metric.restoration_key] = share ? number(*share) : ordered_json(nullptr);
+    restoration[metric.restoration_key] = or_null(restoration_of(result, metric));
   }
   return restoration;
 }
@@ -100,18 +94,17 @@ ordered_json trial_json(const session::TrialOutcome& outcome,
                      {"worst_us", mark.worst_us}});
   }
   const Trial& trial = outcome.planned.trial;
-  return {
-      {"number", trial.number},
-      {"condition", std::string(1, outcome.planned.label)},
-      {"start_tick", trial.start_tick},
-      {"duration_ticks", trial.duration_ticks},
-      {"motion", motion_json(outcome, protocol)},
-      {"completed", outcome.completed},
-      {"aborted", outcome.aborted.empty() ? ordered_json(nullptr) : ordered_json(outcome.aborted)},
-      {"deadline_misses", outcome.misses.deadline},
-      {"cycle_misses", outcome.misses.cycle},
-      {"lost_ticks", outcome.misses.lost_ticks},
-      {"marks", marks}};
+  return {{"number", trial.number},
+          {"condition", std::string(1, outcome.planned.label)},
+          {"start_tick", trial.start_tick},
+          {"duration_ticks", trial.duration_ticks},
+          {"motion", motion_json(outcome, protocol)},
+          {"completed", outcome.completed},
+          {"aborted", or_null(outcome.aborted)},
+          {"deadline_misses", outcome.misses.deadline},
+          {"cycle_misses", outcome.misses.cycle},
+          {"lost_ticks", outcome.misses.lost_ticks},
+          {"marks", marks}};
 }
 
 ordered_json identification_json(const session::SessionResult& result) {
@@ -119,13 +112,13 @@ ordered_json identification_json(const session::SessionResult& result) {
   const auto& model = *result.model;
   ordered_json json{{"usable", model.usable()},
                     {"text", model.text().c_str()},
-                    {"heldout_vaf_percent", number(model.heldout_vaf_percent())},
-                    {"heldout_rmse_n", number(model.heldout_rmse_n())},
-                    {"conversion_error", number(model.conversion_error())}};
+                    {"heldout_vaf_percent", or_null(model.heldout_vaf_percent())},
+                    {"heldout_rmse_n", or_null(model.heldout_rmse_n())},
+                    {"conversion_error", or_null(model.conversion_error())}};
   if (result.conversion) {
     json["residual_share"] = {
-        {"filter_at_1_khz", number(result.conversion->control_filter)},
-        {"zero_order_hold_of_50_hz", number(result.conversion->zero_order_hold)}};
+        {"filter_at_1_khz", or_null(result.conversion->control_filter)},
+        {"zero_order_hold_of_50_hz", or_null(result.conversion->zero_order_hold)}};
   }
   return json;
 }
@@ -166,8 +159,7 @@ ordered_json summary_json(const LabOptions& options,
   summary["manova"] = nullptr;
   summary["restoration"] = restoration_json(result);
   summary["identification"] = identification_json(result);
-  summary["control_model"] =
-      options.model.empty() ? ordered_json(nullptr) : ordered_json(options.model.string());
+  summary["control_model"] = or_null(options.model.string());
   summary["trials"] = ordered_json::array();
   for (const session::TrialOutcome& outcome : outcomes) {
     summary["trials"].push_back(trial_json(outcome, options.protocol));

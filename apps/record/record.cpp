@@ -14,7 +14,7 @@
 #include "idl/topics.hpp"
 #include "services/recording/bus_recording.hpp"
 #include "services/recording/session_texts.hpp"
-#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/identity.hpp"
 #include "services/runtime/bus/tap.hpp"
 #include "services/runtime/process/clock.hpp"
 

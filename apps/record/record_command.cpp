@@ -13,6 +13,7 @@
 #include "services/runtime/process/real_time.hpp"
 #include "services/runtime/process/shipped.hpp"
 #include "services/settings/check_name.hpp"
+#include "services/settings/repeatable.hpp"
 
 namespace stillhand::record {
 namespace {
@@ -69,19 +70,14 @@ void add_record_command(CLI::App& cli, int& status) {
       "messages it received, lost and wrote. Exit status 1 when a message was lost.\n"
       "Example: stillhand record --out run.mcap --topics 'stillhand/*' --block '*status'");
   verb->add_option("--out", words->out, "MCAP file to write; it must not exist yet");
-  verb->add_option("--topics", options.topics.allow, "pattern of topics to record; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--block", options.topics.block,
-                   "pattern of topics not to record; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option(
-          "--require", options.required,
-          "required topic: a warning in red when it is silent before a trial starts, and exit "
-          "status 1 when it is silent at the end; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings::repeatable(verb->add_option("--topics", options.topics.allow,
+                                        "pattern of topics to record; may be repeated"));
+  settings::repeatable(verb->add_option("--block", options.topics.block,
+                                        "pattern of topics not to record; may be repeated"));
+  settings::repeatable(verb->add_option(
+      "--require", options.required,
+      "required topic: a warning in red when it is silent before a trial starts, and exit "
+      "status 1 when it is silent at the end; may be repeated"));
   verb->add_option("--duration", words->duration_s, "end after this time [s]")
       ->check(recording::within(0.001, kMostSeconds));
   verb->add_option("--rotate-s", words->rotate_s, "continue in a new file after this time [s]")
@@ -91,11 +87,10 @@ void add_record_command(CLI::App& cli, int& status) {
   verb->add_option("--window", words->window_s,
                    "event window: keep the last seconds in memory and write them at a trigger [s]")
       ->check(recording::within(0.1, 3600.0));
-  verb->add_option("--trigger", options.triggers,
-                   "write the window when a field crosses a threshold: TOPIC.FIELD>VALUE or "
-                   "TOPIC.FIELD<VALUE, |FIELD| for its magnitude; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings::repeatable(
+      verb->add_option("--trigger", options.triggers,
+                       "write the window when a field crosses a threshold: TOPIC.FIELD>VALUE or "
+                       "TOPIC.FIELD<VALUE, |FIELD| for its magnitude; may be repeated"));
   verb->add_flag("--trigger-on-deadline", options.trigger_on_deadline,
                  "write the window when a process reports a missed deadline");
   recording::add_keep_options(*verb, words->keep);

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/recordings/column_names.hpp"
+#include "apps/recordings/held_columns.hpp"
 #include "apps/recordings/pending_file.hpp"
 
 namespace stillhand::recordings {
@@ -63,29 +63,16 @@ void put_attribute(hid_t object, const char* name, const std::string& text,
 // One data set; rows gather here until a block is full.
 class Column {
  public:
-  Column(hid_t group, const std::string& name, const std::string& unit, CellKind kind,
-         const std::string& path)
-      : path_(path), kind_(kind), type_(memory_type(kind, path)), set_(make(group, name)) {
-    if (!unit.empty()) put_attribute(set_, "unit", unit, path);
+  Column(hid_t group, const ColumnHead& head, const std::string& path)
+      : path_(path),
+        values_{head.kind},
+        type_(memory_type(head.kind, path)),
+        set_(make(group, head.name)) {
+    if (!head.unit.empty()) put_attribute(set_, "unit", head.unit, path);
   }
 
   void take(const Cell& cell) {
-    switch (kind_) {
-      case CellKind::kInteger:
-        integers_.push_back(std::get<std::int64_t>(cell));
-        break;
-      case CellKind::kUnsigned:
-        unsigneds_.push_back(std::get<std::uint64_t>(cell));
-        break;
-      case CellKind::kReal:
-        reals_.push_back(real_of(cell));
-        break;
-      case CellKind::kText:
-        texts_.emplace_back(std::holds_alternative<std::string_view>(cell)
-                                ? std::get<std::string_view>(cell)
-                                : std::string_view());
-        break;
-    }
+    values_.take(cell);
     if (++held_ == kBlockRows) write();
   }
 
@@ -98,16 +85,15 @@ class Column {
     check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &first, nullptr, &held_, nullptr), path_);
     const Id memory_space(H5Screate_simple(1, &held_, nullptr), H5Sclose, path_);
     std::vector<const char*> pointers;
-    for (const std::string& text : texts_) pointers.push_back(text.c_str());
-    const void* values = kind_ == CellKind::kInteger    ? static_cast<const void*>(integers_.data())
-                         : kind_ == CellKind::kUnsigned ? unsigneds_.data()
-                         : kind_ == CellKind::kReal     ? static_cast<const void*>(reals_.data())
-                                                        : pointers.data();
-    check(H5Dwrite(set_, type_, memory_space, file_space, H5P_DEFAULT, values), path_);
-    integers_.clear();
-    unsigneds_.clear();
-    reals_.clear();
-    texts_.clear();
+    for (const std::string& text : values_.texts) pointers.push_back(text.c_str());
+    const CellKind kind = values_.kind;
+    const void* first_value =
+        kind == CellKind::kInteger    ? static_cast<const void*>(values_.integers.data())
+        : kind == CellKind::kUnsigned ? values_.unsigneds.data()
+        : kind == CellKind::kReal     ? static_cast<const void*>(values_.reals.data())
+                                      : pointers.data();
+    check(H5Dwrite(set_, type_, memory_space, file_space, H5P_DEFAULT, first_value), path_);
+    values_.clear();
     held_ = 0;
   }
 
@@ -126,22 +112,18 @@ class Column {
     const Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose, path_);
     const Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path_);
     check(H5Pset_chunk(layout, 1, &kBlockRows), path_);
-    if (kind_ != CellKind::kText) check(H5Pset_shuffle(layout), path_);
+    if (values_.kind != CellKind::kText) check(H5Pset_shuffle(layout), path_);
     check(H5Pset_deflate(layout, 1), path_);
     return {H5Dcreate2(group, name.c_str(), type_, space, H5P_DEFAULT, layout, H5P_DEFAULT),
             H5Dclose, path_};
   }
 
   const std::string& path_;
-  CellKind kind_;
+  HeldColumn values_;
   Id type_;
   Id set_;
   hsize_t rows_ = 0;
   hsize_t held_ = 0;
-  std::vector<std::int64_t> integers_;
-  std::vector<std::uint64_t> unsigneds_;
-  std::vector<double> reals_;
-  std::vector<std::string> texts_;
 };
 
 class Hdf5Sink : public TableSink {
@@ -151,28 +133,14 @@ class Hdf5Sink : public TableSink {
                H5Gclose, path) {
     put_attribute(group_, "topic", table.topic, path);
     put_attribute(group_, "type", table.type, path);
-    std::set<std::string> taken;
-    columns_.reserve(table.columns.size() + 4);
-    const auto add = [&](const std::string& name, const std::string& unit, CellKind kind) {
-      columns_.emplace_back(group_, plain_name(name, kLongestName, taken), unit, kind, path);
-    };
-    add("t", "s", CellKind::kReal);
-    add("log_time", "ns", CellKind::kUnsigned);
-    add("publish_time", "ns", CellKind::kUnsigned);
-    add("sequence", "-", CellKind::kUnsigned);
-    for (const auto& column : table.columns) {
-      add(column.name, column.unit, kind_without_gaps(column));
-    }
+    const std::vector<ColumnHead> heads = column_heads(table, kLongestName);
+    columns_.reserve(heads.size());
+    for (const ColumnHead& head : heads) columns_.emplace_back(group_, head, path);
   }
 
   void take(const TableRow& row) override {
     auto column = columns_.begin();
-    const auto put = [&](const Cell& cell) { (column++)->take(cell); };
-    put(static_cast<double>(row.since_start_ns) * 1e-9);
-    put(row.log_time_ns);
-    put(row.publish_time_ns);
-    put(std::uint64_t{row.sequence});
-    for (const Cell& cell : row.cells) put(cell);
+    for_each_cell(row, [&](const Cell& cell) { (column++)->take(cell); });
   }
 
   void finish() override {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/recordings/column_names.hpp"
+#include "apps/recordings/held_columns.hpp"
 #include "apps/recordings/pending_file.hpp"
 
 namespace stillhand::recordings {
@@ -43,55 +43,32 @@ Variable numbers(const char* name, matio_classes kind, matio_types type,
   return made(Mat_VarCreate(name, kind, type, 2, size, values.empty() ? &none : values.data(), 0));
 }
 
-// One column until the file is written.
-struct Held {
-  std::string name;
-  std::string unit;
-  CellKind kind;
-  std::vector<std::int64_t> integers = {};
-  std::vector<std::uint64_t> unsigneds = {};
-  std::vector<double> reals = {};
-  std::vector<std::string> texts = {};
+// Bytes that the newest value of a column adds to a variable.
+std::size_t newest_bytes(const HeldColumn& column) {
+  constexpr std::size_t kNumber = 8;
+  constexpr std::size_t kHeads = 64;  // of a cell and of its text
+  return column.kind == CellKind::kText ? column.texts.back().size() + kHeads : kNumber;
+}
 
-  std::size_t take(const Cell& cell) {
-    switch (kind) {
-      case CellKind::kInteger:
-        integers.push_back(std::get<std::int64_t>(cell));
-        return sizeof(std::int64_t);
-      case CellKind::kUnsigned:
-        unsigneds.push_back(std::get<std::uint64_t>(cell));
-        return sizeof(std::uint64_t);
-      case CellKind::kReal:
-        reals.push_back(real_of(cell));
-        return sizeof(double);
-      case CellKind::kText:
-        texts.emplace_back(std::holds_alternative<std::string_view>(cell)
-                               ? std::get<std::string_view>(cell)
-                               : std::string_view());
-        return texts.back().size() + 64;  // head of a cell and of its text
-    }
-    return 0;
+Variable variable(const char* name, HeldColumn& column) {
+  switch (column.kind) {
+    case CellKind::kInteger:
+      return numbers(name, MAT_C_INT64, MAT_T_INT64, column.integers);
+    case CellKind::kUnsigned:
+      return numbers(name, MAT_C_UINT64, MAT_T_UINT64, column.unsigneds);
+    case CellKind::kReal:
+      return numbers(name, MAT_C_DOUBLE, MAT_T_DOUBLE, column.reals);
+    case CellKind::kText:
+      break;
   }
-
-  [[nodiscard]] Variable variable() {
-    switch (kind) {
-      case CellKind::kInteger:
-        return numbers(name.c_str(), MAT_C_INT64, MAT_T_INT64, integers);
-      case CellKind::kUnsigned:
-        return numbers(name.c_str(), MAT_C_UINT64, MAT_T_UINT64, unsigneds);
-      case CellKind::kReal:
-        return numbers(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, reals);
-      case CellKind::kText:
-        break;
-    }
-    std::size_t size[2] = {texts.size(), 1};
-    Variable cells = made(Mat_VarCreate(name.c_str(), MAT_C_CELL, MAT_T_CELL, 2, size, nullptr, 0));
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-      Mat_VarSetCell(cells.get(), static_cast<int>(i), text_variable(nullptr, texts[i]).release());
-    }
-    return cells;
+  std::size_t size[2] = {column.texts.size(), 1};
+  Variable cells = made(Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, size, nullptr, 0));
+  for (std::size_t i = 0; i < column.texts.size(); ++i) {
+    Mat_VarSetCell(cells.get(), static_cast<int>(i),
+                   text_variable(nullptr, column.texts[i]).release());
   }
-};
+  return cells;
+}
 
 Variable empty_structure(const char* name, std::vector<const char*> fields) {
   std::size_t size[2] = {1, 1};
@@ -137,28 +114,19 @@ class OpenMat {
 // Version 5 has no way to append to a variable: a topic is held until its last row.
 class MatSink : public TableSink {
  public:
-  MatSink(OpenMat& file, TopicTable table) : file_(file), table_(std::move(table)) {
-    std::set<std::string> taken{"meta"};
-    const auto add = [&](const std::string& name, const std::string& unit, CellKind kind) {
-      columns_.push_back({plain_name(name, kLongestName, taken), unit, kind});
-    };
-    add("t", "s", CellKind::kReal);
-    add("log_time", "ns", CellKind::kUnsigned);
-    add("publish_time", "ns", CellKind::kUnsigned);
-    add("sequence", "-", CellKind::kUnsigned);
-    for (const auto& column : table_.columns) {
-      add(column.name, column.unit, kind_without_gaps(column));
-    }
+  MatSink(OpenMat& file, TopicTable table)
+      : file_(file),
+        table_(std::move(table)),
+        heads_(column_heads(table_, kLongestName, {"meta"})) {
+    for (const ColumnHead& head : heads_) columns_.push_back({head.kind});
   }
 
   void take(const TableRow& row) override {
     auto column = columns_.begin();
-    const auto put = [&](const Cell& cell) { bytes_ += (column++)->take(cell); };
-    put(static_cast<double>(row.since_start_ns) * 1e-9);
-    put(row.log_time_ns);
-    put(row.publish_time_ns);
-    put(std::uint64_t{row.sequence});
-    for (const Cell& cell : row.cells) put(cell);
+    for_each_cell(row, [&](const Cell& cell) {
+      column->take(cell);
+      bytes_ += newest_bytes(*column++);
+    });
     if (bytes_ < kMostBytes) return;
     throw std::runtime_error(file_.place() + ": " + table_.topic +
                              " is larger than the 2 GiB for each topic that a MATLAB file "
@@ -171,14 +139,15 @@ class MatSink : public TableSink {
  private:
   Variable structure() {
     std::vector<const char*> names;
-    for (const Held& column : columns_) names.push_back(column.name.c_str());
+    for (const ColumnHead& head : heads_) names.push_back(head.name.c_str());
     Variable units = empty_structure(nullptr, names);
     Variable meta = empty_structure(nullptr, {"topic", "type", "units"});
     names.push_back("meta");
     Variable out = empty_structure(table_.name.c_str(), names);
-    for (Held& column : columns_) {
-      set(units, column.name.c_str(), text_variable(nullptr, column.unit));
-      set(out, column.name.c_str(), column.variable());
+    for (std::size_t c = 0; c < heads_.size(); ++c) {
+      const char* name = heads_[c].name.c_str();
+      set(units, name, text_variable(nullptr, heads_[c].unit));
+      set(out, name, variable(name, columns_[c]));
     }
     set(meta, "topic", text_variable(nullptr, table_.topic));
     set(meta, "type", text_variable(nullptr, table_.type));
@@ -189,7 +158,8 @@ class MatSink : public TableSink {
 
   OpenMat& file_;
   TopicTable table_;
-  std::vector<Held> columns_;
+  std::vector<ColumnHead> heads_;
+  std::vector<HeldColumn> columns_;  // one a head
   std::size_t bytes_ = 0;
 };
 

@@ -20,6 +20,14 @@
 namespace stillhand::recordings {
 namespace {
 
+// A verb about one recording, which it names first.
+CLI::App* file_verb(CLI::App& cli, std::string& recording, const std::string& name,
+                    const std::string& description) {
+  CLI::App* verb = cli.add_subcommand(name, description);
+  verb->add_option("FILE", recording, "recording (MCAP)")->required();
+  return verb;
+}
+
 struct InfoWords {
   std::string recording;
   std::filesystem::path json;
@@ -38,13 +46,12 @@ int run_info(const InfoWords& words) {
 
 void add_info(CLI::App& cli, int& status) {
   auto words = std::make_shared<InfoWords>();
-  CLI::App* verb = cli.add_subcommand(
-      "info",
+  CLI::App* verb = file_verb(
+      cli, words->recording, "info",
       "Prints what a recording holds: topics, types, messages, rates, lost ticks, QoS,\n"
       "metadata, damage. Reads the whole file and checks every checksum. Of a file that a crash\n"
       "left open, it reads what is there and prints what is lost.\n"
       "Example: stillhand info demo/session.mcap --json info.json");
-  verb->add_option("FILE", words->recording, "recording (MCAP)")->required();
   verb->add_option("--json", words->json, "write the same as JSON to this file");
   verb->callback([words, &status] { status = run_info(*words); });
 }
@@ -66,12 +73,11 @@ int run_verify(const std::string& path) {
 
 void add_verify(CLI::App& cli, int& status) {
   auto path = std::make_shared<std::string>();
-  CLI::App* verb = cli.add_subcommand(
-      "verify",
+  CLI::App* verb = file_verb(
+      cli, *path, "verify",
       "Reads the whole recording, checks every checksum and lists each finding with its place.\n"
       "Exit status 1 when the file is damaged, cut off or still being written.\n"
       "Example: stillhand verify demo/session.mcap");
-  verb->add_option("FILE", *path, "recording (MCAP)")->required();
   verb->callback([path, &status] { status = run_verify(*path); });
 }
 
@@ -103,14 +109,13 @@ int run_recover(RecoverWords words) {
 
 void add_recover(CLI::App& cli, int& status) {
   auto words = std::make_shared<RecoverWords>();
-  CLI::App* verb = cli.add_subcommand(
-      "recover",
+  CLI::App* verb = file_verb(
+      cli, words->recording, "recover",
       "Copies everything readable of a cut-off or damaged recording into a new file, and prints\n"
       "what is lost. With --out the old file stays as it is. Without --out the new file takes\n"
       "the name of the old one, which is kept as FILE.damaged. The new file appears when it is\n"
       "complete and on the disk. If the recording is whole, nothing is written.\n"
       "Example: stillhand recover crashed.mcap --out whole.mcap");
-  verb->add_option("FILE", words->recording, "recording (MCAP)")->required();
   verb->add_option("--out", words->options.out, "file to write; it must not exist yet");
   verb->add_option("--compression", words->compression,
                    "compression of the chunks: zstd, lz4 or none")
@@ -150,14 +155,13 @@ int run_export(const ExportWords& words) {
 
 void add_export(CLI::App& cli, int& status) {
   auto words = std::make_shared<ExportWords>();
-  CLI::App* verb = cli.add_subcommand(
-      "export",
+  CLI::App* verb = file_verb(
+      cli, words->recording, "export",
       "Writes a recording as tables, one for each topic: a folder of CSV files, a MATLAB file\n"
       "(version 5), an HDF5 file, or all three. The first column is `t [s]` since the\n"
       "recording's start; units come from the IDL that the recording carries. Any recording in\n"
       "CDR with its IDL as schema can be exported.\n"
       "Example: stillhand export demo/session.mcap --csv tables --hdf5 session.h5");
-  verb->add_option("FILE", words->recording, "recording (MCAP)")->required();
   verb->add_option("--csv", words->options.csv, "folder for CSV files, one for each topic");
   verb->add_option("--mat", words->options.mat, "MATLAB file, one struct for each topic");
   verb->add_option("--hdf5", words->options.hdf5, "HDF5 file, one group for each topic");

@@ -11,6 +11,7 @@
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/real_time.hpp"
 #include "services/runtime/process/shipped.hpp"
+#include "services/settings/repeatable.hpp"
 
 namespace stillhand::replay {
 namespace {
@@ -72,28 +73,23 @@ void add_replay_command(CLI::App& cli, int& status) {
   verb->add_option("REC", options.file, "MCAP recording");
   verb->add_option("--rate", words->rate, "speed relative to the recording, 0.1 to 100")
       ->capture_default_str();
-  verb->add_option("--topics", options.topics.allow,
-                   "pattern of topics to play (* any run of characters, ? one); may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--block", options.topics.block,
-                   "pattern of topics not to play; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--remap", words->remap,
-                   "RECORDED=WRITTEN: write a topic under another name; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings::repeatable(verb->add_option(
+      "--topics", options.topics.allow,
+      "pattern of topics to play (* any run of characters, ? one); may be repeated"));
+  settings::repeatable(verb->add_option("--block", options.topics.block,
+                                        "pattern of topics not to play; may be repeated"));
+  settings::repeatable(
+      verb->add_option("--remap", words->remap,
+                       "RECORDED=WRITTEN: write a topic under another name; may be repeated"));
   verb->add_option("--start", words->start_s, "begin at this time [s] after the recording's start")
       ->check(recording::within(0.0, kMostSeconds));
   verb->add_option("--end", words->end_s, "end at this time [s] after the recording's start")
       ->check(recording::within(0.0, kMostSeconds));
   verb->add_flag("--loop", options.loop, "play again from the start when the end is reached");
   verb->add_flag("--paused", options.begin_paused, "begin paused");
-  verb->add_option("--wait-for", options.wait_for,
-                   "topic that must have a reader before the replay begins; may be repeated")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  settings::repeatable(
+      verb->add_option("--wait-for", options.wait_for,
+                       "topic that must have a reader before the replay begins; may be repeated"));
   verb->add_option("--wait-seconds", words->wait_s, "longest wait of --wait-for [s]")
       ->check(recording::within(0.0, kMostSeconds))
       ->capture_default_str();

@@ -2,6 +2,7 @@
 #include "apps/study/figures.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "apps/session/protocol.hpp"
 #include "apps/study/analysis.hpp"
@@ -45,6 +46,11 @@ std::size_t typical_subject(const StudyRecord& record) {
     if (std::abs(values[i] - middle) < std::abs(values[best] - middle)) best = i;
   }
   return best;
+}
+
+double phase_up_to_deg(std::complex<double> response, double highest_deg) {
+  const double deg = std::arg(response) * 180.0 / std::numbers::pi;
+  return deg > highest_deg ? deg - 360.0 : deg;
 }
 
 report::Colour colour_of(char condition) {

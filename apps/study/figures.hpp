@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,10 @@ report::Figure figure_wrong_models(const StudyRecord& record);
 /// The subject of the figures that show one subject: nearest to the median RMS error of B, or of
 /// the first condition that was run.
 std::size_t typical_subject(const StudyRecord& record);
+
+/// Angle of a response [deg], above `highest_deg` - 360 and up to `highest_deg` (0 to 180): with an
+/// end that no curve crosses, a curve needs no unwrapping.
+double phase_up_to_deg(std::complex<double> response, double highest_deg);
 
 report::Colour colour_of(char condition);
 /// "A stationary"

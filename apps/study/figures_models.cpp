@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "apps/study/figures.hpp"
 
@@ -26,10 +25,7 @@ constexpr std::size_t kMostSmallPlots = 12;
 double decibels(std::complex<double> h) { return 20.0 * std::log10(std::abs(h)); }
 
 // The response starts and ends at -180 degrees: phases from -360 to 0 need no unwrapping.
-double phase_deg(std::complex<double> h) {
-  const double deg = std::arg(h) * 180.0 / std::numbers::pi;
-  return deg > 0.0 ? deg - 360.0 : deg;
-}
+double phase_deg(std::complex<double> h) { return phase_up_to_deg(h, 0.0); }
 
 std::vector<double> bode_grid_hz() {
   std::vector<double> out;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "apps/study/figures.hpp"
 
@@ -19,11 +18,7 @@ using report::Series;
 constexpr double kMmPerM = 1000.0;
 constexpr double kExcerptRate_hz = 20.0;
 constexpr std::size_t kFittedLines = 11;  // paper III-C
-
-double phase_deg(std::complex<double> g) {
-  const double deg = std::arg(g) * 180.0 / std::numbers::pi;
-  return deg > 90.0 ? deg - 360.0 : deg;
-}
+constexpr double kHighestPhase_deg = 90.0;
 
 Panel trace_panel(const TrackedTrial& trial, char condition) {
   Panel panel;
@@ -107,7 +102,7 @@ void add_open_loop(Panel& magnitude, Panel& phase, const identification::Trackin
     const auto& at = metrics.lines[k];
     points.x.push_back(at.frequency_hz);
     points.y.push_back(20.0 * std::log10(std::abs(at.gain)));
-    angle.y.push_back(phase_deg(at.gain));
+    angle.y.push_back(phase_up_to_deg(at.gain, kHighestPhase_deg));
     if (k >= kFittedLines) continue;
     line.x.push_back(at.frequency_hz);
     line.y.push_back(20.0 * std::log10(metrics.crossover_hz / at.frequency_hz));
@@ -186,8 +181,8 @@ report::Figure figure_open_loop(const StudyRecord& record) {
     magnitude.y = {.label = phases.empty() ? "|X_p/X_e| [dB]" : "", .low = -45.0, .high = 35.0};
     phase.y = {.label = phases.empty() ? "phase [°]" : "",
                .scale = Scale::kDegrees,
-               .low = -270.0,
-               .high = 90.0};
+               .low = kHighestPhase_deg - 360.0,
+               .high = kHighestPhase_deg};
     magnitude.reference_lines = {{.at = 0.0, .label = {}, .colour = Colour::kNeutral}};
     magnitude.legend = phase.legend = report::Legend::kNone;
     figure.panels.push_back(magnitude);

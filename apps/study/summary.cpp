@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/report/or_null.hpp"
 #include "apps/study/output.hpp"
 #include "version.hpp"
 
@@ -9,11 +10,8 @@ namespace stillhand::study {
 namespace {
 
 using nlohmann::ordered_json;
+using report::or_null;
 using session::kMetrics;
-
-ordered_json or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 ordered_json sample_json(const MetricSample& sample) {
   ordered_json each = ordered_json::array();
@@ -109,8 +107,7 @@ ordered_json identification_json(const StudyRecord& record) {
         {{"heldout_vaf_percent", found.paper.heldout.free_run_vaf_percent},
          {"refined_heldout_vaf_percent", found.refined.heldout.free_run_vaf_percent},
          {"refined_used", !found.paper_unusable.empty()},
-         {"reason", found.paper_unusable.empty() ? ordered_json(nullptr)
-                                                 : ordered_json(found.paper_unusable)},
+         {"reason", or_null(found.paper_unusable)},
          {"gain_at_0_hz_n_s2_m", std::abs(signal::response_at(found.refined.model, 0.0))}});
   }
   return {{"refined_used", record.analysis.refined_used}, {"subjects", subjects}};

@@ -8,7 +8,7 @@
 
 #include "idl/session_state.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/identity.hpp"
 #include "services/runtime/clock_answer.hpp"
 #include "services/runtime/process/real_time.hpp"
 #include "services/runtime/reporting.hpp"

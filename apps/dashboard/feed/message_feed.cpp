@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/dashboard/feed/topic_plans.hpp"
 #include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/session_state.hpp"
@@ -18,33 +19,6 @@ namespace {
 constexpr std::size_t kNone = SIZE_MAX;
 constexpr std::size_t kMostEvents = 50;
 constexpr Tick kLastTick = 1'000'000'000'000;  // 30 years: no session's
-
-// In the order in which a fault is looked for: round the loop from the sensor on.
-constexpr std::array kTopics{
-    &topics::kRawSample,      &topics::kSensed,          &topics::kMotorCommand,
-    &topics::kRigTruth,       &topics::kPlatformCommand, &topics::kTrackingSample,
-    &topics::kOperatorForce,  &topics::kPointer,         &topics::kServiceStatus,
-    &topics::kTrialControl,   &topics::kTrialAssignment, &topics::kFeedthroughModel,
-    &topics::kAugmentedModel, &topics::kEvent,           &topics::kClockQuestion,
-    &topics::kClockAnswer,    &topics::kClockOffset,     &topics::kHostStatus,
-    &topics::kSessionCommand};
-static_assert(kTopics.size() == topics::kCatalogue.size());
-
-std::vector<TopicPlan> plans(const Config& config) {
-  std::vector<TopicPlan> all;
-  for (const topics::Topic* row : kTopics) {
-    TopicPlan plan{std::string(row->name), 0, 0};
-    // The clocks' topics come in bursts, one message for each process.
-    if (row->rate_hz > 0.0 && row->pattern != topics::Pattern::kExchange) {
-      plan.period_ns = static_cast<std::int64_t>(kNsPerS / row->rate_hz);
-    }
-    if (row->pattern == topics::Pattern::kStream1khz) {
-      plan.deadline_ns = static_cast<std::int64_t>(config.deadline_ms * kNsPerMs);
-    }
-    all.push_back(std::move(plan));
-  }
-  return all;
-}
 
 std::vector<std::string> service_names() {
   return {topics::kServices.begin(), topics::kServices.end()};
@@ -66,7 +40,7 @@ std::string text_of(const stillhand_msgs::TrialAssignment& assignment) {
 
 MessageFeed::MessageFeed(FeedOptions options)
     : options_(std::move(options)),
-      health_(options_.config, plans(options_.config), service_names()) {}
+      health_(options_.config, topic_plans(options_.config), service_names()) {}
 
 bool MessageFeed::wants(const std::string& topic) const {
   if (options_.blinded && topic == topics::kTrialAssignment.name) return false;
@@ -75,11 +49,12 @@ bool MessageFeed::wants(const std::string& topic) const {
 
 std::uint32_t MessageFeed::add(const Source& source) {
   Known known{kNone, nullptr, "", source.replayed};
-  for (std::size_t topic = 0; topic < kTopics.size(); ++topic) {
-    if (kTopics[topic]->name != source.topic || kTopics[topic]->type != source.type) continue;
+  for (std::size_t topic = 0; topic < kFeedTopics.size(); ++topic) {
+    if (kFeedTopics[topic]->name != source.topic || kFeedTopics[topic]->type != source.type)
+      continue;
     if (!wants(source.topic)) continue;
     known.topic = topic;
-    known.row = kTopics[topic];
+    known.row = kFeedTopics[topic];
   }
   if (source.topic == topics::kRecorderStatus.name && source.type == topics::kRecorderStatus.type) {
     known.row = &topics::kRecorderStatus;
@@ -96,10 +71,10 @@ bool MessageFeed::passed_over(const Known& known) {
   if (known.replayed) return session_heard_;
   if (session_heard_ || service_number(known.service) == kNone) return false;
   if (replayed_) {
-    MessageFeed anew(options_);
-    anew.sources_.swap(sources_);  // its elements stay where they are
-    anew.replayed_ = true;
-    *this = std::move(anew);
+    MessageFeed fresh(options_);
+    fresh.sources_.swap(sources_);  // its elements stay where they are
+    fresh.replayed_ = true;
+    *this = std::move(fresh);
   }
   session_heard_ = true;
   return false;

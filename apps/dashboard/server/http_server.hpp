@@ -41,7 +41,6 @@ class HttpServer {
 
  private:
   struct Impl;
-  class Connection;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -15,6 +15,8 @@ using Json = nlohmann::ordered_json;
 Json instant(std::int64_t at_ns);
 /// null where it is not finite.
 Json number(double value);
+/// Microseconds.
+inline double us(std::int64_t ns) { return static_cast<double>(ns) / 1e3; }
 
 /// The catalogue as a graph: writers and readers of each topic, the counts of each reader, and
 /// endpoints that cannot match.

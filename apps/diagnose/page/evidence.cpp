@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/held_out.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/diagnose/page/binned_series.hpp"
 #include "apps/diagnose/page/binning.hpp"
 #include "apps/diagnose/page/explaining_variable.hpp"
 #include "apps/diagnose/page/explanation_over_time.hpp"
@@ -24,19 +25,6 @@ constexpr std::size_t kBins = 30;
 constexpr double kIsFunction = 0.5;  // of the effect's variance, that a variable explains
 constexpr std::size_t kFewestLines = 5;
 constexpr double kLargestError = 0.5;  // of a magnitude: a line with a larger one is not drawn
-
-Series with_errors(const std::string& label, report::Colour colour, const BinnedMeans& means) {
-  Series series{.label = label,
-                .kind = Kind::kErrorBars,
-                .colour = colour,
-                .x = means.centre,
-                .y = means.mean};
-  for (std::size_t b = 0; b < means.mean.size(); ++b) {
-    series.y_low.push_back(means.mean[b] - means.standard_error[b]);
-    series.y_high.push_back(means.mean[b] + means.standard_error[b]);
-  }
-  return series;
-}
 
 Series means_line(const std::string& label, report::Colour colour, Kind kind,
                   const BinnedMeans& means) {

@@ -7,7 +7,7 @@
 
 #include "apps/diagnose/page/binning.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/blocks.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {

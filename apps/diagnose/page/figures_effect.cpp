@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/diagnose/page/binned_series.hpp"
 #include "apps/diagnose/page/binning.hpp"
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
@@ -60,15 +61,7 @@ Panel against_prediction(const Evidence& evidence, const EffectTrace& trace) {
                                  bins_for(weight, evidence.correlation_samples, kEffectBins));
   const BinnedMeans means =
       binned_means(axis, trace.contribution, trace.without, weight, evidence.correlation_samples);
-  Series bars{.label = "without it",
-              .kind = Kind::kErrorBars,
-              .colour = kBefore,
-              .x = means.centre,
-              .y = means.mean};
-  for (std::size_t b = 0; b < means.mean.size(); ++b) {
-    bars.y_low.push_back(means.mean[b] - means.standard_error[b]);
-    bars.y_high.push_back(means.mean[b] + means.standard_error[b]);
-  }
+  const Series bars = with_errors("without it", kBefore, means);
   const Series one{.label = "slope 1",
                    .kind = Kind::kDashedLine,
                    .colour = report::Colour::kNeutral,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 #include "services/diagnosis/core/detection/detection.hpp"
 #include "services/diagnosis/core/detection/noise_floor.hpp"
 #include "services/diagnosis/core/search.hpp"
+#include "services/diagnosis/core/unexplained.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -50,14 +50,6 @@ struct FoundEffect {
   double p = 1.0;                 ///< [-] of the improvement by chance
   std::string evidence;           ///< one sentence
   std::vector<std::string> ties;  ///< kinds that explain the data equally well
-};
-
-/// A residual that no kind explains.
-struct Unexplained {
-  std::string what;  ///< one sentence
-  std::array<double, 2> band_hz{};
-  std::vector<double> times_s;        ///< [s] where it is strongest
-  std::vector<std::string> channels;  ///< measured ones, three at most
 };
 
 /// The verdict and everything that it is based on.

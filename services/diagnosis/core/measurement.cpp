@@ -2,11 +2,10 @@
 #include "services/diagnosis/core/measurement.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/digits.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -26,10 +25,8 @@ void check_values(const Measurement& measurement) {
     const auto odd = std::ranges::find_if_not(
         channel.values, [](double value) { return std::abs(value) < kLargestValue; });
     if (odd != channel.values.end()) {
-      std::array<char, 32> value{};
-      std::snprintf(value.data(), value.size(), "%.3g", *odd);
       throw ConfigError(where + ", sample " + std::to_string(odd - channel.values.begin()),
-                        value.data(), "a finite number, below 1e30 in size");
+                        digits(*odd, 3), "a finite number, below 1e30 in size");
     }
   }
   const auto odd = std::ranges::find_if_not(

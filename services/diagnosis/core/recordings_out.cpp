@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/core/fitting/held_out.hpp"
+
 namespace stillhand::diagnosis {
 
 RecordingsOut::RecordingsOut(const Signals& signals, const Blocks& blocks)

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/blocks.hpp"
+#include "services/diagnosis/core/model/model.hpp"
 
 namespace stillhand::diagnosis {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/held_out.hpp"
 
 /// The choice among the models that were tried, README "Selection".
 namespace stillhand::diagnosis {

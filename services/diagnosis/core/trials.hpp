@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/blocks.hpp"
 #include "services/diagnosis/core/fitting/impulse_response.hpp"
 #include "services/diagnosis/core/selection.hpp"
 

@@ -2,11 +2,10 @@
 #include "services/diagnosis/core/working_set.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/digits.hpp"
 #include "services/signal/butterworth.hpp"
 #include "services/signal/spectrum.hpp"
 
@@ -19,12 +18,7 @@ constexpr double kCutoff = 0.4;  // of the new rate
 constexpr std::size_t kPieces = 40;
 constexpr std::size_t kShortestPiece = 50;
 constexpr std::size_t kSegment = 4096;
-
-std::string figure(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
+constexpr int kDigits = 6;  // of a rate in a message
 
 // [Hz] above which lies a thousandth of the inputs' power.
 double highest_excited_hz(const Measurement& measurement, const std::vector<std::string>& inputs) {
@@ -131,8 +125,8 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
     }
     result.stretches.push_back({first, result.weight.size(), stretch.start_s, stretch.recording});
   }
-  result.notes.push_back("the inputs end far below " + figure(measurement.rate_hz / 2.0) +
-                         " Hz: the engine works at " + figure(result.rate_hz) + " Hz");
+  result.notes.push_back("the inputs end far below " + digits(measurement.rate_hz / 2.0, kDigits) +
+                         " Hz: the engine works at " + digits(result.rate_hz, kDigits) + " Hz");
   return result;
 }
 
@@ -141,8 +135,9 @@ std::size_t rate_factor(const Measurement& measurement, double rate_hz) {
   const double ratio = measurement.rate_hz / rate_hz;
   const double whole = std::round(ratio);
   if (whole < 1.0 || std::abs(ratio - whole) > kSame * whole) {
-    throw ConfigError(measurement.source, "samples at " + figure(measurement.rate_hz) + " Hz",
-                      "the model's rate, " + figure(rate_hz) + " Hz, or a whole multiple of it");
+    throw ConfigError(
+        measurement.source, "samples at " + digits(measurement.rate_hz, kDigits) + " Hz",
+        "the model's rate, " + digits(rate_hz, kDigits) + " Hz, or a whole multiple of it");
   }
   return static_cast<std::size_t>(whole);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/diagnosis/effects/hysteresis.hpp"
 
+#include "services/diagnosis/effects/loop_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {

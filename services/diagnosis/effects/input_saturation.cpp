@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/effects/map_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/effects/map_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -54,7 +55,7 @@ Body body_before(const Effect& effect, const Screening& screening) {
   for (double& each : y) {
     each = upper(effect) * std::atanh(std::clamp(each / upper(effect), -kTellable, kTellable));
   }
-  return body_anew(screening, measured_inputs(screening), y);
+  return new_body(screening, measured_inputs(screening), y);
 }
 
 std::vector<double> sizes(const std::vector<double>& y) {

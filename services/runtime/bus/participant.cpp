@@ -8,6 +8,7 @@
 
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
+#include "services/runtime/bus/security.hpp"
 #include "services/runtime/process/domain.hpp"
 
 namespace stillhand::runtime {

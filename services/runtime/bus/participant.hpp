@@ -8,7 +8,7 @@
 #include <string>
 
 #include "services/contract/config_error.hpp"
-#include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/identity.hpp"
 
 namespace stillhand::runtime {
 

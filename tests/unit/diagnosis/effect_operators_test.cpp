@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/diagnosis/core/model/loop.hpp"
+#include "services/diagnosis/effects/loop_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 #include "services/signal/random.hpp"
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/fitting/held_out.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {

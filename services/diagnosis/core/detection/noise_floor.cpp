@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
+
+#include "services/diagnosis/core/digits.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -12,12 +13,7 @@ namespace {
 constexpr double kAboveBand = 1.25;  // times the highest excited frequency: past a window's skirts
 constexpr double kHighest = 0.3;     // of the rate: a decimated record ends at 0.4, DG-48
 constexpr std::size_t kFewestLines = 4;
-
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+constexpr int kDigits = 4;  // of a number in `method`
 
 // Freed of the numbers that were fitted to it and of what any question still explains, Eq. DG-19.
 double final_model(const DetectionResult& after, const Screening& screening) {
@@ -85,10 +81,10 @@ void use_repeats(NoiseFloor& floor, const Repeats& repeats, const Periodicity& p
   floor.high = repeats.high;
   floor.method = "repeats: the deviation of the final model's residual between " +
                  std::to_string(repeats.periods) + " periods of the excitation (" +
-                 figure(static_cast<double>(periodicity.period) / rate_hz) + " s each" +
+                 digits(static_cast<double>(periodicity.period) / rate_hz, kDigits) + " s each" +
                  (repeats.first_left_out ? ", the first left out because it differs" : "") +
                  "), without the mean period; 95 % after chi-square with " +
-                 figure(repeats.degrees_of_freedom) + " degrees of freedom";
+                 digits(repeats.degrees_of_freedom, kDigits) + " degrees of freedom";
 }
 
 }  // namespace
@@ -112,9 +108,10 @@ NoiseFloor noise_floor_of(const DetectionResult& after, const Screening& screeni
   }
   for (std::size_t i = 1; i < floor.estimates.size(); ++i) {
     const NoiseEstimate& other = floor.estimates[i];
-    floor.method += (i == 1 ? ". Others: " : ", ") + other.name + " " + figure(other.rmse);
+    floor.method += (i == 1 ? ". Others: " : ", ") + other.name + " " + digits(other.rmse, kDigits);
     if (other.name == "high frequencies") {
-      floor.method += " (the excited band has " + figure(ratio) + " times the density above it)";
+      floor.method +=
+          " (the excited band has " + digits(ratio, kDigits) + " times the density above it)";
     }
   }
   return floor;

@@ -8,6 +8,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/fitting/equation_error.hpp"
+#include "services/diagnosis/core/fitting/held_out.hpp"
 #include "services/diagnosis/core/fitting/modes.hpp"
 #include "services/signal/decompositions.hpp"
 #include "services/signal/difference_model.hpp"

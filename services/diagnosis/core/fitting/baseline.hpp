@@ -4,8 +4,9 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/blocks.hpp"
 #include "services/diagnosis/core/fitting/impulse_response.hpp"
+#include "services/diagnosis/core/model/model.hpp"
 
 namespace stillhand::diagnosis {
 

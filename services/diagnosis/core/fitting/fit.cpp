@@ -5,25 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-
-#include "services/contract/config_error.hpp"
-#include "services/signal/decompositions.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr std::size_t kBlocks = 30;
-constexpr std::size_t kFolds = 5;
-constexpr double kShortestBlock_s = 2.0;
-constexpr std::size_t kFewestBlocks = 10;
-constexpr std::size_t kFewestWeighing = 8;  // the first may lie in what isn't judged
-constexpr std::size_t kFewestSamples = 5;
 // Keeps a direction that the data doesn't determine from blowing up; relative to the diagonal.
 constexpr double kRidge = 1e-11;
-// A fold may pull numbers that the data hardly determines far away, where the linearisation is
-// void: relative to the diagonal.
-constexpr double kDeviationRidge = 1e-6;
 
 double squared_error(const Eigen::MatrixXd& gram) { return gram(gram.rows() - 1, gram.cols() - 1); }
 
@@ -150,50 +137,6 @@ double weight_outside(const std::vector<double>& weight, const Blocks& blocks, i
 
 }  // namespace
 
-Blocks make_blocks(const Signals& signals) {
-  const auto shortest =
-      std::max(kFewestSamples, static_cast<std::size_t>(kShortestBlock_s * signals.rate_hz()));
-  Blocks blocks;
-  blocks.folds = kFolds;
-  blocks.length = std::max(shortest, (signals.size() + kBlocks - 1) / kBlocks);
-  if (signals.size() < kFewestBlocks * blocks.length) {
-    blocks.length = std::max(kFewestSamples, signals.size() / kFewestBlocks);
-  }
-  blocks.count = (signals.size() + blocks.length - 1) / blocks.length;
-  std::size_t weighing = 0;
-  for (std::size_t b = 0; b < blocks.count; ++b) {
-    const std::size_t end = std::min(signals.size(), (b + 1) * blocks.length);
-    double weight = 0.0;
-    for (std::size_t n = b * blocks.length; n < end; ++n) weight += signals.weight()[n];
-    if (weight >= 1.0) ++weighing;
-  }
-  if (signals.size() < kFewestBlocks * kFewestSamples || weighing < kFewestWeighing) {
-    throw ConfigError("recording", std::to_string(signals.size()) + " samples",
-                      "at least " + std::to_string(kFewestBlocks * kFewestSamples) +
-                          " to judge a model on samples it has not seen");
-  }
-  return blocks;
-}
-
-Blocks by_recording(const Blocks& blocks, const Signals& signals) {
-  Blocks result = blocks;
-  result.folds = signals.stretches().back().recording + 1;
-  Eigen::MatrixXd samples = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(result.folds),
-                                                  static_cast<Eigen::Index>(blocks.count));
-  for (const Stretch& stretch : signals.stretches()) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      samples(static_cast<Eigen::Index>(stretch.recording),
-              static_cast<Eigen::Index>(n / blocks.length)) += 1.0;
-    }
-  }
-  for (Eigen::Index b = 0; b < samples.cols(); ++b) {
-    Eigen::Index most = 0;
-    samples.col(b).maxCoeff(&most);
-    result.fold.push_back(static_cast<std::size_t>(most));
-  }
-  return result;
-}
-
 Eigen::MatrixXd Grams::total(const Blocks& layout, int without_fold) const {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(blocks.front().rows(), blocks.front().cols());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -250,66 +193,6 @@ FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
   static_cast<void>(residual_of(model, signals, run));
   result.rmse = std::sqrt(after / weight_outside(run.weight, blocks, options.without_fold));
   result.finite = run.finite;
-  return result;
-}
-
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
-double HeldOut::rmse() const { return std::sqrt(sum_of(squares) / std::max(sum_of(weights), 1.0)); }
-
-HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
-  HeldOut result;
-  result.finite = true;
-  result.weights = grams.weights;
-  result.squares.resize(grams.blocks.size());
-  const Eigen::Index count = grams.blocks.front().rows() - 1;
-  for (std::size_t fold = 0; fold < blocks.folds; ++fold) {
-    Eigen::MatrixXd training = grams.total(blocks, static_cast<int>(fold));
-    const Eigen::VectorXd scale =
-        training.diagonal().head(count).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd normal =
-        scale.asDiagonal() * training.topLeftCorner(count, count) * scale.asDiagonal();
-    normal.diagonal().array() += kDeviationRidge;
-    const Eigen::VectorXd step =
-        scale.asDiagonal() *
-        signal::solve_symmetric(normal, scale.asDiagonal() * training.col(count).head(count));
-    for (std::size_t b = 0; b < grams.blocks.size(); ++b) {
-      if (blocks.fold_of(b) != fold) continue;
-      const Eigen::MatrixXd& gram = grams.blocks[b];
-      const double square = gram(count, count) - 2.0 * step.dot(gram.col(count).head(count)) +
-                            step.dot(gram.topLeftCorner(count, count) * step);
-      result.squares[b] = std::max(square, 0.0);
-      result.finite = result.finite && std::isfinite(square);
-    }
-  }
-  return result;
-}
-
-HeldOut held_out(const Model& model, const Signals& signals, const Blocks& blocks) {
-  constexpr int kRefitIterations = 3;
-  HeldOut result;
-  result.finite = true;
-  result.squares.assign(blocks.count, 0.0);
-  result.weights.assign(blocks.count, 0.0);
-  for (std::size_t fold = 0; fold < blocks.folds; ++fold) {
-    Model refitted = model;
-    FitOptions options;
-    options.max_iterations = kRefitIterations;
-    options.without_fold = static_cast<int>(fold);
-    fit(refitted, signals, blocks, options);
-    FreeRun run;
-    const Eigen::VectorXd residual = residual_of(refitted, signals, run);
-    result.finite = result.finite && run.finite;
-    for (std::size_t n = 0; n < signals.size(); ++n) {
-      const std::size_t block = n / blocks.length;
-      if (blocks.fold_of(block) != fold) continue;
-      const double r = residual[static_cast<Eigen::Index>(n)];
-      result.squares[block] += r * r;
-      result.weights[block] += run.weight[n];
-    }
-  }
   return result;
 }
 

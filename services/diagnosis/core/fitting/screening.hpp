@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "services/diagnosis/core/fitting/baseline.hpp"
-#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/diagnosis/core/fitting/held_out.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnosis {

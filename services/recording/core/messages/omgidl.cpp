@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <map>
 #include <optional>
 
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/messages/omgidl_cursor.hpp"
+#include "services/recording/core/messages/omgidl_names.hpp"
+#include "services/recording/core/messages/omgidl_numbers.hpp"
 
 namespace stillhand::recording {
 namespace {
 
-constexpr std::int64_t kMaxLength = UINT32_MAX;
 // Limit of nested sequences and modules; a deeper text would exhaust the stack.
 constexpr int kMaxDepth = 64;
 
@@ -54,89 +53,17 @@ class Parser {
   }
 
  private:
-  // Names
-  [[nodiscard]] std::string scoped(const std::string& name) const {
-    return scope_.empty() ? name : scope_ + "::" + name;
-  }
-  template <typename Value>
-  const Value* look_up(const std::map<std::string, Value>& values, std::string name) const {
-    const bool global = name.starts_with("::");
-    if (global) name.erase(0, 2);
-    for (std::string scope = global ? "" : scope_;;) {
-      const auto found = values.find(scope.empty() ? name : scope + "::" + name);
-      if (found != values.end()) return &found->second;
-      if (scope.empty()) return nullptr;
-      const std::size_t cut = scope.rfind("::");
-      scope = cut == std::string::npos ? "" : scope.substr(0, cut);
-    }
-  }
   std::uint32_t add(IdlType type) {
     schema_.types.push_back(std::move(type));
     return static_cast<std::uint32_t>(schema_.types.size() - 1);
   }
 
-  // Numbers: sums of products of literals, constants and brackets
-  std::int64_t sum(int depth) {
-    std::int64_t value = product(depth);
-    for (;;) {
-      if (in_.accept("+")) {
-        value = bounded(value + product(depth));
-      } else if (in_.accept("-")) {
-        value = bounded(value - product(depth));
-      } else {
-        return value;
-      }
-    }
-  }
-  std::int64_t product(int depth) {
-    std::int64_t value = factor(depth);
-    while (in_.accept("*")) {
-      std::int64_t result = 0;
-      if (__builtin_mul_overflow(value, factor(depth), &result)) result = INT64_MAX;
-      value = bounded(result);
-    }
-    return value;
-  }
-  std::int64_t factor(int depth) {
-    if (depth > kMaxDepth) in_.refuse("fewer nested brackets");
-    if (in_.accept("-")) return -factor(depth + 1);
-    if (in_.accept("(")) {
-      const std::int64_t value = sum(depth + 1);
-      in_.expect(")");
-      return value;
-    }
-    const std::string_view text = in_.peek();
-    if (text.empty() || text[0] < '0' || text[0] > '9') {
-      const std::size_t start = in_.place();
-      const std::int64_t* value = look_up(constants_, in_.scoped_name());
-      if (value == nullptr) {
-        in_.go_to(start);
-        in_.refuse("a whole number or a known constant");
-      }
-      return *value;
-    }
-    const bool hex = text.size() > 2 && (text[1] | 0x20) == 'x';
-    const char* begin = text.data() + (hex ? 2 : 0);
-    const char* end = text.data() + text.size();
-    std::int64_t value = 0;
-    const int base = hex ? 16 : text[0] == '0' && text.size() > 1 ? 8 : 10;
-    const auto read = std::from_chars(begin, end, value, base);
-    if (read.ec != std::errc() || read.ptr != end) in_.refuse("a whole number");
-    in_.take();
-    return bounded(value);
-  }
-  // Keeps sums of two of them inside 64 bits.
-  std::int64_t bounded(std::int64_t value) const {
-    if (value > kMaxLength || value < -kMaxLength) in_.refuse("a number of at most 32 bits");
-    return value;
-  }
+  // Types
   std::uint32_t length() {
-    const std::int64_t value = sum(0);
+    const std::int64_t value = whole_number(in_, names_);
     if (value <= 0) in_.refuse("a length of at least 1");
     return static_cast<std::uint32_t>(value);
   }
-
-  // Types
   std::uint32_t type(int depth) {
     if (depth > kMaxDepth) in_.refuse("fewer nested types");
     if (in_.accept("string") || in_.accept("wstring")) {
@@ -181,7 +108,7 @@ class Parser {
       return add({best->kind, 0, 0, std::string(best->words)});
     }
     const std::size_t start = in_.place();
-    const std::uint32_t* named = look_up(named_, in_.scoped_name());
+    const std::uint32_t* named = names_.type(in_.scoped_name());
     if (named == nullptr) {
       in_.go_to(start);
       in_.refuse("a type defined earlier");
@@ -221,7 +148,7 @@ class Parser {
       if (name == "value" && in_.place() > open) {
         const std::size_t behind = in_.place();
         in_.go_to(open + 1);
-        marks.value = sum(0);
+        marks.value = whole_number(in_, names_);
         in_.go_to(behind);
       }
     }
@@ -246,7 +173,7 @@ class Parser {
       const std::uint32_t aliased = type(0);
       do {
         auto [declared, of] = declarator(aliased);
-        named_[scoped(declared)] = of;
+        names_.set_type(names_.scoped(declared), of);
       } while (in_.accept(","));
       in_.expect(";");
     } else if (in_.accept("const")) {
@@ -256,53 +183,53 @@ class Parser {
     }
   }
   void module(int depth) {
-    const std::string outside = scope_;
-    scope_ = scoped(in_.name());
+    const std::string outside = names_.enter(in_.name());
     in_.expect("{");
     while (!in_.accept("}")) {
       if (in_.peek().empty()) in_.refuse("}");
       definition(depth + 1);
     }
     in_.accept(";");
-    scope_ = outside;
+    names_.leave_to(outside);
   }
   void constant() {
     while (in_.peek(1) != "=") {
       if (in_.take().empty()) in_.refuse("=");
     }
-    const std::string constant = scoped(in_.name());
+    const std::string constant = names_.scoped(in_.name());
     in_.expect("=");
     const std::size_t start = in_.place();
     try {
-      const std::int64_t value = sum(0);
-      if (in_.peek() == ";") constants_[constant] = value;
+      const std::int64_t value = whole_number(in_, names_);
+      if (in_.peek() == ";") names_.set_constant(constant, value);
     } catch (const ConfigError&) {
       in_.go_to(start);  // a text or a fraction; no length uses it
     }
     in_.skip_definition();
   }
   void enumeration() {
-    IdlEnum found{scoped(in_.name()), {}};
+    IdlEnum found{names_.scoped(in_.name()), {}};
     in_.expect("{");
     std::int64_t next = 0;
     while (!in_.accept("}")) {
       const Marks in_front = marks();
       next = in_front.value.value_or(next);
       std::string value = in_.name();
-      constants_[scoped(value)] = next;
+      names_.set_constant(names_.scoped(value), next);
       found.values.emplace_back(next++, std::move(value));
       if (!in_.accept(",") && in_.peek() != "}") in_.refuse(", or }");
     }
     in_.expect(";");
-    named_[found.name] = add({IdlKind::kEnum, static_cast<std::uint32_t>(schema_.enums.size())});
+    names_.set_type(found.name,
+                    add({IdlKind::kEnum, static_cast<std::uint32_t>(schema_.enums.size())}));
     schema_.enums.push_back(std::move(found));
   }
   void structure(const Marks& in_front) {
-    IdlStruct found{scoped(in_.name()), {}, in_front.is_mutable};
+    IdlStruct found{names_.scoped(in_.name()), {}, in_front.is_mutable};
     if (in_.accept(";")) return;  // a forward declaration
     if (in_.accept(":")) {
       const std::size_t start = in_.place();
-      const std::uint32_t* base = look_up(named_, in_.scoped_name());
+      const std::uint32_t* base = names_.type(in_.scoped_name());
       if (base == nullptr || schema_.types[*base].kind != IdlKind::kStruct) {
         in_.go_to(start);
         in_.refuse("a struct defined earlier");
@@ -312,8 +239,8 @@ class Parser {
     in_.expect("{");
     while (!in_.accept("}")) members(found);
     in_.expect(";");
-    named_[found.name] =
-        add({IdlKind::kStruct, static_cast<std::uint32_t>(schema_.structs.size())});
+    names_.set_type(found.name,
+                    add({IdlKind::kStruct, static_cast<std::uint32_t>(schema_.structs.size())}));
     schema_.structs.push_back(std::move(found));
   }
   void members(IdlStruct& into) {
@@ -337,16 +264,14 @@ class Parser {
       in_.refuse("module, struct, enum, typedef or const");
     }
     in_.take();
-    const std::string declared = scoped(in_.name());
-    named_[declared] = add({IdlKind::kUnsupported, 0, 0, kind + " " + declared});
+    const std::string declared = names_.scoped(in_.name());
+    names_.set_type(declared, add({IdlKind::kUnsupported, 0, 0, kind + " " + declared}));
     in_.skip_definition();
   }
 
   IdlCursor in_;
-  std::string scope_;
+  IdlNames names_;
   IdlSchema schema_;
-  std::map<std::string, std::uint32_t> named_;
-  std::map<std::string, std::int64_t> constants_;
 };
 
 }  // namespace
