@@ -57,12 +57,16 @@ std::vector<std::filesystem::path> session_files(const std::filesystem::path& fo
 
 OutputFolder::OutputFolder(const std::filesystem::path& path,
                            const std::vector<std::filesystem::path>& inputs)
-    : path_(path) {
+    : path_(path), earlier_(path / ".earlier-session") {
   make();
+  bool locked = false;
   try {
     prove_writable();
     lock();
+    locked = true;
     for (const std::filesystem::path& input : inputs) refuse_if_needed(input);
+    bring_back();  // of a lab that was killed
+    set_aside();
     clear();
     std::error_code error;
     std::filesystem::create_directories(path_ / "logs", error);
@@ -77,6 +81,7 @@ OutputFolder::OutputFolder(const std::filesystem::path& path,
       }
     }
   } catch (...) {
+    if (locked) bring_back();  // otherwise they wait for the lab that has the lock
     close(descriptor_);
     std::error_code error;
     if (made_) std::filesystem::remove(path_, error);
@@ -84,7 +89,10 @@ OutputFolder::OutputFolder(const std::filesystem::path& path,
   }
 }
 
-OutputFolder::~OutputFolder() { close(descriptor_); }
+OutputFolder::~OutputFolder() {
+  forget_earlier();
+  close(descriptor_);
+}
 
 void OutputFolder::make() {
   std::error_code error;
@@ -134,10 +142,42 @@ void OutputFolder::refuse_if_needed(const std::filesystem::path& input) const {
   }
 }
 
-void OutputFolder::discard() const {
+void OutputFolder::discard() {
   clear();
+  bring_back();
   std::error_code error;
   if (made_) std::filesystem::remove(path_, error);
+}
+
+void OutputFolder::set_aside() const {
+  std::error_code error;
+  for (const std::filesystem::path& file : session_files(path_)) {
+    if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, error))) continue;
+    const std::filesystem::path to = earlier_ / file.lexically_relative(path_);
+    std::filesystem::create_directories(to.parent_path(), error);
+    std::filesystem::rename(file, to, error);
+  }
+}
+
+// A file that is there already stays: it is of the session that ran last.
+void OutputFolder::bring_back() const {
+  std::error_code error;
+  for (const std::filesystem::path& file : session_files(earlier_)) {
+    const std::filesystem::path to = path_ / file.lexically_relative(earlier_);
+    if (!std::filesystem::exists(file, error) || std::filesystem::exists(to, error)) continue;
+    std::filesystem::create_directories(to.parent_path(), error);
+    std::filesystem::rename(file, to, error);
+  }
+  forget_earlier();
+}
+
+void OutputFolder::forget_earlier() const {
+  std::error_code error;
+  for (const std::filesystem::path& file : session_files(earlier_)) {
+    std::filesystem::remove(file, error);
+  }
+  std::filesystem::remove(earlier_ / "logs", error);
+  std::filesystem::remove(earlier_, error);
 }
 
 void OutputFolder::clear() const {

@@ -7,8 +7,8 @@
 namespace stillhand::lab {
 
 /// The folder of a session's results: it is made if need be, proved writable, locked against other
-/// labs, and cleared of the files of an earlier session.  It removes only files that a session
-/// writes.
+/// labs, and cleared of the files of an earlier session.  These wait in a hidden folder inside: a
+/// session that never began gives them back.  It removes only files that a session writes.
 class OutputFolder {
  public:
   /// @param inputs  files that the session reads; empty ones don't count
@@ -19,8 +19,9 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Removes the files of the session, and the folder if it was made here.
-  void discard() const;
+  /// Removes the files of the session and brings those of the earlier one back; removes the folder
+  /// if it was made here.
+  void discard();
 
  private:
   void make();
@@ -28,8 +29,12 @@ class OutputFolder {
   void lock();
   void refuse_if_needed(const std::filesystem::path& input) const;
   void clear() const;
+  void set_aside() const;
+  void bring_back() const;
+  void forget_earlier() const;
 
   std::filesystem::path path_;
+  std::filesystem::path earlier_;  ///< where an earlier session's files wait
   bool made_ = false;
   int descriptor_ = -1;  ///< of the folder; carries the lock
 };

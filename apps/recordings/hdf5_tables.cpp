@@ -178,6 +178,8 @@ class Hdf5File : public TableFile {
 }  // namespace
 
 std::unique_ptr<TableFile> hdf5_tables(const std::string& path) {
+  // Every file is closed here. At exit the library would write once more what a full disk refused.
+  H5dont_atexit();
   // Failures are reported by return values; the library would also print its stack.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   return std::make_unique<Hdf5File>(path);

@@ -3,6 +3,10 @@
 
 #include <matio.h>
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -80,12 +84,34 @@ void set(Variable& structure, const char* field, Variable value) {
   Mat_VarSetStructFieldByName(structure.get(), field, 0, value.release());
 }
 
+// Elements of a MATLAB 5 file that are there from the first byte to the last, none where the file
+// ends within one: the library does not look at what its writes return.  A head of 128 bytes, then
+// a tag of two 32-bit numbers, type and bytes, before each element.  Source: MathWorks, "MAT-File
+// Format", Level 5.
+std::size_t elements(const std::string& path) {
+  constexpr std::uintmax_t kHead = 128;
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  std::ifstream file(path, std::ios::binary);
+  std::size_t count = 0;
+  std::uintmax_t at = kHead;
+  while (at < size) {
+    std::array<std::uint32_t, 2> tag{};
+    file.seekg(static_cast<std::streamoff>(at));
+    file.read(reinterpret_cast<char*>(tag.data()), sizeof tag);
+    if (!file) return 0;
+    at += sizeof tag + tag[1];
+    ++count;
+  }
+  return at == size ? count : 0;
+}
+
 /// The library's file, closed at its end.
 class OpenMat {
  public:
   /// @param path  where it is made  @param place  its name in messages
   OpenMat(const std::string& path, std::string place)
-      : place_(std::move(place)),
+      : path_(path),
+        place_(std::move(place)),
         file_(Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, from a recording", MAT_FT_MAT5)) {
     check(file_ != nullptr);
   }
@@ -97,9 +123,13 @@ class OpenMat {
 
   void write(const Variable& variable) {
     check(Mat_VarWrite(file_, variable.get(), MAT_COMPRESSION_ZLIB) == 0);
+    ++written_;
   }
   /// Closes now, where failing matters.
-  void close() { check(Mat_Close(std::exchange(file_, nullptr)) == 0); }
+  void close() {
+    check(Mat_Close(std::exchange(file_, nullptr)) == 0);
+    check(elements(path_) == written_);
+  }
   [[nodiscard]] const std::string& place() const noexcept { return place_; }
 
  private:
@@ -107,8 +137,10 @@ class OpenMat {
     if (!done) throw std::runtime_error(place_ + ": cannot be written; is the disk full?");
   }
 
+  std::string path_;
   std::string place_;
   mat_t* file_;
+  std::size_t written_ = 0;
 };
 
 // Version 5 has no way to append to a variable: a topic is held until its last row.

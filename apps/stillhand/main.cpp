@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 
@@ -31,6 +32,8 @@ int flushed(int status) {
 }
 
 int run(int argc, char** argv) {
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a write beyond the limit of a file's size then fails like others
   CLI::App cli("Stillhand measures, models and cancels biodynamic feedthrough.");
   cli.name("stillhand");
   cli.set_version_flag("--version", stillhand::kVersion);

@@ -79,8 +79,13 @@ void JsonEntry::refuse(const std::string& want) const {
 JsonEntry::Json parsed_json(std::string_view json, const std::string& origin,
                             const std::string& want) {
   using Json = JsonEntry::Json;
+  constexpr int kDeepest = 64;              // the library writes and frees entries by recursion
   std::vector<std::set<std::string>> open;  // keys of each open object
-  const auto look = [&](int /*depth*/, Json::parse_event_t event, Json& parsed) {
+  const auto look = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kDeepest) {
+      throw ConfigError(origin, "entries nested more than " + std::to_string(kDeepest) + " deep",
+                        want);
+    }
     if (event == Json::parse_event_t::object_start) open.emplace_back();
     if (event == Json::parse_event_t::object_end) open.pop_back();
     if (event == Json::parse_event_t::key &&

@@ -133,7 +133,8 @@ void Signals::find_excited_band() {
   for (const Signal& input : inputs_) {
     std::vector<double> x = input.values;
     for (double& value : x) value -= input.mean;
-    x.resize(std::bit_ceil(x.size()), 0.0);
+    x.resize(std::bit_ceil(std::max<std::size_t>(x.size(), 2)),
+             0.0);  // Eigen's transform wants two
     std::vector<std::complex<double>> spectrum;
     Eigen::FFT<double> transform;
     transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);

@@ -42,6 +42,7 @@ struct Writer final : edds::DataWriterListener {
 
 struct Playback::Impl {
   ~Impl() {
+    if (participant == nullptr) return;  // it was refused
     participant->delete_contained_entities();
     edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }

@@ -55,7 +55,7 @@ class OutputFolderTest : public testing::Test {
 
 TEST_F(OutputFolderTest, IsMadeAndGoesAgainWithASessionThatNeverWas) {
   {
-    const OutputFolder sut(folder, {});
+    OutputFolder sut(folder, {});
     EXPECT_THAT(content(), ElementsAre("logs"));
     write("logs/rig.log");
     sut.discard();
@@ -68,10 +68,33 @@ TEST_F(OutputFolderTest, AnEarlierSessionsResultsAreTakenAwayAndNothingElse) {
                            "logs/rig.log", "logs/mine.log"}) {
     write(name);
   }
-  const OutputFolder sut(folder, {});
-  EXPECT_THAT(content(), ElementsAre("logs", "logs/mine.log", "notes.txt"));
+  {
+    const OutputFolder sut(folder, {});
+    for (const char* name : {"session.mcap", "summary.json", "model.json", "logs/rig.log"}) {
+      EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+    write("session.mcap");
+  }
+  EXPECT_THAT(content(), ElementsAre("logs", "logs/mine.log", "notes.txt", "session.mcap"));
+}
+
+TEST_F(OutputFolderTest, ASessionThatNeverBeganGivesTheEarlierOnesFilesBack) {
+  for (const char* name : {"session.mcap", "summary.json", "logs/rig.log"}) write(name);
+  const auto before = content();
+  OutputFolder sut(folder, {});
+  write("session.mcap");
+  write("report.html");
   sut.discard();
-  EXPECT_THAT(content(), ElementsAre("logs", "logs/mine.log", "notes.txt"));
+  EXPECT_EQ(content(), before);
+}
+
+TEST_F(OutputFolderTest, AfterALabThatWasKilledTheNextOneFindsTheEarlierFiles) {
+  write(".earlier-session/session.mcap");
+  write(".earlier-session/logs/rig.log");
+  OutputFolder sut(folder, {});
+  sut.discard();
+  EXPECT_THAT(content(), ElementsAre("logs", "logs/rig.log", "session.mcap"));
 }
 
 TEST_F(OutputFolderTest, TheRideOfThisSessionIsNotReplaced) {
@@ -129,14 +152,14 @@ TEST_F(OutputFolderTest, TheFilesOfASessionOverSeveralMachinesAreTakenAway) {
                            "logs/ghost_rig-pc.log", "verdict.json", "report.html"}) {
     write(name);
   }
-  const OutputFolder sut(folder, {});
+  { const OutputFolder sut(folder, {}); }
   EXPECT_THAT(content(), ElementsAre("logs", "logs/ghost_rig-pc.log", "logs/host_notes.txt"));
 }
 
 TEST_F(OutputFolderTest, AFolderThatWasThereStaysWhenTheSessionIsDiscarded) {
   std::filesystem::create_directories(folder);
   {
-    const OutputFolder sut(folder, {});
+    OutputFolder sut(folder, {});
     write("session.mcap");
     sut.discard();
   }
