@@ -64,9 +64,15 @@ void add_motion_options(CLI::App& lab, LabOptions& options, Words& words) {
                  "road for --motion road: ISO 8608 class, A (very good) to H [B]");
   lab.add_option("--speed-m-s", words.road_speed_m_s,
                  "speed of the vehicle on that road [m/s], 0.5 to 70 [20]");
+  CLI::Option* canceller = lab.add_option(
+      "--canceller", options.canceller,
+      "of condition C: now (1 kHz), or paper (behind the paper's low-pass of 10 Hz, at 50 Hz, one "
+      "sample late)");
+  canceller->check(CLI::IsMember({"now", "paper"}))->capture_default_str();
   lab.add_option("--model", options.model,
                  "control model for condition C, in place of the session's own; "
                  "`stillhand close-the-loop` and `stillhand control-model` write such a file")
+      ->excludes(canceller)
       ->check(settings::check_name);
   lab.add_option("--undeclared-effect", options.undeclared_effect,
                  "seed of an effect that only the rig knows; it stays sealed until the results "
@@ -107,7 +113,8 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
       ->capture_default_str();
   lab.add_flag("--attach", options.attach,
                "start no service: conduct the services that systemd started with --one-session, "
-               "and fetch their recording");
+               "and fetch their recording")
+      ->excludes(lab.get_option("--canceller"));  // their settings say it
   lab.add_flag("--no-real-time", words.ordinary, "do not ask for real-time priority");
 }
 

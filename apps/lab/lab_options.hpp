@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "apps/session/protocol.hpp"
 #include "services/recording/keep_options.hpp"
@@ -29,6 +30,7 @@ struct LabOptions {
   std::filesystem::path security;       ///< folder of keys; empty: none, or the inventory's
   std::filesystem::path inventory;      ///< the lab's machines; empty: this one
   std::filesystem::path model;          ///< control model for C; empty: the session's own
+  std::string canceller = "now";        ///< cancellation::sampling_named()
   std::uint64_t undeclared_effect = 0;  ///< seed of the effect that only the rig knows; 0: none
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
   bool attach = false;                  ///< use services that run already

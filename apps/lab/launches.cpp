@@ -66,6 +66,9 @@ Arguments own_words(std::string_view service, const LabOptions& options, const P
   if (service == "recorder") return recorder_words(options, place);
   if (service == "motion") return motion_words(options);
   if (service == "display") return display_words(options, place);
+  if (service == "cancellation" && options.canceller != "now") {
+    return {"--canceller", options.canceller};
+  }
   if (service == "human_operator" && options.who == Operator::kMouse) return {"--pointer"};
   return {};
 }

@@ -160,6 +160,7 @@ ordered_json summary_json(const LabOptions& options,
   summary["restoration"] = restoration_json(result);
   summary["identification"] = identification_json(result);
   summary["control_model"] = or_null(options.model.string());
+  summary["canceller"] = options.canceller;
   summary["trials"] = ordered_json::array();
   for (const session::TrialOutcome& outcome : outcomes) {
     summary["trials"].push_back(trial_json(outcome, options.protocol));

@@ -85,7 +85,8 @@ InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tic
       keep_every_(keep_every) {}
 
 cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
-  return canceller_.load_model(cancellation::control_model(model.control));
+  const bool fit = configs_.cancellation.sampling.model_ticks > 1;
+  return canceller_.load_model(cancellation::control_model(fit ? model.fit : model.control));
 }
 
 cancellation::Refusal InProcessLoop::use_model(const cancellation::ControlModel& model) {

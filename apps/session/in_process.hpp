@@ -69,7 +69,8 @@ class InProcessLoop {
   void keep_measured() noexcept { keeps_measured_ = true; }
   /// Runs one trial from its first ramp to its last; start_tick is set by the loop.
   TrialSignals run(PlannedTrial planned);
-  /// The model the canceller uses from now on.  @return why not, or kNone.
+  /// The model the canceller uses from now on: at 1 kHz or, where its settings say so, at the rate
+  /// of the fit.  @return why not, or kNone.
   cancellation::Refusal use_model(const identification::FeedthroughModel& model);
   cancellation::Refusal use_model(const cancellation::ControlModel& model);
   /// The effect of the rig, once the verdict on it is written: no trial runs after this call.

@@ -192,6 +192,8 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
   if (has(out, 'C')) {
     out.cancelled_share['C'] = summarised(over_subjects(
         results, [](const SubjectResult& r) { return r.trials.at('C').cancelled_share; }));
+    out.counterforce_delay_s['C'] = summarised(over_subjects(
+        results, [](const SubjectResult& r) { return r.trials.at('C').counterforce_delay_s; }));
   }
   if (has(out, 'A') && has(out, 'B')) out.comparisons.push_back(compared(out, 'A', 'B'));
   for (const char to : {'C', 'D', 'E', 'F'}) {

@@ -62,7 +62,8 @@ struct WrongModel {
 /// All numbers of the report and the summary.
 struct Analysis {
   std::map<char, std::array<MetricSample, kMetricCount>> conditions;
-  std::map<char, MetricSample> cancelled_share;  ///< conditions with a motor
+  std::map<char, MetricSample> cancelled_share;       ///< conditions with a motor
+  std::map<char, MetricSample> counterforce_delay_s;  ///< conditions with a motor
   std::map<char, MetricSample> crossover_reference_hz;
   std::map<char, std::vector<PooledLine>> open_loop;
   std::vector<Comparison> comparisons;

@@ -10,13 +10,16 @@ namespace stillhand::study {
 namespace {
 
 // The mean model of all subjects but `left_out`: one least-squares fit to their records, Eq. ID-18.
-signal::DifferenceModel mean_model(const std::vector<SubjectResult>& results,
-                                   std::size_t left_out) {
+identification::FeedthroughModel mean_model(const std::vector<SubjectResult>& results,
+                                            std::size_t left_out) {
   std::vector<identification::ArxFactor> factors;
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (i != left_out) factors.push_back(results[i].identification.factor);
   }
-  return identification::to_control_rate(identification::fit_pooled(factors)).model;
+  identification::FeedthroughModel model;
+  model.fit = identification::fit_pooled(factors);
+  model.control = identification::to_control_rate(model.fit).model;
+  return model;
 }
 
 void run_wrong_models(const StudyOptions& options, std::vector<SubjectResult>& results,
@@ -24,7 +27,7 @@ void run_wrong_models(const StudyOptions& options, std::vector<SubjectResult>& r
   SubjectResult& own = results[index];
   const SubjectResult& other = results[(index + 1) % results.size()];
   const auto at = static_cast<std::int64_t>(index);
-  own.wrong['O'] = run_with_model(options, own, at, other.identification.control.model);
+  own.wrong['O'] = run_with_model(options, own, at, used_model(other.identification));
   own.wrong['M'] = run_with_model(options, own, at, mean_model(results, index));
 }
 

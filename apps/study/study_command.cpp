@@ -72,6 +72,12 @@ void add_protocol_options(CLI::App& study, StudyOptions& options, Words& words) 
                   "A stationary, B moving, C moving with cancellation, D filter on the command, "
                   "E damped stick, F arm rest")
       ->capture_default_str();
+  study
+      .add_option("--canceller", options.canceller,
+                  "of condition C: now (1 kHz), or paper (behind the paper's low-pass of 10 Hz, at "
+                  "50 Hz, one sample late)")
+      ->check(CLI::IsMember({"now", "paper"}))
+      ->capture_default_str();
   study.add_flag("--wrong-models", options.wrong_models,
                  "run C again with another subject's model and with the mean model of all others");
   study.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")

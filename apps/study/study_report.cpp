@@ -67,6 +67,7 @@ void add_lead_facts(report::Page& page, const StudyRecord& record) {
               {"seed", std::to_string(options.seed)},
               {"trial", short_number(options.protocol.trial_s) + " s"},
               {"pegged trial", short_number(options.protocol.identify_s) + " s"},
+              {"canceller", options.canceller},
               {"computed in", number(record.wall_s, 1) + " s"},
               {"version", kVersion},
               {"command line", record.command_line}});

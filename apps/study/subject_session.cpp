@@ -10,7 +10,6 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/contract/expects.hpp"
-#include "services/identification/core/identifier.hpp"
 #include "services/settings/describe.hpp"
 
 namespace stillhand::study {
@@ -48,6 +47,7 @@ session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subj
   session::CoreConfigs configs;
   configs.rig.body = subject.body;
   configs.human_operator = subject.who;
+  configs.cancellation.sampling = cancellation::sampling_named(options.canceller);
   if (condition == 'E') configs.rig.stick.viscous_damping_n_s_m += options.damped_stick_n_s_m;
   if (condition == 'F') {
     configs.rig.body.arm_rest_stiffness_n_m = options.arm_rest_stiffness_n_m;
@@ -63,17 +63,12 @@ session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subj
   return configs;
 }
 
-identification::FeedthroughModel at_control_rate(const signal::DifferenceModel& control) {
-  identification::FeedthroughModel model;
-  model.control = control;
-  return model;
-}
-
 Identification identified(const identification::Record& pegged) {
   identification::IdentificationSteps steps = identification::identify_stepwise(pegged, {}, true);
   Identification out;
   out.paper = std::move(steps.paper);
   out.refined = std::move(*steps.refined);
+  out.fit = steps.refined_used ? out.refined.model : out.paper.model;
   out.control = std::move(steps.control);
   out.paper_unusable = std::move(steps.paper_unusable);
   out.factor = identification::factor_arx(steps.record, kOrder);
@@ -84,8 +79,8 @@ Identification identified(const identification::Record& pegged) {
 }
 
 // Without this check, condition C would run without a motor if the canceller refuses the model.
-void use(session::InProcessLoop& loop, const signal::DifferenceModel& control) {
-  const cancellation::Refusal refusal = loop.use_model(at_control_rate(control));
+void use(session::InProcessLoop& loop, const identification::FeedthroughModel& model) {
+  const cancellation::Refusal refusal = loop.use_model(model);
   if (refusal != cancellation::Refusal::kNone) {
     throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
                       "a model that the canceller accepts; a longer --identify-seconds helps");
@@ -116,6 +111,8 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
   thin(out.metrics.moving_dwell, record.rate_hz);
   if (planned.cancellation) {
     out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
+    out.counterforce_delay_s =
+        session::counterforce_delay_s(signals.feedthrough_n, signals.motor_n, record.rate_hz);
   }
   out.feedthrough_rms_n = rms(signals.feedthrough_n);
   const std::size_t samples = record.target_m.size();
@@ -131,6 +128,13 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
 bool own_rig(char condition) { return condition == 'E' || condition == 'F'; }
 
 }  // namespace
+
+identification::FeedthroughModel used_model(const Identification& identification) {
+  identification::FeedthroughModel model;
+  model.fit = identification.fit;
+  model.control = identification.control.model;
+  return model;
+}
 
 bool is_calibrated(const StudyOptions& options) {
   return settings::describe(options.population) == settings::describe(Population{}) &&
@@ -167,7 +171,7 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   for (const PlannedTrial& planned : trials) {
     if (planned.trial.phase == TrialPhase::kPegged) {
       result.identification = identified(loop.run(planned).pegged);
-      use(loop, result.identification.control.model);
+      use(loop, used_model(result.identification));
       continue;
     }
     result.order += planned.label;
@@ -183,11 +187,11 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
 }
 
 TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
-                            std::int64_t index, const signal::DifferenceModel& control_model) {
+                            std::int64_t index, const identification::FeedthroughModel& model) {
   session::InProcessLoop loop(configs_of(options, result.subject, 'C'),
                               subject_seed(options.seed, index), kKeepEvery,
                               sealed_effect(options));
-  use(loop, control_model);
+  use(loop, model);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const auto planned = std::find_if(trials.begin(), trials.end(),
                                     [](const PlannedTrial& t) { return t.label == 'C'; });

@@ -9,6 +9,7 @@
 #include "apps/session/in_process.hpp"
 #include "apps/study/population.hpp"
 #include "services/identification/core/arx.hpp"
+#include "services/identification/core/identifier.hpp"
 #include "services/identification/core/output_error.hpp"
 #include "services/identification/core/rate_conversion.hpp"
 #include "services/identification/core/tracking_metrics.hpp"
@@ -27,6 +28,7 @@ struct StudyOptions {
   double arm_rest_damping_n_s_m = 30.0;   ///< condition F
   bool wrong_models = false;              ///< run C again with models of other subjects
   std::uint64_t undeclared_effect = 0;    ///< seed of an effect that only the rigs hold; 0: none
+  std::string canceller = "now";          ///< cancellation::sampling_named()
   unsigned threads = 0;                   ///< 0: one per core
 };
 
@@ -39,6 +41,7 @@ struct Identification {
   identification::OutputErrorFit refined;  ///< the same model fitted on its free-run error
   identification::ArxFactor factor;        ///< for pooled fits
   signal::TransferEstimate estimate;       ///< Fig. 4's dots, 0 to 25 Hz
+  signal::DifferenceModel fit;             ///< at 50 Hz, what `control` was made of
   identification::RateConversion control;  ///< the filter of the canceller
   std::string paper_unusable;              ///< why the refined model is used; empty: it is not
 };
@@ -48,7 +51,8 @@ struct TrackedTrial {
   identification::TrackingMetrics metrics;  ///< moving averages once a second
   double cancelled_share = 0.0;             ///< of the feedthrough force; 0 without a motor
   double feedthrough_rms_n = 0.0;
-  std::vector<double> target_m;  ///< 20 s from the middle, 20 Hz
+  double counterforce_delay_s = 0.0;  ///< session::counterforce_delay_s(); 0 without a motor
+  std::vector<double> target_m;       ///< 20 s from the middle, 20 Hz
   std::vector<double> cursor_m;
 };
 
@@ -75,6 +79,9 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index);
 
 /// Runs condition C, which the options contain, with another model at the same motion and target.
 TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
-                            std::int64_t index, const signal::DifferenceModel& control_model);
+                            std::int64_t index, const identification::FeedthroughModel& model);
+
+/// The model with which the subject's condition C ran, at both of its rates.
+identification::FeedthroughModel used_model(const Identification& identification);
 
 }  // namespace stillhand::study

@@ -31,6 +31,7 @@ ordered_json conditions_json(const StudyRecord& record) {
         sample_json(record.analysis.crossover_reference_hz.at(condition));
     if (record.analysis.cancelled_share.contains(condition)) {
       one["cancelled_share"] = sample_json(record.analysis.cancelled_share.at(condition));
+      one["counterforce_delay_s"] = sample_json(record.analysis.counterforce_delay_s.at(condition));
     }
     out[std::string(1, condition)] = one;
   }
@@ -145,6 +146,7 @@ std::string summary_json(const StudyRecord& record) {
   summary["seed"] = options.seed;
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
+  summary["canceller"] = options.canceller;
   summary["version"] = kVersion;
   // JSON has no NaN: dump() writes a number that is not finite as null.
   return summary.dump(2) + "\n";

@@ -41,7 +41,11 @@ Assignment from_idl(const stillhand_msgs::TrialAssignment& message) {
   return {message.trial(), message.cancellation()};
 }
 
-signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message) {
+signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
+                                 const SamplingConfig& sampling) {
+  if (sampling.model_ticks > 1) {
+    return {message.fit_rate_hz(), message.fit_numerator(), message.fit_denominator()};
+  }
   return {message.control_rate_hz(), message.control_numerator(), message.control_denominator()};
 }
 

@@ -14,7 +14,9 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
 Assignment from_idl(const stillhand_msgs::TrialAssignment& message);
 
 /// The filter for the control rate; check_model() judges whether it is sound.
-signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message);
+/// The model at the canceller's rate: the fit where the model runs below 1 kHz.
+signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
+                                 const SamplingConfig& sampling = {});
 
 /// Models of the topic stillhand/augmented_model are numbered from here on, so that the number in a
 /// motor command distinguishes them from identified ones.

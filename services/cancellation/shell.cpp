@@ -7,9 +7,9 @@
 
 namespace stillhand::cancellation {
 
-Shell::Shell(runtime::Service& service)
+Shell::Shell(runtime::Service& service, const Config& config)
     : service_(service),
-      config_(service.config<Config>()),
+      config_(config),
       core_(config_),
       command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)) {
   runtime::Bus& bus = service.bus();
@@ -25,7 +25,8 @@ Shell::Shell(runtime::Service& service)
   bus.subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
         if (!message.usable()) return;
-        on_model({control_model(from_idl(message)), message.model(), message.from_tick()});
+        on_model({control_model(from_idl(message, config_.sampling)), message.model(),
+                  message.from_tick()});
       });
   bus.subscribe<stillhand_msgs::AugmentedModel>(
       topics::kAugmentedModel, [this](const auto& message, const auto&) {

@@ -23,7 +23,7 @@ namespace stillhand::cancellation {
 /// Models are prepared in another thread and taken by the sample that ModelSchedule names.
 class Shell {
  public:
-  explicit Shell(runtime::Service& service);
+  Shell(runtime::Service& service, const Config& config);
   void run() { service_.run(); }
 
  private:

@@ -14,7 +14,13 @@ const Config& checked(const Config& config) {
 
 }  // namespace
 
-Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {}
+Canceller::Canceller(const Config& config) : config_(checked(config)), envelope_(config.limits) {
+  const SamplingConfig& sampling = config_.sampling;
+  if (sampling.low_pass_order > 0) {
+    low_pass_.emplace(static_cast<int>(sampling.low_pass_order), sampling.low_pass_hz,
+                      kControlRateHz);
+  }
+}
 
 void Canceller::take(const PreparedModel& model) noexcept {
   if (!model.filter.loaded()) return;
@@ -40,6 +46,7 @@ void Canceller::restart() noexcept {
   if (incoming_.filter.loaded()) active_ = incoming_;
   incoming_ = pending_ = PreparedModel();
   held_.fill(0.0);
+  if (low_pass_) low_pass_->reset();
   engaged_ = 0;
   fade_done_ = 0;
   settle_left_ = 0;
@@ -47,6 +54,7 @@ void Canceller::restart() noexcept {
     // From rest again: settle, then fade in from no model at all.
     incoming_ = active_;
     incoming_.filter.reset();
+    incoming_.held = {};
     incoming_.adaptive.reset();
     active_ = PreparedModel();
     settle_left_ = incoming_.filter.settle_ticks();
@@ -111,8 +119,16 @@ Canceller::Predicted Canceller::predict(const ChannelSample& sample, Tick tick) 
   const double theta_rad = sample[static_cast<std::size_t>(Channel::kTheta)];
   // Motion of the hand while a force comes or goes is not caused by the model.
   const bool adapts = engaged_ == config_.fade_ticks && !incoming_.filter.loaded();
+  ChannelSample seen = sample;
+  if (low_pass_) {
+    double& accel = seen[static_cast<std::size_t>(Channel::kAccelY)];
+    accel = low_pass_->step(accel);
+  }
+  const SamplingConfig& sampling = config_.sampling;
+  const bool samples = tick % sampling.model_ticks == 0;
   const auto ask = [&](PreparedModel& law) {
-    const auto force = law.filter.step(sample, tick);
+    if (samples) law.held.push(law.filter.step(seen, tick), sampling.latency_samples);
+    const auto& force = law.held.force();
     const double against_n = law.adaptive.step(force.feedthrough_n, theta_rad, adapts);
     return Predicted{force.feedthrough_n + force.beside_n, against_n + force.beside_n};
   };

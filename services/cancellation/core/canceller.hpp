@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "services/cancellation/core/prepared_model.hpp"
 #include "services/contract/config_field.hpp"
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
+#include "services/signal/butterworth.hpp"
 #include "services/signal/force_envelope.hpp"
 
 namespace stillhand::cancellation {
@@ -27,6 +29,7 @@ struct CancellerOutput {
 
 struct Config {
   signal::ForceLimits limits;
+  SamplingConfig sampling;
   double gain = 1.0;
   double max_model_gain_n_s2_m = 60.0;
   double max_path_force_n = 25.0;
@@ -37,6 +40,7 @@ struct Config {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit.group("limits", self.limits);
+    visit.group("sampling", self.sampling);
     visit("gain", self.gain, Range{0.0, 1.2}, "[-] share of the predicted force that is cancelled");
     visit("max_model_gain_n_s2_m", self.max_model_gain_n_s2_m, Range{1.0, 200.0},
           "[N s^2/m] largest |H| of a model, any frequency; paper IV-A: 3.2 at 0 Hz");
@@ -54,7 +58,7 @@ struct Config {
 
 /// What these settings let a model ask for.
 inline ModelBounds bounds(const Config& config) noexcept {
-  return {config.max_model_gain_n_s2_m, config.max_path_force_n};
+  return {config.max_model_gain_n_s2_m, config.max_path_force_n, config.sampling.model_ticks};
 }
 
 /// Cancels biodynamic feedthrough, README Eq. CC-1 (paper III: the motor acts against f_hat):
@@ -62,7 +66,8 @@ inline ModelBounds bounds(const Config& config) noexcept {
 ///   f_hat = H a_y,   wanted = -gain f_hat,   force = ForceEnvelope(wanted)   (Eq. SG-6)
 ///
 /// H may be a control model (Eq. CC-6 to CC-9) that reads further channels, and gain and phase
-/// are followed where the model says so (Eq. CC-10).
+/// are followed where the model says so (Eq. CC-10).  H runs on every tick, or behind the stages of
+/// `sampling` (Eq. CC-16).
 /// The force leaves zero only while enabled, permitted, with a model and a sound sample.  A lost or
 /// unsound sample holds the last acceleration (Eq. CC-2); a run longer than max_hold_ticks starts
 /// the filter from rest.  After an interruption the force fades in again; a new model settles next
@@ -114,6 +119,7 @@ class Canceller {
 
   Config config_;
   signal::ForceEnvelope envelope_;
+  std::optional<signal::Butterworth> low_pass_;
   PreparedModel active_;
   PreparedModel incoming_;  ///< settles, then is faded in
   PreparedModel pending_;   ///< came while another was fading in

@@ -91,16 +91,24 @@ bool fits(const ControlModel& model) {
          (!model.loop || small(model.loop->phi));
 }
 
-// Ticks until radius^n = 0.01, for every pole; above the limit when a pole is at or beyond 1.
-std::int64_t settle_ticks(const std::vector<std::complex<double>>& poles) {
+// Below 1 kHz the paper's model alone: one input, nothing inside the body or next to it.
+bool suits_rate(const ControlModel& model, std::int64_t model_ticks) {
+  const bool plain = model.inputs.size() == 1 && !model.loop && model.paths.empty() &&
+                     model.waves.empty() && !model.adapts;
+  return model.rate_hz * static_cast<double>(model_ticks) == kControlRateHz &&
+         (model_ticks == 1 || plain);
+}
+
+// Samples until radius^n = 0.01, for every pole; above the limit when a pole is at or beyond 1.
+std::int64_t settle_samples(const std::vector<std::complex<double>>& poles) {
   std::int64_t slowest = 1;
   for (const std::complex<double>& pole : poles) {
     const double radius = std::abs(pole);
     if (!(radius < 1.0)) return kMaxSettle_ticks + 1;
     if (radius < 1e-6) continue;
-    const double ticks = std::ceil(std::log(0.01) / std::log(radius));
-    if (!(ticks <= static_cast<double>(kMaxSettle_ticks))) return kMaxSettle_ticks + 1;
-    slowest = std::max(slowest, static_cast<std::int64_t>(ticks));
+    const double samples = std::ceil(std::log(0.01) / std::log(radius));
+    if (!(samples <= static_cast<double>(kMaxSettle_ticks))) return kMaxSettle_ticks + 1;
+    slowest = std::max(slowest, static_cast<std::int64_t>(samples));
   }
   return slowest;
 }
@@ -117,7 +125,7 @@ ModelCheck checked(const ControlModel& model, const ModelBounds& bounds) {
   if (!fits(model)) return refused(Refusal::kTooMany);
   if (!finite(model)) return refused(Refusal::kNotFinite);
   if (!well_formed(model)) return refused(Refusal::kMalformed);
-  if (model.rate_hz != kControlRateHz) return refused(Refusal::kWrongRate);
+  if (!suits_rate(model, bounds.model_ticks)) return refused(Refusal::kWrongRate);
   if (model.denominator.size() - 1 > ControlModelFilter::kMaxOrder) return refused(Refusal::kOrder);
   const signal::DifferenceModel first = path_model(model, model.inputs[0]);
   if (!signal::is_stable(first)) return refused(Refusal::kUnstable);
@@ -125,7 +133,7 @@ ModelCheck checked(const ControlModel& model, const ModelBounds& bounds) {
   for (const std::complex<double>& pole : poles) {
     if (!(std::abs(pole) < 1.0)) return refused(Refusal::kUnstable);
   }
-  const std::int64_t settle = settle_ticks(poles);
+  const std::int64_t settle = settle_samples(poles) * bounds.model_ticks;
   if (settle > kMaxSettle_ticks) return refused(Refusal::kSettling);
   if (const Refusal why = check_strength(model, poles, bounds); why != Refusal::kNone) {
     return refused(why);
@@ -150,7 +158,8 @@ std::string_view describe(Refusal refusal) noexcept {
     case Refusal::kNotFinite:
       return "a coefficient is not a finite number";
     case Refusal::kWrongRate:
-      return "model is not at exactly 1000 Hz";
+      return "model is not at the canceller's rate (1000 Hz, or sampling.model_ticks of them), or "
+             "below 1000 Hz has more than a_y";
     case Refusal::kOrder:
       return "model order is above 12";
     case Refusal::kUnstable:

@@ -14,7 +14,7 @@ enum class Refusal : std::uint8_t {
   kNone,        ///< taken
   kMalformed,   ///< sizes differ, empty, d_0 not 1, a table out of order
   kNotFinite,   ///< a number is NaN or infinite
-  kWrongRate,   ///< not exactly 1000 Hz
+  kWrongRate,   ///< not at the rate at which the canceller runs models, or too rich for it
   kOrder,       ///< above ControlModelFilter::kMaxOrder
   kUnstable,    ///< a pole on or outside the unit circle
   kSettling,    ///< slower than kMaxSettle_ticks to settle to 1 %
@@ -39,6 +39,7 @@ inline constexpr double kMaxRest_n = 1.0;
 struct ModelBounds {
   double max_gain_n_s2_m;   ///< |H| from an acceleration; from roll as much for each g it tips over
   double max_path_force_n;  ///< from theta, from omega at its full scale, and of all waves
+  std::int64_t model_ticks = 1;  ///< from sample to sample of the model
 };
 
 struct ModelCheck {

@@ -24,11 +24,11 @@ double peak_gain(const signal::DifferenceModel& model,
   look(0.0);
   for (int i = 0; i <= kPoints && std::isfinite(peak); ++i) {
     // From 0.01 Hz up, evenly in log frequency: 85 a decade.
-    look(0.01 * std::pow(0.5 * kControlRateHz / 0.01, static_cast<double>(i) / kPoints));
+    look(0.01 * std::pow(0.5 * model.rate_hz / 0.01, static_cast<double>(i) / kPoints));
   }
   for (const std::complex<double>& pole : poles) {
     if (!std::isfinite(peak)) break;
-    look(std::abs(std::arg(pole)) * kControlRateHz / (2.0 * std::numbers::pi));
+    look(std::abs(std::arg(pole)) * model.rate_hz / (2.0 * std::numbers::pi));
   }
   return peak;
 }

@@ -7,7 +7,7 @@ Preparation prepare(const ControlModel& model, const ModelBounds& bounds) noexce
   const ModelCheck check = check_model(model, bounds);
   if (check.refusal != Refusal::kNone) return {check.refusal, {}};
   return {Refusal::kNone,
-          {ControlModelFilter(model, check.settle_ticks),
+          {ControlModelFilter(model, check.settle_ticks), HeldForce(),
            model.adapts ? AdaptiveGain(*model.adapts) : AdaptiveGain()}};
 }
 

@@ -4,6 +4,7 @@
 #include "services/cancellation/core/adaptive_gain.hpp"
 #include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/model_check.hpp"
+#include "services/cancellation/core/sampling.hpp"
 
 namespace stillhand::cancellation {
 
@@ -11,6 +12,7 @@ namespace stillhand::cancellation {
 /// and phase.  Of fixed size: a copy allocates nothing.
 struct PreparedModel {
   ControlModelFilter filter;
+  HeldForce held;  ///< between two samples of the filter
   AdaptiveGain adaptive;
 };
 

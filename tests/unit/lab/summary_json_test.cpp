@@ -223,7 +223,7 @@ TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, ElementsAre("conditions", "t_tests", "manova", "restoration", "identification",
-                                "control_model", "trials", "lost_ticks", "clocks",
+                                "control_model", "canceller", "trials", "lost_ticks", "clocks",
                                 "recording_damage", "interrupted", "seed", "trial_seconds",
                                 "identify_seconds", "reference_note", "version"));
   EXPECT_EQ(json["conditions"], ordered_json::object());
@@ -231,6 +231,7 @@ TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
   EXPECT_EQ(json["trials"], ordered_json::array());
   EXPECT_EQ(json["seed"], options.protocol.seed);
   EXPECT_EQ(json["control_model"], "m/control_model.json");
+  EXPECT_EQ(json["canceller"], "now");
   EXPECT_EQ(json["lost_ticks"]["stillhand/sensed"], 4);
   EXPECT_EQ(json["recording_damage"][0], "a chunk at byte 7");
   EXPECT_EQ(json["interrupted"], true);

@@ -79,19 +79,29 @@ TEST(SubjectSessionTest, AStickWithoutAddedDampingAndAnArmWithoutARestAreThoseOf
 TEST(SubjectSessionTest, AnotherModelMeetsTheSameMotionAndTarget) {
   const StudyOptions options = short_study("C");
   const SubjectResult own = run_subject(options, 0);
-  const TrackedTrial sut = run_with_model(options, own, 0, own.identification.control.model);
+  const TrackedTrial sut = run_with_model(options, own, 0, used_model(own.identification));
   EXPECT_EQ(sut.target_m, own.trials.at('C').target_m);
   EXPECT_NEAR(sut.feedthrough_rms_n / own.trials.at('C').feedthrough_rms_n, 1.0, 0.05);
   EXPECT_NEAR(sut.cancelled_share, own.trials.at('C').cancelled_share, 0.05);
-  EXPECT_EQ(sut.cursor_m,
-            run_with_model(options, own, 0, own.identification.control.model).cursor_m);
+  EXPECT_EQ(sut.cursor_m, run_with_model(options, own, 0, used_model(own.identification)).cursor_m);
+}
+
+// Cancellation, Eq. CC-16: 51 ms of the low-pass, 20 ms of one sample, 10 ms of the hold.
+TEST(SubjectSessionTest, ThePapersCancellerIsLateByItsChain) {
+  StudyOptions options = short_study("C");
+  const TrackedTrial now = run_subject(options, 0).trials.at('C');
+  options.canceller = "paper";
+  const TrackedTrial sut = run_subject(options, 0).trials.at('C');
+  EXPECT_EQ(sut.target_m, now.target_m);
+  EXPECT_NEAR(sut.counterforce_delay_s - now.counterforce_delay_s, 0.0815, 0.005);
+  EXPECT_LT(sut.cancelled_share, now.cancelled_share - 0.1);
 }
 
 TEST(SubjectSessionTest, AModelThatTheCancellerRefusesIsNotRunUnseen) {
   const StudyOptions options = short_study("C");
   const SubjectResult own = run_subject(options, 0);
-  signal::DifferenceModel unstable = own.identification.control.model;
-  unstable.denominator.at(1) -= 1.0;
+  identification::FeedthroughModel unstable = used_model(own.identification);
+  unstable.control.denominator.at(1) -= 1.0;
   EXPECT_THROW(run_with_model(options, own, 0, unstable), ConfigError);
 }
 
