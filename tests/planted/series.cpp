@@ -53,7 +53,7 @@ void SeriesPlan::check() const {
   if (!noise.empty() && !noise_of(noise)) throw std::invalid_argument("no noise called " + noise);
   if (strengths.empty() || snrs_db.empty()) throw std::invalid_argument("an empty list");
   if (together < 1 || together > kKindNames.size()) {
-    throw std::invalid_argument("--together: want 1 to 18");
+    throw std::invalid_argument("--together: want 1 to " + std::to_string(kKindNames.size()));
   }
 }
 

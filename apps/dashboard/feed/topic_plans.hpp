@@ -19,7 +19,8 @@ inline constexpr std::array kFeedTopics{
     &topics::kAugmentedModel, &topics::kEvent,           &topics::kClockQuestion,
     &topics::kClockAnswer,    &topics::kClockOffset,     &topics::kHostStatus,
     &topics::kSessionCommand};
-static_assert(kFeedTopics.size() == topics::kCatalogue.size());
+static_assert(kFeedTopics.size() == topics::kCatalogue.size(),
+              "a topic of the catalogue is missing in kFeedTopics: add it here");
 
 /// What is expected of each of kFeedTopics, in their order.
 std::vector<TopicPlan> topic_plans(const Config& config);

@@ -31,7 +31,8 @@ TEST(EveryEffectTest, NoKindIsMissingFromTheList) {
   std::set<std::string> listed;
   for (const Effect& sut : made::every_effect()) listed.insert(sut.kind);
   for (const EffectKind* kind : effect_kinds()) {
-    EXPECT_TRUE(listed.contains(std::string(kind->name()))) << kind->name();
+    EXPECT_TRUE(listed.contains(std::string(kind->name())))
+        << kind->name() << ": add one effect for each of its forms to a list in every_effect.hpp";
   }
 }
 
