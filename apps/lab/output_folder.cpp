@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -159,12 +160,16 @@ void OutputFolder::set_aside() const {
   }
 }
 
-// A file that is there already stays: it is of the session that ran last.
+// Where a newer session left files, the earlier one's are not mixed with them.
 void OutputFolder::bring_back() const {
   std::error_code error;
+  const auto exists = [&error](const std::filesystem::path& file) {
+    return std::filesystem::exists(file, error);
+  };
+  if (std::ranges::any_of(session_files(path_), exists)) return forget_earlier();
   for (const std::filesystem::path& file : session_files(earlier_)) {
     const std::filesystem::path to = path_ / file.lexically_relative(earlier_);
-    if (!std::filesystem::exists(file, error) || std::filesystem::exists(to, error)) continue;
+    if (!exists(file)) continue;
     std::filesystem::create_directories(to.parent_path(), error);
     std::filesystem::rename(file, to, error);
   }

@@ -106,13 +106,15 @@ class InterruptTest(LabTestCase):
         # No process was left to write results: there are none, rather than half of them.
         self.assertEqual({path.name for path in lab.out.iterdir()}, {"session.mcap", "logs"})
 
-    def test_lab_whose_folder_holds_an_interrupted_run_begins_afresh(self):
+    def test_lab_that_never_began_a_trial_leaves_the_earlier_session(self):
         out = self.folder / "run"
         (out / "logs").mkdir(parents=True)
-        for name in ("session.mcap", "summary.json", "model.json"):
+        names = {"session.mcap", "summary.json", "model.json"}
+        for name in names:
             (out / name).write_text("of an earlier run")
         self.interrupted_before_the_first_trial()
-        self.assertEqual(list(out.iterdir()), [])
+        self.assertEqual({path.name for path in out.iterdir()} - {"logs"}, names)
+        self.assertEqual((out / "session.mcap").read_text(), "of an earlier run")
 
 
 if __name__ == "__main__":
