@@ -95,15 +95,15 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
   live.folder = std::make_shared<OutputFolder>(
       options.out,
       std::vector<std::filesystem::path>{options.ride, options.model, options.inventory});
-  if (options.undeclared_effect != 0) {
-    live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
-  }
   std::string recorded;
   const auto bring_back = [&] {
     if (options.attach) return hosts.bring_recording(recorded);
     hosts.bring_back();
   };
   try {
+    if (options.undeclared_effect != 0) {
+      live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
+    }
     hosts.open(stop);
     run_processes(options, asked, hosts, stop, script, live, recorded);
   } catch (...) {

@@ -4,12 +4,13 @@
 // bus_load --write FILE RATE SECONDS: the same messages as a recording instead, for a replay.
 // bus_load --span FILE: nanoseconds from a recording's first message to its last.
 // Used by record_rate.py and replay_timing.py.
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "idl/control_loop.h"
 #include "idl/idl_text.hpp"
@@ -22,6 +23,7 @@
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/process/real_time.hpp"
 #include "tests/support/idl_fields.hpp"
+#include "tests/support/wait.hpp"
 
 namespace {
 
@@ -84,9 +86,9 @@ int publish(std::uint32_t domain, std::int64_t rate, std::int64_t seconds,
   std::vector<runtime::Publisher<Message>> publishers;
   for (const topics::Topic& row : rows) publishers.push_back(bus.publisher<Message>(row));
   bus.start();
-  for (bool all = false; !all; std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
-    all = true;
-    for (const auto& report : bus.report()) all = all && report.matched > 0;
+  const auto matched = [](const runtime::EndpointReport& report) { return report.matched > 0; };
+  if (!support::eventually([&] { return std::ranges::all_of(bus.report(), matched); })) {
+    throw std::runtime_error("no reader of every topic within 20 s");
   }
   Message message;
   const std::int64_t begin_ns = runtime::monotonic_ns();
@@ -107,8 +109,8 @@ int publish(std::uint32_t domain, std::int64_t rate, std::int64_t seconds,
   std::cout << "sent " << rate * seconds << " messages of " << message_bytes() << " bytes in "
             << took_s << " s, " << static_cast<double>(rate * seconds) / took_s
             << " a second, worst slot late by " << worst_ns / 1000 << " us" << std::endl;
-  // What is on its way arrives before the writers leave.
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  // The writers stay until the asking program has seen everything arrive.
+  std::cin.get();
   return 0;
 }
 

@@ -3,13 +3,14 @@
 // of its own, as sessions that run; prints how many messages of them were
 // sent and by how much the worst tick was late.  Waits until everything has a reader.
 // Used by dashboard_load.py.
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "idl/control_loop.h"
@@ -18,6 +19,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/process/real_time.hpp"
+#include "tests/support/wait.hpp"
 
 namespace {
 
@@ -125,8 +127,9 @@ class Rig {
 int publish(std::uint32_t domain, std::uint32_t rigs, Tick ticks) {
   std::vector<std::unique_ptr<Rig>> all;
   for (std::uint32_t rig = 1; rig <= rigs; ++rig) all.push_back(std::make_unique<Rig>(rig, domain));
-  for (const auto& rig : all) {
-    while (!rig->heard()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto heard = [](const auto& rig) { return rig->heard(); };
+  if (!support::eventually([&] { return std::ranges::all_of(all, heard); })) {
+    throw std::runtime_error("no dashboard on the domain within 20 s");
   }
   for (const auto& rig : all) rig->begin();
   // Made after its own threads, which keep their ordinary priority.

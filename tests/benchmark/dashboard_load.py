@@ -58,12 +58,12 @@ def counted_of(seen):
     return sum(each["samples"] for each in seen["rigs"])
 
 
-def wait_for(what, condition, fails=True):
-    limit = time.monotonic() + LIMIT_S
+def wait_for(what, condition, fails=True, limit_s=LIMIT_S):
+    limit = time.monotonic() + limit_s
     while not condition():
         if time.monotonic() > limit:
             if fails:
-                sys.exit(f"dashboard_load: no {what} within {LIMIT_S:g} s")
+                sys.exit(f"dashboard_load: no {what} within {limit_s:g} s")
             return
         time.sleep(POLL_S)
 
@@ -87,9 +87,14 @@ def main():
         wait_for("the load's first seconds", lambda: snapshot(address)["session"]["tick"] >= 1000 * WARM_UP_S)
         began, used = time.monotonic(), cpu_s(dashboard.pid)
         events, most_listening = sum(client.events for client in clients), 0
-        while snapshot(address)["session"]["tick"] < 1000 * (options.seconds - 1):
-            most_listening = max(most_listening, snapshot(address)["dashboard"]["clients"])
-            time.sleep(0.5)
+
+
+        def nearly_over():
+            nonlocal most_listening
+            seen = snapshot(address)
+            most_listening = max(most_listening, seen["dashboard"]["clients"])
+            return seen["session"]["tick"] >= 1000 * (options.seconds - 1)
+        wait_for("the load's last second", nearly_over, limit_s=LIMIT_S + options.seconds)
         share = (cpu_s(dashboard.pid) - used) / (time.monotonic() - began)
         rate = (sum(client.events for client in clients) - events) / (time.monotonic() - began)
         told = load.stdout.readline().strip()

@@ -15,6 +15,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
@@ -27,25 +28,40 @@ def dropped_by_kernel():
     return int(values[names.index("RcvbufErrors")])
 
 
+def wait_until_taken():
+    """Until no UDP socket of this machine holds a datagram; at most 10 s."""
+    limit = time.monotonic() + 10.0
+    while time.monotonic() < limit:
+        rows = pathlib.Path("/proc/net/udp").read_text().splitlines()[1:]
+        if all(int(row.split()[4].split(":")[1], 16) == 0 for row in rows):
+            return
+        time.sleep(0.01)
+
+
 def measure(rate, seconds, pattern):
     domain = 150 + os.getpid() % 40
     with tempfile.TemporaryDirectory(prefix="stillhand-") as folder:
         dropped = dropped_by_kernel()
         recorder = subprocess.Popen([BUILD / "bin" / "stillhand", "record", "--out", folder + "/load.mcap",
                                      "--domain", str(domain), "--topics", "load/*"], stdout=subprocess.PIPE, text=True)
-        load = subprocess.run([BUILD / "tests" / "bus_load", str(domain), str(rate), str(seconds), pattern],
-                              stdout=subprocess.PIPE, text=True, check=True)
+        load = subprocess.Popen([BUILD / "tests" / "bus_load", str(domain), str(rate), str(seconds), pattern],
+                                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        sent = load.stdout.readline().strip()
+        wait_until_taken()
+        load.communicate("\n", timeout=60)
+        if load.returncode:
+            sys.exit(f"record_rate: bus_load ended with status {load.returncode}")
         recorder.send_signal(2)
         told = recorder.communicate(timeout=60)[0]
         usage = resource.getrusage(resource.RUSAGE_CHILDREN)
         rows = [[int(word) for word in line.split()[1:5]] for line in told.splitlines() if line.startswith("load/")]
         received, lost, not_sent, written = (sum(column) for column in zip(*rows))
-        print(load.stdout.strip())
+        print(sent)
         print(f"received {received}, lost {lost}, not sent {not_sent}, written {written}; "
               f"{rate * seconds - written} missing in the file")
         print(f"processor time of both: {usage.ru_utime + usage.ru_stime:.1f} s so far; datagrams that the kernel "
               f"dropped on this machine meanwhile: {dropped_by_kernel() - dropped}", flush=True)
-        achieved = float(load.stdout.split(" a second")[0].split()[-1])
+        achieved = float(sent.split(" a second")[0].split()[-1])
         return rate * seconds - written, achieved
 
 

@@ -13,7 +13,6 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "idl/clock.h"
@@ -27,6 +26,7 @@
 #include "tests/support/child.hpp"
 #include "tests/support/motion_and_rig.hpp"
 #include "tests/support/security_folder.hpp"
+#include "tests/support/wait.hpp"
 
 namespace {
 
@@ -99,8 +99,10 @@ int member(const std::string& service, const std::string& domain, const fs::path
   open<ClockOffset>(bus, topics::kClockOffset);
   open<HostStatus>(bus, topics::kHostStatus);
   bus.start();
-  while (!stop.requested() && !bus.missing_peers().empty()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (!support::eventually([&] { return stop.requested() || bus.missing_peers().empty(); },
+                           std::chrono::minutes(2))) {
+    std::fprintf(stderr, "security_cost: a peer is missing after 2 minutes\n");
+    return 1;
   }
   std::printf("%lld\n", static_cast<long long>(runtime::monotonic_ns()));
   std::fflush(stdout);

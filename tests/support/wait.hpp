@@ -8,13 +8,14 @@
 namespace stillhand::support {
 
 /// Waits for a condition, at most `limit`.  @return whether it came true.  Tests wait for what they
-/// need, never for a time.
+/// need, never for a time.  @param poll  between two looks; longer where a look takes time
 inline bool eventually(const std::function<bool()>& condition,
-                       std::chrono::milliseconds limit = std::chrono::seconds(20)) {
+                       std::chrono::milliseconds limit = std::chrono::seconds(20),
+                       std::chrono::milliseconds poll = std::chrono::milliseconds(2)) {
   const auto end = std::chrono::steady_clock::now() + limit;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(poll);
   }
   return true;
 }

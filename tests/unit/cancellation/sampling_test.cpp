@@ -46,7 +46,7 @@ TEST(SamplingTest, NowIsOnTimeAndPaperIsLateByItsChain) {
   Config config;
   EXPECT_NEAR(measured_delay_s(config, 0.5), 0.0, 1e-9);
   config.sampling = sampling_named("paper");
-  // Eq. CC-16; the hold acts for 20 ticks from its own on, half of them less one half tick late.
+  // Eq. CC-16.  The hold repeats a force for 20 ticks, 0 to 19 ticks old: 9.5 ms in the mean.
   // Group delay of the prototype: sum over its poles of -Re 1/s_k, at 10 Hz.
   double low_pass_s = 0.0;
   for (int k = 0; k < 5; ++k) {
