@@ -69,8 +69,8 @@ inline constexpr std::string_view kOperator[]{"human_operator"};
 inline constexpr std::string_view kIdentification[]{"identification"};
 inline constexpr std::string_view kExperiment[]{"experiment"};
 inline constexpr std::string_view kRecorder[]{"recorder"};
-inline constexpr std::string_view kSensedReaders[]{"motion", "cancellation", "display",
-                                                   "identification", "recorder"};
+inline constexpr std::string_view kSensedReaders[]{"motion",         "cancellation",   "display",
+                                                   "human_operator", "identification", "recorder"};
 inline constexpr std::string_view kRigAndRecorder[]{"rig", "recorder"};
 inline constexpr std::string_view kSensingAndRecorder[]{"sensing", "recorder"};
 inline constexpr std::string_view kOperatorAndRecorder[]{"human_operator", "recorder"};

@@ -153,7 +153,8 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
       planned.command_filter ? command_filter_.step(sensed.theta_rad, cancelled.predicted_force_n)
                              : sensed.theta_rad;
   const display::TrackingSample shown = display_.step({tick, command_rad});
-  operator_force_n_ = operator_.step({tick, shown.target_m, shown.cursor_m, tracking}).force_n;
+  operator_force_n_ =
+      operator_.step({tick, shown.target_m, shown.cursor_m, tracking, sensed.accel_y_m_s2}).force_n;
   if (planned.trial.measures(tick)) {
     keep(planned, sensed, rig_out.truth, cancelled, shown, signals);
   }

@@ -15,18 +15,19 @@ struct Metric {
   double (*of)(const identification::TrackingMetrics&);
   double paper_a, paper_b, paper_c;
   double paper_restored_percent;  ///< (B - C) / (B - A)
+  double paper_p_ab, paper_p_bc;  ///< of the paired t-tests, 11 degrees of freedom
 };
 
 inline constexpr std::array<Metric, 3> kMetrics{{
     {"rms_error_mm", "rms_error", "RMS error [mm]",
      [](const identification::TrackingMetrics& m) { return m.rms_error_mm; }, 4.04, 9.62, 7.01,
-     47.0},
+     47.0, 1.79e-9, 4.05e-6},
     {"dwell_ratio", "dwell_ratio", "dwell ratio [-]",
-     [](const identification::TrackingMetrics& m) { return m.dwell_ratio; }, 0.48, 0.23, 0.31,
-     32.0},
+     [](const identification::TrackingMetrics& m) { return m.dwell_ratio; }, 0.48, 0.23, 0.31, 32.0,
+     1.5e-12, 4.07e-5},
     {"crossover_hz", "crossover", "crossover f_c [Hz]",
      [](const identification::TrackingMetrics& m) { return m.crossover_hz; }, 0.25, 0.10, 0.14,
-     27.0},
+     27.0, 5.67e-7, 0.0047},
 }};
 
 }  // namespace stillhand::session

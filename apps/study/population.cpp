@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "apps/study/clamp_fields.hpp"
 #include "services/rig/core/body_response.hpp"
 #include "services/signal/random.hpp"
 
@@ -23,6 +24,9 @@ constexpr double kFarthestDeviate = 2.5;
 constexpr double kTrunkShare = 0.40;
 constexpr double kArmShare = 0.0147;
 constexpr double kHandShare = 0.0040;
+
+// Range of the rig's setting.
+constexpr double kMostCocontraction = 4.0;
 
 using Draw = std::function<double(double mean, double cv)>;
 
@@ -46,9 +50,26 @@ rig::BodyConfig body(const Population& p, const Draw& draw) {
   out.grip_stiffness_n_m = draw(p.grip_stiffness_n_m, p.grip_stiffness_cv);
   out.grip_damping_n_s_m = damping(draw(p.grip_damping_ratio, p.grip_damping_cv),
                                    out.grip_stiffness_n_m, out.arm_mass_kg + out.hand_mass_kg);
-  const double factor = std::max(1.0, draw(p.cocontraction_factor, p.cocontraction_cv));
+  const double factor =
+      std::clamp(draw(p.cocontraction_factor, p.cocontraction_cv), 1.0, kMostCocontraction);
   out.cocontraction_stiffness_factor = factor;
   out.cocontraction_damping_factor = std::sqrt(factor);
+  return out;
+}
+
+rig::NeuromuscularConfig neuromuscular(const Population& p, const Draw& draw) {
+  rig::NeuromuscularConfig out;
+  out.stiffening_by_vibration_s2_m =
+      draw(p.stiffening_by_vibration_s2_m, p.stiffening_by_vibration_cv);
+  out.stiffening_by_motor_n = draw(p.stiffening_by_motor_n, p.stiffening_by_motor_cv);
+  out.wander = draw(p.wander, p.wander_cv);
+  out.reflex_stiffness_n_m = draw(p.reflex_stiffness_n_m, p.reflex_stiffness_cv);
+  out.reflex_damping_n_s_m = out.reflex_stiffness_n_m * p.reflex_damping_time_s;
+  out.motor_resistance = draw(p.motor_resistance, p.motor_resistance_cv);
+  out.involuntary_force_n = draw(p.involuntary_force_n, p.involuntary_force_cv);
+  out.tremor_force_n = draw(p.tremor_force_n, p.tremor_force_cv);
+  out.unmeasured_force_n_s2_m = draw(p.unmeasured_force_n_s2_m, p.unmeasured_force_cv);
+  clamp_fields(out);
   return out;
 }
 
@@ -60,6 +81,10 @@ Subject subject(const Population& p, const Draw& draw) {
   out.who.muscle_rad_s = draw(p.muscle_rad_s, p.muscle_cv);
   out.who.remnant_ratio = draw(p.remnant_ratio, p.remnant_cv);
   out.who.regression_error_m = draw(p.regression_error_m, p.regression_cv);
+  // Later draws come last: a subject's body and tracking do not depend on them.
+  out.body.neuromuscular = neuromuscular(p, draw);
+  out.who.remnant_by_vibration_s2_m = draw(p.remnant_by_vibration_s2_m, p.remnant_by_vibration_cv);
+  out.who.delay_by_vibration_s3_m = draw(p.delay_by_vibration_s3_m, p.delay_by_vibration_cv);
   out.who.arm = learnt_feel(out.body, {});
   return out;
 }

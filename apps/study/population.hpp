@@ -39,11 +39,33 @@ struct Population {
   double remnant_cv = 0.25;
   double regression_error_m = 0.028;
   double regression_cv = 0.15;
+  // What nerves and muscles add, 0: nothing; README, "Causes".
+  double stiffening_by_vibration_s2_m = 0.0;
+  double stiffening_by_vibration_cv = 0.0;
+  double stiffening_by_motor_n = 0.0;
+  double stiffening_by_motor_cv = 0.0;
+  double wander = 0.0;
+  double wander_cv = 0.0;
+  double reflex_stiffness_n_m = 0.0;
+  double reflex_stiffness_cv = 0.0;
+  double reflex_damping_time_s = 0.125;
+  double motor_resistance = 0.0;
+  double motor_resistance_cv = 0.0;
+  double involuntary_force_n = 0.0;
+  double involuntary_force_cv = 0.0;
+  double tremor_force_n = 0.0;
+  double tremor_force_cv = 0.0;
+  double unmeasured_force_n_s2_m = 0.0;
+  double unmeasured_force_cv = 0.0;
+  double remnant_by_vibration_s2_m = 0.0;
+  double remnant_by_vibration_cv = 0.0;
+  double delay_by_vibration_s3_m = 0.0;
+  double delay_by_vibration_cv = 0.0;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     const auto spread = [&](const char* name, auto& value) {
-      visit(name, value, Range{0.0, 0.6}, "[-] standard deviation over mean");
+      visit(name, value, Range{0.0, 1.0}, "[-] standard deviation over mean");
     };
     visit(
         "body_mass_kg", self.body_mass_kg, Range{40.0, 130.0},
@@ -91,6 +113,43 @@ struct Population {
     visit("regression_error_m", self.regression_error_m, Range{0.005, 1.0},
           "[m] RMS of fast error that halves the crossover; calibrated, README");
     spread("regression_cv", self.regression_cv);
+    visit("stiffening_by_vibration_s2_m", self.stiffening_by_vibration_s2_m, Range{-0.3, 2.0},
+          "[s^2/m] growth of the tracking arm's stiffness per m/s^2 RMS of platform motion; no "
+          "source");
+    spread("stiffening_by_vibration_cv", self.stiffening_by_vibration_cv);
+    visit("stiffening_by_motor_n", self.stiffening_by_motor_n, Range{0.0, 1.0},
+          "[1/N] growth of the same per N RMS of motor force; no source");
+    spread("stiffening_by_motor_cv", self.stiffening_by_motor_cv);
+    visit("wander", self.wander, Range{0.0, 0.5},
+          "[-] standard deviation of the logarithm of the arm's stiffness over time; 0.05 to 0.2 "
+          "assumed");
+    spread("wander_cv", self.wander_cv);
+    visit("reflex_stiffness_n_m", self.reflex_stiffness_n_m, Range{0.0, 1000.0},
+          "[N/m] stretch reflex of the tracking arm; to 400 N/m in narrow-band vibration, Abbink "
+          "(2006), recalled");
+    spread("reflex_stiffness_cv", self.reflex_stiffness_cv);
+    visit("reflex_damping_time_s", self.reflex_damping_time_s, Range{0.0, 1.0},
+          "[s] damping of that reflex over its stiffness; 50 N s/m over 400 N/m, the same");
+    visit("motor_resistance", self.motor_resistance, Range{0.0, 1.0},
+          "[-] share of the motor's force that the hand opposes; no source");
+    spread("motor_resistance_cv", self.motor_resistance_cv);
+    visit("involuntary_force_n", self.involuntary_force_n, Range{0.0, 5.0},
+          "[N] RMS of the slow involuntary force; 0.1 to 0.8 N, derived in the rig's README");
+    spread("involuntary_force_cv", self.involuntary_force_cv);
+    visit("tremor_force_n", self.tremor_force_n, Range{0.0, 2.0},
+          "[N] RMS of the tremor force; about 0.03 N, the same");
+    spread("tremor_force_cv", self.tremor_force_cv);
+    visit("unmeasured_force_n_s2_m", self.unmeasured_force_n_s2_m, Range{0.0, 5.0},
+          "[N s^2/m] RMS force from motion that a_y does not show, per m/s^2 RMS; 0.05 to 0.3 of "
+          "the feedthrough assumed");
+    spread("unmeasured_force_cv", self.unmeasured_force_cv);
+    visit("remnant_by_vibration_s2_m", self.remnant_by_vibration_s2_m, Range{0.0, 20.0},
+          "[s^2/m] growth of the remnant per m/s^2 RMS of platform motion; direction: Allen, Jex "
+          "and Magdaleno (1973)");
+    spread("remnant_by_vibration_cv", self.remnant_by_vibration_cv);
+    visit("delay_by_vibration_s3_m", self.delay_by_vibration_s3_m, Range{0.0, 0.2},
+          "[s^3/m] growth of the delay per m/s^2 RMS; 0.01 to 0.03 assumed");
+    spread("delay_by_vibration_cv", self.delay_by_vibration_cv);
   }
 };
 

@@ -18,13 +18,9 @@ using report::number;
 using report::short_number;
 using session::kMetrics;
 
-// The paper's p-values, Tables I and II.
-constexpr std::array<double, kMetricCount> kPaperAToB{1.79e-9, 1.5e-12, 5.67e-7};
-constexpr std::array<double, kMetricCount> kPaperBToC{4.05e-6, 4.07e-5, 0.0047};
-
 // Tables I and II of the paper: two conditions, their difference, its significance.
 report::Table paper_table(const Analysis& analysis, char from, char to, const char* title,
-                          const std::array<double, kMetricCount>& paper_p) {
+                          double session::Metric::*paper_p) {
   report::Table table;
   table.caption = title;
   const std::string letters = {from, ',', ' ', to};
@@ -47,7 +43,7 @@ report::Table paper_table(const Analysis& analysis, char from, char to, const ch
     row.emplace_back(
         number(paper_value(k, from), decimals(k)) + ", " + number(paper_value(k, to), decimals(k)),
         Emphasis::kFaint);
-    row.emplace_back(short_number(paper_p[k]), Emphasis::kFaint);
+    row.emplace_back(short_number(kMetrics[k].*paper_p), Emphasis::kFaint);
     table.rows.push_back(row);
   }
   return table;
@@ -143,10 +139,10 @@ void add_paper_tables(report::Page& page, const StudyRecord& record) {
       paper_table(analysis, 'A', 'B',
                   "Table I: the effect of the motion. Mean ± SD over the subjects; g_z is Hedges' "
                   "corrected effect size of the differences; p is not adjusted for three metrics.",
-                  kPaperAToB));
+                  &session::Metric::paper_p_ab));
   page.table(paper_table(analysis, 'B', 'C',
                          "Table II: the effect of cancellation. Columns as in Table I.",
-                         kPaperBToC));
+                         &session::Metric::paper_p_bc));
   page.table(restoration_table(analysis));
   add_outcome(page, analysis);
   page.table(calibration_table(analysis, is_calibrated(record.options)));

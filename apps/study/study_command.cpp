@@ -13,6 +13,9 @@
 #include "apps/report/command_line.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
+#include "apps/report/result_files.hpp"
+#include "apps/study/explain/calibrate.hpp"
+#include "apps/study/explain/explanation_output.hpp"
 #include "apps/study/output.hpp"
 #include "apps/study/study.hpp"
 #include "services/contract/config_error.hpp"
@@ -30,7 +33,55 @@ struct Words {
   std::string conditions = "A,B,C";
   std::filesystem::path population;
   std::filesystem::path out;
+  bool explain_paper = false;
+  bool calibrate = false;
 };
+
+// Without --subjects: enough for the spread between subjects.
+constexpr std::int64_t kExplainSubjects = 32;
+
+ExplainOptions explain_options(const StudyRecord& record, bool subjects_given) {
+  ExplainOptions options;
+  options.study = record.options;
+  options.seed = record.options.seed;
+  options.threads = record.options.threads;
+  options.subjects =
+      static_cast<std::size_t>(subjects_given ? record.options.subjects : kExplainSubjects);
+  return options;
+}
+
+// Runs explain_paper() or calibrate() with progress.
+auto with_progress(const auto& work, const ExplainOptions& options) {
+  runtime::Stop stop;
+  report::ProgressLine progress;
+  auto result = work(options, [&](const std::string& stage, double share) {
+    progress.show(stage, share);
+    return !stop.requested();
+  });
+  progress.finish();
+  return result;
+}
+
+int run_calibration(const StudyRecord& record, const Words& words, bool subjects_given) {
+  report::ResultFiles files({{"--out", words.out}}, {words.population});
+  const Calibration calibration = with_progress(calibrate, explain_options(record, subjects_given));
+  files.set("--out", population_yaml(calibration, record.command_line));
+  files.publish();
+  print_calibration(calibration);
+  fmt::print("population in {}\n", words.out.string());
+  return 0;
+}
+
+int explain(const StudyRecord& record, const Words& words, bool subjects_given) {
+  report::StagedFolder folder(words.out);
+  report::require_gnuplot();
+  const Explanation explanation =
+      with_progress(explain_paper, explain_options(record, subjects_given));
+  write_explanation(explanation, record.command_line, folder);
+  print_explanation(explanation);
+  fmt::print("report in {}\n", words.out.string());
+  return 0;
+}
 
 int run(StudyRecord& record, const Words& words) {
   runtime::Stop stop;
@@ -128,7 +179,23 @@ void add_study_command(CLI::App& cli, int& status) {
                    "number of threads, 0: one per core; the results do not depend on it")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
-  study->callback([record, words, &status] {
+  study
+      ->add_flag("--explain-paper", words->explain_paper,
+                 "instead of a study: looks for causes of the paper's Tables I and II")
+      ->excludes("--conditions")
+      ->excludes("--canceller")
+      ->excludes("--wrong-models")
+      ->excludes("--undeclared-effect");
+  study
+      ->add_flag("--calibrate", words->calibrate,
+                 "instead of a study: calibrates the population to A and B of the paper's Table I "
+                 "and writes it to the file --out")
+      ->excludes("--explain-paper")
+      ->excludes("--conditions")
+      ->excludes("--canceller")
+      ->excludes("--wrong-models")
+      ->excludes("--undeclared-effect");
+  study->callback([record, words, &status, study] {
     record->options.protocol.conditions =
         session::parse_conditions(words->conditions, session::kStudyConditions);
     // The set of conditions defines the study, not the order in which they are named.
@@ -138,7 +205,10 @@ void add_study_command(CLI::App& cli, int& status) {
       record->options.population = settings::load<Population>(words->population, "population");
     }
     record->command_line = report::command_line();
-    status = run(*record, *words);
+    const bool subjects_given = study->count("--subjects") > 0;
+    status = words->explain_paper ? explain(*record, *words, subjects_given)
+             : words->calibrate   ? run_calibration(*record, *words, subjects_given)
+                                  : run(*record, *words);
   });
 }
 

@@ -46,6 +46,7 @@ session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subj
                                 char condition) {
   session::CoreConfigs configs;
   configs.rig.body = subject.body;
+  configs.rig.motor = options.motor;
   configs.human_operator = subject.who;
   configs.cancellation.sampling = cancellation::sampling_named(options.canceller);
   if (condition == 'E') configs.rig.stick.viscous_damping_n_s_m += options.damped_stick_n_s_m;

@@ -28,6 +28,7 @@ struct StudyOptions {
   double arm_rest_damping_n_s_m = 30.0;   ///< condition F
   bool wrong_models = false;              ///< run C again with models of other subjects
   std::uint64_t undeclared_effect = 0;    ///< seed of an effect that only the rigs hold; 0: none
+  rig::MotorConfig motor;                 ///< of every rig: its delay and gain
   std::string canceller = "now";          ///< cancellation::sampling_named()
   unsigned threads = 0;                   ///< 0: one per core
 };

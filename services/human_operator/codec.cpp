@@ -3,8 +3,9 @@
 
 namespace stillhand::human_operator {
 
-OperatorInput from_idl(const stillhand_msgs::TrackingSample& sample, bool active) {
-  return {sample.tick(), sample.target_m(), sample.cursor_m(), active};
+OperatorInput from_idl(const stillhand_msgs::TrackingSample& sample, bool active,
+                       double felt_m_s2) {
+  return {sample.tick(), sample.target_m(), sample.cursor_m(), active, felt_m_s2};
 }
 
 stillhand_msgs::OperatorForce to_idl(const OperatorOutput& output, const OperatorInput& input,

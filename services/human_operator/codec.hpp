@@ -6,7 +6,7 @@
 
 namespace stillhand::human_operator {
 
-OperatorInput from_idl(const stillhand_msgs::TrackingSample& sample, bool active);
+OperatorInput from_idl(const stillhand_msgs::TrackingSample& sample, bool active, double felt_m_s2);
 stillhand_msgs::OperatorForce to_idl(const OperatorOutput& output, const OperatorInput& input,
                                      std::int64_t trial);
 

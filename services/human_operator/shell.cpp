@@ -31,8 +31,20 @@ Shell::Shell(runtime::Service& service, bool with_pointer)
   });
   service.bus().subscribe<stillhand_msgs::Pointer>(
       topics::kPointer, [this](const auto& message, const auto&) { pointer_ = message; });
+  service.bus().subscribe<stillhand_msgs::Sensed>(
+      topics::kSensed, [this](const auto& message, const auto&) {
+        if (message.tick() < 0) return;
+        felt_[static_cast<std::size_t>(message.tick()) % kFelt_ticks] = {message.tick(),
+                                                                         message.accel_y_m_s2()};
+      });
   service.bus().subscribe<stillhand_msgs::TrackingSample>(
       topics::kTrackingSample, [this](const auto& message, const auto&) { on_tracking(message); });
+}
+
+double Shell::felt_m_s2(Tick tick) const noexcept {
+  if (tick < 0) return 0.0;
+  const Felt& felt = felt_[static_cast<std::size_t>(tick) % kFelt_ticks];
+  return felt.tick == tick ? felt.a_y_m_s2 : 0.0;
 }
 
 PointerInput Shell::pointer_input(const OperatorInput& input) const {
@@ -45,7 +57,7 @@ PointerInput Shell::pointer_input(const OperatorInput& input) const {
 void Shell::on_tracking(const stillhand_msgs::TrackingSample& sample) {
   const Trial& trial = service_.trial();
   const bool active = trial.phase == TrialPhase::kTracking && trial.covers(sample.tick());
-  const OperatorInput input = from_idl(sample, active);
+  const OperatorInput input = from_idl(sample, active, felt_m_s2(sample.tick()));
   const OperatorOutput output =
       with_pointer_ ? person_.step(pointer_input(input)) : simulated_.step(input);
   auto message = to_idl(output, input, trial.number);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -33,6 +35,8 @@ class Shell {
 
  private:
   void on_tracking(const stillhand_msgs::TrackingSample& sample);
+  /// a_y of this tick; 0 if its sensed sample has not arrived.
+  [[nodiscard]] double felt_m_s2(Tick tick) const noexcept;
   [[nodiscard]] PointerInput pointer_input(const OperatorInput& input) const;
 
   runtime::Service& service_;
@@ -41,6 +45,13 @@ class Shell {
   PointerOperator person_;
   bool with_pointer_;
   stillhand_msgs::Pointer pointer_;
+  /// a_y of the last ticks; the tracking sample of a tick comes after its sensed sample.
+  struct Felt {
+    Tick tick = -1;
+    double a_y_m_s2 = 0.0;
+  };
+  static constexpr std::size_t kFelt_ticks = 64;
+  std::array<Felt, kFelt_ticks> felt_{};
   runtime::Publisher<stillhand_msgs::OperatorForce> force_;
 };
 

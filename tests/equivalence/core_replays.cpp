@@ -128,13 +128,15 @@ Replay replay_human_operator(const SessionRecording& session, const SessionSetti
   config.crossover.seed = core_seed(settings);
   human_operator::CrossoverOperator core(config.crossover);
   const ByTick tracking("tracking_sample", session.tracking_samples);
+  const ByTick sensed("sensed", session.sensed);
   std::int64_t armed = -1;
   const auto step = [&](Tick tick, const msgs::OperatorForce& like) {
     if (like.trial() != armed) {
       core.arm(runtime::from_idl(of_trial(session.trial_controls, like.trial())));
       armed = like.trial();
     }
-    const auto input = human_operator::from_idl(tracking.at(tick), like.active());
+    const auto input =
+        human_operator::from_idl(tracking.at(tick), like.active(), sensed.at(tick).accel_y_m_s2());
     return human_operator::to_idl(core.step(input), input, armed);
   };
   const auto agree = [](const msgs::OperatorForce& a, const msgs::OperatorForce& b) {

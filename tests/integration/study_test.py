@@ -43,6 +43,56 @@ class StudyTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
+    # Trials of 20 s show that every part works, and nothing about the paper.
+    BRIEF = ["--trial-seconds", "20", "--identify-seconds", "20", "--subjects", "6", "--seed", "5"]
+
+    def test_explain_paper_ranks_every_cause_and_pair(self):
+        out = self.folder / "why"
+        run = subprocess.run([STILLHAND, "study", "--explain-paper", *self.BRIEF, "--out", str(out)],
+                             capture_output=True, text=True, timeout=280)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        found = json.loads((out / "explanation.json").read_text())
+        names = [cause["name"] for cause in found["causes"]]
+        self.assertEqual(names[:2], ["none", "paper_chain"])
+        # Every pair but the paper's chain with lateness, which are one cause.
+        causes = len(names) - 1
+        self.assertEqual(len(found["pairs"]), causes * (causes - 1) // 2 - 1)
+        evidence = [pair["log_evidence"] for pair in found["pairs"]]
+        self.assertEqual(evidence, sorted(evidence, reverse=True))
+        for hypothesis in found["causes"] + found["pairs"]:
+            self.assertEqual(len(hypothesis["z"]), 15)
+            for parameter in hypothesis["parameters"].values():
+                low, high = parameter["ci95"]
+                self.assertLessEqual(low, parameter["median"])
+                self.assertLessEqual(parameter["median"], high)
+        self.assertEqual(set(found["paper_chain_z"]), set(found["causes"][0]["z"]))
+        self.assertEqual({path.name for path in out.iterdir()},
+                         {"explanation.json", "report.html", "explain_ranking.svg", "explain_ranking.png",
+                          "explain_tables.svg", "explain_tables.png"})
+        self.assertIn("log", run.stdout)
+
+    def test_calibrate_writes_a_population_that_the_study_takes(self):
+        population = self.folder / "population.yaml"
+        run = study("--calibrate", *self.BRIEF, "--out", str(population))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        costs = [float(line.split("cost")[1]) for line in run.stdout.splitlines() if "cost" in line]
+        self.assertGreater(len(costs), 1)
+        self.assertLess(min(costs), costs[0])
+        again = study(*self.BRIEF, "--population", str(population), "--out", str(self.folder / "study"))
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_refuses_options_that_these_runs_cannot_use(self):
+        for arguments, words in ((["--explain-paper", "--canceller", "paper"], "--canceller"),
+                                 (["--calibrate", "--explain-paper"], "--explain-paper"),
+                                 (["--explain-paper", "--subjects", "5"], "want 6 or more"),
+                                 (["--calibrate", "--subjects", "2"], "want 6 or more")):
+            out = self.folder / "nothing"
+            run = study(*arguments, "--out", str(out))
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(words, run.stderr)
+            self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
+            self.assertFalse(out.exists())
+
     def test_writes_report_figures_numbers_and_summary(self):
         out = self.folder / "study"
         run = study(*SHORT, "--conditions", "A,B,C,D,E,F", "--wrong-models", "--out", str(out))

@@ -292,8 +292,10 @@ TEST(HumanOperatorCodecTest, EveryFieldOfATrackingSampleReachesTheCore) {
   message.tick(7);
   message.target_m(0.5);
   message.cursor_m(1.5);
-  const auto [tick, target_m, cursor_m, active] = human_operator::from_idl(message, true);
-  EXPECT_EQ(std::tuple(tick, target_m, cursor_m, active), std::tuple(7, 0.5, 1.5, true));
+  const auto [tick, target_m, cursor_m, active, felt_m_s2] =
+      human_operator::from_idl(message, true, 2.5);
+  EXPECT_EQ(std::tuple(tick, target_m, cursor_m, active, felt_m_s2),
+            std::tuple(7, 0.5, 1.5, true, 2.5));
 }
 
 TEST(HumanOperatorCodecTest, EveryFieldOfAForceIsSet) {

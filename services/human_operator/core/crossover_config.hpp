@@ -20,6 +20,8 @@ struct CrossoverConfig {
   double regression_memory_s = 4.0;
   double remnant_ratio = 0.02;
   double remnant_floor_m = 0.001;
+  double remnant_by_vibration_s2_m = 0.0;
+  double delay_by_vibration_s3_m = 0.0;
   ArmFeel arm;
 
   template <typename Visitor, typename Self>
@@ -47,6 +49,10 @@ struct CrossoverConfig {
     visit(
         "remnant_floor_m", self.remnant_floor_m, Range{0.0, 0.02},
         "[m] RMS error below which the remnant stays constant; assumed, about the width of a line");
+    visit("remnant_by_vibration_s2_m", self.remnant_by_vibration_s2_m, Range{0.0, 20.0},
+          "[s^2/m] growth of remnant_ratio per m/s^2 RMS of platform motion; README, Eq. HO-7");
+    visit("delay_by_vibration_s3_m", self.delay_by_vibration_s3_m, Range{0.0, 0.2},
+          "[s^3/m] growth of delay_s per m/s^2 RMS of platform motion; README, Eq. HO-7");
     visit.group("arm", self.arm);
   }
 };

@@ -14,6 +14,9 @@ namespace {
 
 // Stream of the remnant under the subject's seed; the trial's number is added.
 constexpr std::uint64_t kRemnantStream = 0x72656d6e616e7400;
+// Eq. HO-7: memory of the felt vibration, and the largest RMS that counts.
+constexpr double kFelt_s = 4.0;
+constexpr double kMostFelt_m_s2 = 5.0;
 // Wider than any screen; larger positions in a message are clipped.
 constexpr double kFarthestSeen_m = 1.0;
 
@@ -50,7 +53,10 @@ double reach(const ArmFeel& arm) {
 CrossoverOperator::CrossoverOperator(const Config& config)
     : config_(checked(config)),
       reach_m_(reach(config.arm)),
-      delay_(perception_ticks(config)),
+      perception_ticks_(perception_ticks(config)),
+      delay_(perception_ticks_ +
+             static_cast<std::size_t>(ticks_in(config.delay_by_vibration_s3_m * kMostFelt_m_s2))),
+      vibration_m_s2_(kFelt_s),
       fast_error_(config.regression_above_hz, config.regression_memory_s),
       remnant_(remnant(config, 0)),
       muscle_(config.muscle_rad_s, config.muscle_damping_ratio, kControlPeriod_s),
@@ -67,19 +73,26 @@ void CrossoverOperator::start_afresh() noexcept {
   if (rested_) return;
   rested_ = true;
   delay_.reset();
+  vibration_m_s2_.reset();
   fast_error_.reset();
   muscle_.reset();
   wanted_m_ = 0.0;
   crossover_rad_s_ = 2.0 * std::numbers::pi * config_.crossover_hz;
 }
 
-double CrossoverOperator::wanted_force(double error_m) noexcept {
+double CrossoverOperator::wanted_force(double error_m, double felt_m_s2) noexcept {
   rested_ = false;
+  vibration_m_s2_.step(felt_m_s2);
+  const double vibration_m_s2 = std::min(vibration_m_s2_.value(), kMostFelt_m_s2);
+  const auto perceived_ticks =
+      perception_ticks_ +
+      static_cast<std::size_t>(ticks_in(config_.delay_by_vibration_s3_m * vibration_m_s2));
   fast_error_.step(error_m);
   const double e0_m2 = config_.regression_error_m * config_.regression_error_m;
   crossover_rad_s_ =
       2.0 * std::numbers::pi * config_.crossover_hz / (1.0 + fast_error_.mean_square_m2() / e0_m2);
-  const double seen_m = delay_.step(error_m) + remnant_.step(error_m);
+  const double growth = 1.0 + config_.remnant_by_vibration_s2_m * vibration_m_s2;
+  const double seen_m = delay_.step(error_m, perceived_ticks) + remnant_.step(error_m, growth);
   wanted_m_ =
       std::clamp(wanted_m_ + crossover_rad_s_ * seen_m * kControlPeriod_s, -reach_m_, reach_m_);
   const auto hand = muscle_.step(wanted_m_ / config_.arm.cursor_per_hand);
@@ -96,7 +109,8 @@ OperatorOutput CrossoverOperator::step(const OperatorInput& input) noexcept {
   if (!seen) flags |= kInputInvalid;
   double force_n = 0.0;
   if (input.active && seen) {
-    force_n = wanted_force(std::clamp(error_m, -kFarthestSeen_m, kFarthestSeen_m));
+    const double felt_m_s2 = std::isfinite(input.felt_m_s2) ? input.felt_m_s2 : 0.0;
+    force_n = wanted_force(std::clamp(error_m, -kFarthestSeen_m, kFarthestSeen_m), felt_m_s2);
   } else if (!input.active) {
     start_afresh();
   }

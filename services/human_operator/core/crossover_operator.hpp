@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 #include "services/contract/trial.hpp"
 #include "services/human_operator/core/crossover_config.hpp"
 #include "services/human_operator/core/fast_error.hpp"
@@ -8,6 +10,7 @@
 #include "services/human_operator/core/remnant.hpp"
 #include "services/signal/delay_line.hpp"
 #include "services/signal/force_envelope.hpp"
+#include "services/signal/running_rms.hpp"
 #include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::human_operator {
@@ -22,7 +25,7 @@ namespace stillhand::human_operator {
 /// The force is bounded and slew-limited.  If the subject is inactive or the input is not finite,
 /// the force fades to zero within 50 ticks.  An inactive subject restarts from rest.
 /// Config, trial number and inputs determine every bit of the output.
-/// Source: README Eq. HO-1 to HO-5; paper Eq. 2; McRuer and Jex (1967).
+/// Source: README Eq. HO-1 to HO-5 and HO-7; paper Eq. 2; McRuer and Jex (1967).
 /// Pure; step() never allocates, locks or throws.
 class CrossoverOperator {
  public:
@@ -42,11 +45,13 @@ class CrossoverOperator {
 
  private:
   void start_afresh() noexcept;
-  double wanted_force(double error_m) noexcept;
+  double wanted_force(double error_m, double felt_m_s2) noexcept;
 
   Config config_;
-  double reach_m_;  ///< largest wanted cursor displacement, each side
+  double reach_m_;                ///< largest wanted cursor displacement, each side
+  std::size_t perception_ticks_;  ///< T_p at rest
   signal::DelayLine delay_;
+  signal::RunningRms vibration_m_s2_;
   FastError fast_error_;
   Remnant remnant_;
   signal::SecondOrderLag muscle_;

@@ -31,11 +31,12 @@ class Remnant {
         draw_(seed, stream) {}
 
   /// Noise to add to the error of this tick [m].
-  double step(double error_m) noexcept {
+  /// @param growth  of rho, Eq. HO-7 [-]
+  double step(double error_m, double growth = 1.0) noexcept {
     mean_square_m2_ += kForget * (error_m * error_m - mean_square_m2_);
     if (--left_ <= 0) {
       left_ = kHold;
-      held_m_ = std::sqrt(per_mean_square_ * (mean_square_m2_ + floor_m2_)) * draw_();
+      held_m_ = std::sqrt(growth * per_mean_square_ * (mean_square_m2_ + floor_m2_)) * draw_();
     }
     return held_m_;
   }

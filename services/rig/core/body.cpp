@@ -61,13 +61,44 @@ void apply(EffectOnChain& effect, const std::array<double, N>& from, std::array<
   add_forces(ahead, columns, on_stick, last, 0.5);
 }
 
+/// Eq. RG-29: the reflex pulls the arm towards the trunk, and the trunk towards the arm.
+template <std::size_t N>
+void apply(Reflex& reflex, const std::array<double, N>& from, std::array<double, N>& ahead,
+           const ForceColumns<N>& columns, bool idle) noexcept {
+  if (!reflex.acts()) return;
+  const double pull_n =
+      reflex.step(from[kArm] - from[kTrunk], from[kArmRate] - from[kTrunkRate], idle);
+  add_forces<N>(ahead, columns, nullptr, {.trunk_n = pull_n, .arm_n = -pull_n}, 1.0);
+}
+
+bool changes_stiffness(const NeuromuscularConfig& config) {
+  return config.wander > 0.0 || config.stiffening_by_vibration_s2_m != 0.0 ||
+         config.stiffening_by_motor_n > 0.0;
+}
+
+/// Shoulder and grip; their damping ratios stay.
+ChainParameters stiffened(ChainParameters p, double factor) {
+  p.shoulder_stiffness_n_m *= factor;
+  p.grip_stiffness_n_m *= factor;
+  p.shoulder_damping_n_s_m *= std::sqrt(factor);
+  p.grip_damping_n_s_m *= std::sqrt(factor);
+  return p;
+}
+
 }  // namespace
 
-Body::Muscles Body::muscles(const BodyConfig& body, const StickConfig& stick, bool relaxed,
-                            double period_s) {
-  const auto parameters = chain_parameters(body, stick, relaxed);
-  return {parameters, free_chain(parameters, period_s), held_chain(parameters, period_s),
-          free_force_columns(parameters, period_s), held_force_columns(parameters, period_s)};
+std::vector<Body::Muscles> Body::muscles(const BodyConfig& body, const StickConfig& stick,
+                                         bool relaxed, double period_s) {
+  const ChainParameters at_rest = chain_parameters(body, stick, relaxed);
+  const bool varies = changes_stiffness(body.neuromuscular);
+  std::vector<Muscles> levels;
+  for (int level = varies ? StiffnessLevels::kLowest : 0;
+       level <= (varies ? StiffnessLevels::kHighest : 0); ++level) {
+    const ChainParameters p = stiffened(at_rest, std::exp(StiffnessLevels::kStep * level));
+    levels.push_back({p, free_chain(p, period_s), held_chain(p, period_s),
+                      free_force_columns(p, period_s), held_force_columns(p, period_s)});
+  }
+  return levels;
 }
 
 Body::Body(const BodyConfig& body, const StickConfig& stick, double period_s,
@@ -79,8 +110,15 @@ Body::Body(const BodyConfig& body, const StickConfig& stick, double period_s,
       friction_n_(stick.coulomb_friction_n + effect.friction_n),
       relaxed_(muscles(body, stick, true, period_s)),
       tense_(muscles(body, stick, false, period_s)),
-      effect_(effect, period_s),
-      copy_effect_(effect, period_s) {}
+      extra_{EffectOnChain(effect, period_s), Reflex(body.neuromuscular, period_s)},
+      copy_extra_(extra_) {}
+
+const Body::Muscles& Body::muscles_now() const noexcept {
+  const auto& levels = pegged_ ? relaxed_ : tense_;
+  if (levels.size() == 1) return levels.front();
+  const int level = std::clamp(level_, StiffnessLevels::kLowest, StiffnessLevels::kHighest);
+  return levels[static_cast<std::size_t>(level - StiffnessLevels::kLowest)];
+}
 
 double Body::seating_velocity() const noexcept {
   const double tau_s = stick_.peg_seat_time_s;
@@ -110,8 +148,9 @@ void Body::end_at_steel() noexcept {
 double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexcept {
   const double applied_n = input.motor_force_n + input.volitional_force_n + input.shaken_n;
   auto ahead = chain.free.step(x_, last_acceleration_m_s2_, input.acceleration_m_s2, applied_n);
-  apply(effect_, x_, ahead, chain.free_forces, &chain.free.from_force, chain.parameters,
+  apply(extra_.effect, x_, ahead, chain.free_forces, &chain.free.from_force, chain.parameters,
         0.5 * (last_acceleration_m_s2_ + input.acceleration_m_s2));
+  apply(extra_.reflex, x_, ahead, chain.free_forces, input.pegged);
 
   const double stop_n = stop_force(ahead, chain.free);
   if (stop_n != 0.0) {
@@ -132,7 +171,7 @@ double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexce
   end_at_steel();
 
   const auto& p = chain.parameters;
-  const ChainForces effect = effect_.forces(place(x_), p);
+  const ChainForces effect = extra_.effect.forces(place(x_), p);
   const double below_n = input.motor_force_n + stop_n + brake_n -
                          p.viscous_damping_n_s_m * x_[kStickRate] -
                          p.centring_stiffness_n_m * x_[kStick] + effect.stick_n;
@@ -143,11 +182,12 @@ double Body::move(const Input& input, const Muscles& chain, Flags& flags) noexce
   return (1.0 - above_share) * above_n - above_share * below_n;
 }
 
-HeldChain::State Body::held_ahead(const HeldChain::State& from, double acceleration_m_s2,
-                                  const Muscles& chain, EffectOnChain& effect) noexcept {
-  auto ahead = chain.held.step(from, last_acceleration_m_s2_, acceleration_m_s2, 0.0);
-  apply<4>(effect, from, ahead, chain.held_forces, nullptr, chain.parameters,
-           0.5 * (last_acceleration_m_s2_ + acceleration_m_s2));
+HeldChain::State Body::held_ahead(const HeldChain::State& from, const Input& input,
+                                  const Muscles& chain, Extra& extra) noexcept {
+  auto ahead = chain.held.step(from, last_acceleration_m_s2_, input.acceleration_m_s2, 0.0);
+  apply<4>(extra.effect, from, ahead, chain.held_forces, nullptr, chain.parameters,
+           0.5 * (last_acceleration_m_s2_ + input.acceleration_m_s2));
+  apply(extra.reflex, from, ahead, chain.held_forces, input.pegged);
   return ahead;
 }
 
@@ -158,27 +198,29 @@ double Body::held_force(const HeldChain::State& x, const Input& input, const Cha
 }
 
 void Body::stay(const Input& input, const Muscles& chain) noexcept {
-  const HeldChain::State ahead = held_ahead({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]},
-                                            input.acceleration_m_s2, chain, effect_);
+  const HeldChain::State ahead =
+      held_ahead({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]}, input, chain, extra_);
   x_ = {ahead[kTrunk], ahead[kTrunkRate], ahead[kArm], ahead[kArmRate], 0.0, 0.0};
 }
 
 Body::Output Body::step(const Input& input) noexcept {
   Flags flags = kGood;
-  const Muscles& chain = input.pegged ? relaxed_ : tense_;
-  const auto& p = chain.parameters;
   pegged_ = input.pegged;
+  level_ = input.stiffness_level;
+  const Muscles& chain = muscles_now();
+  const auto& p = chain.parameters;
   seated_ =
       input.pegged &&
       (seated_ || (std::abs(x_[kStick]) < kSeated_m && std::abs(x_[kStickRate]) < kSeated_m_s));
 
-  copy_ = held_ahead(copy_, input.acceleration_m_s2, chain, copy_effect_);
-  const double held_n = held_force(copy_, input, p, copy_effect_);
+  copy_ = held_ahead(copy_, input, chain, copy_extra_);
+  const double held_n = held_force(copy_, input, p, copy_extra_.effect);
   double hand_n = 0.0;
   if (seated_) {
     stay(input, chain);
-    hand_n = held_force({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]}, input, p, effect_) +
-             input.volitional_force_n;
+    hand_n =
+        held_force({x_[kTrunk], x_[kTrunkRate], x_[kArm], x_[kArmRate]}, input, p, extra_.effect) +
+        input.volitional_force_n;
   } else {
     hand_n = move(input, chain, flags);
   }
@@ -191,7 +233,7 @@ Body::Output Body::step(const Input& input) noexcept {
 }
 
 double Body::energy_j() const noexcept {
-  const auto& p = (pegged_ ? relaxed_ : tense_).parameters;
+  const auto& p = muscles_now().parameters;
   const auto half_square = [](double factor, double x) { return 0.5 * factor * x * x; };
   return half_square(p.trunk_mass_kg, x_[kTrunkRate]) + half_square(p.arm_mass_kg, x_[kArmRate]) +
          half_square(p.stick_mass_kg, x_[kStickRate]) +

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
 #include "services/rig/core/body_config.hpp"
 #include "services/rig/core/chain.hpp"
+#include "services/rig/core/neuromuscular.hpp"
 #include "services/rig/core/undeclared/chain_effect.hpp"
 
 namespace stillhand::rig {
@@ -20,7 +23,8 @@ class Body {
     double motor_force_n;       ///< at the hand, held over the tick that ends here
     double volitional_force_n;  ///< same
     bool pegged;                ///< the peg holds the stick; the hand is idle, muscles relaxed
-    double shaken_n = 0.0;  ///< further force on the hand, Eq. RG-22 to RG-24; held over the tick
+    double shaken_n = 0.0;    ///< further force on the hand, Eq. RG-22 to RG-24, RG-31, RG-32; held
+    int stiffness_level = 0;  ///< of StiffnessLevels, Eq. RG-27 and RG-28
   };
   struct Output {
     double theta_rad;            ///< stick angle
@@ -50,14 +54,22 @@ class Body {
     ForceColumns<6> free_forces;
     ForceColumns<4> held_forces;
   };
-  static Muscles muscles(const BodyConfig& body, const StickConfig& stick, bool relaxed,
-                         double period_s);
+  /// By stiffness level from kLowest on; one where the body's stiffness never changes.
+  static std::vector<Muscles> muscles(const BodyConfig& body, const StickConfig& stick,
+                                      bool relaxed, double period_s);
+  /// Of the present state of the peg and the present level.
+  [[nodiscard]] const Muscles& muscles_now() const noexcept;
 
   double move(const Input& input, const Muscles& chain, Flags& flags) noexcept;
   void stay(const Input& input, const Muscles& chain) noexcept;
-  /// A tick of the chain with the stick held at 0, effect included.
-  [[nodiscard]] HeldChain::State held_ahead(const HeldChain::State& from, double acceleration_m_s2,
-                                            const Muscles& chain, EffectOnChain& effect) noexcept;
+  /// What acts on one chain besides its linear parts.
+  struct Extra {
+    EffectOnChain effect;
+    Reflex reflex;
+  };
+  /// A tick of the chain with the stick held at 0, effect and reflex included.
+  [[nodiscard]] HeldChain::State held_ahead(const HeldChain::State& from, const Input& input,
+                                            const Muscles& chain, Extra& extra) noexcept;
   /// Load-cell force of a held stick with the chain at `x`, Eq. RG-5.
   [[nodiscard]] static double held_force(const HeldChain::State& x, const Input& input,
                                          const ChainParameters& p, const EffectOnChain& effect);
@@ -73,14 +85,15 @@ class Body {
   double stop_m_;        ///< where the rubber begins, at the hand
   double seating_keep_;  ///< exp(-dt / peg_seat_time)
   double friction_n_;    ///< F_c plus the friction of the effect
-  Muscles relaxed_;
-  Muscles tense_;
-  EffectOnChain effect_;       ///< on x_
-  EffectOnChain copy_effect_;  ///< on copy_
-  FreeChain::State x_{};       ///< trunk, arm, stick
-  HeldChain::State copy_{};    ///< trunk and arm with the stick always held at 0
+  std::vector<Muscles> relaxed_;
+  std::vector<Muscles> tense_;
+  Extra extra_;              ///< on x_
+  Extra copy_extra_;         ///< on copy_
+  FreeChain::State x_{};     ///< trunk, arm, stick
+  HeldChain::State copy_{};  ///< trunk and arm with the stick always held at 0
   double last_acceleration_m_s2_ = 0.0;
   bool pegged_ = false;
+  int level_ = 0;        ///< of StiffnessLevels
   bool seated_ = false;  ///< the peg holds the stick at exactly 0
 };
 

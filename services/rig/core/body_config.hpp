@@ -2,6 +2,7 @@
 #pragma once
 
 #include "services/contract/config_field.hpp"
+#include "services/rig/core/neuromuscular_config.hpp"
 
 namespace stillhand::rig {
 
@@ -22,6 +23,7 @@ struct BodyConfig {
   double hand_mass_kg = 0.30;                   ///< m_h, moves with the handle
   double cocontraction_stiffness_factor = 1.3;  ///< on k_a and k_h while not pegged
   double cocontraction_damping_factor = 1.14;   ///< on c_a and c_h while not pegged
+  NeuromuscularConfig neuromuscular;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
@@ -58,6 +60,7 @@ struct BodyConfig {
     visit("cocontraction_damping_factor", self.cocontraction_damping_factor, Range{1.0, 4.0},
           "[-] the same ratio for damping; the square root of the stiffness factor keeps the "
           "damping ratio");
+    visit.group("neuromuscular", self.neuromuscular);
   }
 };
 

@@ -6,6 +6,7 @@
 #include "services/contract/config_field.hpp"
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
+#include "services/signal/delay_line.hpp"
 #include "services/signal/force_envelope.hpp"
 
 namespace stillhand::rig {
@@ -16,6 +17,8 @@ struct MotorConfig {
   double capstan_ratio = 10.0;
   double current_limit_a = 10.0;
   double lag_s = 0.0015;
+  double delay_s = 0.0;
+  double gain = 1.0;
   std::int64_t max_motor_age_ticks = 10;
   signal::ForceLimits limits;
 
@@ -30,6 +33,10 @@ struct MotorConfig {
           "seconds");
     visit("lag_s", self.lag_s, Range{0.0002, 0.02},
           "[s] current loop and capstan cable, first order; 1 to 2 ms");
+    visit("delay_s", self.delay_s, Range{0.0, 0.2},
+          "[s] from a command to its current: network, drive and their buffers; none by default");
+    visit("gain", self.gain, Range{0.0, 2.0},
+          "[-] force at the hand over the commanded one; 1: k_T and capstan as in the settings");
     visit("max_motor_age_ticks", self.max_motor_age_ticks, Range{1.0, 100.0},
           "[ticks] largest age of the sample that a motor command answers");
     visit.group("limits", self.limits);
@@ -44,9 +51,9 @@ struct MotorDemand {
   bool permitted;  ///< the interlock
 };
 
-/// Motor, README Eq. RG-8: current limit, first-order lag, then the drive's last barrier, which
-/// takes any force to exactly zero within `limits.ramp_ticks` of a command that is missing, too
-/// old, not finite or not permitted.  Pure; never allocates or throws.
+/// Motor, README Eq. RG-8: delay, gain, current limit, first-order lag, then the drive's last
+/// barrier, which takes any force to exactly zero within `limits.ramp_ticks` of a command that is
+/// missing, too old, not finite or not permitted.  Pure; never allocates or throws.
 class Motor {
  public:
   struct Output {
@@ -72,6 +79,8 @@ class Motor {
   std::int64_t max_age_ticks_;
   double current_limit_n_;  ///< force at the hand at the current limit
   double lag_blend_;
+  double gain_;
+  signal::DelayLine delay_;
   double lagged_n_ = 0.0;
 };
 

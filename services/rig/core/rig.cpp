@@ -28,6 +28,7 @@ Rig::Rig(const RigConfig& config, SealedEffect sealed)
       platform_(config.platform),
       motor_(config.motor, config.stick.lever_m),
       operator_envelope_(volitional_limits(config)),
+      neuromuscular_(config.body.neuromuscular, static_cast<std::uint64_t>(config.seed)),
       body_(config.body, config.stick, kControlPeriod_s, chain_effect()),
       sensors_(config.sensors, static_cast<std::uint64_t>(config.seed)) {}
 
@@ -86,8 +87,9 @@ RigOutput Rig::step(const RigInput& input) noexcept {
     accel_y_m_s2 = along_m_s2 * cosine - kGravity_m_s2 * sine;
     accel_z_m_s2 = along_m_s2 * sine + kGravity_m_s2 * cosine;
   }
-  const auto body =
-      body_.step({accel_y_m_s2, driven.force_n, person.force_n, input.pegged, shaken.hand_n});
+  const auto added = neuromuscular_.step({accel_y_m_s2, driven.force_n, input.pegged});
+  const auto body = body_.step({accel_y_m_s2, driven.force_n, person.force_n + added.resisting_n,
+                                input.pegged, shaken.hand_n + added.hand_n, added.stiffness_level});
   const double cell_n =
       effect != nullptr ? effect->cell_force(body.hand_force_n) : body.hand_force_n;
   const auto sensed = sensors_.step({.accel_x_m_s2 = shaken.accel_x_m_s2,

@@ -106,6 +106,7 @@ class Rig {
   Platform platform_;
   Motor motor_;
   signal::ForceEnvelope operator_envelope_;
+  Neuromuscular neuromuscular_;
   Body body_;
   Sensors sensors_;
 };

@@ -111,6 +111,26 @@ TEST(CrossoverOperatorTest, TheRemnantAddsToTheError) {
   EXPECT_LT(noisy_m * noisy_m, 1.5 * silent_m * silent_m);
 }
 
+// Eq. HO-7.  A step of the error shows in the force T_p later.  A felt 2 m/s^2, constant, has the
+// RMS 2 m/s^2 after ten memories: T_p grows by 0.02 * 2 s.
+TEST(CrossoverOperatorTest, VibrationMakesTheSubjectAnswerLater) {
+  auto config = linear_subject();
+  config.remnant_ratio = 0.0;
+  config.remnant_floor_m = 0.0;
+  const auto answer_ticks = [&](double felt_m_s2) {
+    CrossoverOperator sut(config);
+    Tick t = 0;
+    for (; t < 40000; ++t) sut.step({t, 0.0, 0.0, true, felt_m_s2});
+    const Tick step = t;
+    while (sut.step({t, 0.05, 0.0, true, felt_m_s2}).force_n == 0.0 && t < step + 5000) ++t;
+    return t - step;
+  };
+  const Tick at_rest = answer_ticks(2.0);
+  config.delay_by_vibration_s3_m = 0.02;
+  EXPECT_EQ(answer_ticks(0.0), at_rest);
+  EXPECT_NEAR(static_cast<double>(answer_ticks(2.0) - at_rest), 40.0, 1.0);
+}
+
 TEST(CrossoverOperatorTest, TheSameSeedGivesTheSameBits) {
   CrossoverConfig config;
   const TrackingRun first = close_the_loop(config, 20.0, 1, kScale_m);

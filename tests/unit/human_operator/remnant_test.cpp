@@ -62,5 +62,14 @@ TEST(RemnantTest, SeedAndStreamFixItsBits) {
   EXPECT_EQ(equal_to_stream, 0);
 }
 
+// Eq. HO-7: the growth multiplies the density, so its root multiplies every draw.
+TEST(RemnantTest, GrowthMultipliesItsPower) {
+  Remnant sut(0.02, 0.001, 4, 2);
+  Remnant grown(0.02, 0.001, 4, 2);
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_NEAR(grown.step(0.03, 4.0), 2.0 * sut.step(0.03), 1e-15) << n;
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::human_operator

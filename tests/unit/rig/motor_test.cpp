@@ -104,5 +104,26 @@ TEST(MotorTest, ASingleLostCommandCostsOneRampStepOnly) {
   EXPECT_GE(after_n, 20.0 * (1.0 - 1.0 / 40.0));
 }
 
+// Eq. RG-8.  After ten lags of 1.5 ms the rest is exp(-10).
+TEST(MotorTest, DelayAndGainActBeforeTheLag) {
+  MotorConfig config;
+  config.delay_s = 0.03;
+  config.gain = 0.5;
+  Motor sut(config, kLever_m);
+  for (int n = 0; n < 30; ++n) ASSERT_EQ(sut.step({true, 1, 8.0, true}).force_n, 0.0) << n;
+  for (int n = 0; n < 15; ++n) sut.step({true, 1, 8.0, true});
+  EXPECT_NEAR(sut.step({true, 1, 8.0, true}).force_n, 4.0, 4.0 * std::exp(-10.0));
+}
+
+// A force from before a gap never acts after it.
+TEST(MotorTest, AGapClearsTheDelay) {
+  MotorConfig config;
+  config.delay_s = 0.2;
+  Motor sut(config, kLever_m);
+  for (int n = 0; n < 400; ++n) sut.step({true, 1, 20.0, true});
+  for (int n = 0; n < 60; ++n) sut.step({true, 1, 20.0, false});
+  for (int n = 0; n < 300; ++n) ASSERT_EQ(sut.step({true, 1, 0.0, true}).force_n, 0.0) << n;
+}
+
 }  // namespace
 }  // namespace stillhand::rig

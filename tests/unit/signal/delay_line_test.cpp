@@ -24,5 +24,15 @@ TEST(DelayLineTest, ResetFillsItWithZero) {
   EXPECT_EQ(sut.step(2.0), 1.0);
 }
 
+// A delay that changes reads another sample of the same past; one beyond the line is its end.
+TEST(DelayLineTest, TheDelayMayChangeFromSampleToSample) {
+  DelayLine sut(5);
+  for (int n = 0; n < 40; ++n) {
+    const int delay = n % 8;
+    const int expected = n - (delay > 5 ? 5 : delay);
+    EXPECT_EQ(sut.step(n, static_cast<std::size_t>(delay)), expected < 0 ? 0.0 : expected) << n;
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::signal

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/explain/paper_tables.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+#include "apps/session/paper_table.hpp"
+
+namespace stillhand::study {
+namespace {
+
+// What is uncertain in the printed mean of one condition, besides its subjects, Eq. SU-7.
+// All are printed in steps of 0.01.
+constexpr double kPrintedStep = 0.01;
+// RMS error: the size that the dwell ratio implies, for a Gaussian error, is 5.8, 5.3 and 5.4 mm a
+// unit in A, B and C, 5 % of it.  No population of this simulator gives three different ratios.
+constexpr double kRmsShare = 0.05;
+// Dwell ratio and f_c: the abstract of the journal's version has +32 % where the text has +35 %,
+// and 0.11 and 0.15 Hz where the text has 0.10 and 0.14 Hz.
+constexpr double kDwellRevision = 0.005;
+constexpr double kCrossoverRevision_hz = 0.006;
+
+// Variance of the printed mean of metric k.
+double variance_of(std::size_t k, double mean, double unit) {
+  const double printed = unit * kPrintedStep / std::sqrt(12.0);
+  const double other = k == 0 ? kRmsShare * mean : k == 1 ? kDwellRevision : kCrossoverRevision_hz;
+  return printed * printed + other * other;
+}
+
+}  // namespace
+
+const std::array<std::string, kTableFigures>& table_figure_names() {
+  static const auto kNames = [] {
+    std::array<std::string, kTableFigures> names;
+    std::size_t at = 0;
+    for (const char* what : {"A ", "A-B ", "B-C ", "A-B sd ", "B-C sd "}) {
+      for (const auto& metric : session::kMetrics) {
+        names[at++] = std::string(what) + metric.restoration_key;
+      }
+    }
+    return names;
+  }();
+  return kNames;
+}
+
+double deviation_from_p(double mean_difference, double p, int subjects) {
+  const boost::math::students_t distribution(subjects - 1.0);
+  const double t = quantile(complement(distribution, p / 2.0));
+  return std::abs(mean_difference) * std::sqrt(static_cast<double>(subjects)) / t;
+}
+
+PaperTables paper_tables(double unit_mm) {
+  PaperTables out;
+  out.uncertainty.setZero();
+  out.per_log_unit.setZero();
+  out.standard_error.setZero();
+  const double n = kPaperSubjects;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const auto& metric = session::kMetrics[at];
+    const double unit = k == 0 ? unit_mm : 1.0;
+    const double ab = unit * (metric.paper_b - metric.paper_a);
+    const double bc = unit * (metric.paper_c - metric.paper_b);
+    const double sd_ab = deviation_from_p(ab, metric.paper_p_ab, kPaperSubjects);
+    const double sd_bc = deviation_from_p(bc, metric.paper_p_bc, kPaperSubjects);
+    out.values[k] = unit * metric.paper_a;
+    out.values[3 + k] = ab;
+    out.values[6 + k] = bc;
+    out.values[9 + k] = std::log(sd_ab);
+    out.values[12 + k] = std::log(sd_bc);
+    // Differences share the uncertainty of a condition; a deviation goes with its difference.
+    const double of_a = variance_of(at, unit * metric.paper_a, unit);
+    const double of_b = variance_of(at, unit * metric.paper_b, unit);
+    const double of_c = variance_of(at, unit * metric.paper_c, unit);
+    out.uncertainty(k, k) = of_a;
+    out.uncertainty(k, 3 + k) = out.uncertainty(3 + k, k) = -of_a;
+    out.uncertainty(3 + k, 3 + k) = of_a + of_b;
+    out.uncertainty(3 + k, 6 + k) = out.uncertainty(6 + k, 3 + k) = -of_b;
+    out.uncertainty(6 + k, 6 + k) = of_b + of_c;
+    out.uncertainty(9 + k, 9 + k) = (of_a + of_b) / (ab * ab);
+    out.uncertainty(12 + k, 12 + k) = (of_b + of_c) / (bc * bc);
+    if (k == 0) {
+      out.per_log_unit[0] = unit * metric.paper_a;
+      out.per_log_unit[3] = ab;
+      out.per_log_unit[6] = bc;
+      out.per_log_unit[9] = out.per_log_unit[12] = 1.0;
+    }
+    // The tables give no spread of A itself: that of A - B stands for it.
+    out.standard_error[k] = out.standard_error[3 + k] = sd_ab / std::sqrt(n);
+    out.standard_error[6 + k] = sd_bc / std::sqrt(n);
+    out.standard_error[9 + k] = out.standard_error[12 + k] = 1.0 / std::sqrt(2.0 * (n - 1.0));
+  }
+  return out;
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/explain/responses.hpp"
+
+#include "services/runtime/process/run_jobs.hpp"
+
+namespace stillhand::study {
+namespace {
+
+Response response_of(const SubjectResult& result) {
+  Response out;
+  std::size_t at = 0;
+  for (const char condition : {'A', 'B', 'C'}) {
+    const auto& metrics = result.trials.at(condition).metrics;
+    for (const auto& metric : session::kMetrics) out.metrics[at++] = metric.of(metrics);
+  }
+  const TrackedTrial& cancelled = result.trials.at('C');
+  out.observed = {cancelled.counterforce_delay_s, cancelled.cancelled_share,
+                  cancelled.feedthrough_rms_n / result.trials.at('B').feedthrough_rms_n,
+                  result.identification.paper.heldout.free_run_vaf_percent};
+  return out;
+}
+
+}  // namespace
+
+std::vector<Metrics> metrics_of(const std::vector<Response>& responses) {
+  std::vector<Metrics> out;
+  out.reserve(responses.size());
+  for (const Response& response : responses) out.push_back(response.metrics);
+  return out;
+}
+
+std::vector<std::vector<Response>> run_settings(const std::vector<Setting>& settings,
+                                                std::size_t subjects, unsigned threads,
+                                                const OnProgress& on_progress) {
+  std::vector<std::vector<Response>> out(settings.size(), std::vector<Response>(subjects));
+  const std::size_t jobs = settings.size() * subjects;
+  const auto job = [&](std::size_t index) {
+    const std::size_t setting = index / subjects;
+    const std::size_t subject = index % subjects;
+    out[setting][subject] =
+        response_of(run_subject(settings[setting].options, static_cast<std::int64_t>(subject)));
+  };
+  const auto done = [&](std::size_t count) {
+    return on_progress(static_cast<std::int64_t>(count), static_cast<std::int64_t>(jobs));
+  };
+  const unsigned workers = threads > 0 ? threads : runtime::core_count();
+  if (!runtime::run_jobs(jobs, workers, job, done)) throw Interrupted();
+  return out;
+}
+
+}  // namespace stillhand::study
