@@ -82,6 +82,7 @@ void run_in_process(const Words& words) {
     folder.write(rig::kCommitmentFile, session.commitment());
   }
   record.result = close_loop(session, record.options);
+  record.conditions = own_trials(record.result);
   progress.finish();
   folder.write(kVerdictFile, verdict_json(record.result));
   if (record.undeclared_effect != 0) {
@@ -110,6 +111,7 @@ void run_live(const Words& words) {
   });
   if (record.result.rounds.empty()) throw diagnosis::Interrupted();
   judge_cancellation(recording, live.outcomes, record.result);
+  record.conditions = own_trials(record.result);
   // The verdict is written before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
                                                            verdict_json(record.result));

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/close_the_loop/conditions.hpp"
 #include "apps/report/page.hpp"
 #include "apps/report/staged_folder.hpp"
 
@@ -19,6 +20,9 @@ struct Truth {
   std::string channel;
   std::string place;
   std::string numbers;  ///< as one line for people
+
+  /// Kind, channel and place of the strongest finding; without an effect, no finding.
+  [[nodiscard]] bool agrees_with(const Verdict& verdict) const;
 };
 /// Reads undeclared_effect.json.
 Truth truth_of(const std::string& sealed_text);
@@ -30,20 +34,21 @@ struct LoopRecord {
   bool live = false;  ///< over DDS
   std::string command_line;
   LoopResult result;
+  Conditions conditions;       ///< what tables and figures show
   std::optional<Truth> truth;  ///< empty: nothing was sealed
 
-  /// Verdict and truth name the same kind.
-  [[nodiscard]] bool right() const { return truth && truth->kind == result.verdict().kind(); }
+  /// Verdict and truth agree: README, "Right".
+  [[nodiscard]] bool right() const { return truth && truth->agrees_with(result.verdict()); }
 };
-
-/// (B - X) / (B - A) of a metric, X = C or C+ [-].
-double restoration(const LoopResult& result, const TrialRun& of, std::size_t metric);
 
 /// verdict.json: kind, channel and findings, written before the truth is opened.
 std::string verdict_json(const LoopResult& result);
 /// summary.json, README "Files".
 std::string summary_json(const LoopRecord& record);
+/// Tables and verdict, to standard output.
 void print_result(const LoopRecord& record);
+/// "mean [low, high]" of an estimate, or the mean alone.
+std::string with_interval(const Estimate& estimate, int decimals, double factor = 1.0);
 
 /// report.html with its figures.
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings);

@@ -10,6 +10,18 @@ namespace {
 
 constexpr Tick kKeepEvery = 10;  // the paper records at 100 Hz
 
+// What the rig's truth and the screen say of a tracking trial.
+void judge(const session::TrialSignals& signals, const session::PlannedTrial& planned,
+           TrialRun& out) {
+  constexpr double kRate_hz = kControlRateHz / kKeepEvery;
+  out.metrics = metrics_of(signals.tracking, planned);
+  out.forces = session::trial_forces(signals, kRate_hz);
+  if (!planned.moving) return;
+  out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
+  out.counterforce_delay_s =
+      session::counterforce_delay_s(signals.feedthrough_n, signals.motor_n, kRate_hz);
+}
+
 }  // namespace
 
 InProcessSession::InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
@@ -24,18 +36,11 @@ InProcessSession::InProcessSession(const session::CoreConfigs& configs, std::uin
 TrialRun InProcessSession::run(const session::PlannedTrial& planned, const std::string& label) {
   session::TrialSignals signals = loop_.run(planned);
   TrialRun out;
+  if (planned.trial.phase == TrialPhase::kTracking) judge(signals, planned, out);
   out.label = label;
   out.number = planned.trial.number;
   out.measured = std::move(signals.measured);
   out.measured.source = "trial " + label;
-  if (planned.trial.phase == TrialPhase::kTracking) {
-    out.metrics = metrics_of(out.measured, planned);
-    if (planned.moving) {
-      out.cancelled_share = session::cancelled_share(signals.feedthrough_n, signals.motor_n);
-      out.counterforce_delay_s = session::counterforce_delay_s(
-          signals.feedthrough_n, signals.motor_n, kControlRateHz / kKeepEvery);
-    }
-  }
   constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kKeepEvery / kWeightRate_hz);
   for (std::size_t n = 0; n < signals.weights.size(); n += kEvery) {
     out.weights.push_back(signals.weights[n]);
@@ -62,14 +67,19 @@ std::string InProcessSession::use(const cancellation::ControlModel& model) {
                                                  : std::string(cancellation::describe(refusal));
 }
 
+identification::TrackingMetrics metrics_of(const identification::TrackingRecord& record,
+                                           const session::PlannedTrial& planned) {
+  const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
+  return identification::tracking_metrics(record, signal::reference_design(duration_s));
+}
+
 identification::TrackingMetrics metrics_of(const recording::Recording& measured,
                                            const session::PlannedTrial& planned) {
   identification::TrackingRecord record;
   record.rate_hz = kControlRateHz;
   record.target_m = measured.find("x_r")->values;
   record.cursor_m = measured.find("x_p")->values;
-  const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
-  return identification::tracking_metrics(record, signal::reference_design(duration_s));
+  return metrics_of(record, planned);
 }
 
 }  // namespace stillhand::close_the_loop

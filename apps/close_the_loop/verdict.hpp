@@ -15,6 +15,12 @@ namespace stillhand::close_the_loop {
 /// [s] A shorter delay does not move a hand.
 inline constexpr double kWorthLatency_s = 0.005;
 
+/// Where an effect acts, as far as a verdict says.
+inline constexpr const char* kBody = "body";
+inline constexpr const char* kDrive = "drive";
+inline constexpr const char* kMotorPath = "motor path";
+inline constexpr const char* kLoadCell = "load cell";
+
 /// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
   const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
@@ -26,7 +32,7 @@ struct Evidence {
 struct Finding {
   std::string kind;
   std::string channel;       ///< empty: none
-  std::string where;         ///< "body", "drive", "motor path" or "load cell"
+  std::string where;         ///< kBody, kDrive, kMotorPath or kLoadCell
   double explained_n = 0.0;  ///< RMS force
   double before_n = 0.0;     ///< held-out error before and after, where it was found
   double after_n = 0.0;
@@ -46,6 +52,8 @@ struct Verdict {
   [[nodiscard]] std::string kind() const {
     return findings.empty() ? std::string("none") : findings.front().kind;
   }
+  /// "effects found", "unexplained residual" or "nothing missing".
+  [[nodiscard]] std::string conclusion() const;
 };
 
 /// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
