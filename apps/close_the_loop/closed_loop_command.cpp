@@ -8,6 +8,7 @@
 
 #include "apps/close_the_loop/live_session.hpp"
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/repeats.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/lab/undeclared_effect.hpp"
 #include "apps/report/command_line.hpp"
@@ -29,10 +30,17 @@ namespace {
 struct Words {
   lab::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
   bool live = false;
+  std::int64_t repeats = 10;
+  unsigned threads = 0;  ///< 0: one per core
 };
 
-// Steps of one pass through the loop, for the progress line.
-constexpr double kUsualSteps = 14.0;
+// Steps of one pass through the loop, and the loop's part of the progress line.
+constexpr double kUsualSteps = 15.0;
+constexpr double kLoopShare = 0.6;
+
+unsigned threads_of(const Words& words) {
+  return words.threads > 0 ? words.threads : runtime::core_count();
+}
 
 DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
@@ -47,7 +55,9 @@ LoopRecord new_record(const Words& words) {
   record.options.protocol = words.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
-  record.options.for_each = runtime::on_all_cores;
+  record.options.for_each = [threads = threads_of(words)](std::size_t count, const auto& job) {
+    runtime::run_jobs(count, threads, job);
+  };
   return record;
 }
 
@@ -73,18 +83,24 @@ void run_in_process(const Words& words) {
   report::ProgressLine progress;
   int steps = 0;
   record.options.progress = [&](const std::string& step) {
-    progress.show(step, std::min(steps++ / kUsualSteps, 0.98));
+    progress.show(step, kLoopShare * std::min(steps++ / kUsualSteps, 0.98));
     return !stop.requested();
   };
-  InProcessSession session({}, words.lab.protocol.seed, words.lab.undeclared_effect);
+  const SimulatedRig rig{{}, words.lab.undeclared_effect};
+  InProcessSession session(rig, words.lab.protocol.seed);
   if (record.undeclared_effect != 0) {
     std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
     folder.write(rig::kCommitmentFile, session.commitment());
   }
   record.result = close_loop(session, record.options);
-  record.conditions = own_trials(record.result);
-  progress.finish();
   folder.write(kVerdictFile, verdict_json(record.result));
+  RepeatOptions repeats{words.repeats, threads_of(words), {}};
+  repeats.progress = [&](double share) {
+    progress.show("repeats", kLoopShare + (1.0 - kLoopShare) * share);
+    return !stop.requested();
+  };
+  record.conditions = run_repeats(record.result, words.lab.protocol, rig, repeats);
+  progress.finish();
   if (record.undeclared_effect != 0) {
     rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
     record.truth = truth_of(session.open_effect());
@@ -166,6 +182,16 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
       ->needs(live)
+      ->capture_default_str();
+  verb->add_option("--repeats", words->repeats,
+                   "trials of each condition, with other draws of target, motion and remnant; with "
+                   "--live one")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(live)
+      ->capture_default_str();
+  verb->add_option("--threads", words->threads,
+                   "number of threads; the results do not depend on it; 0: one per core")
+      ->check(CLI::Range(0, 256))
       ->capture_default_str();
   verb->callback([words, &status] {
     words->live ? run_live(*words) : run_in_process(*words);

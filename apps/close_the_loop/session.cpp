@@ -22,29 +22,54 @@ void judge(const session::TrialSignals& signals, const session::PlannedTrial& pl
       session::counterforce_delay_s(signals.feedthrough_n, signals.motor_n, kRate_hz);
 }
 
+// What a tracking or pegged trial leaves, without its recording.
+TrialRun run_of(const session::TrialSignals& signals, const session::PlannedTrial& planned,
+                const std::string& label) {
+  TrialRun out;
+  out.label = label;
+  out.number = planned.trial.number;
+  if (planned.trial.phase == TrialPhase::kTracking) judge(signals, planned, out);
+  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kKeepEvery / kWeightRate_hz);
+  for (std::size_t n = 0; n < signals.weights.size(); n += kEvery) {
+    out.weights.push_back(signals.weights[n]);
+  }
+  return out;
+}
+
+// The size of an effect does not depend on the subject.
+rig::SealedEffect effect_of(const SimulatedRig& rig) {
+  return {rig.undeclared_effect, rig::RigConfig{}};
+}
+
 }  // namespace
 
-InProcessSession::InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
-                                   std::uint64_t undeclared_effect)
-    : sealed_(rig::sealed_text(rig::SealedEffect(undeclared_effect, configs.rig).open(),
-                               rig::new_nonce())),
+TrialRun run_alone(const SimulatedRig& rig, std::uint64_t seed,
+                   const std::vector<session::PlannedTrial>& trials,
+                   const cancellation::ControlModel* model, const std::string& label) {
+  session::InProcessLoop loop(rig.configs, seed, kKeepEvery, effect_of(rig));
+  if (model != nullptr) {
+    const auto refusal = loop.use_model(*model);
+    if (refusal != cancellation::Refusal::kNone) {
+      throw ConfigError("the canceller's model", std::string(cancellation::describe(refusal)),
+                        "one that the canceller accepts");
+    }
+  }
+  for (std::size_t i = 0; i + 1 < trials.size(); ++i) static_cast<void>(loop.run(trials[i]));
+  return run_of(loop.run(trials.back()), trials.back(), label);
+}
+
+InProcessSession::InProcessSession(const SimulatedRig& rig, std::uint64_t seed)
+    : sealed_(rig::sealed_text(effect_of(rig).open(), rig::new_nonce())),
       commitment_(rig::digest_line(sealed_, rig::kSealedFile)),
-      loop_(configs, seed, kKeepEvery, rig::SealedEffect(undeclared_effect, configs.rig)) {
+      loop_(rig.configs, seed, kKeepEvery, effect_of(rig)) {
   loop_.keep_measured();
 }
 
 TrialRun InProcessSession::run(const session::PlannedTrial& planned, const std::string& label) {
   session::TrialSignals signals = loop_.run(planned);
-  TrialRun out;
-  if (planned.trial.phase == TrialPhase::kTracking) judge(signals, planned, out);
-  out.label = label;
-  out.number = planned.trial.number;
+  TrialRun out = run_of(signals, planned, label);
   out.measured = std::move(signals.measured);
   out.measured.source = "trial " + label;
-  constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kKeepEvery / kWeightRate_hz);
-  for (std::size_t n = 0; n < signals.weights.size(); n += kEvery) {
-    out.weights.push_back(signals.weights[n]);
-  }
   return out;
 }
 

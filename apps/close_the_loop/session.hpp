@@ -54,11 +54,24 @@ identification::TrackingMetrics metrics_of(const identification::TrackingRecord&
 identification::TrackingMetrics metrics_of(const recording::Recording& measured,
                                            const session::PlannedTrial& planned);
 
+/// The rig and the subject of a session in one process.
+struct SimulatedRig {
+  session::CoreConfigs configs = {};
+  std::uint64_t undeclared_effect = 0;  ///< seed of the effect, sized against the default rig
+};
+
+/// One trial on a rig of its own, in one process.
+/// @param trials  those that the rig runs; the last one is returned
+/// @param model   null: none
+/// @throws ConfigError when the canceller refuses the model
+TrialRun run_alone(const SimulatedRig& rig, std::uint64_t seed,
+                   const std::vector<session::PlannedTrial>& trials,
+                   const cancellation::ControlModel* model, const std::string& label);
+
 /// All in one process, as fast as the machine allows.
 class InProcessSession final : public Session {
  public:
-  InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
-                   std::uint64_t undeclared_effect);
+  InProcessSession(const SimulatedRig& rig, std::uint64_t seed);
 
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
   identification::FeedthroughModel identify(const TrialRun& pegged) override;

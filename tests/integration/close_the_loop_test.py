@@ -15,7 +15,7 @@ import lab_process
 from lab_process import wait_for
 
 STILLHAND = str(lab_process.STILLHAND)
-SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3"]
+SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3", "--repeats", "3"]
 METRICS = ("rms_error", "dwell_ratio", "crossover")
 
 
@@ -47,6 +47,11 @@ class CloseTheLoopTest(unittest.TestCase):
         left = {name: condition["force_left_n"]["mean"] for name, condition in summary["conditions"].items()}
         self.assertLess(left["C+"], 0.5 * left["C'"])
         self.assertLess(left["C'"], left["B"])
+        self.assertLess(summary["paired"]["C'-C+"]["force_left_n"]["interval95"][1], 0.0)
+        for condition in summary["conditions"].values():
+            low, high = condition["rms_error_mm"]["interval95"]
+            self.assertTrue(low < condition["rms_error_mm"]["mean"] < high)
+            self.assertEqual(len(condition["rms_error_mm"]["repeats"]), 3)
         prediction = summary["force_prediction"]
         self.assertLess(prediction["after_rmse_n"], 0.5 * prediction["before_rmse_n"])
         self.assertLess(prediction["after_over_noise"], 1.3)
@@ -117,6 +122,9 @@ class CloseTheLoopTest(unittest.TestCase):
                                 ([*SHORT, "--domain", 5, "--out", self.out], "--live"),
                                 ([*SHORT, "--rig", 5, "--out", self.out], "--live"),
                                 ([*SHORT, "--out", recorded], "recording"),
+                                (["--repeats", 0, "--out", self.out], "--repeats"),
+                                (["--repeats", 3, "--live", "--out", self.out], "--live"),
+                                (["--threads", 999, "--out", self.out], "--threads"),
                                 ([*SHORT], "--out")):
             ran = close_the_loop(*arguments)
             self.assertEqual(ran.returncode, 2, arguments)

@@ -31,13 +31,13 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
   // Identified on the average hand; another one tracks.
   cancellation::ControlModel model;
   {
-    InProcessSession average(configs, protocol.seed, 0);
+    InProcessSession average({configs}, protocol.seed);
     const TrialRun pegged = average.run(session::plan(protocol)[0], "I");
     model = cancellation::control_model(average.identify(pegged).control);
   }
   for (double& c : model.inputs[0].numerator) c *= model_gain;
   configs.rig.body = tracking_hand;
-  InProcessSession session(configs, protocol.seed, 0);
+  InProcessSession session({configs}, protocol.seed);
   Outcome out;
   for (const session::PlannedTrial& planned : session::plan(protocol)) {
     if (planned.trial.phase == TrialPhase::kPegged) continue;
