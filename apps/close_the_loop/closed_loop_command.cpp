@@ -15,6 +15,7 @@
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
 #include "apps/report/staged_folder.hpp"
+#include "apps/study/population.hpp"
 #include "services/cancellation/control_model_file.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
@@ -31,7 +32,8 @@ struct Words {
   lab::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
   bool live = false;
   std::int64_t repeats = 10;
-  unsigned threads = 0;  ///< 0: one per core
+  std::int64_t subject = 1;  ///< of the population, under the session's seed; 0: the rig's default
+  unsigned threads = 0;      ///< 0: one per core
 };
 
 // Steps of one pass through the loop, and the loop's part of the progress line.
@@ -46,12 +48,23 @@ DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
 }
 
+session::CoreConfigs configs_of(const Words& words) {
+  session::CoreConfigs configs;
+  if (words.subject == 0) return configs;
+  const study::Subject subject =
+      study::draw_subject({}, words.lab.protocol.seed, words.subject - 1);
+  configs.rig.body = subject.body;
+  configs.human_operator = subject.who;
+  return configs;
+}
+
 // What both modes need besides the session.
 LoopRecord new_record(const Words& words) {
   LoopRecord record;
   record.command_line = report::command_line();
   record.undeclared_effect = words.lab.undeclared_effect;
   record.live = words.live;
+  record.subject = words.live ? 0 : words.subject;
   record.options.protocol = words.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
@@ -86,7 +99,7 @@ void run_in_process(const Words& words) {
     progress.show(step, kLoopShare * std::min(steps++ / kUsualSteps, 0.98));
     return !stop.requested();
   };
-  const SimulatedRig rig{{}, words.lab.undeclared_effect};
+  const SimulatedRig rig{configs_of(words), words.lab.undeclared_effect};
   InProcessSession session(rig, words.lab.protocol.seed);
   if (record.undeclared_effect != 0) {
     std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
@@ -187,6 +200,13 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
                    "trials of each condition, with other draws of target, motion and remnant; with "
                    "--live one")
       ->check(CLI::Range(1, 1000))
+      ->excludes(live)
+      ->capture_default_str();
+  verb->add_option(
+          "--subject", words->subject,
+          "number of the subject that `stillhand study --seed` draws; 0: the rig's default, "
+          "who is the subject with --live")
+      ->check(CLI::Range(0, 10000))
       ->excludes(live)
       ->capture_default_str();
   verb->add_option("--threads", words->threads,

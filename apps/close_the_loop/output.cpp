@@ -208,6 +208,7 @@ std::string summary_json(const LoopRecord& record) {
       {"conversion_error", or_null(result.paper_model.conversion_error)}};
   const session::ProtocolOptions& protocol = record.options.protocol;
   summary["live"] = record.live;
+  summary["subject"] = record.subject;
   summary["repeats"] = record.conditions.at("A").size();
   summary["seed"] = protocol.seed;
   summary["undeclared_effect_seed"] = record.undeclared_effect;

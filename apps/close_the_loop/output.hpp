@@ -31,7 +31,8 @@ Truth truth_of(const std::string& sealed_text);
 struct LoopRecord {
   LoopOptions options;
   std::uint64_t undeclared_effect = 0;
-  bool live = false;  ///< over DDS
+  bool live = false;         ///< over DDS
+  std::int64_t subject = 0;  ///< of the population under the seed; 0: the rig's default
   std::string command_line;
   LoopResult result;
   Conditions conditions;       ///< what tables and figures show

@@ -185,9 +185,12 @@ void add_truth(report::Page& page, const LoopRecord& record) {
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings) {
   const LoopResult& result = record.result;
   report::Page page("Closing the loop", lead(record));
-  page.facts({{"command", record.command_line},
-              {"seed", std::to_string(record.options.protocol.seed)},
-              {"version", kVersion}});
+  page.facts(
+      {{"command", record.command_line},
+       {"seed", std::to_string(record.options.protocol.seed)},
+       {"subject", record.subject == 0 ? "the rig's default" : std::to_string(record.subject)},
+       {"repeats", std::to_string(record.conditions.at("A").size())},
+       {"version", kVersion}});
   add_tracking(page, record.conditions, drawings);
   add_verdict(page, result, drawings);
   page.section("The rounds");

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/session.hpp"
 #include "services/contract/tick.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
-
-constexpr cancellation::HandCompliance kAverage{1.38, 9.5, 844.0, 0.1};
 
 struct Outcome {
   double still = 0.0;     ///< RMS error of A [mm]
@@ -48,7 +47,7 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
     EXPECT_EQ(session.use(model), "");
     out.paper = error_mm();
     cancellation::ControlModel followed = model;
-    followed.adapts = kAverage;
+    followed.adapts = average_hand();
     EXPECT_EQ(session.use(followed), "");
     out.followed = error_mm();
   }
