@@ -51,7 +51,7 @@ class Loop {
 std::string why_not_augmented(const Verdict& verdict) {
   if (!verdict.not_carried.empty()) return verdict.not_carried;
   if (!verdict.findings.empty()) return {};
-  return verdict.conclusion() == "unexplained residual"
+  return verdict.conclusion() == kUnexplained
              ? "the residual has a cause that no kind of effect explains"
              : "nothing is missing that moves a hand";
 }

@@ -31,6 +31,7 @@ namespace {
 struct Words {
   lab::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
   bool live = false;
+  bool off_catalogue = false;
   std::int64_t repeats = 10;
   std::int64_t subject = 1;  ///< of the population, under the session's seed; 0: the rig's default
   unsigned threads = 0;      ///< 0: one per core
@@ -99,7 +100,9 @@ void run_in_process(const Words& words) {
     progress.show(step, kLoopShare * std::min(steps++ / kUsualSteps, 0.98));
     return !stop.requested();
   };
-  const SimulatedRig rig{configs_of(words), words.lab.undeclared_effect};
+  const SimulatedRig rig{
+      configs_of(words), words.lab.undeclared_effect,
+      words.off_catalogue ? rig::EffectSource::kOutsideKinds : rig::EffectSource::kKinds};
   InProcessSession session(rig, words.lab.protocol.seed);
   if (record.undeclared_effect != 0) {
     std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
@@ -175,10 +178,12 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       "and runs C again (C+),\n"
       "until nothing new is found or C+ no longer improves.\n"
       "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
-  verb->add_option("--undeclared-effect", lab.undeclared_effect,
-                   "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
-      ->check(session::check_seed)
-      ->capture_default_str();
+  CLI::Option* effect =
+      verb->add_option(
+              "--undeclared-effect", lab.undeclared_effect,
+              "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
+          ->check(session::check_seed)
+          ->capture_default_str();
   verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
       ->check(session::check_seed)
       ->capture_default_str();
@@ -196,6 +201,10 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
       ->needs(live)
       ->capture_default_str();
+  verb->add_flag("--off-catalogue", words->off_catalogue,
+                 "the effect is one that no kind of `stillhand diagnose` describes")
+      ->needs(effect)
+      ->excludes(live);
   verb->add_option("--repeats", words->repeats,
                    "trials of each condition, with other draws of target, motion and remnant; with "
                    "--live one")

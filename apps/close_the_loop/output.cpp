@@ -148,13 +148,25 @@ Truth truth_of(const std::string& sealed_text) {
   truth.place = json.at("place");
   for (const auto& [name, value] : json.at("parameters").items()) {
     const std::string unit = value.at("unit");
+    if (name == "force_rms") truth.force_n = value.at("value");
     truth.numbers += (truth.numbers.empty() ? "" : ", ") + name + " " +
                      report::short_number(value.at("value")) + (unit == "-" ? "" : " " + unit);
   }
   return truth;
 }
 
+bool Truth::outside() const {
+  return kind != rig::OpenedEffect{}.kind &&
+         std::ranges::none_of(diagnosis::effect_kinds(),
+                              [&](const auto* each) { return each->name() == kind; });
+}
+
 bool Truth::agrees_with(const Verdict& verdict) const {
+  if (outside()) {
+    const bool small = force_n < detectable_n(verdict, place == kDrive);
+    const std::string conclusion = verdict.conclusion();
+    return conclusion == kUnexplained || (small && conclusion == kNothing);
+  }
   if (verdict.kind() != kind) return false;
   if (verdict.findings.empty()) return true;
   const Finding& strongest = verdict.findings.front();
@@ -201,6 +213,11 @@ std::string summary_json(const LoopRecord& record) {
                         {"channel", or_null(record.truth->channel)},
                         {"place", record.truth->place},
                         {"verdict_right", record.right()}};
+    if (record.truth->outside()) {
+      summary["truth"]["force_rms_n"] = record.truth->force_n;
+      summary["truth"]["detectable_n"] =
+          detectable_n(result.verdict(), record.truth->place == kDrive);
+    }
   }
   summary["identification"] = {
       {"order", result.paper_model.fit.order()},

@@ -19,9 +19,13 @@ struct Truth {
   std::string kind;
   std::string channel;
   std::string place;
-  std::string numbers;  ///< as one line for people
+  std::string numbers;   ///< as one line for people
+  double force_n = 0.0;  ///< RMS force of an effect outside of the kinds
 
-  /// Kind, channel and place of the strongest finding; without an effect, no finding.
+  /// Whether a kind of the diagnosis describes it.
+  [[nodiscard]] bool outside() const;
+  /// Kind, channel and place of the strongest finding; without an effect, no finding; outside of
+  /// the kinds, "unexplained residual", or "nothing missing" below detectable_n().
   [[nodiscard]] bool agrees_with(const Verdict& verdict) const;
 };
 /// Reads undeclared_effect.json.

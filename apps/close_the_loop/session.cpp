@@ -38,7 +38,7 @@ TrialRun run_of(const session::TrialSignals& signals, const session::PlannedTria
 
 // The size of an effect does not depend on the subject.
 rig::SealedEffect effect_of(const SimulatedRig& rig) {
-  return {rig.undeclared_effect, rig::RigConfig{}};
+  return {rig.undeclared_effect, rig::RigConfig{}, rig.source};
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ identification::TrackingMetrics metrics_of(const recording::Recording& measured,
 struct SimulatedRig {
   session::CoreConfigs configs = {};
   std::uint64_t undeclared_effect = 0;  ///< seed of the effect, sized against the default rig
+  rig::EffectSource source = rig::EffectSource::kKinds;
 };
 
 /// One trial on a rig of its own, in one process.

@@ -80,9 +80,15 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
 
 }  // namespace
 
+double detectable_n(const Verdict& verdict, bool in_drive) {
+  if (in_drive) return kWorthDrive_n;
+  const double kept = 1.0 - kWorthFall;
+  return verdict.body.noise_floor.rmse * std::sqrt(1.0 / (kept * kept) - 1.0);
+}
+
 std::string Verdict::conclusion() const {
-  if (!findings.empty()) return "effects found";
-  return body.verdict() == "unexplained residual" ? body.verdict() : "nothing missing";
+  if (!findings.empty()) return kFound;
+  return body.verdict() == kUnexplained ? kUnexplained : kNothing;
 }
 
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,

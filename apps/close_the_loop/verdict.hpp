@@ -21,6 +21,11 @@ inline constexpr const char* kDrive = "drive";
 inline constexpr const char* kMotorPath = "motor path";
 inline constexpr const char* kLoadCell = "load cell";
 
+/// What a verdict concludes.
+inline constexpr const char* kFound = "effects found";
+inline constexpr const char* kUnexplained = "unexplained residual";
+inline constexpr const char* kNothing = "nothing missing";
+
 /// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
   const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
@@ -52,9 +57,14 @@ struct Verdict {
   [[nodiscard]] std::string kind() const {
     return findings.empty() ? std::string("none") : findings.front().kind;
   }
-  /// "effects found", "unexplained residual" or "nothing missing".
+  /// kFound, kUnexplained or kNothing.
   [[nodiscard]] std::string conclusion() const;
 };
+
+/// [N] RMS force from which on a verdict can name an effect.  In the body it is that which makes
+/// the held-out error a quarter larger than the noise floor, so that an effect's part of it counts;
+/// in the drive it is the least that counts.
+double detectable_n(const Verdict& verdict, bool in_drive);
 
 /// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
 /// verdict".

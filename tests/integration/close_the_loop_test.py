@@ -108,6 +108,14 @@ class CloseTheLoopTest(unittest.TestCase):
         self.assertLessEqual(errors["C+"], errors["C"])
         self.assertFalse((self.out / "undeclared_effect.json").exists())
 
+    def test_an_effect_outside_of_the_kinds_is_sealed_and_opened_the_same_way(self):
+        summary = self.summary("--undeclared-effect", 4, "--off-catalogue")
+        self.assertGreater(summary["truth"]["force_rms_n"], 0.0)
+        self.assertGreater(summary["truth"]["detectable_n"], 0.0)
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
+                                 capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+
     def test_wrong_words_are_refused_before_anything_runs(self):
         taken = self.out.parent / "file"
         taken.write_text("mine\n")
@@ -124,6 +132,7 @@ class CloseTheLoopTest(unittest.TestCase):
                                 ([*SHORT, "--out", recorded], "recording"),
                                 (["--repeats", 0, "--out", self.out], "--repeats"),
                                 (["--repeats", 3, "--live", "--out", self.out], "--live"),
+                                (["--off-catalogue", "--out", self.out], "--undeclared-effect"),
                                 (["--subject", -1, "--out", self.out], "--subject"),
                                 (["--threads", 999, "--out", self.out], "--threads"),
                                 ([*SHORT], "--out")):
