@@ -121,6 +121,22 @@ def conclude(title, summaries):
           f"{max(s['force_prediction']['after_over_noise'] for s in summaries):.2f} times the noise floor")
 
 
+def by_truth(summaries):
+    """A row for each truth: how often it is named, and the medians of C, C' and C+."""
+    print("\n| truth | seeds | right | restored C, C', C+ [%] | force left C, C', C+ [N] | hand C, C', C+ [m/s²] |\n"
+          + "| --- " * 6 + "|")
+    groups = {}
+    for s in summaries:
+        groups.setdefault(named(s["truth"]["kind"], s["truth"]["place"]), []).append(s)
+    for truth, group in sorted(groups.items()):
+        def medians(of, decimals):
+            return ", ".join(f"{statistics.median(of(s, c) for s in group):.{decimals}f}" for c in CANCELLING)
+        right = sum(s["truth"]["verdict_right"] for s in group)
+        print(f"| {truth} | {len(group)} | {right} | {medians(restored, 1)} | "
+              f"{medians(lambda s, c: mean(s, c, 'force_left_n'), 2)} | "
+              f"{medians(lambda s, c: mean(s, c, 'hand_acceleration_m_s2'), 2)} |")
+
+
 def main():
     options = parse()
     with tempfile.TemporaryDirectory(prefix="stillhand-") as temporary:
@@ -128,6 +144,7 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         summaries = table(options, options.seeds, folder, False)
         outside = table(options, options.off_catalogue, folder, True)
+    by_truth(summaries + outside)
     none = [s for s in summaries if s["truth"]["kind"] == "none"]
     conclude("effects of the kinds", [s for s in summaries if s["truth"]["kind"] != "none"])
     conclude("no effect", none)
