@@ -161,6 +161,32 @@ void run_live(const Words& words) {
   print_result(record);
 }
 
+// Effect, subject and repeats of a run in one process.
+void add_comparison_options(CLI::App& verb, const std::shared_ptr<Words>& words,
+                            CLI::Option* effect, CLI::Option* live) {
+  verb.add_flag("--off-catalogue", words->off_catalogue,
+                "the effect is one that no kind of `stillhand diagnose` describes")
+      ->needs(effect)
+      ->excludes(live);
+  verb.add_option("--repeats", words->repeats,
+                  "trials of each condition, with other draws of target, motion and remnant; with "
+                  "--live one")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(live)
+      ->capture_default_str();
+  verb.add_option(
+          "--subject", words->subject,
+          "number of the subject that `stillhand study --seed` draws; 0: the rig's default, "
+          "who is the subject with --live")
+      ->check(CLI::Range(0, 10000))
+      ->excludes(live)
+      ->capture_default_str();
+  verb.add_option("--threads", words->threads,
+                  "number of threads; the results do not depend on it; 0: one per core")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_closed_loop_command(CLI::App& cli, int& status) {
@@ -201,27 +227,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
       ->needs(live)
       ->capture_default_str();
-  verb->add_flag("--off-catalogue", words->off_catalogue,
-                 "the effect is one that no kind of `stillhand diagnose` describes")
-      ->needs(effect)
-      ->excludes(live);
-  verb->add_option("--repeats", words->repeats,
-                   "trials of each condition, with other draws of target, motion and remnant; with "
-                   "--live one")
-      ->check(CLI::Range(1, 1000))
-      ->excludes(live)
-      ->capture_default_str();
-  verb->add_option(
-          "--subject", words->subject,
-          "number of the subject that `stillhand study --seed` draws; 0: the rig's default, "
-          "who is the subject with --live")
-      ->check(CLI::Range(0, 10000))
-      ->excludes(live)
-      ->capture_default_str();
-  verb->add_option("--threads", words->threads,
-                   "number of threads; the results do not depend on it; 0: one per core")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
+  add_comparison_options(*verb, words, effect, live);
   verb->callback([words, &status] {
     words->live ? run_live(*words) : run_in_process(*words);
     std::printf("report in %s\n", words->lab.out.string().c_str());
