@@ -23,9 +23,20 @@ class Loop {
     if (!options_.progress(name)) throw diagnosis::Interrupted();
   }
   void paper_trials();
+  void followed_trial();
   /// @return false when nothing more is to be done
   bool round();
   void try_model(Round& round, std::string why_not);
+  /// Gives the canceller a model that it must take.
+  void use_sound(const ControlModel& model);
+  /// The trial of C again with the model that the canceller has: same motion, same target.
+  TrialRun again(const std::string& label);
+  /// Keeps the trial's model if it is the best so far; otherwise that one is used again.
+  bool keep_if_best(const TrialRun& trial, const ControlModel& model);
+  [[nodiscard]] ControlModel followed(ControlModel model) const {
+    model.adapts = options_.hand;
+    return model;
+  }
   [[nodiscard]] const TrialRun& newest_cancelled() const;
   [[nodiscard]] bool anything_new() const;
 
@@ -33,9 +44,17 @@ class Loop {
   const LoopOptions& options_;
   LoopResult result_;
   session::PlannedTrial cancelled_{};
-  std::int64_t last_number_ = 0;
-  double best_error_mm_ = 0.0;  ///< C's, then that of the C+ that was kept last
+  double best_error_mm_ = 0.0;  ///< C's, then that of the best C' or C+
 };
+
+// Why the verdict's model is not run on a motor; empty: it is.
+std::string why_not_augmented(const Verdict& verdict) {
+  if (!verdict.not_carried.empty()) return verdict.not_carried;
+  if (!verdict.findings.empty()) return {};
+  return verdict.conclusion() == kUnexplained
+             ? "the residual has a cause that no kind of effect explains"
+             : "nothing is missing that moves a hand";
+}
 
 void Loop::paper_trials() {
   for (const session::PlannedTrial& planned : session::plan(options_.protocol)) {
@@ -46,7 +65,6 @@ void Loop::paper_trials() {
       result_.paper_model = session_.identify(result_.trials.back());
       result_.control_model = cancellation::control_model(result_.paper_model.control);
     }
-    last_number_ = planned.trial.number;
     if (planned.cancellation) {
       cancelled_ = planned;
       best_error_mm_ = result_.trials.back().metrics.rms_error_mm;
@@ -54,40 +72,53 @@ void Loop::paper_trials() {
   }
 }
 
-// The same trial again: same motion, same target, another model.
+void Loop::use_sound(const ControlModel& model) {
+  if (const std::string refused = session_.use(model); !refused.empty()) {
+    throw ConfigError("the canceller's model", refused, "one that the canceller accepts");
+  }
+}
+
+TrialRun Loop::again(const std::string& label) {
+  step("trial " + label);
+  return session_.run(cancelled_, label);
+}
+
+bool Loop::keep_if_best(const TrialRun& trial, const ControlModel& model) {
+  if (trial.metrics.rms_error_mm < best_error_mm_) {
+    best_error_mm_ = trial.metrics.rms_error_mm;
+    result_.control_model = model;
+    return true;
+  }
+  use_sound(result_.control_model);
+  return false;
+}
+
+void Loop::followed_trial() {
+  result_.followed_model = followed(cancellation::control_model(result_.paper_model.control));
+  use_sound(result_.followed_model);
+  result_.trials.push_back(again("C'"));
+  keep_if_best(result_.trials.back(), result_.followed_model);
+}
+
 void Loop::try_model(Round& round, std::string why_not) {
-  const auto followed = [&](ControlModel model) {
-    model.adapts = options_.hand;
-    return model;
-  };
-  ControlModel model = followed(round.verdict.control.model);
   if (why_not.empty()) {
-    const std::string refused = session_.use(model);
+    round.model = followed(round.verdict.control.model);
+    const std::string refused = session_.use(round.model);
     round.augmented = refused.empty();
     if (!refused.empty()) why_not = "the canceller refused the model (" + refused + ")";
   }
-  // A model that cannot be converted, or does not explain the residual, is not run on a motor: the
-  // paper's model runs with adapting gain and phase.
+  // A model that cannot be converted, or does not explain the residual, is not run on a motor.
   if (!round.augmented) {
-    model = followed(cancellation::control_model(result_.paper_model.control));
-    if (const std::string refused = session_.use(model); !refused.empty()) {
-      throw ConfigError("the paper's model", refused, "one that the canceller accepts");
-    }
-    round.outcome = why_not + ": the paper's model stays, its gain and phase adapt; ";
+    round.model = result_.followed_model;
+    round.trial = result_.trial("C'");
+    round.trial.label = "C+";
+    round.outcome = why_not + ": C+ is C'";
+    return;
   }
-  cancelled_.trial.number = ++last_number_;
-  step("trial C+");
-  round.trial = session_.run(cancelled_, "C+");
-  round.kept = round.trial.metrics.rms_error_mm < best_error_mm_;
-  if (round.kept) {
-    best_error_mm_ = round.trial.metrics.rms_error_mm;
-    result_.control_model = model;
-    round.outcome += "the tracking error is smaller: the model is kept";
-  } else {
-    const std::string refused = session_.use(result_.control_model);
-    round.outcome += "the tracking error is not smaller: the last good model stays";
-    if (!refused.empty()) round.outcome += ", but the canceller refused it: " + refused;
-  }
+  round.trial = again("C+");
+  round.kept = keep_if_best(round.trial, round.model);
+  round.outcome = round.kept ? "the tracking error is smaller: the model is kept"
+                             : "the tracking error is not smaller: the last good model stays";
 }
 
 const TrialRun& Loop::newest_cancelled() const {
@@ -116,12 +147,7 @@ bool Loop::round() {
                           &newest_cancelled().measured};
   Round round;
   options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
-  std::string why_not = round.verdict.not_carried;
-  if (why_not.empty() && round.verdict.findings.empty() &&
-      round.verdict.body.verdict() == "unexplained residual") {
-    why_not = "the residual has a cause that no kind of effect explains";
-  }
-  try_model(round, why_not);
+  try_model(round, why_not_augmented(round.verdict));
   const bool kept = round.kept;
   result_.rounds.push_back(std::move(round));
   const auto error = [&](std::size_t n) { return result_.rounds[n].trial.metrics.rms_error_mm; };
@@ -132,6 +158,7 @@ bool Loop::round() {
 
 LoopResult Loop::run() {
   paper_trials();
+  followed_trial();
   for (int n = 0; n < options_.most_rounds && round(); ++n) {
   }
   return std::move(result_);

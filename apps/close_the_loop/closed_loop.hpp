@@ -27,18 +27,20 @@ struct LoopOptions {
 /// One pass through diagnosis, augmentation and C+.
 struct Round {
   Verdict verdict;
-  TrialRun trial;          ///< C+
-  bool augmented = false;  ///< it ran with the verdict's model; else the paper's, adapting
-  bool kept = false;       ///< C+ has a smaller RMS error than the best before it
-  std::string outcome;     ///< one sentence
+  TrialRun trial;                    ///< C+
+  bool augmented = false;            ///< it ran with the verdict's model; else it is C'
+  cancellation::ControlModel model;  ///< with which it ran
+  bool kept = false;                 ///< C+ has a smaller RMS error than the best before it
+  std::string outcome;               ///< one sentence
 };
 
 struct LoopResult {
   identification::FeedthroughModel paper_model;
-  std::vector<TrialRun> trials;              ///< I, then A, B, C in the order in which they ran
-  std::vector<Round> rounds;                 ///< at least one
-  std::size_t final_round = 0;               ///< the round with the best C+
-  cancellation::ControlModel control_model;  ///< the model of the best trial
+  std::vector<TrialRun> trials;  ///< I, then A, B, C in the order in which they ran, then C'
+  cancellation::ControlModel followed_model;  ///< of C': the paper's, gain and phase followed
+  std::vector<Round> rounds;                  ///< at least one
+  std::size_t final_round = 0;                ///< the round with the best C+
+  cancellation::ControlModel control_model;   ///< the model of the best trial
 
   [[nodiscard]] const TrialRun& trial(const std::string& label) const;
   /// C+ of the final round, whether or not it was better than C.
@@ -46,9 +48,9 @@ struct LoopResult {
   [[nodiscard]] const Verdict& verdict() const { return rounds[final_round].verdict; }
 };
 
-/// Identifies, runs A, B and C with the paper's model, diagnoses, augments and runs C+; repeats
-/// until nothing new is found or C+ no longer improves, README "The loop".  The last good model
-/// stays.
+/// Identifies, runs A, B and C with the paper's model and C' with the same model followed,
+/// diagnoses, augments and runs C+; repeats until nothing new is found or C+ no longer improves,
+/// README "The loop".  The last good model stays.
 /// @throws ConfigError when the identification yields no usable model or a recording cannot be
 ///         diagnosed, diagnosis::Interrupted
 LoopResult close_loop(Session& session, const LoopOptions& options);

@@ -8,12 +8,14 @@
 
 #include "apps/close_the_loop/live_session.hpp"
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/repeats.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/lab/undeclared_effect.hpp"
 #include "apps/report/command_line.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
 #include "apps/report/staged_folder.hpp"
+#include "apps/study/population.hpp"
 #include "services/cancellation/control_model_file.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
@@ -29,13 +31,32 @@ namespace {
 struct Words {
   lab::LabOptions lab;  ///< protocol, folder, effect; the rest with --live
   bool live = false;
+  bool off_catalogue = false;
+  std::int64_t repeats = 10;
+  std::int64_t subject = 1;  ///< of the population, under the session's seed; 0: the rig's default
+  unsigned threads = 0;      ///< 0: one per core
 };
 
-// Steps of one pass through the loop, for the progress line.
-constexpr double kUsualSteps = 14.0;
+// Steps of one pass through the loop, and the loop's part of the progress line.
+constexpr double kUsualSteps = 15.0;
+constexpr double kLoopShare = 0.6;
+
+unsigned threads_of(const Words& words) {
+  return words.threads > 0 ? words.threads : runtime::core_count();
+}
 
 DeclaredDrive declared_drive(const rig::RigConfig& rig) {
   return {rig.stick, kControlPeriod_s + rig.motor.lag_s};
+}
+
+session::CoreConfigs configs_of(const Words& words) {
+  session::CoreConfigs configs;
+  if (words.subject == 0) return configs;
+  const study::Subject subject =
+      study::draw_subject({}, words.lab.protocol.seed, words.subject - 1);
+  configs.rig.body = subject.body;
+  configs.human_operator = subject.who;
+  return configs;
 }
 
 // What both modes need besides the session.
@@ -44,10 +65,13 @@ LoopRecord new_record(const Words& words) {
   record.command_line = report::command_line();
   record.undeclared_effect = words.lab.undeclared_effect;
   record.live = words.live;
+  record.subject = words.live ? 0 : words.subject;
   record.options.protocol = words.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
-  record.options.for_each = runtime::on_all_cores;
+  record.options.for_each = [threads = threads_of(words)](std::size_t count, const auto& job) {
+    runtime::run_jobs(count, threads, job);
+  };
   return record;
 }
 
@@ -73,17 +97,26 @@ void run_in_process(const Words& words) {
   report::ProgressLine progress;
   int steps = 0;
   record.options.progress = [&](const std::string& step) {
-    progress.show(step, std::min(steps++ / kUsualSteps, 0.98));
+    progress.show(step, kLoopShare * std::min(steps++ / kUsualSteps, 0.98));
     return !stop.requested();
   };
-  InProcessSession session({}, words.lab.protocol.seed, words.lab.undeclared_effect);
+  const SimulatedRig rig{
+      configs_of(words), words.lab.undeclared_effect,
+      words.off_catalogue ? rig::EffectSource::kOutsideKinds : rig::EffectSource::kKinds};
+  InProcessSession session(rig, words.lab.protocol.seed);
   if (record.undeclared_effect != 0) {
     std::printf("undeclared effect sealed, sha256 %.64s\n", session.commitment().c_str());
     folder.write(rig::kCommitmentFile, session.commitment());
   }
   record.result = close_loop(session, record.options);
-  progress.finish();
   folder.write(kVerdictFile, verdict_json(record.result));
+  RepeatOptions repeats{words.repeats, threads_of(words), {}};
+  repeats.progress = [&](double share) {
+    progress.show("repeats", kLoopShare + (1.0 - kLoopShare) * share);
+    return !stop.requested();
+  };
+  record.conditions = run_repeats(record.result, words.lab.protocol, rig, repeats);
+  progress.finish();
   if (record.undeclared_effect != 0) {
     rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
     record.truth = truth_of(session.open_effect());
@@ -110,6 +143,7 @@ void run_live(const Words& words) {
   });
   if (record.result.rounds.empty()) throw diagnosis::Interrupted();
   judge_cancellation(recording, live.outcomes, record.result);
+  record.conditions = own_trials(record.result);
   // The verdict is written before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
                                                            verdict_json(record.result));
@@ -125,6 +159,32 @@ void run_live(const Words& words) {
   write_files(record, words.lab.rig, folder);
   folder.publish({});
   print_result(record);
+}
+
+// Effect, subject and repeats of a run in one process.
+void add_comparison_options(CLI::App& verb, const std::shared_ptr<Words>& words,
+                            CLI::Option* effect, CLI::Option* live) {
+  verb.add_flag("--off-catalogue", words->off_catalogue,
+                "the effect is one that no kind of `stillhand diagnose` describes")
+      ->needs(effect)
+      ->excludes(live);
+  verb.add_option("--repeats", words->repeats,
+                  "trials of each condition, with other draws of target, motion and remnant; with "
+                  "--live one")
+      ->check(CLI::Range(1, 1000))
+      ->excludes(live)
+      ->capture_default_str();
+  verb.add_option(
+          "--subject", words->subject,
+          "number of the subject that `stillhand study --seed` draws; 0: the rig's default, "
+          "who is the subject with --live")
+      ->check(CLI::Range(0, 10000))
+      ->excludes(live)
+      ->capture_default_str();
+  verb.add_option("--threads", words->threads,
+                  "number of threads; the results do not depend on it; 0: one per core")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -144,10 +204,12 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       "and runs C again (C+),\n"
       "until nothing new is found or C+ no longer improves.\n"
       "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
-  verb->add_option("--undeclared-effect", lab.undeclared_effect,
-                   "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
-      ->check(session::check_seed)
-      ->capture_default_str();
+  CLI::Option* effect =
+      verb->add_option(
+              "--undeclared-effect", lab.undeclared_effect,
+              "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
+          ->check(session::check_seed)
+          ->capture_default_str();
   verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
       ->check(session::check_seed)
       ->capture_default_str();
@@ -165,6 +227,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   verb->add_option("--rig", lab.rig, "with --live: number of the rig on the bus")
       ->needs(live)
       ->capture_default_str();
+  add_comparison_options(*verb, words, effect, live);
   verb->callback([words, &status] {
     words->live ? run_live(*words) : run_in_process(*words);
     std::printf("report in %s\n", words->lab.out.string().c_str());

@@ -8,7 +8,7 @@
 
 #include "apps/close_the_loop/control_laws.hpp"
 #include "apps/close_the_loop/control_response.hpp"
-#include "services/cancellation/core/command_filter.hpp"
+#include "apps/study/population.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/contract/units.hpp"
@@ -223,8 +223,9 @@ ConvertedModel Conversion::run(const std::vector<double>& denominator) {
 }  // namespace
 
 cancellation::HandCompliance average_hand() {
-  const cancellation::CommandFilterConfig average;
-  return {average.mass_kg, average.damping_n_s_m, average.stiffness_n_m, average.lever_m};
+  const human_operator::ArmFeel feel = study::mean_subject({}).who.arm;
+  return {feel.effective_mass_kg, feel.effective_damping_n_s_m, feel.effective_stiffness_n_m,
+          rig::StickConfig{}.lever_m};
 }
 
 ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,

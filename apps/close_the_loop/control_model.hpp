@@ -33,7 +33,7 @@ struct ControlOptions {
   double lead_s = 0.0;      ///< [s] delay of the motor: the prediction comes as much sooner
 };
 
-/// The hand that the adaptation assumes: an average person's, that of the command filter.
+/// The hand that the adaptation assumes: that of the population's mean subject (study SU-2).
 cancellation::HandCompliance average_hand();
 
 /// Converts a diagnosed model to the control rate, README Eq. CL-1 to CL-4: the body's poles by

@@ -5,7 +5,6 @@
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/measurement/grid.hpp"
-#include "apps/session/paper_table.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 
@@ -13,7 +12,6 @@ namespace stillhand::close_the_loop {
 namespace {
 
 using report::Colour;
-using session::kMetrics;
 
 constexpr double kExcerpt_s = 12.0;
 constexpr std::size_t kEvery = 20;  // samples at 1 kHz that a line of the screen shows
@@ -28,25 +26,32 @@ std::vector<Shown> shown(const LoopResult& result) {
   return {{&result.trial("A"), Colour::kConditionA},
           {&result.trial("B"), Colour::kConditionB},
           {&result.trial("C"), Colour::kConditionC},
+          {&result.trial("C'"), Colour::kConditionCPrime},
           {&result.plus(), Colour::kConditionCPlus}};
 }
 
-// Bars of one metric, a condition each.
-report::Panel metric_panel(const LoopResult& result, std::size_t metric) {
+// Bars of one measure, a condition each, with the interval of its mean.
+report::Panel measure_panel(const LoopRecord& record, const Measure& measure) {
   report::Panel panel;
-  panel.title = kMetrics[metric].title;
+  panel.title = measure.title;
   panel.x.ticks = {};
   panel.y.low = 0.0;
   panel.legend = report::Legend::kNone;
   double at = 0.0;
-  for (const Shown& each : shown(result)) {
+  for (const Shown& each : shown(record.result)) {
     at += 1.0;
-    report::Series bar;
-    bar.kind = report::Kind::kBars;
-    bar.colour = each.colour;
-    bar.x = {at};
-    bar.y = {kMetrics[metric].of(each.trial->metrics)};
-    panel.series.push_back(bar);
+    const Estimate value = measured(record.conditions, each.trial->label, measure);
+    panel.series.push_back(
+        {.kind = report::Kind::kBars, .colour = each.colour, .x = {at}, .y = {value.mean}});
+    if (value.interval95) {
+      panel.series.push_back({.kind = report::Kind::kErrorBars,
+                              .colour = Colour::kTarget,
+                              .x = {at},
+                              .y = {value.mean},
+                              .y_low = {value.interval95->first},
+                              .y_high = {value.interval95->second},
+                              .point_size = 0.1});
+    }
     panel.x.ticks.push_back({at, each.trial->label});
   }
   panel.x.low = 0.4;
@@ -54,15 +59,20 @@ report::Panel metric_panel(const LoopResult& result, std::size_t metric) {
   return panel;
 }
 
-report::Figure tracking_figure(const LoopResult& result) {
+report::Figure tracking_figure(const LoopRecord& record) {
   report::Figure figure;
   figure.name = "tracking";
   figure.caption =
-      "The paper's three metrics. A: platform still. B: platform moving. C: cancelled with the "
-      "paper's model. C+: cancelled with the augmented model, whose gain and phase adapt.";
+      "The paper's three metrics, the force that is left, the hand's acceleration and the motor's "
+      "force: means, and 95 % intervals over the repeats. A: platform still. B: platform moving. "
+      "C: "
+      "cancelled with the paper's model. C': the same model, its gain and phase followed. C+: the "
+      "augmented model, followed as well.";
   figure.columns = 3;
-  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    figure.panels.push_back(metric_panel(result, k));
+  figure.height_px = 560;
+  constexpr std::size_t kShown = 6;
+  for (std::size_t k = 0; k < kShown; ++k) {
+    figure.panels.push_back(measure_panel(record, kMeasures[k]));
   }
   return figure;
 }
@@ -198,7 +208,7 @@ report::Figure motion_figure(const LoopResult& result) {
 }  // namespace
 
 std::vector<report::Figure> loop_figures(const LoopRecord& record) {
-  return {tracking_figure(record.result), force_figure(record), adaptation_figure(record.result),
+  return {tracking_figure(record), force_figure(record), adaptation_figure(record.result),
           motion_figure(record.result)};
 }
 

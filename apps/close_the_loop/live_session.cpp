@@ -69,7 +69,11 @@ measurement::SessionRows recorded(const std::filesystem::path& file, const Trial
 }  // namespace
 
 TrialRun LiveTrialSession::run(const session::PlannedTrial& planned, const std::string& label) {
-  const session::TrialOutcome& outcome = trials_.run(planned);
+  // A recording has each number once: a trial that runs again gets the next one.
+  session::PlannedTrial numbered = planned;
+  last_number_ = std::max(planned.trial.number, last_number_ + 1);
+  numbered.trial.number = last_number_;
+  const session::TrialOutcome& outcome = trials_.run(numbered);
   if (!outcome.completed) {
     throw std::runtime_error("trial " + std::to_string(outcome.planned.trial.number) + " (" +
                              label + ") is marked: " + outcome.aborted);
@@ -106,6 +110,7 @@ void judge_cancellation(const std::filesystem::path& recording,
     if (trial == session.trials.end()) return;
     run.cancelled_share = trial->cancelled_share.value_or(0.0);
     run.counterforce_delay_s = trial->counterforce_delay_s.value_or(0.0);
+    run.forces = trial->forces;
   };
   for (TrialRun& run : result.trials) add(run);
   for (Round& round : result.rounds) add(round.trial);

@@ -24,10 +24,11 @@ class LiveTrialSession final : public Session {
  private:
   lab::LiveTrials& trials_;
   std::filesystem::path recording_;
+  std::int64_t last_number_ = -1;
 };
 
-/// Adds to each trial the share of force that was cancelled and the delay of the counterforce. Both
-/// come from the rig's truth in the recording, after the session has ended.
+/// Adds to each trial the share of force that was cancelled, the delay of the counterforce and the
+/// forces.  They come from the rig's truth in the recording, after the session has ended.
 void judge_cancellation(const std::filesystem::path& recording,
                         const std::vector<session::TrialOutcome>& outcomes, LoopResult& result);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/output.hpp"
 
-#include <cstdio>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/report/or_null.hpp"
@@ -17,25 +17,72 @@ using nlohmann::ordered_json;
 using report::or_null;
 using session::kMetrics;
 
-ordered_json condition_json(const TrialRun& trial) {
+ordered_json interval_json(const Estimate& estimate) {
+  if (!estimate.interval95) return nullptr;
+  return {estimate.interval95->first, estimate.interval95->second};
+}
+
+ordered_json repeats_json(const Conditions& conditions, const std::string& label,
+                          const Measure& measure) {
+  ordered_json list = ordered_json::array();
+  for (const TrialRun& run : conditions.at(label)) list.push_back(or_null(measure.of(run)));
+  return list;
+}
+
+// The three metrics have the shape of a study's summary, with one subject.
+ordered_json condition_json(const Conditions& conditions, const std::string& label) {
   ordered_json condition;
-  for (const session::Metric& metric : kMetrics) {
-    const double value = metric.of(trial.metrics);
-    condition[metric.key] = {{"mean", or_null(value)},
-                             {"std", nullptr},
-                             {"per_subject", ordered_json::array({or_null(value)})}};
+  ordered_json intervals;
+  const bool cancels = std::ranges::find(kCancelling, label) != kCancelling.end();
+  for (std::size_t k = 0; k < kMeasures.size(); ++k) {
+    const Measure& measure = kMeasures[k];
+    const Estimate value = measured(conditions, label, measure);
+    if (k < kReference) {
+      condition[measure.key] = {{"mean", or_null(value.mean)}};
+      if (k < kMetrics.size()) {
+        condition[measure.key]["std"] = nullptr;
+        condition[measure.key]["per_subject"] = ordered_json::array({or_null(value.mean)});
+      }
+      condition[measure.key]["interval95"] = interval_json(value);
+      condition[measure.key]["repeats"] = repeats_json(conditions, label, measure);
+    } else if (k < kMeasuresOfAll || cancels) {
+      condition[measure.key] = or_null(value.mean);
+      intervals[measure.key] = interval_json(value);
+    }
   }
-  condition["crossover_reference_hz"] = or_null(trial.metrics.crossover_reference_hz);
-  const bool cancels = trial.label.front() == 'C';
-  condition["cancelled_share"] = cancels ? or_null(trial.cancelled_share) : ordered_json(nullptr);
-  if (cancels) condition["counterforce_delay_ms"] = or_null(1e3 * trial.counterforce_delay_s);
+  if (!cancels) condition["cancelled_share"] = nullptr;
+  condition["interval95"] = intervals;
   return condition;
 }
 
-ordered_json restoration_json(const LoopResult& result, const TrialRun& of) {
+ordered_json restoration_json(const Conditions& conditions, const std::string& label) {
   ordered_json json;
   for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    json[kMetrics[k].restoration_key] = or_null(restoration(result, of, k));
+    json[kMetrics[k].restoration_key] = or_null(restored(conditions, label, kMeasures[k]).mean);
+  }
+  return json;
+}
+
+ordered_json restoration_intervals_json(const Conditions& conditions) {
+  ordered_json json;
+  for (const char* label : kCancelling) {
+    for (std::size_t k = 0; k < kMetrics.size(); ++k) {
+      json[label][kMetrics[k].restoration_key] =
+          interval_json(restored(conditions, label, kMeasures[k]));
+    }
+  }
+  return json;
+}
+
+// C to C' is what following does, C' to C+ what the effect's model does.
+ordered_json changes_json(const Conditions& conditions) {
+  ordered_json json;
+  for (const auto& [from, to] : kSteps) {
+    for (const Measure& measure : kMeasures) {
+      const Estimate difference = change(conditions, from, to, measure);
+      json[step_name(from, to)][measure.key] = {{"mean_difference", or_null(difference.mean)},
+                                                {"interval95", interval_json(difference)}};
+    }
   }
   return json;
 }
@@ -101,23 +148,42 @@ Truth truth_of(const std::string& sealed_text) {
   truth.place = json.at("place");
   for (const auto& [name, value] : json.at("parameters").items()) {
     const std::string unit = value.at("unit");
+    if (name == "force_rms") truth.force_n = value.at("value");
     truth.numbers += (truth.numbers.empty() ? "" : ", ") + name + " " +
                      report::short_number(value.at("value")) + (unit == "-" ? "" : " " + unit);
   }
   return truth;
 }
 
-double restoration(const LoopResult& result, const TrialRun& of, std::size_t metric) {
-  const auto value = [&](const TrialRun& trial) { return kMetrics[metric].of(trial.metrics); };
-  const double moving = value(result.trial("B"));
-  return (moving - value(of)) / (moving - value(result.trial("A")));
+bool Truth::outside() const {
+  return kind != rig::OpenedEffect{}.kind &&
+         std::ranges::none_of(diagnosis::effect_kinds(),
+                              [&](const auto* each) { return each->name() == kind; });
+}
+
+bool Truth::agrees_with(const Verdict& verdict) const {
+  if (outside()) {
+    const bool small = force_n < detectable_n(verdict, place == kDrive);
+    const std::string conclusion = verdict.conclusion();
+    return conclusion == kUnexplained || (small && conclusion == kNothing);
+  }
+  if (verdict.kind() != kind) return false;
+  if (verdict.findings.empty()) return true;
+  const Finding& strongest = verdict.findings.front();
+  // The rig names a part of the body; a verdict names the body as a whole.
+  const bool outside = place == kDrive || place == kMotorPath || place == kLoadCell;
+  return strongest.channel == channel && strongest.where == (outside ? place : kBody);
 }
 
 std::string verdict_json(const LoopResult& result) {
   const Verdict& verdict = result.verdict();
-  ordered_json json{{"kind", verdict.kind()}, {"channel", nullptr}};
-  if (!verdict.findings.empty() && !verdict.findings.front().channel.empty()) {
-    json["channel"] = verdict.findings.front().channel;
+  ordered_json json{{"kind", verdict.kind()},
+                    {"channel", nullptr},
+                    {"where", nullptr},
+                    {"conclusion", verdict.conclusion()}};
+  if (!verdict.findings.empty()) {
+    json["channel"] = or_null(verdict.findings.front().channel);
+    json["where"] = verdict.findings.front().where;
   }
   json["findings"] = findings_json(verdict);
   return json.dump(2) + "\n";
@@ -126,14 +192,17 @@ std::string verdict_json(const LoopResult& result) {
 std::string summary_json(const LoopRecord& record) {
   const LoopResult& result = record.result;
   ordered_json summary;
-  for (const char* label : {"A", "B", "C"}) {
-    summary["conditions"][label] = condition_json(result.trial(label));
+  const Conditions& conditions = record.conditions;
+  for (const char* label : kConditions) {
+    summary["conditions"][label] = condition_json(conditions, label);
   }
-  summary["conditions"]["C+"] = condition_json(result.plus());
   summary["t_tests"] = nullptr;
   summary["manova"] = nullptr;
-  summary["restoration"] = restoration_json(result, result.trial("C"));
-  summary["restoration_c_plus"] = restoration_json(result, result.plus());
+  summary["restoration"] = restoration_json(conditions, "C");
+  summary["restoration_c_prime"] = restoration_json(conditions, "C'");
+  summary["restoration_c_plus"] = restoration_json(conditions, "C+");
+  summary["restoration_interval95"] = restoration_intervals_json(conditions);
+  summary["paired"] = changes_json(conditions);
   summary["verdict"] = ordered_json::parse(verdict_json(result));
   summary["force_prediction"] = prediction_json(result.verdict());
   summary["rounds"] = ordered_json::array();
@@ -144,6 +213,11 @@ std::string summary_json(const LoopRecord& record) {
                         {"channel", or_null(record.truth->channel)},
                         {"place", record.truth->place},
                         {"verdict_right", record.right()}};
+    if (record.truth->outside()) {
+      summary["truth"]["force_rms_n"] = record.truth->force_n;
+      summary["truth"]["detectable_n"] =
+          detectable_n(result.verdict(), record.truth->place == kDrive);
+    }
   }
   summary["identification"] = {
       {"order", result.paper_model.fit.order()},
@@ -151,6 +225,8 @@ std::string summary_json(const LoopRecord& record) {
       {"conversion_error", or_null(result.paper_model.conversion_error)}};
   const session::ProtocolOptions& protocol = record.options.protocol;
   summary["live"] = record.live;
+  summary["subject"] = record.subject;
+  summary["repeats"] = record.conditions.at("A").size();
   summary["seed"] = protocol.seed;
   summary["undeclared_effect_seed"] = record.undeclared_effect;
   summary["trial_seconds"] = protocol.trial_s;
@@ -159,43 +235,11 @@ std::string summary_json(const LoopRecord& record) {
   return summary.dump(2) + "\n";
 }
 
-void print_result(const LoopRecord& record) {
-  const LoopResult& result = record.result;
-  std::printf("\n%-20s %8s %8s %8s %8s   %10s %10s   %s\n", "", "A", "B", "C", "C+", "C restores",
-              "C+ restores", "paper's C");
-  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    const session::Metric& metric = kMetrics[k];
-    std::printf("%-20s", metric.title);
-    for (const char* label : {"A", "B", "C"}) {
-      std::printf(" %8.3f", metric.of(result.trial(label).metrics));
-    }
-    std::printf(" %8.3f   %8.0f %% %9.0f %%   %.0f %%\n", metric.of(result.plus().metrics),
-                100.0 * restoration(result, result.trial("C"), k),
-                100.0 * restoration(result, result.plus(), k), metric.paper_restored_percent);
-  }
-  std::printf("feedthrough force cancelled: C %.1f %%, C+ %.1f %%\n",
-              100.0 * result.trial("C").cancelled_share, 100.0 * result.plus().cancelled_share);
-  std::printf("delay of the motor's counterforce: C %.1f ms, C+ %.1f ms\n",
-              1e3 * result.trial("C").counterforce_delay_s,
-              1e3 * result.plus().counterforce_delay_s);
-  const Verdict& verdict = result.verdict();
-  if (verdict.findings.empty()) std::printf("the model lacks nothing that moves a hand\n");
-  for (const Finding& finding : verdict.findings) {
-    std::printf("missing: %s%s%s%s in the %s, %.2f N: %s\n", finding.kind.c_str(),
-                finding.channel.empty() ? "" : " (", finding.channel.c_str(),
-                finding.channel.empty() ? "" : ")", finding.where.c_str(), finding.explained_n,
-                finding.evidence.c_str());
-  }
-  std::printf(
-      "prediction of the pegged force, held out: %.4f N before, %.4f N after, noise %.4f N\n",
-      verdict.body.baseline_error.rmse, verdict.body.final_error.rmse,
-      verdict.body.noise_floor.rmse);
-  for (const Round& round : result.rounds) std::printf("C+: %s\n", round.outcome.c_str());
-  if (record.truth) {
-    std::printf("the sealed truth: %s%s%s; the verdict is %s\n", record.truth->kind.c_str(),
-                record.truth->place.empty() ? "" : ", ", record.truth->place.c_str(),
-                record.right() ? "right" : "wrong");
-  }
+std::string with_interval(const Estimate& estimate, int decimals, double factor) {
+  const auto text = [&](double value) { return report::number(factor * value, decimals); };
+  if (!estimate.interval95) return text(estimate.mean);
+  const auto& [low, high] = *estimate.interval95;
+  return text(estimate.mean) + " [" + text(low) + ", " + text(high) + "]";
 }
 
 std::vector<std::string> every_name() {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/close_the_loop/closed_loop.hpp"
+#include "apps/close_the_loop/conditions.hpp"
 #include "apps/report/page.hpp"
 #include "apps/report/staged_folder.hpp"
 
@@ -18,7 +19,14 @@ struct Truth {
   std::string kind;
   std::string channel;
   std::string place;
-  std::string numbers;  ///< as one line for people
+  std::string numbers;   ///< as one line for people
+  double force_n = 0.0;  ///< RMS force of an effect outside of the kinds
+
+  /// Whether a kind of the diagnosis describes it.
+  [[nodiscard]] bool outside() const;
+  /// Kind, channel and place of the strongest finding; without an effect, no finding; outside of
+  /// the kinds, "unexplained residual", or "nothing missing" below detectable_n().
+  [[nodiscard]] bool agrees_with(const Verdict& verdict) const;
 };
 /// Reads undeclared_effect.json.
 Truth truth_of(const std::string& sealed_text);
@@ -27,23 +35,25 @@ Truth truth_of(const std::string& sealed_text);
 struct LoopRecord {
   LoopOptions options;
   std::uint64_t undeclared_effect = 0;
-  bool live = false;  ///< over DDS
+  bool live = false;         ///< over DDS
+  std::int64_t subject = 0;  ///< of the population under the seed; 0: the rig's default
   std::string command_line;
   LoopResult result;
+  Conditions conditions;       ///< what tables and figures show
   std::optional<Truth> truth;  ///< empty: nothing was sealed
 
-  /// Verdict and truth name the same kind.
-  [[nodiscard]] bool right() const { return truth && truth->kind == result.verdict().kind(); }
+  /// Verdict and truth agree: README, "Right".
+  [[nodiscard]] bool right() const { return truth && truth->agrees_with(result.verdict()); }
 };
-
-/// (B - X) / (B - A) of a metric, X = C or C+ [-].
-double restoration(const LoopResult& result, const TrialRun& of, std::size_t metric);
 
 /// verdict.json: kind, channel and findings, written before the truth is opened.
 std::string verdict_json(const LoopResult& result);
 /// summary.json, README "Files".
 std::string summary_json(const LoopRecord& record);
+/// Tables and verdict, to standard output.
 void print_result(const LoopRecord& record);
+/// "mean [low, high]" of an estimate, or the mean alone.
+std::string with_interval(const Estimate& estimate, int decimals, double factor = 1.0);
 
 /// report.html with its figures.
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings);

@@ -14,30 +14,42 @@ using report::Emphasis;
 using report::number;
 using session::kMetrics;
 
-std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
+std::string percent(const Estimate& share) { return with_interval(share, 0, 100.0) + " %"; }
 
-report::Table tracking_table(const LoopResult& result) {
+report::Table measures_table(const Conditions& conditions) {
   report::Table table;
-  table.caption = "Tracking, and the share of A's that C and C+ restore: (B − X)/(B − A)";
-  table.header = {"", "A", "B", "C", "C+", "C restores", "C+ restores", "paper's C restores"};
-  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
-    const auto value = [&](const TrialRun& trial) {
-      return number(kMetrics[k].of(trial.metrics), k == 0 ? 1 : 3);
-    };
-    table.rows.push_back({kMetrics[k].title, value(result.trial("A")), value(result.trial("B")),
-                          value(result.trial("C")), Cell(value(result.plus()), Emphasis::kStrong),
-                          percent(restoration(result, result.trial("C"), k)),
-                          Cell(percent(restoration(result, result.plus(), k)), Emphasis::kStrong),
-                          number(kMetrics[k].paper_restored_percent, 0) + " %"});
+  table.caption = "Means over the repeats, and the paired differences with their 95 % intervals";
+  table.header = {""};
+  for (const char* label : kConditions) table.header.emplace_back(label);
+  table.header.insert(table.header.end(), {"C′ − C", "C+ − C′"});
+  for (std::size_t k = 0; k < kMeasures.size(); ++k) {
+    std::vector<Cell> row{kMeasures[k].title};
+    for (const char* label : kConditions) {
+      row.emplace_back(has(label, k) ? number(measured(conditions, label, kMeasures[k]).mean,
+                                              kMeasures[k].decimals)
+                                     : std::string());
+    }
+    for (const auto& [from, to] : kSteps) {
+      row.emplace_back(
+          with_interval(change(conditions, from, to, kMeasures[k]), kMeasures[k].decimals));
+    }
+    table.rows.push_back(std::move(row));
   }
-  table.rows.push_back({"feedthrough force cancelled", "", "",
-                        percent(result.trial("C").cancelled_share),
-                        Cell(percent(result.plus().cancelled_share), Emphasis::kStrong)});
-  const auto late = [](const TrialRun& trial) {
-    return number(1e3 * trial.counterforce_delay_s, 1) + " ms";
-  };
-  table.rows.push_back({"delay of the motor's counterforce", "", "", late(result.trial("C")),
-                        Cell(late(result.plus()), Emphasis::kStrong)});
+  return table;
+}
+
+report::Table restoration_table(const Conditions& conditions) {
+  report::Table table;
+  table.caption = "Share of A's advantage that a condition restores: (B − X)/(B − A)";
+  table.header = {"", "C", "C'", "C+", "paper's C"};
+  for (std::size_t k = 0; k < kMetrics.size(); ++k) {
+    std::vector<Cell> row{kMetrics[k].title};
+    for (const char* label : kCancelling) {
+      row.emplace_back(percent(restored(conditions, label, kMeasures[k])));
+    }
+    row.emplace_back(number(kMetrics[k].paper_restored_percent, 0) + " %");
+    table.rows.push_back(std::move(row));
+  }
   return table;
 }
 
@@ -100,22 +112,33 @@ report::Table rounds_table(const LoopResult& result) {
 std::string lead(const LoopRecord& record) {
   const LoopResult& result = record.result;
   const Verdict& verdict = result.verdict();
+  const Measure& error = kMeasures[kRmsError];
+  const auto left = [&](const char* label) {
+    return number(measured(record.conditions, label, kMeasures[kForceLeft]).mean, 2) + " N";
+  };
   return (verdict.findings.empty()
               ? std::string("The paper's model lacks nothing that moves a hand. ")
               : "The paper's model lacks: " + verdict.kind() + ". ") +
-         "C restores " + percent(restoration(result, result.trial("C"), 0)) +
-         " of the tracking error that the motion costs, C+ " +
-         percent(restoration(result, result.plus(), 0)) + ", the paper 47 %.";
+         "Of the tracking error that the motion costs, C restores " +
+         percent(restored(record.conditions, "C", error)) + ", C' " +
+         percent(restored(record.conditions, "C'", error)) + ", C+ " +
+         percent(restored(record.conditions, "C+", error)) +
+         ", the paper 47 %. Of the force, C leaves " + left("C") + ", C' " + left("C'") + ", C+ " +
+         left("C+") + ".";
 }
 
-void add_tracking(report::Page& page, const LoopResult& result,
+void add_tracking(report::Page& page, const Conditions& conditions,
                   const std::vector<report::Drawing>& drawings) {
   page.section("Does the hand track better?");
   page.figure(drawings.at(0));
-  page.table(tracking_table(result));
+  page.table(measures_table(conditions));
+  page.table(restoration_table(conditions));
   page.paragraph(
-      "The trials of C and C+ have the same motion and the same target. The share of force that is "
-      "cancelled is computed from the rig's own truth, which no diagnosis reads.");
+      "C' runs the paper's model of C, with its gain and phase followed. C+ follows as well. So "
+      "what "
+      "following does is the step from C to C', and what the model of the effect does is the step "
+      "from C' to C+. Forces, the hand's acceleration and the share that is cancelled are computed "
+      "from the rig's own truth, which no diagnosis reads.");
 }
 
 void add_verdict(report::Page& page, const LoopResult& result,
@@ -162,10 +185,13 @@ void add_truth(report::Page& page, const LoopRecord& record) {
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings) {
   const LoopResult& result = record.result;
   report::Page page("Closing the loop", lead(record));
-  page.facts({{"command", record.command_line},
-              {"seed", std::to_string(record.options.protocol.seed)},
-              {"version", kVersion}});
-  add_tracking(page, result, drawings);
+  page.facts(
+      {{"command", record.command_line},
+       {"seed", std::to_string(record.options.protocol.seed)},
+       {"subject", record.subject == 0 ? "the rig's default" : std::to_string(record.subject)},
+       {"repeats", std::to_string(record.conditions.at("A").size())},
+       {"version", kVersion}});
+  add_tracking(page, record.conditions, drawings);
   add_verdict(page, result, drawings);
   page.section("The rounds");
   page.table(rounds_table(result));

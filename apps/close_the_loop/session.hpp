@@ -17,12 +17,13 @@ inline constexpr double kWeightRate_hz = 10.0;
 
 /// One trial as it was measured.
 struct TrialRun {
-  std::string label;        ///< "I", "A", "B", "C", "C+"
+  std::string label;        ///< "I", "A", "B", "C", "C'", "C+"
   std::int64_t number = 0;  ///< of the trial in its session
   recording::Recording measured;
   identification::TrackingMetrics metrics;  ///< of a tracking trial
   double cancelled_share = 0.0;             ///< of the feedthrough force, by the rig's truth
   double counterforce_delay_s = 0.0;        ///< [s] of the motor's force behind it, the same
+  session::TrialForces forces;              ///< the same
   std::vector<cancellation::AdaptiveGain::Pair>
       weights;  ///< w_0, w_1 as adapted, at kWeightRate_hz
 };
@@ -35,7 +36,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Runs one trial.  @param label  its name in the result  @throws ConfigError, std::runtime_error
+  /// Runs one trial; the same one may run again.  @param label  its name in the result  @throws
+  /// ConfigError, std::runtime_error
   virtual TrialRun run(const session::PlannedTrial& planned, const std::string& label) = 0;
   /// The paper's model of a pegged trial, which the canceller uses from now on.
   /// @throws ConfigError when the trial yields no usable one
@@ -45,15 +47,32 @@ class Session {
   virtual std::string use(const cancellation::ControlModel& model) = 0;
 };
 
-/// RMS error and the rest, from target and cursor as measured.
+/// RMS error and the rest, from target and cursor.
+identification::TrackingMetrics metrics_of(const identification::TrackingRecord& record,
+                                           const session::PlannedTrial& planned);
+/// The same, as measured.
 identification::TrackingMetrics metrics_of(const recording::Recording& measured,
                                            const session::PlannedTrial& planned);
+
+/// The rig and the subject of a session in one process.
+struct SimulatedRig {
+  session::CoreConfigs configs = {};
+  std::uint64_t undeclared_effect = 0;  ///< seed of the effect, sized against the default rig
+  rig::EffectSource source = rig::EffectSource::kKinds;
+};
+
+/// One trial on a rig of its own, in one process.
+/// @param trials  those that the rig runs; the last one is returned
+/// @param model   null: none
+/// @throws ConfigError when the canceller refuses the model
+TrialRun run_alone(const SimulatedRig& rig, std::uint64_t seed,
+                   const std::vector<session::PlannedTrial>& trials,
+                   const cancellation::ControlModel* model, const std::string& label);
 
 /// All in one process, as fast as the machine allows.
 class InProcessSession final : public Session {
  public:
-  InProcessSession(const session::CoreConfigs& configs, std::uint64_t seed,
-                   std::uint64_t undeclared_effect);
+  InProcessSession(const SimulatedRig& rig, std::uint64_t seed);
 
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override;
   identification::FeedthroughModel identify(const TrialRun& pegged) override;

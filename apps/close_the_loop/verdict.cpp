@@ -47,6 +47,12 @@ recording::Recording advanced(const recording::Recording& trial, double seconds)
   return out;
 }
 
+// What the hand does not feel is the load cell's alone.
+std::string place_of(const diagnosis::Effect& effect) {
+  const auto role = diagnosis::effect_kind(effect.kind).body_role(effect);
+  return std::holds_alternative<diagnosis::control::NotFelt>(role) ? kLoadCell : kBody;
+}
+
 std::string milliseconds(double seconds) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f ms", 1e3 * seconds);
@@ -63,7 +69,7 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
   const double before = std::hypot(latency->residual_n, latency->explained_n);
   return Finding{std::string(diagnosis::delay_kind().name()),
                  "",
-                 of_cell ? "load cell" : "motor path",
+                 of_cell ? kLoadCell : kMotorPath,
                  latency->explained_n,
                  before,
                  latency->residual_n,
@@ -74,13 +80,24 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
 
 }  // namespace
 
+double detectable_n(const Verdict& verdict, bool in_drive) {
+  if (in_drive) return kWorthDrive_n;
+  const double kept = 1.0 - kWorthFall;
+  return verdict.body.noise_floor.rmse * std::sqrt(1.0 / (kept * kept) - 1.0);
+}
+
+std::string Verdict::conclusion() const {
+  if (!findings.empty()) return kFound;
+  return body.verdict() == kUnexplained ? kUnexplained : kNothing;
+}
+
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                      const diagnosis::DiagnoseOptions& options) {
   Verdict out;
   out.latency = measure_latency(*evidence.cancelled, declared);
   const auto late = latency_finding(out.latency, declared);
   if (late) out.findings.push_back(*late);
-  const bool cell_late = late && late->where == "load cell";
+  const bool cell_late = late && late->where == kLoadCell;
 
   diagnosis::DiagnoseOptions own = options;
   own.inputs = {"a_y"};
@@ -92,8 +109,8 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
   const diagnosis::Measurement measurement = measurement::on_grid(pegged, kMostValues);
   out.body = diagnosis::diagnose(measurement, own);
   for (const diagnosis::FoundEffect& effect : out.body.effects) {
-    out.findings.push_back({effect.effect.kind, effect.channel, "body", explained(effect),
-                            effect.before.rmse, effect.after.rmse,
+    out.findings.push_back({effect.effect.kind, effect.channel, place_of(effect.effect),
+                            explained(effect), effect.before.rmse, effect.after.rmse,
                             diagnose::shown_sentence(effect.evidence, "N")});
   }
   const diagnosis::Signals signals(diagnosis::working_set(measurement, own.inputs), own.inputs,
@@ -110,7 +127,7 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
   for (const diagnosis::FoundEffect& effect : out.drive.effects) {
     // A late cell distorts the stick's equation; it is among the findings already.
     if (cell_late || explained(effect) < kWorthDrive_n) continue;
-    out.findings.push_back({effect.effect.kind, effect.channel, "drive", explained(effect),
+    out.findings.push_back({effect.effect.kind, effect.channel, kDrive, explained(effect),
                             effect.before.rmse, effect.after.rmse,
                             diagnose::shown_sentence(effect.evidence, "N")});
     if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);

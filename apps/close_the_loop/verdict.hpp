@@ -15,6 +15,17 @@ namespace stillhand::close_the_loop {
 /// [s] A shorter delay does not move a hand.
 inline constexpr double kWorthLatency_s = 0.005;
 
+/// Where an effect acts, as far as a verdict says.
+inline constexpr const char* kBody = "body";
+inline constexpr const char* kDrive = "drive";
+inline constexpr const char* kMotorPath = "motor path";
+inline constexpr const char* kLoadCell = "load cell";
+
+/// What a verdict concludes.
+inline constexpr const char* kFound = "effects found";
+inline constexpr const char* kUnexplained = "unexplained residual";
+inline constexpr const char* kNothing = "nothing missing";
+
 /// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
   const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
@@ -26,7 +37,7 @@ struct Evidence {
 struct Finding {
   std::string kind;
   std::string channel;       ///< empty: none
-  std::string where;         ///< "body", "drive", "motor path" or "load cell"
+  std::string where;         ///< kBody, kDrive, kMotorPath or kLoadCell
   double explained_n = 0.0;  ///< RMS force
   double before_n = 0.0;     ///< held-out error before and after, where it was found
   double after_n = 0.0;
@@ -46,7 +57,14 @@ struct Verdict {
   [[nodiscard]] std::string kind() const {
     return findings.empty() ? std::string("none") : findings.front().kind;
   }
+  /// kFound, kUnexplained or kNothing.
+  [[nodiscard]] std::string conclusion() const;
 };
+
+/// [N] RMS force from which on a verdict can name an effect.  In the body it is that which makes
+/// the held-out error a quarter larger than the noise floor, so that an effect's part of it counts;
+/// in the drive it is the least that counts.
+double detectable_n(const Verdict& verdict, bool in_drive);
 
 /// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
 /// verdict".

@@ -175,6 +175,8 @@ void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sen
   }
   signals.feedthrough_n.push_back(truth.feedthrough_force_n);
   signals.motor_n.push_back(truth.motor_force_n);
+  signals.volitional_n.push_back(truth.volitional_force_n);
+  signals.hand_m_s.push_back(configs_.rig.stick.lever_m * truth.omega_rad_s);
   signals.weights.push_back(cancelled.weights);
 }
 

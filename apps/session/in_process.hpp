@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/session/protocol.hpp"
+#include "apps/session/trial_forces.hpp"
 #include "services/cancellation/core/canceller.hpp"
 #include "services/cancellation/core/command_filter.hpp"
 #include "services/display/core/tracking_display.hpp"
@@ -33,11 +34,9 @@ struct CoreConfigs {
 
 /// A trial's signals over its measured ticks: the pegged record at 1 kHz, all others every
 /// `keep_every` ticks.
-struct TrialSignals {
+struct TrialSignals : ForceSignals {
   identification::Record pegged;  ///< acceleration and force, 1 kHz, as sensed
   identification::TrackingRecord tracking;
-  std::vector<double> feedthrough_n;                      ///< true f'_b
-  std::vector<double> motor_n;                            ///< motor force applied
   std::vector<cancellation::AdaptiveGain::Pair> weights;  ///< gain and phase over time
   recording::Recording measured;  ///< every channel that a session's recording has, 1 kHz
 };

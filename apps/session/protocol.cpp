@@ -16,7 +16,7 @@ namespace stillhand::session {
 namespace {
 
 // Every use of the session's seed has a stream of its own.
-enum class SeedUse : std::uint32_t { kOrder = 1, kReference = 2, kMotion = 3 };
+enum class SeedUse : std::uint32_t { kOrder = 1, kReference = 2, kMotion = 3, kRepeat = 4 };
 
 std::uint64_t derived_seed(std::uint64_t seed, SeedUse use, std::int64_t trial) {
   std::seed_seq mix{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
@@ -172,6 +172,10 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
     trials.push_back(planned);
   }
   return trials;
+}
+
+std::uint64_t repeat_seed(std::uint64_t seed, std::uint64_t repeat) {
+  return derived_seed(seed, SeedUse::kRepeat, static_cast<std::int64_t>(repeat));
 }
 
 motion::MotionProfile motion_profile(const PlannedTrial& planned) {

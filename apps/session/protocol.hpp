@@ -73,6 +73,9 @@ std::vector<Condition> parse_conditions(const std::string& text,
 ///         not define, or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
+/// Seed of a session that repeats one with other draws.
+std::uint64_t repeat_seed(std::uint64_t seed, std::uint64_t repeat);
+
 /// Motion that a planned trial asks of the platform; the caller adds the data of a road or ride.
 motion::MotionProfile motion_profile(const PlannedTrial& planned);
 

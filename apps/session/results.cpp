@@ -37,12 +37,6 @@ std::vector<double> measured(const std::vector<Message>& stream, const Trial& tr
   return samples;
 }
 
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& session,
                                                       const Trial& trial) {
   const ClockLine commanding(session.clock_offsets, "cancellation");
@@ -78,24 +72,34 @@ Excerpt excerpt_of(const std::vector<double>& feedthrough_n, const std::vector<d
   return out;
 }
 
+ForceSignals true_forces(const SessionRecording& session, const Trial& trial) {
+  std::int64_t missing = 0;
+  const auto truth = [&](auto value) {
+    return measured(session.rig_truths, trial, value, missing);
+  };
+  const double lever_m = rig::StickConfig{}.lever_m;
+  return {truth([](const auto& t) { return t.feedthrough_force_n(); }),
+          truth([](const auto& t) { return t.motor_force_n(); }),
+          truth([](const auto& t) { return t.volitional_force_n(); }),
+          truth([&](const auto& t) { return lever_m * t.omega_rad_s(); })};
+}
+
 void judge_cancellation(const SessionRecording& session, const PlannedTrial& planned,
                         const identification::TrackingRecord& record, TrialResult& result) {
   const Trial& trial = planned.trial;
-  std::int64_t missing = 0;
-  const auto feedthrough = measured(
-      session.rig_truths, trial, [](const auto& truth) { return truth.feedthrough_force_n(); },
-      missing);
-  const auto motor = measured(
-      session.rig_truths, trial, [](const auto& truth) { return truth.motor_force_n(); }, missing);
-  result.cancelled_share = session::cancelled_share(feedthrough, motor);
-  result.excerpt = excerpt_of(feedthrough, motor, record);
+  const ForceSignals forces = true_forces(session, trial);
+  result.forces = trial_forces(forces, kControlRateHz);
+  if (!planned.moving) return;
+  result.cancelled_share = session::cancelled_share(forces.feedthrough_n, forces.motor_n);
+  result.excerpt = excerpt_of(forces.feedthrough_n, forces.motor_n, record);
   if (!planned.cancellation) return;
-  result.counterforce_delay_s = counterforce_delay_s(feedthrough, motor, kControlRateHz);
+  result.counterforce_delay_s =
+      counterforce_delay_s(forces.feedthrough_n, forces.motor_n, kControlRateHz);
   result.sensor_to_command = sensor_to_command(session, trial);
 }
 
 TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
-  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}, {}};
+  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}, {}, {}};
   identification::TrackingRecord record;
   record.rate_hz = kControlRateHz;
   record.target_m = measured(
@@ -106,7 +110,7 @@ TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& 
       session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); }, again);
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
   result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
-  if (planned.moving) judge_cancellation(session, planned, record, result);
+  judge_cancellation(session, planned, record, result);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/session/session_recording.hpp"
+#include "apps/session/trial_forces.hpp"
 #include "apps/session/trial_outcome.hpp"
 #include "services/identification/core/tracking_metrics.hpp"
 
@@ -30,6 +31,7 @@ struct TrialResult {
   /// force the body would exert with the stick held, f_m the motor's; only where the platform
   /// moves.
   std::optional<double> cancelled_share;
+  TrialForces forces;
   /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
   std::optional<double> counterforce_delay_s;
   /// From a sample's acquisition to the command that answers it, by their stamps; the same.  Stamps

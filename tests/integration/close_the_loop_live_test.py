@@ -53,11 +53,14 @@ class CloseTheLoopLiveTest(unittest.TestCase):
         self.assertEqual(ran.returncode, 0, ran.stderr)
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertTrue(summary["live"])
-        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C+"])
+        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C'", "C+"])
         self.assertTrue(summary["truth"]["verdict_right"], summary["verdict"])
         # Trials this short show little of the tracking; they show how much of the force is cancelled.
         shares = {name: condition["cancelled_share"] for name, condition in summary["conditions"].items()}
         self.assertGreater(shares["C+"], shares["C"])
+        left = {name: condition["force_left_n"]["mean"] for name, condition in summary["conditions"].items()}
+        self.assertLess(left["C+"], left["B"])
+        self.assertIsNone(summary["conditions"]["C'"]["force_left_n"]["interval95"])
         checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
                                  capture_output=True, text=True)
         self.assertEqual(checked.returncode, 0, checked.stderr)

@@ -15,7 +15,7 @@ import lab_process
 from lab_process import wait_for
 
 STILLHAND = str(lab_process.STILLHAND)
-SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3"]
+SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3", "--repeats", "3"]
 METRICS = ("rms_error", "dwell_ratio", "crossover")
 
 
@@ -37,13 +37,21 @@ class CloseTheLoopTest(unittest.TestCase):
 
     def test_what_was_missing_is_found_and_makes_the_hand_stiller(self):
         summary = self.summary("--undeclared-effect", 9)
-        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C+"])
+        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C'", "C+"])
         for condition in summary["conditions"].values():
             self.assertEqual(len(condition["rms_error_mm"]["per_subject"]), 1)
-        for of in ("restoration", "restoration_c_plus"):
+        for of in ("restoration", "restoration_c_prime", "restoration_c_plus"):
             self.assertEqual(tuple(summary[of]), METRICS)
         self.assertGreater(summary["restoration_c_plus"]["rms_error"], summary["restoration"]["rms_error"])
-        self.assertGreater(summary["conditions"]["C+"]["cancelled_share"], summary["conditions"]["C"]["cancelled_share"])
+        # An acceleration that the paper's model does not read: following gain and phase is not enough.
+        left = {name: condition["force_left_n"]["mean"] for name, condition in summary["conditions"].items()}
+        self.assertLess(left["C+"], left["C'"])
+        self.assertLess(left["C'"], left["B"])
+        self.assertLess(summary["paired"]["C'-C+"]["force_left_n"]["interval95"][1], 0.0)
+        for condition in summary["conditions"].values():
+            low, high = condition["rms_error_mm"]["interval95"]
+            self.assertTrue(low < condition["rms_error_mm"]["mean"] < high)
+            self.assertEqual(len(condition["rms_error_mm"]["repeats"]), 3)
         prediction = summary["force_prediction"]
         self.assertLess(prediction["after_rmse_n"], 0.5 * prediction["before_rmse_n"])
         self.assertLess(prediction["after_over_noise"], 1.3)
@@ -91,11 +99,22 @@ class CloseTheLoopTest(unittest.TestCase):
 
     def test_without_an_effect_nothing_is_named_and_nothing_is_worse(self):
         summary = self.summary()
-        self.assertEqual(summary["verdict"], {"kind": "none", "channel": None, "findings": []})
+        self.assertEqual(summary["verdict"], {"kind": "none", "channel": None, "where": None,
+                                              "conclusion": "nothing missing", "findings": []})
+        self.assertFalse(summary["rounds"][0]["augmented"])
+        self.assertEqual(summary["conditions"]["C+"], summary["conditions"]["C'"])
         self.assertIsNone(summary["truth"])
         errors = {name: condition["rms_error_mm"]["mean"] for name, condition in summary["conditions"].items()}
         self.assertLessEqual(errors["C+"], errors["C"])
         self.assertFalse((self.out / "undeclared_effect.json").exists())
+
+    def test_an_effect_outside_of_the_kinds_is_sealed_and_opened_the_same_way(self):
+        summary = self.summary("--undeclared-effect", 4, "--off-catalogue")
+        self.assertGreater(summary["truth"]["force_rms_n"], 0.0)
+        self.assertGreater(summary["truth"]["detectable_n"], 0.0)
+        checked = subprocess.run(["sha256sum", "--check", "--strict", "undeclared_effect.sha256"], cwd=self.out,
+                                 capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
 
     def test_wrong_words_are_refused_before_anything_runs(self):
         taken = self.out.parent / "file"
@@ -111,6 +130,11 @@ class CloseTheLoopTest(unittest.TestCase):
                                 ([*SHORT, "--domain", 5, "--out", self.out], "--live"),
                                 ([*SHORT, "--rig", 5, "--out", self.out], "--live"),
                                 ([*SHORT, "--out", recorded], "recording"),
+                                (["--repeats", 0, "--out", self.out], "--repeats"),
+                                (["--repeats", 3, "--live", "--out", self.out], "--live"),
+                                (["--off-catalogue", "--out", self.out], "--undeclared-effect"),
+                                (["--subject", -1, "--out", self.out], "--subject"),
+                                (["--threads", 999, "--out", self.out], "--threads"),
                                 ([*SHORT], "--out")):
             ran = close_the_loop(*arguments)
             self.assertEqual(ran.returncode, 2, arguments)

@@ -18,7 +18,7 @@ from lab_process import BUILD, SERVICES, SOURCE, STILLHAND, LabTestCase, loose_s
 SEED = 90417733560021
 KINDS = ("nonlinear_stiffness", "asymmetry", "dead_zone", "time_varying_gain", "resonance", "position_ripple",
          "coulomb_friction", "coupled_input", "tone", "delay", "output_saturation")
-SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnChain|draw_effect|EffectPlan)")
+SECRET = re.compile(r"stillhand::rig::(UndeclaredEffect|SealedEffect|EffectOnChain|draw_effect|draw_outside|EffectPlan)")
 SEALED_HEADERS = re.compile(r'#include "services/rig/(core/undeclared/\w+|sealed_file)\.hpp"')
 # The programs that step the rig in one process, and those that write the sealed file.
 MAY_INCLUDE = ("services/rig/", "apps/session/", "apps/lab/", "apps/study/", "apps/close_the_loop/session.",

@@ -17,6 +17,7 @@ enum class Colour {
   kConditionA,
   kConditionB,
   kConditionC,
+  kConditionCPrime,
   kConditionCPlus,
   kConditionD,
   kConditionE,

@@ -30,6 +30,8 @@ constexpr Look look(Colour colour) {
       return {"#d55e00", kSquare};
     case Colour::kConditionC:
       return {"#009e73", kTriangle};
+    case Colour::kConditionCPrime:
+      return {"#7fb800", kTriangleDown};
     case Colour::kConditionCPlus:
       return {"#cc79a7", kDiamond};
     case Colour::kConditionD:

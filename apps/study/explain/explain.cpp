@@ -13,6 +13,8 @@
 namespace stillhand::study {
 namespace {
 
+// [prior deviations] Farther away the tables are not linear in the calibrated means.
+constexpr double kFarthestShift = 2.0;
 constexpr std::array<double, 2> kOtherUnits_mm{5.3, 5.8};
 
 class Investigation {
@@ -142,7 +144,12 @@ class Investigation {
   [[nodiscard]] StudyOptions options_at(const Hypothesis& hypothesis) const {
     StudyOptions options = options_.study;
     options.seed = options_.seed + 1;
-    options.population = shifted(options.population, hypothesis.shift);
+    std::vector<double> shift = hypothesis.shift;
+    for (std::size_t i = 0; i < shift.size(); ++i) {
+      const double most = kFarthestShift * calibrated()[i].prior_sd;
+      shift[i] = std::clamp(shift[i], -most, most);
+    }
+    options.population = shifted(options.population, shift);
     for (std::size_t c = 0; c < hypothesis.causes.size(); ++c) {
       const Cause& cause = causes()[hypothesis.causes[c]];
       cause.apply(options, hypothesis.values[c]);
@@ -151,22 +158,54 @@ class Investigation {
     return options;
   }
 
+  // Hypotheses by evidence whose subjects the rig accepts: a poor one may ask for limbs that no
+  // person has.
+  void add_best(const std::vector<const Hypothesis*>& ranked, std::size_t most,
+                std::vector<Setting>& settings) const {
+    const std::size_t before = settings.size();
+    for (const Hypothesis* one : ranked) {
+      if (settings.size() - before == most) return;
+      StudyOptions options = options_at(*one);
+      if (accepted(options)) settings.push_back({one->name, std::move(options)});
+    }
+  }
+
+  [[nodiscard]] bool accepted(const StudyOptions& options) const {
+    try {
+      for (std::size_t i = 0; i < judging_subjects(); ++i) {
+        check_subject(options, static_cast<std::int64_t>(i));
+      }
+      return true;
+    } catch (const ConfigError&) {
+      return false;
+    }
+  }
+
+  [[nodiscard]] std::size_t judging_subjects() const { return 3 * options_.subjects / 2; }
+
   void judge() {
-    std::vector<const Hypothesis*> judged{&out_.single[0], &out_.single[1]};
-    std::vector<const Hypothesis*> ranked;
-    for (std::size_t c = 2; c < out_.single.size(); ++c) ranked.push_back(&out_.single[c]);
-    std::ranges::stable_sort(ranked, std::ranges::greater{},
-                             [](const Hypothesis* one) { return one->log_evidence; });
-    for (std::size_t i = 0; i < kJudgedSingles; ++i) judged.push_back(ranked[i]);
-    for (std::size_t i = 0; i < kJudgedPairs; ++i) judged.push_back(&out_.pairs[i]);
-    std::vector<Setting> settings;
-    for (const Hypothesis* one : judged) settings.push_back({one->name, options_at(*one)});
+    const auto ranked = [](const Hypothesis* first, const Hypothesis* end) {
+      std::vector<const Hypothesis*> all;
+      for (; first != end; ++first) all.push_back(first);
+      std::ranges::stable_sort(all, std::ranges::greater{},
+                               [](const Hypothesis* one) { return one->log_evidence; });
+      return all;
+    };
     // Without a free parameter: nothing is calibrated again either.
-    settings[0].options.population = settings[1].options.population = options_.study.population;
+    std::vector<Setting> settings{{out_.single[0].name, options_.study},
+                                  {out_.single[1].name, options_.study}};
+    causes()[0].apply(settings[1].options, 1.0);
+    for (Setting& setting : settings) setting.options.seed = options_.seed + 1;
+    const Hypothesis* const first = out_.single.data();
+    const Hypothesis* const pairs = out_.pairs.data();
+    add_best(ranked(first + 2, first + out_.single.size()), kJudgedSingles, settings);
+    out_.judged_singles = settings.size();
+    add_best(ranked(pairs, pairs + out_.pairs.size()), kJudgedPairs, settings);
     settings.push_back({"compensated", options_at(out_.best())});
     settings.back().options.canceller = "now";
     settings.back().options.motor = options_.study.motor;
-    auto all = simulate("judging with other subjects", settings, 3 * options_.subjects / 2);
+    if (!accepted(settings.back().options)) settings.back().options = settings.front().options;
+    auto all = simulate("judging with other subjects", settings, judging_subjects());
     for (std::size_t i = 0; i < all.size(); ++i) {
       out_.judged.push_back(judged_of(settings[i].label, std::move(all[i])));
     }

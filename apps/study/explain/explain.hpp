@@ -49,8 +49,9 @@ struct Explanation {
   std::vector<Hypothesis> single;  ///< no cause first, then in the order of causes()
   std::vector<Hypothesis> pairs;   ///< best first
   std::vector<Judged>
-      judged;          ///< no cause, the paper's chain, then the best singles, then the best pairs
-  Judged compensated;  ///< the best explanation with today's canceller, on time
+      judged;  ///< no cause, the paper's chain, then the best singles, then the best pairs
+  std::size_t judged_singles = 0;  ///< number of them before the pairs
+  Judged compensated;              ///< the best explanation with today's canceller, on time
   std::vector<UnitSensitivity> units;
   double wall_s = 0.0;
 

@@ -66,8 +66,10 @@ Figure figure_tables(const Explanation& explanation) {
   const std::array<Colour, 4> colours{Colour::kConditionB, Colour::kWarning, Colour::kModel,
                                       Colour::kConditionC};
   std::vector<const Judged*> shown{&explanation.judged[0], &explanation.judged[1]};
-  shown.push_back(&explanation.judged[2]);
-  shown.push_back(&explanation.judged[2 + kJudgedSingles]);
+  if (explanation.judged_singles > 2) shown.push_back(&explanation.judged[2]);
+  if (explanation.judged.size() > explanation.judged_singles) {
+    shown.push_back(&explanation.judged[explanation.judged_singles]);
+  }
   Panel panel;
   panel.y.label = "simulated − paper [the paper's standard errors]";
   const std::array<Eigen::Index, 6> rows{6, 7, 8, 12, 13, 14};

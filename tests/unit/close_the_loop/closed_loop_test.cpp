@@ -20,11 +20,11 @@ class NotedSession final : public Session {
  public:
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override {
     labels.push_back(label);
-    EXPECT_EQ(label, std::string(1, planned.label));
+    EXPECT_EQ(label.front(), planned.label);
     TrialRun run;
     run.label = label;
     run.number = planned.trial.number;
-    run.metrics.rms_error_mm = 5.0;
+    run.metrics.rms_error_mm = label == "C'" ? followed_mm : 5.0;
     return run;
   }
   identification::FeedthroughModel identify(const TrialRun& pegged) override {
@@ -34,15 +34,16 @@ class NotedSession final : public Session {
     model.control = {1000.0, {-3.0, 0.5}, {1.0, -0.25}};
     return model;
   }
-  std::string use(const cancellation::ControlModel& /*model*/) override {
-    ++used;
+  std::string use(const cancellation::ControlModel& model) override {
+    follows.push_back(model.adapts.has_value());
     return {};
   }
 
   bool refuses = false;
   std::vector<std::string> labels;
   std::vector<std::string> identified;
-  int used = 0;
+  double followed_mm = 5.0;   ///< error of C'
+  std::vector<bool> follows;  ///< each model that was given
 };
 
 LoopOptions without_rounds() {
@@ -60,29 +61,40 @@ TEST(ClosedLoopTest, IdentificationComesFirstAndEveryConditionOnce) {
     LoopOptions options = without_rounds();
     options.protocol.seed = seed;
     const LoopResult sut = close_loop(session, options);
-    ASSERT_EQ(session.labels.size(), 4u);
+    ASSERT_EQ(session.labels.size(), 5u);
     EXPECT_EQ(session.labels.front(), "I");
+    EXPECT_EQ(session.labels.back(), "C'");
     EXPECT_EQ(std::set<std::string>(session.labels.begin(), session.labels.end()),
-              (std::set<std::string>{"A", "B", "C", "I"}));
+              (std::set<std::string>{"A", "B", "C", "C'", "I"}));
     EXPECT_THAT(session.identified, ElementsAre("I"));
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(sut.trials[i].label, session.labels[i]);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(sut.trials[i].label, session.labels[i]);
   }
 }
 
 TEST(ClosedLoopTest, ATrialIsFoundByItsLabel) {
   NotedSession session;
   const LoopResult sut = close_loop(session, without_rounds());
-  for (const char* label : {"I", "A", "B", "C"}) EXPECT_EQ(sut.trial(label).label, label);
+  for (const char* label : {"I", "A", "B", "C", "C'"}) EXPECT_EQ(sut.trial(label).label, label);
   std::set<std::int64_t> numbers;
   for (const TrialRun& each : sut.trials) numbers.insert(each.number);
-  EXPECT_EQ(numbers.size(), 4u) << "no number is used twice";
+  EXPECT_EQ(numbers.size(), 4u) << "no number is used twice, but C' is the trial of C again";
+  EXPECT_EQ(sut.trial("C'").number, sut.trial("C").number);
+}
+
+TEST(ClosedLoopTest, ABetterFollowedModelIsTheYardstick) {
+  NotedSession session;
+  session.followed_mm = 4.0;
+  const LoopResult sut = close_loop(session, without_rounds());
+  EXPECT_THAT(session.follows, ElementsAre(true));
+  EXPECT_TRUE(sut.control_model.adapts);
+  EXPECT_TRUE(sut.followed_model.adapts);
 }
 
 TEST(ClosedLoopTest, WithoutARoundThePapersModelStays) {
   NotedSession session;
   const LoopResult sut = close_loop(session, without_rounds());
   EXPECT_TRUE(sut.rounds.empty());
-  EXPECT_EQ(session.used, 0) << "identify() has set the model already";
+  EXPECT_THAT(session.follows, ElementsAre(true, false)) << "C', then the paper's again";
   EXPECT_EQ(sut.control_model.denominator, (std::vector<double>{1.0, -0.25}));
   ASSERT_EQ(sut.control_model.inputs.size(), 1u);
   EXPECT_EQ(sut.control_model.inputs[0].numerator, (std::vector<double>{-3.0, 0.5}));
@@ -99,12 +111,12 @@ TEST(ClosedLoopTest, EveryTrialIsAnnouncedBeforeItRuns) {
     return true;
   };
   static_cast<void>(close_loop(session, options));
-  ASSERT_EQ(steps.size(), 4u);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(steps[i].ends_with(session.labels[i]));
+  ASSERT_EQ(steps.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(steps[i].ends_with(session.labels[i]));
 }
 
 TEST(ClosedLoopTest, AnInterruptEndsTheLoopBeforeTheNextTrial) {
-  for (std::size_t after = 0; after < 4; ++after) {
+  for (std::size_t after = 0; after < 5; ++after) {
     NotedSession session;
     LoopOptions options = without_rounds();
     options.progress = [&](const std::string&) { return session.labels.size() < after; };
@@ -121,11 +133,11 @@ TEST(ClosedLoopTest, AnInterruptEndsTheLoopBeforeTheDiagnosis) {
   options.aside = [](const auto&) { FAIL() << "the diagnosis has begun"; };
   options.progress = [&](const std::string& step) {
     last = step;
-    return session.labels.size() < 4;
+    return session.labels.size() < 5;
   };
   EXPECT_THROW(close_loop(session, options), diagnosis::Interrupted);
   EXPECT_NE(last.find("diagnosis"), std::string::npos) << last;
-  EXPECT_EQ(session.labels.size(), 4u);
+  EXPECT_EQ(session.labels.size(), 5u);
 }
 
 TEST(ClosedLoopTest, AnIdentificationThatFailsEndsTheLoop) {

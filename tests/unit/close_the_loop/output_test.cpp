@@ -25,6 +25,7 @@ TrialRun trial(const char* label, double rms_mm, double dwell, double crossover_
   run.metrics.crossover_reference_hz = 0.5;
   run.cancelled_share = 0.75;
   run.counterforce_delay_s = 0.004;
+  run.forces = {1.5, 0.75, 6.0, 3.0};
   return run;
 }
 
@@ -37,7 +38,8 @@ LoopRecord made() {
   LoopResult& result = record.result;
   result.paper_model.fit = {50.0, {1.0, 2.0}, {1.0, -0.5}};
   result.trials = {trial("I", 0.0, 0.0, 0.0), trial("A", 4.0, 0.5, 0.25),
-                   trial("B", 10.0, 0.25, 0.125), trial("C", 7.0, 0.375, 0.1875)};
+                   trial("B", 10.0, 0.25, 0.125), trial("C", 7.0, 0.375, 0.1875),
+                   trial("C'", 6.25, 0.40625, 0.1875)};
   Round round;
   round.trial = trial("C+", 5.5, 0.4375, 0.25);
   round.trial.weights = {{1.0, 0.0}, {0.9, -0.1}};
@@ -49,23 +51,11 @@ LoopRecord made() {
   round.kept = true;
   round.outcome = "kept";
   result.rounds = {round};
+  record.conditions = own_trials(result);
   return record;
 }
 
 json summary_of(const LoopRecord& record) { return json::parse(summary_json(record)); }
-
-// (B - X)/(B - A): (10 - 7)/(10 - 4); dyadic numbers, exact.
-TEST(OutputTest, RestorationIsTheShareOfAsAdvantage) {
-  const LoopRecord sut = made();
-  const LoopResult& result = sut.result;
-  EXPECT_EQ(restoration(result, result.trial("C"), 0), 0.5);
-  EXPECT_EQ(restoration(result, result.plus(), 0), 0.75);
-  EXPECT_EQ(restoration(result, result.trial("A"), 0), 1.0);
-  EXPECT_EQ(restoration(result, result.trial("B"), 0), 0.0);
-  // A ratio that rises with quality restores as well: (0.25 - 0.375)/(0.25 - 0.5).
-  EXPECT_EQ(restoration(result, result.trial("C"), 1), 0.5);
-  EXPECT_EQ(restoration(result, result.plus(), 2), 1.0);
-}
 
 TEST(OutputTest, AVerdictIsItsStrongestFinding) {
   LoopRecord record = made();
@@ -77,21 +67,34 @@ TEST(OutputTest, AVerdictIsItsStrongestFinding) {
   EXPECT_EQ(sut["findings"][0]["heldout_rmse_before"], 2.0);
   EXPECT_EQ(sut["findings"][0]["heldout_rmse_after"], 1.0);
   EXPECT_TRUE(sut["findings"][1]["channel"].is_null());
+  EXPECT_EQ(sut["where"], "body");
+  EXPECT_EQ(sut["conclusion"], "effects found");
   record.result.rounds[0].verdict.findings.clear();
   const json none = json::parse(verdict_json(record.result));
   EXPECT_EQ(none["kind"], "none");
   EXPECT_TRUE(none["channel"].is_null());
+  EXPECT_TRUE(none["where"].is_null());
+  EXPECT_EQ(none["conclusion"], "nothing missing");
   EXPECT_TRUE(none["findings"].empty());
 }
 
 TEST(OutputTest, TheSummaryHasEveryConditionAndItsRestoration) {
   const json sut = summary_of(made());
-  ASSERT_EQ(sut["conditions"].size(), 4u);
+  ASSERT_EQ(sut["conditions"].size(), 5u);
   EXPECT_EQ(sut["conditions"]["B"]["rms_error_mm"]["mean"], 10.0);
   EXPECT_EQ(sut["conditions"]["C+"]["rms_error_mm"]["per_subject"], json({5.5}));
+  EXPECT_EQ(sut["conditions"]["B"]["force_left_n"]["mean"], 1.5);
+  EXPECT_EQ(sut["conditions"]["C'"]["hand_acceleration_m_s2"]["mean"], 0.75);
+  EXPECT_EQ(sut["conditions"]["C"]["motor_force_n"]["mean"], 6.0);
+  EXPECT_EQ(sut["conditions"]["A"]["volitional_force_n"]["mean"], 3.0);
+  // (B - X)/(B - A), dyadic numbers, exact.
   EXPECT_EQ(sut["restoration"]["rms_error"], 0.5);
+  EXPECT_EQ(sut["restoration"]["dwell_ratio"], 0.5);
+  EXPECT_EQ(sut["restoration_c_prime"]["rms_error"], 0.625);
   EXPECT_EQ(sut["restoration_c_plus"]["rms_error"], 0.75);
   EXPECT_EQ(sut["restoration_c_plus"]["crossover"], 1.0);
+  EXPECT_EQ(sut["paired"]["C-C'"]["rms_error_mm"]["mean_difference"], -0.75);
+  EXPECT_EQ(sut["paired"]["C'-C+"]["rms_error_mm"]["mean_difference"], -0.75);
   EXPECT_EQ(sut["verdict"], json::parse(verdict_json(made().result)));
   EXPECT_EQ(sut["force_prediction"]["after_over_noise"], 2.0);
   EXPECT_EQ(sut["identification"]["order"], 1);
@@ -104,7 +107,7 @@ TEST(OutputTest, OnlyTrialsThatCancelHaveAShareAndADelay) {
     EXPECT_TRUE(sut[label]["cancelled_share"].is_null()) << label;
     EXPECT_FALSE(sut[label].contains("counterforce_delay_ms")) << label;
   }
-  for (const char* label : {"C", "C+"}) {
+  for (const char* label : {"C", "C'", "C+"}) {
     EXPECT_EQ(sut[label]["cancelled_share"], 0.75) << label;
     EXPECT_EQ(sut[label]["counterforce_delay_ms"], 4.0) << label;
   }
@@ -115,6 +118,7 @@ TEST(OutputTest, WhatCouldNotBeComputedIsNull) {
   record.result.trials[2].metrics.crossover_hz = std::numeric_limits<double>::quiet_NaN();
   // Where the motion costs nothing, there is nothing to restore.
   record.result.trials[1].metrics.rms_error_mm = 10.0;
+  record.conditions = own_trials(record.result);
   const json sut = summary_of(record);
   EXPECT_TRUE(sut["conditions"]["B"]["crossover_hz"]["mean"].is_null());
   EXPECT_TRUE(sut["restoration"]["crossover"].is_null());
@@ -148,27 +152,58 @@ TEST(OutputTest, TheBestRoundSpeaksForTheLoop) {
   record.result.rounds[1].trial.metrics.rms_error_mm = 4.75;
   record.result.rounds[1].verdict.findings = {finding("delay", "")};
   record.result.final_round = 1;
+  record.conditions = own_trials(record.result);
   const json sut = summary_of(record);
   EXPECT_EQ(sut["conditions"]["C+"]["rms_error_mm"]["mean"], 4.75);
   EXPECT_EQ(sut["verdict"]["kind"], "delay");
   EXPECT_EQ(sut["rounds"].size(), 2u);
 }
 
-TEST(OutputTest, AVerdictIsRightWhenItNamesTheTruthsKind) {
+TEST(OutputTest, AVerdictIsRightWhenItNamesKindChannelAndPlace) {
   LoopRecord sut = made();
   EXPECT_FALSE(sut.right()) << "nothing was sealed";
   EXPECT_TRUE(summary_of(sut)["truth"].is_null());
-  sut.truth = Truth{"tone", "", "the platform", ""};
-  EXPECT_FALSE(sut.right());
+  Finding& strongest = sut.result.rounds[0].verdict.findings[0];
+  strongest.where = kDrive;
+  sut.truth = Truth{"tone", "omega", "drive", "", 0.0};
+  EXPECT_FALSE(sut.right()) << "another kind";
   sut.truth->kind = "coulomb_friction";
   EXPECT_TRUE(sut.right());
   const json truth = summary_of(sut)["truth"];
   EXPECT_EQ(truth["verdict_right"], true);
-  EXPECT_TRUE(truth["channel"].is_null());
-  EXPECT_EQ(truth["place"], "the platform");
+  EXPECT_EQ(truth["channel"], "omega");
+  EXPECT_EQ(truth["place"], "drive");
+  strongest.channel = "theta";
+  EXPECT_FALSE(sut.right()) << "another channel";
+  strongest.channel = "omega";
+  strongest.where = kBody;
+  EXPECT_FALSE(sut.right()) << "another place";
+  sut.truth->place = "shoulder";
+  EXPECT_TRUE(sut.right()) << "a part of the body";
+}
+
+// A fall of the error by a fifth: sqrt(1/0.8^2 - 1) = 0.75 of the noise floor, here 0.5 N.
+TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
+  LoopRecord sut = made();
+  sut.truth = Truth{"delayed_reflex", "", "shoulder", "", 1.0};
+  EXPECT_FALSE(sut.right()) << "a kind of the catalogue is named";
+  EXPECT_NEAR(summary_of(sut)["truth"]["detectable_n"], 0.375, 1e-12);
   sut.result.rounds[0].verdict.findings.clear();
-  sut.truth->kind = "none";
-  EXPECT_TRUE(sut.right()) << "nothing sealed into the rig, and nothing found";
+  EXPECT_FALSE(sut.right()) << "large enough to be seen";
+  sut.truth->force_n = 0.374;
+  EXPECT_TRUE(sut.right());
+  sut.truth->place = "drive";
+  EXPECT_FALSE(sut.right()) << "0.2 N are enough in the drive";
+  EXPECT_FALSE((Truth{"tone", "", "hand", "", 0.0}).outside());
+  EXPECT_FALSE((Truth{"none", "", "", "", 0.0}).outside());
+}
+
+TEST(OutputTest, WithoutAnEffectEveryFindingIsAFalseAlarm) {
+  LoopRecord sut = made();
+  sut.truth = Truth{"none", "", "", "", 0.0};
+  EXPECT_FALSE(sut.right());
+  sut.result.rounds[0].verdict.findings.clear();
+  EXPECT_TRUE(sut.right());
 }
 
 TEST(OutputTest, TheSealedTextIsReadBack) {
@@ -177,12 +212,13 @@ TEST(OutputTest, TheSealedTextIsReadBack) {
   effect.kind = "dead_zone";
   effect.channel = "theta";
   effect.place = "stick";
-  effect.parameters = {{"half_width", "m", 0.25}, {"ratio", "-", 3.0}};
+  effect.parameters = {{"half_width", "m", 0.25}, {"ratio", "-", 3.0}, {"force_rms", "N", 0.5}};
   const Truth sut = truth_of(rig::sealed_text(effect, "00ff"));
   EXPECT_EQ(sut.kind, "dead_zone");
   EXPECT_EQ(sut.channel, "theta");
   EXPECT_EQ(sut.place, "stick");
-  EXPECT_EQ(sut.numbers, "half_width 0.25 m, ratio 3");
+  EXPECT_EQ(sut.numbers, "force_rms 0.5 N, half_width 0.25 m, ratio 3");
+  EXPECT_EQ(sut.force_n, 0.5);
   const Truth none = truth_of(rig::sealed_text({}, "00ff"));
   EXPECT_EQ(none.kind, "none");
   EXPECT_EQ(none.channel, "");

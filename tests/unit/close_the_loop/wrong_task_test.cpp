@@ -6,13 +6,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/session.hpp"
 #include "services/contract/tick.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
-
-constexpr cancellation::HandCompliance kAverage{1.38, 9.5, 844.0, 0.1};
 
 struct Outcome {
   double still = 0.0;     ///< RMS error of A [mm]
@@ -31,13 +30,13 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
   // Identified on the average hand; another one tracks.
   cancellation::ControlModel model;
   {
-    InProcessSession average(configs, protocol.seed, 0);
+    InProcessSession average({configs}, protocol.seed);
     const TrialRun pegged = average.run(session::plan(protocol)[0], "I");
     model = cancellation::control_model(average.identify(pegged).control);
   }
   for (double& c : model.inputs[0].numerator) c *= model_gain;
   configs.rig.body = tracking_hand;
-  InProcessSession session(configs, protocol.seed, 0);
+  InProcessSession session({configs}, protocol.seed);
   Outcome out;
   for (const session::PlannedTrial& planned : session::plan(protocol)) {
     if (planned.trial.phase == TrialPhase::kPegged) continue;
@@ -48,7 +47,7 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
     EXPECT_EQ(session.use(model), "");
     out.paper = error_mm();
     cancellation::ControlModel followed = model;
-    followed.adapts = kAverage;
+    followed.adapts = average_hand();
     EXPECT_EQ(session.use(followed), "");
     out.followed = error_mm();
   }

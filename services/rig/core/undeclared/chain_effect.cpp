@@ -21,6 +21,16 @@ ChainForces at_grip(double on_hand_n) noexcept {
   return {.arm_n = -on_hand_n, .hand_n = on_hand_n};
 }
 
+// Of the reflex, RG-33: muscle spindles answer the rate of a stretch too.
+constexpr double kRateOverStretch_s = 0.03;
+
+std::size_t reflex_ticks(const ChainEffect& effect, double period_s) {
+  if (effect.spring != Spring::kDelayedReflex) return 0;
+  return static_cast<std::size_t>(std::lround(effect.time_s / period_s));
+}
+
+double drag(double c, double v_m_s) noexcept { return -c * v_m_s * std::abs(v_m_s); }
+
 double beyond(double x, double threshold) noexcept {
   return x - std::clamp(x, -threshold, threshold);
 }
@@ -41,7 +51,11 @@ void RestMode::step(double arm_m, double acceleration_m_s2) noexcept {
 }
 
 EffectOnChain::EffectOnChain(const ChainEffect& effect, double period_s)
-    : effect_(effect), rest_(effect, period_s), keep_(std::exp(-period_s / effect.time_s)) {}
+    : effect_(effect),
+      rest_(effect, period_s),
+      keep_(std::exp(-period_s / effect.time_s)),
+      reflex_(reflex_ticks(effect, period_s)),
+      ladder_(effect.exponent, period_s) {}
 
 ChainForces EffectOnChain::forces(const ChainPlace& at, const ChainParameters& p) const noexcept {
   const ChainEffect& e = effect_;
@@ -77,14 +91,44 @@ ChainForces EffectOnChain::forces(const ChainPlace& at, const ChainParameters& p
     case Spring::kCogging:
       return {.stick_n = e.ripple_n *
                          std::sin(kTwoPi * at.stick_m / e.ripple_period_m + e.ripple_phase_rad)};
+    case Spring::kDelayedReflex:
+      return at_shoulder(-e.outside * late_m_);
+    case Spring::kArmDrag:
+      return {.arm_n = drag(e.outside, at.arm_m_s)};
+    case Spring::kStickDrag:
+      return {.stick_n = drag(e.outside, at.stick_m_s)};
+    case Spring::kFractionalShoulder:
+      return at_shoulder(-e.outside * ladder_.derivative(d_m));
+    case Spring::kVibrationGrip: {
+      const double h2_m2 = e.threshold_m * e.threshold_m;
+      return at_grip(p.grip_stiffness_n_m * e.factor * s_m * vibration_m2_ /
+                     (h2_m2 + vibration_m2_));
+    }
   }
   return {};
 }
 
 void EffectOnChain::move(const ChainPlace& from, const ChainPlace& to,
                          double mean_acceleration_m_s2) noexcept {
-  if (effect_.spring != Spring::kArmRest) return;
-  rest_.step(0.5 * (from.arm_m + to.arm_m), mean_acceleration_m_s2);
+  switch (effect_.spring) {
+    case Spring::kArmRest:
+      rest_.step(0.5 * (from.arm_m + to.arm_m), mean_acceleration_m_s2);
+      return;
+    case Spring::kDelayedReflex:
+      late_m_ =
+          reflex_.step(to.arm_m - to.trunk_m + kRateOverStretch_s * (to.arm_m_s - to.trunk_m_s));
+      return;
+    case Spring::kFractionalShoulder:
+      ladder_.step(to.arm_m - to.trunk_m);
+      return;
+    case Spring::kVibrationGrip: {
+      const double s_m = to.arm_m - to.stick_m;
+      vibration_m2_ += (1.0 - keep_) * (s_m * s_m - vibration_m2_);
+      return;
+    }
+    default:
+      return;
+  }
 }
 
 }  // namespace stillhand::rig

@@ -7,9 +7,7 @@
 #include <numbers>
 
 #include "services/contract/units.hpp"
-#include "services/rig/core/rig.hpp"
-#include "services/rig/core/undeclared/effect_sizing.hpp"
-#include "services/signal/random.hpp"
+#include "services/rig/core/undeclared/effect_draft.hpp"
 
 namespace stillhand::rig {
 namespace {
@@ -20,14 +18,12 @@ constexpr double kNone = 0.1;  // share of the seeds that have no effect
 
 using Spring = ChainEffect::Spring;
 
-class Draw {
+class Draw : private EffectDraft {
  public:
-  Draw(std::uint64_t seed, const RigConfig& rig) : engine_(seed, kDrawStream), rig_(rig) {
-    plan_.facts.seed = seed;
-  }
+  Draw(std::uint64_t seed, const RigConfig& rig) : EffectDraft(seed, kDrawStream, rig) {}
 
   EffectPlan plan() {
-    if (engine_.uniform() < kNone) return plan_;
+    if (uniform() < kNone) return plan_;
     using Kind = void (Draw::*)();
     constexpr std::array<Kind, 13> kKinds{&Draw::softening_shoulder,
                                           &Draw::hardening_grip,
@@ -42,39 +38,12 @@ class Draw {
                                           &Draw::tone,
                                           &Draw::delay,
                                           &Draw::cell_limit};
-    const double place = engine_.uniform() * static_cast<double>(kKinds.size());
+    const double place = uniform() * static_cast<double>(kKinds.size());
     (this->*kKinds[std::min(static_cast<std::size_t>(place), kKinds.size() - 1)])();
     return plan_;
   }
 
  private:
-  double between(double low, double high) { return low + (high - low) * engine_.uniform(); }
-  bool coin() { return engine_.uniform() < 0.5; }
-  const PeggedTrial& pegged() {
-    if (!pegged_) pegged_ = std::make_unique<PeggedTrial>(rig_.body, rig_.stick);
-    return *pegged_;
-  }
-  void name(const char* kind, const char* channel, const char* place) {
-    plan_.facts.kind = kind;
-    plan_.facts.channel = channel;
-    plan_.facts.place = place;
-  }
-  void note(const char* what, const char* unit, double value) {
-    plan_.facts.parameters.push_back({what, unit, value});
-  }
-  /// Sets a number of the chain's effect so that Eq. RG-12 gives `wanted`, and notes both.
-  void size_chain(double ChainEffect::*number, Range range, double wanted, const char* what,
-                  const char* unit) {
-    const auto share = [&](double value) {
-      ChainEffect effect = plan_.chain;
-      effect.*number = value;
-      return pegged().share(effect);
-    };
-    plan_.chain.*number = sized(range.min, range.max, wanted, share);
-    note(what, unit, plan_.chain.*number);
-    note("share_of_force_rms", "-", pegged().share(plan_.chain));
-  }
-
   void softening_shoulder() {
     name("nonlinear_stiffness", "", "shoulder");
     plan_.chain.spring = Spring::kSofteningShoulder;
@@ -212,11 +181,6 @@ class Draw {
 
   /// 0.05 of a body mass of 75 kg: Winter (2009), table 4.1, total arm.
   static constexpr double kWholeArm_kg = 3.75;
-
-  signal::Gaussian engine_;
-  const RigConfig& rig_;
-  EffectPlan plan_;
-  std::unique_ptr<PeggedTrial> pegged_;
 };
 
 }  // namespace

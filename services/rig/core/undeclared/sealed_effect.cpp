@@ -3,6 +3,7 @@
 
 #include "services/rig/core/rig.hpp"
 #include "services/rig/core/undeclared/effect_draw.hpp"
+#include "services/rig/core/undeclared/outside_draw.hpp"
 #include "services/rig/core/undeclared/undeclared_effect.hpp"
 
 namespace stillhand::rig {
@@ -12,9 +13,11 @@ SealedEffect::~SealedEffect() = default;
 SealedEffect::SealedEffect(SealedEffect&&) noexcept = default;
 SealedEffect& SealedEffect::operator=(SealedEffect&&) noexcept = default;
 
-SealedEffect::SealedEffect(std::uint64_t seed, const RigConfig& sized_for) {
+SealedEffect::SealedEffect(std::uint64_t seed, const RigConfig& sized_for, EffectSource source) {
   if (seed == 0) return;
-  effect_ = std::make_unique<UndeclaredEffect>(draw_effect(seed, sized_for));
+  effect_ = std::make_unique<UndeclaredEffect>(source == EffectSource::kKinds
+                                                   ? draw_effect(seed, sized_for)
+                                                   : draw_outside(seed, sized_for));
 }
 
 OpenedEffect SealedEffect::open() && {

@@ -19,10 +19,16 @@ struct OpenedEffect {
     double value;
   };
   std::uint64_t seed = 0;
-  std::string kind = "none";  ///< a kind of the residual engine, or "none"
+  std::string kind = "none";  ///< a kind of the residual engine, one outside of it, or "none"
   std::string channel;        ///< channel of the effect; empty: none
   std::string place;          ///< place in the rig at which it acts
   std::vector<Parameter> parameters;
+};
+
+/// What a seed draws from.
+enum class EffectSource : std::uint8_t {
+  kKinds,         ///< kinds of the residual engine, or none
+  kOutsideKinds,  ///< effects that none of its kinds describes
 };
 
 /// An effect that only the rig knows; README, "The undeclared effect".  The constructor draws it
@@ -37,7 +43,8 @@ class SealedEffect {
   /// @param sized_for  the rig whose feedthrough is the reference of the size; the effect may act
   ///                   in another rig
   /// @throws ConfigError if a field of `sized_for` is out of range.
-  SealedEffect(std::uint64_t seed, const RigConfig& sized_for);
+  SealedEffect(std::uint64_t seed, const RigConfig& sized_for,
+               EffectSource source = EffectSource::kKinds);
   ~SealedEffect();
   SealedEffect(SealedEffect&&) noexcept;
   SealedEffect& operator=(SealedEffect&&) noexcept;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Effects outside of the kinds: what is drawn, and that each acts as its equation says.
+#include "services/rig/core/undeclared/outside_draw.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "services/contract/units.hpp"
+#include "services/rig/core/body.hpp"
+#include "services/rig/core/rig.hpp"
+
+namespace stillhand::rig {
+namespace {
+
+using Spring = ChainEffect::Spring;
+
+double number(const EffectPlan& plan, const std::string& name) {
+  for (const auto& each : plan.facts.parameters) {
+    if (each.name == name) return each.value;
+  }
+  return 0.0;
+}
+
+TEST(OutsideDrawTest, SeedsDrawEveryEffectNearTheThresholdAndFarAboveIt) {
+  std::set<std::string> drawn;
+  std::size_t small = 0;
+  std::size_t large = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    const EffectPlan sut = draw_outside(seed, RigConfig{});
+    drawn.insert(sut.facts.kind + " " + sut.facts.place);
+    const double force_n = number(sut, "force_rms");
+    EXPECT_GT(force_n, 0.0) << seed;
+    (force_n < 0.5 ? small : large) += 1;
+  }
+  EXPECT_EQ(drawn, (std::set<std::string>{"delayed_reflex shoulder", "square_drag arm",
+                                          "square_drag drive", "fractional_damping shoulder",
+                                          "vibration_grip grip"}));
+  EXPECT_GE(small, 6u);
+  EXPECT_GE(large, 6u);
+}
+
+TEST(OutsideDrawTest, ASeedIsTheSameEffectAndTheOtherSourceAnotherOne) {
+  const RigConfig rig;
+  for (const std::uint64_t seed : {3u, 9u}) {
+    const OpenedEffect first = SealedEffect(seed, rig, EffectSource::kOutsideKinds).open();
+    const OpenedEffect second = SealedEffect(seed, rig, EffectSource::kOutsideKinds).open();
+    EXPECT_EQ(first.kind, second.kind);
+    ASSERT_EQ(first.parameters.size(), second.parameters.size());
+    for (std::size_t i = 0; i < first.parameters.size(); ++i) {
+      EXPECT_EQ(first.parameters[i].value, second.parameters[i].value);
+    }
+    EXPECT_NE(first.kind, SealedEffect(seed, rig).open().kind);
+  }
+}
+
+// Every effect stays bounded on a free and on a pegged stick, with the largest sizes.
+TEST(OutsideDrawTest, NoEffectMakesTheHandUnstable) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const EffectPlan plan = draw_outside(seed, RigConfig{});
+    StickConfig stick;
+    stick.coulomb_friction_n = 0.0;  // it would hold the stick against the springs
+    Body sut(BodyConfig{}, stick, kControlPeriod_s, plan.chain);
+    for (int n = 0; n < 2000; ++n) {
+      sut.step({3.0 * std::sin(kTwoPi * 1.3e-3 * n), 0.0, 0.0, false});
+    }
+    for (int n = 0; n < 20000; ++n) sut.step({0.0, 0.0, 0.0, false});
+    EXPECT_LT(sut.energy_j(), 1e-6) << seed << plan.facts.kind;
+  }
+}
+
+TEST(OutsideEffectTest, TheReflexComesAfterItsDelay) {
+  ChainEffect effect;
+  effect.spring = Spring::kDelayedReflex;
+  effect.outside = 100.0;
+  effect.time_s = 0.04;
+  EffectOnChain sut(effect, kControlPeriod_s);
+  const auto p = chain_parameters({}, {}, false);
+  const ChainPlace stretched{0.0, 0.0, 0.01, 0.0, 0.0, 0.0};
+  // The sample that the delay line returns is 40 ticks old: the force comes with the 41st.
+  for (int n = 0; n < 40; ++n) {
+    sut.move(stretched, stretched, 0.0);
+    EXPECT_EQ(sut.forces(stretched, p).arm_n, 0.0) << n;
+  }
+  sut.move(stretched, stretched, 0.0);
+  EXPECT_DOUBLE_EQ(sut.forces(stretched, p).arm_n, -1.0);
+  EXPECT_DOUBLE_EQ(sut.forces(stretched, p).trunk_n, 1.0);
+}
+
+TEST(OutsideEffectTest, DragIsSquareAndOpposesTheMotion) {
+  ChainEffect effect;
+  effect.outside = 50.0;
+  const auto p = chain_parameters({}, {}, false);
+  for (const double v : {-0.4, -0.1, 0.0, 0.2}) {
+    effect.spring = Spring::kArmDrag;
+    EXPECT_DOUBLE_EQ(
+        EffectOnChain(effect, kControlPeriod_s).forces({0.0, 0.0, 0.0, v, 0.0, 0.0}, p).arm_n,
+        -50.0 * v * std::abs(v));
+    effect.spring = Spring::kStickDrag;
+    EXPECT_DOUBLE_EQ(
+        EffectOnChain(effect, kControlPeriod_s).forces({0.0, 0.0, 0.0, 0.0, 0.0, v}, p).stick_n,
+        -50.0 * v * std::abs(v));
+  }
+}
+
+// s^a = (j w)^a.  What the ladder lacks below its lowest rate l is (l/w)^a sin(a pi)/(a pi), 15 %
+// at 0.7 Hz with a = 0.3; above its highest, h, it is (w/h)^(1-a) sin(a pi)/((1-a) pi), 21 % at 3
+// Hz with a = 0.7.  The sum over lags takes half a step of each away, or adds it.
+TEST(OutsideEffectTest, TheLadderIsADerivativeOfFractionalOrder) {
+  for (const double a : {0.3, 0.5, 0.7}) {
+    for (const double hz : {0.7, 1.3, 3.0}) {
+      FractionalLadder sut(a, kControlPeriod_s);
+      std::complex<double> sum;
+      constexpr int kSettle = 20000;
+      constexpr int kTicks = 10000;
+      for (int n = 1; n <= kSettle + kTicks; ++n) {
+        const double phase = kTwoPi * hz * n * kControlPeriod_s;
+        sut.step(std::cos(phase));
+        if (n > kSettle) sum += sut.derivative(std::cos(phase)) * std::polar(1.0, -phase);
+      }
+      const std::complex<double> got = sum * (2.0 / kTicks);
+      const std::complex<double> wanted = std::pow(std::complex<double>(0.0, kTwoPi * hz), a);
+      EXPECT_LT(std::abs(got - wanted) / std::abs(wanted), 0.3) << a << ' ' << hz;
+    }
+  }
+}
+
+TEST(OutsideEffectTest, TheGripStiffensWithTheVibrationsRunningSize) {
+  ChainEffect effect;
+  effect.spring = Spring::kVibrationGrip;
+  effect.factor = 2.0;
+  effect.threshold_m = 0.001;
+  effect.time_s = 0.5;
+  EffectOnChain sut(effect, kControlPeriod_s);
+  const auto p = chain_parameters({}, {}, false);
+  const ChainPlace gripped{0.0, 0.0, 0.001, 0.0, 0.0, 0.0};
+  EXPECT_EQ(sut.forces(gripped, p).hand_n, 0.0) << "no vibration before";
+  // After ten time constants the mean square is h^2 to 5e-5: half of the factor.
+  for (int n = 0; n < 5000; ++n) sut.move(gripped, gripped, 0.0);
+  EXPECT_NEAR(sut.forces(gripped, p).hand_n, 0.5 * 2.0 * p.grip_stiffness_n_m * 0.001, 1e-3);
+}
+
+}  // namespace
+}  // namespace stillhand::rig
