@@ -116,10 +116,12 @@ std::string lead(const LoopRecord& record) {
   const auto left = [&](const char* label) {
     return number(measured(record.conditions, label, kMeasures[kForceLeft]).mean, 2) + " N";
   };
-  return (verdict.findings.empty()
-              ? std::string("The paper's model lacks nothing that moves a hand. ")
-              : "The paper's model lacks: " + verdict.kind() + ". ") +
-         "Of the tracking error that the motion costs, C restores " +
+  const std::string lacks = !verdict.findings.empty()
+                                ? "The paper's model lacks: " + verdict.kind() + ". "
+                            : verdict.conclusion() == kUnexplained
+                                ? "The residual has a cause that no kind explains. "
+                                : "The paper's model lacks nothing that moves a hand. ";
+  return lacks + "Of the tracking error that the motion costs, C restores " +
          percent(restored(record.conditions, "C", error)) + ", C' " +
          percent(restored(record.conditions, "C'", error)) + ", C+ " +
          percent(restored(record.conditions, "C+", error)) +

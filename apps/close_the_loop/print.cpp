@@ -52,7 +52,11 @@ void print_result(const LoopRecord& record) {
   const LoopResult& result = record.result;
   print_measures(record.conditions);
   const Verdict& verdict = result.verdict();
-  if (verdict.findings.empty()) std::printf("the model lacks nothing that moves a hand\n");
+  if (verdict.findings.empty()) {
+    std::printf("%s\n", verdict.conclusion() == kUnexplained
+                            ? "the residual has a cause that no kind of effect explains"
+                            : "the model lacks nothing that moves a hand");
+  }
   for (const Finding& finding : verdict.findings) {
     std::printf("missing: %s%s%s%s in the %s, %.2f N: %s\n", finding.kind.c_str(),
                 finding.channel.empty() ? "" : " (", finding.channel.c_str(),

@@ -143,14 +143,19 @@ void add_restoration(Analysis& analysis) {
     const auto& a = analysis.conditions.at('A')[k].per_subject;
     const auto& b = analysis.conditions.at('B')[k].per_subject;
     const auto& c = analysis.conditions.at('C')[k].per_subject;
-    double gained = 0.0;
-    double lost = 0.0;
+    std::vector<double> gained;
+    std::vector<double> lost;
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (!std::isfinite(a[i] + b[i] + c[i])) continue;
-      gained += b[i] - c[i];
-      lost += b[i] - a[i];
+      gained.push_back(b[i] - c[i]);
+      lost.push_back(b[i] - a[i]);
     }
-    if (lost != 0.0) analysis.restoration[k] = gained / lost;
+    if (gained.empty()) continue;
+    const double all = statistics::mean(lost);
+    if (all != 0.0) analysis.restoration[k] = statistics::mean(gained) / all;
+    if (gained.size() > 1) {
+      analysis.restoration_interval[k] = statistics::ratio_interval(gained, lost);
+    }
   }
 }
 

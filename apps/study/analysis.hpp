@@ -11,6 +11,7 @@
 #include "apps/study/subject_session.hpp"
 #include "services/statistics/descriptive.hpp"
 #include "services/statistics/manova.hpp"
+#include "services/statistics/ratio.hpp"
 #include "services/statistics/t_test.hpp"
 
 namespace stillhand::study {
@@ -70,6 +71,8 @@ struct Analysis {
   MultivariateResult main_effects;  ///< A, B, C with one trial a cell: no interaction
   MultivariateResult thirds;        ///< RMS error and dwell, thirds of a trial as replicates
   std::array<std::optional<double>, kMetricCount> restoration;  ///< Eq. SU-5
+  /// Its 95 % interval over the subjects; none for one subject, or where B may equal A.
+  std::array<std::optional<statistics::RatioInterval>, kMetricCount> restoration_interval;
   std::map<char, WrongModel> wrong;
   std::int64_t refined_used = 0;  ///< subjects whose paper's fit could not cancel
 };

@@ -33,11 +33,7 @@ void print_metric(const Analysis& analysis, std::size_t k) {
   for (const auto& [condition, metrics] : analysis.conditions) {
     fmt::print(" {:9.3f}", metrics[k].mean);
   }
-  if (analysis.restoration[k]) {
-    fmt::print("   {:7.0f} %", 100.0 * *analysis.restoration[k]);
-  } else {
-    fmt::print("   {:>9}", "-");
-  }
+  fmt::print("   {:>16}", restored_text(analysis, k));
   fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, 'A'), paper_value(k, 'B'),
              paper_value(k, 'C'), metric.paper_restored_percent);
 }
@@ -74,7 +70,7 @@ void print_study(const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
   fmt::print("\n{:<22}", "mean of the subjects");
   for (const auto& entry : analysis.conditions) fmt::print(" {:>9}", entry.first);
-  fmt::print("   {:>9}   {}\n", "restored", "paper: A, B, C, restored");
+  fmt::print("   {:>16}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
   fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,
              is_calibrated(record.options)

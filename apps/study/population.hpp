@@ -93,7 +93,7 @@ struct Population {
     visit("grip_damping_ratio", self.grip_damping_ratio, Range{0.02, 1.0},
           "[-] of the masses of arm and hand on it; 0.1 to 0.3, Hasser and Cutkosky (2002)");
     spread("grip_damping_cv", self.grip_damping_cv);
-    visit("cocontraction_factor", self.cocontraction_factor, Range{1.0, 3.0},
+    visit("cocontraction_factor", self.cocontraction_factor, Range{1.0, 4.0},
           "[-] stiffness of the tracking arm over the idle one's; 1.2 to 2, Gomi and Osu (1998); "
           "damping goes with its square root");
     spread("cocontraction_cv", self.cocontraction_cv);

@@ -24,6 +24,15 @@ std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰
 
 std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 
+std::string restored_text(const Analysis& analysis, std::size_t metric) {
+  if (!analysis.restoration[metric]) return "-";
+  std::string out = percent(*analysis.restoration[metric]);
+  if (const auto& interval = analysis.restoration_interval[metric]) {
+    out += fmt::format(" [{:.0f}, {:.0f}]", 100.0 * interval->low, 100.0 * interval->high);
+  }
+  return out;
+}
+
 const Comparison* find_comparison(const Analysis& analysis, char from, char to) {
   for (const Comparison& comparison : analysis.comparisons) {
     if (comparison.from == from && comparison.to == to) return &comparison;

@@ -24,6 +24,9 @@ std::string percent(double share);
 /// "23.1 ± 4.0", with the number of subjects if the metric was not found in all.
 std::string mean_and_deviation(const MetricSample& sample, std::size_t metric);
 
+/// "89 % [84, 93]": the restoration of a metric with its interval, as far as they are known.
+std::string restored_text(const Analysis& analysis, std::size_t metric);
+
 /// The comparison of two conditions, or nullptr.
 const Comparison* find_comparison(const Analysis& analysis, char from, char to);
 

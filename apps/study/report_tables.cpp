@@ -84,11 +84,13 @@ report::Table calibration_table(const Analysis& analysis, bool is_default) {
 report::Table restoration_table(const Analysis& analysis) {
   report::Table table;
   table.caption =
-      "Restoration (B − C)/(B − A) of the means; 100 % is the value on the stationary platform.";
+      "Restoration (B − C)/(B − A) of the means, with its 95 % interval over the subjects; 100 % "
+      "is "
+      "the value on the stationary platform.";
   table.header = {"metric", "study", "paper"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     table.rows.push_back(
-        {kMetrics[k].title, percent(analysis.restoration[k].value_or(NAN)),
+        {kMetrics[k].title, restored_text(analysis, k),
          Cell(percent(kMetrics[k].paper_restored_percent / 100.0), Emphasis::kFaint)});
   }
   return table;

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "apps/report/command_line.hpp"
 #include "apps/report/plot/draw.hpp"
@@ -63,7 +64,9 @@ auto with_progress(const auto& work, const ExplainOptions& options) {
 }
 
 int run_calibration(const StudyRecord& record, const Words& words, bool subjects_given) {
-  report::ResultFiles files({{"--out", words.out}}, {words.population});
+  std::vector<std::filesystem::path> inputs;
+  if (!words.population.empty()) inputs.push_back(words.population);
+  report::ResultFiles files({{"--out", words.out}}, inputs);
   const Calibration calibration = with_progress(calibrate, explain_options(record, subjects_given));
   files.set("--out", population_yaml(calibration, record.command_line));
   files.publish();
@@ -182,6 +185,7 @@ void add_study_command(CLI::App& cli, int& status) {
   study
       ->add_flag("--explain-paper", words->explain_paper,
                  "instead of a study: looks for causes of the paper's Tables I and II")
+      ->excludes("--population")
       ->excludes("--conditions")
       ->excludes("--canceller")
       ->excludes("--wrong-models")

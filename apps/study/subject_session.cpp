@@ -97,12 +97,6 @@ void thin(std::vector<double>& series, double rate_hz) {
   series = std::move(kept);
 }
 
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial& planned) {
   TrackedTrial out;
   const auto& record = signals.tracking;
@@ -115,7 +109,7 @@ TrackedTrial evaluated(const session::TrialSignals& signals, const PlannedTrial&
     out.counterforce_delay_s =
         session::counterforce_delay_s(signals.feedthrough_n, signals.motor_n, record.rate_hz);
   }
-  out.feedthrough_rms_n = rms(signals.feedthrough_n);
+  out.feedthrough_rms_n = session::rms(signals.feedthrough_n);
   const std::size_t samples = record.target_m.size();
   const auto excerpt = std::min(samples, static_cast<std::size_t>(kExcerpt_s * record.rate_hz));
   for (std::size_t n = (samples - excerpt) / 2; n < (samples + excerpt) / 2; n += kExcerptStride) {

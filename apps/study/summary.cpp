@@ -92,6 +92,16 @@ ordered_json manova_json(const MultivariateResult& result, const char* design) {
   return out;
 }
 
+ordered_json restoration_interval_json(const Analysis& analysis) {
+  ordered_json out;
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    const auto& interval = analysis.restoration_interval[k];
+    out[kMetrics[k].restoration_key] =
+        interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
+  }
+  return out;
+}
+
 ordered_json restoration_json(const Analysis& analysis) {
   ordered_json out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
@@ -137,6 +147,7 @@ std::string summary_json(const StudyRecord& record) {
   summary["t_tests"] = p_values_json(record.analysis);
   summary["manova"] = manova_json(record.analysis.main_effects, "main effects, one trial a cell");
   summary["restoration"] = restoration_json(record.analysis);
+  summary["restoration_interval95"] = restoration_interval_json(record.analysis);
   summary["t_test_details"] = t_test_details_json(record.analysis);
   summary["manova_thirds"] =
       manova_json(record.analysis.thirds, "thirds of a trial as replicates; RMS error and dwell");

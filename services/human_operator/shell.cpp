@@ -34,6 +34,7 @@ Shell::Shell(runtime::Service& service, bool with_pointer)
   service.bus().subscribe<stillhand_msgs::Sensed>(
       topics::kSensed, [this](const auto& message, const auto&) {
         if (message.tick() < 0) return;
+        newest_felt_m_s2_ = message.accel_y_m_s2();
         felt_[static_cast<std::size_t>(message.tick()) % kFelt_ticks] = {message.tick(),
                                                                          message.accel_y_m_s2()};
       });
@@ -44,7 +45,7 @@ Shell::Shell(runtime::Service& service, bool with_pointer)
 double Shell::felt_m_s2(Tick tick) const noexcept {
   if (tick < 0) return 0.0;
   const Felt& felt = felt_[static_cast<std::size_t>(tick) % kFelt_ticks];
-  return felt.tick == tick ? felt.a_y_m_s2 : 0.0;
+  return felt.tick == tick ? felt.a_y_m_s2 : newest_felt_m_s2_;
 }
 
 PointerInput Shell::pointer_input(const OperatorInput& input) const {

@@ -35,7 +35,7 @@ class Shell {
 
  private:
   void on_tracking(const stillhand_msgs::TrackingSample& sample);
-  /// a_y of this tick; 0 if its sensed sample has not arrived.
+  /// a_y of this tick, or the newest if its sensed sample has not arrived.
   [[nodiscard]] double felt_m_s2(Tick tick) const noexcept;
   [[nodiscard]] PointerInput pointer_input(const OperatorInput& input) const;
 
@@ -45,13 +45,14 @@ class Shell {
   PointerOperator person_;
   bool with_pointer_;
   stillhand_msgs::Pointer pointer_;
-  /// a_y of the last ticks; the tracking sample of a tick comes after its sensed sample.
+  /// a_y of the last ticks.
   struct Felt {
     Tick tick = -1;
     double a_y_m_s2 = 0.0;
   };
   static constexpr std::size_t kFelt_ticks = 64;
   std::array<Felt, kFelt_ticks> felt_{};
+  double newest_felt_m_s2_ = 0.0;
   runtime::Publisher<stillhand_msgs::OperatorForce> force_;
 };
 

@@ -69,7 +69,11 @@ class StudyTest(unittest.TestCase):
         self.assertEqual({path.name for path in out.iterdir()},
                          {"explanation.json", "report.html", "explain_ranking.svg", "explain_ranking.png",
                           "explain_tables.svg", "explain_tables.png"})
-        self.assertIn("log", run.stdout)
+        # No table has a row wider than its heading.
+        for table in (out / "report.html").read_text().split("<table")[1:]:
+            head = table.split("</thead>")[0].count("<th")
+            for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:
+                self.assertEqual(row.count("<td") + row.count("<th"), head)
 
     def test_calibrate_writes_a_population_that_the_study_takes(self):
         population = self.folder / "population.yaml"
@@ -84,6 +88,7 @@ class StudyTest(unittest.TestCase):
     def test_refuses_options_that_these_runs_cannot_use(self):
         for arguments, words in ((["--explain-paper", "--canceller", "paper"], "--canceller"),
                                  (["--calibrate", "--explain-paper"], "--explain-paper"),
+                                 (["--explain-paper", "--population", "p.yaml"], "--population"),
                                  (["--explain-paper", "--subjects", "5"], "want 6 or more"),
                                  (["--calibrate", "--subjects", "2"], "want 6 or more")):
             out = self.folder / "nothing"

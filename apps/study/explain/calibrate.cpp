@@ -134,6 +134,7 @@ Calibration calibrate(const ExplainOptions& options, const OnStage& on_stage) {
   if (options.subjects < 6) {
     throw ConfigError("--subjects", std::to_string(options.subjects), "6 or more with --calibrate");
   }
+  check_base(options);
   return Calibrating(options, on_stage).run();
 }
 

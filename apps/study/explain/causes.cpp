@@ -29,6 +29,7 @@ std::vector<Cause> of_the_machine() {
            .source = "no range: 0 to 0.125 s, which holds every filter of the paper",
            .parameter = "delay_s",
            .grid = {0.0, 0.025, 0.05, 0.075, 0.1, 0.125},
+           .most = 0.125,
            .apply = [](StudyOptions& options, double value) { options.motor.delay_s = value; }},
           {.name = "motor_gain",
            .what = "The motor gives another force than it is asked for.",
@@ -37,6 +38,7 @@ std::vector<Cause> of_the_machine() {
            .parameter = "gain [-]",
            .none = 1.0,
            .grid = {0.4, 0.6, 0.8, 1.0, 1.2},
+           .most = 1.2,
            .apply = [](StudyOptions& options, double value) { options.motor.gain = value; }}};
 }
 
@@ -51,42 +53,53 @@ std::vector<Cause> of_the_arm() {
                   "al. (2001), recalled",
               .parameter = "factor [-]",
               .none = P{}.cocontraction_factor,
-              .grid = {1.0, 1.3, 1.6, 2.0, 2.5, 3.0}};
+              .grid = {1.0, 1.3, 1.6, 2.0, 2.5, 3.0, 4.0},
+              .most = 3.0};
+  Cause cocontraction = personal(level, &P::cocontraction_factor, &P::cocontraction_cv);
+  // Added to the spread that the population has already.
+  cocontraction.spread = [](Population& population, double cv) {
+    population.cocontraction_cv = std::hypot(population.cocontraction_cv, cv);
+  };
   return {
-      personal(level, &P::cocontraction_factor, &P::cocontraction_cv),
+      cocontraction,
       personal({.name = "stiffening_by_vibration",
                 .what = "Vibration changes the stiffness of the tracking arm.",
                 .source = "softening of the relaxed body: Huang and Griffin (2008); stiffening: "
                           "none",
                 .parameter = "growth_s2_m",
-                .grid = {-0.25, 0.0, 0.25, 0.5, 0.75, 1.0}},
+                .grid = {-0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5},
+                .most = 1.0},
                &P::stiffening_by_vibration_s2_m, &P::stiffening_by_vibration_cv),
       personal({.name = "stiffening_by_motor",
                 .what = "A motor that moves the stick by itself makes the subject stiffen the arm.",
                 .source = "direction: Burdet et al. (2001), unstable force fields; range: none",
                 .parameter = "growth_per_n",
-                .grid = {0.0, 0.1, 0.2, 0.35, 0.5}},
+                .grid = {0.0, 0.1, 0.2, 0.35, 0.5, 0.8},
+                .most = 0.5},
                &P::stiffening_by_motor_n, &P::stiffening_by_motor_cv),
       personal({.name = "wander",
                 .what = "Grip and posture wander within and between trials.",
                 .source = "force without feedback drifts by 7 to 35 %: Ambike et al. (2015), "
                           "Smith et al. (2018); of stiffness on a stick: none",
                 .parameter = "sd_ln_stiffness [-]",
-                .grid = {0.0, 0.1, 0.2, 0.3, 0.4}},
+                .grid = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5},
+                .most = 0.4},
                &P::wander, &P::wander_cv),
       personal({.name = "reflex",
                 .what = "The tracking arm has a stretch reflex; the idle one has none.",
                 .source = "0 to 400 N/m, 0 to 50 N s/m, 25 to 40 ms: de Vlugt et al. (2003), "
                           "Abbink (2006), recalled",
                 .parameter = "stiffness_n_m",
-                .grid = {0.0, 100.0, 200.0, 300.0, 400.0}},
+                .grid = {0.0, 100.0, 200.0, 300.0, 400.0, 600.0},
+                .most = 400.0},
                &P::reflex_stiffness_n_m, &P::reflex_stiffness_cv),
       personal({.name = "motor_resistance",
                 .what = "The hand opposes a share of the motor's force, 0.1 s later.",
                 .source = "long-latency responses of 50 to 100 ms; share against a random motor: "
                           "none",
                 .parameter = "share [-]",
-                .grid = {0.0, 0.15, 0.3, 0.45, 0.6}},
+                .grid = {0.0, 0.15, 0.3, 0.45, 0.6, 0.9},
+                .most = 0.6},
                &P::motor_resistance, &P::motor_resistance_cv)};
 }
 
@@ -99,28 +112,32 @@ std::vector<Cause> of_the_rest() {
                 .source = "mostly in axis: Khoshnewiszadeh and Pool (2021), touch screens; range "
                           "for a stick: none",
                 .parameter = "force_n_s2_m",
-                .grid = {0.0, 0.5, 1.0, 1.5, 2.0}},
+                .grid = {0.0, 0.5, 1.0, 1.5, 2.0, 3.0},
+                .most = 2.0},
                &P::unmeasured_force_n_s2_m, &P::unmeasured_force_cv),
       personal({.name = "involuntary_force",
                 .what = "The hand's force fluctuates without the subject's will.",
                 .source = "0.1 to 0.8 N, derived from coefficients of variation of 1 to 5 %, "
                           "Jones et al. (2002), recalled",
                 .parameter = "force_n",
-                .grid = {0.0, 0.25, 0.5, 1.0, 1.5}},
+                .grid = {0.0, 0.25, 0.5, 1.0, 1.5},
+                .most = 1.0},
                &P::involuntary_force_n, &P::involuntary_force_cv),
       personal({.name = "remnant_by_vibration",
                 .what = "Vibration makes the subject's remnant larger.",
                 .source = "\"dramatic increases\" with a displacement stick: Allen, Jex and "
                           "Magdaleno (1973); slope: none",
                 .parameter = "growth_s2_m",
-                .grid = {0.0, 0.5, 1.0, 2.0, 3.0}},
+                .grid = {0.0, 0.5, 1.0, 2.0, 3.0, 5.0},
+                .most = 3.0},
                &P::remnant_by_vibration_s2_m, &P::remnant_by_vibration_cv),
       personal({.name = "delay_by_vibration",
                 .what = "Vibration makes the subject see and answer later.",
                 .source = "0 to 0.1 s in all: Levison and Harrah (1977), recalled; \"generally "
                           "subtle\": Allen, Jex and Magdaleno (1973)",
                 .parameter = "growth_s3_m",
-                .grid = {0.0, 0.02, 0.04, 0.06, 0.08}},
+                .grid = {0.0, 0.02, 0.04, 0.06, 0.08, 0.12},
+                .most = 0.08},
                &P::delay_by_vibration_s3_m, &P::delay_by_vibration_cv)};
 }
 

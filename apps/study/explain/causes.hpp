@@ -16,8 +16,10 @@ struct Cause {
   std::string source;          ///< literature of its range, or that there is none
   std::string parameter = {};  ///< with its unit; empty: no parameter
   double none = 0.0;           ///< value of the parameter without the cause
-  /// Values that are simulated, ascending; the prior is uniform from the first to the last.
+  /// Values that are simulated, ascending.  A person's value that is drawn beyond them counts as
+  /// the nearest.
   std::vector<double> grid = {};
+  double most = 0.0;      ///< the prior is uniform from the first value of the grid to this
   bool personal = false;  ///< the parameter may differ between subjects, Eq. SU-1
   std::function<void(StudyOptions&, double value)> apply = {};
   /// The same with a spread between subjects; for personal ones.

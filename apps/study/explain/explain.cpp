@@ -96,6 +96,13 @@ class Investigation {
       }
     }
     std::ranges::stable_sort(pairs, std::ranges::greater{}, &Hypothesis::log_evidence);
+    const std::array<double, 2> nothing = single.front().halves;
+    for (auto* some : {&single, &pairs}) {
+      for (Hypothesis& one : *some) {
+        one.log_evidence_error =
+            std::abs((one.halves[0] - nothing[0]) - (one.halves[1] - nothing[1])) / 2.0;
+      }
+    }
   }
 
   // The value of the grid next to the posterior median at which the cause does something.
@@ -141,15 +148,30 @@ class Investigation {
     return out;
   }
 
-  [[nodiscard]] StudyOptions options_at(const Hypothesis& hypothesis) const {
-    StudyOptions options = options_.study;
-    options.seed = options_.seed + 1;
+  // Calibrated means of a hypothesis as they are simulated.
+  [[nodiscard]] static std::vector<double> bounded_shift(const Hypothesis& hypothesis) {
     std::vector<double> shift = hypothesis.shift;
     for (std::size_t i = 0; i < shift.size(); ++i) {
       const double most = kFarthestShift * calibrated()[i].prior_sd;
       shift[i] = std::clamp(shift[i], -most, most);
     }
-    options.population = shifted(options.population, shift);
+    return shift;
+  }
+
+  // Of the calibration, over that of none.
+  [[nodiscard]] static double log_prior(const Hypothesis& hypothesis) {
+    double sum = 0.0;
+    const std::vector<double> shift = bounded_shift(hypothesis);
+    for (std::size_t i = 0; i < shift.size(); ++i) {
+      sum -= 0.5 * std::pow(shift[i] / calibrated()[i].prior_sd, 2);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] StudyOptions options_at(const Hypothesis& hypothesis) const {
+    StudyOptions options = options_.study;
+    options.seed = options_.seed + 1;
+    options.population = shifted(options.population, bounded_shift(hypothesis));
     for (std::size_t c = 0; c < hypothesis.causes.size(); ++c) {
       const Cause& cause = causes()[hypothesis.causes[c]];
       cause.apply(options, hypothesis.values[c]);
@@ -201,23 +223,33 @@ class Investigation {
     add_best(ranked(first + 2, first + out_.single.size()), kJudgedSingles, settings);
     out_.judged_singles = settings.size();
     add_best(ranked(pairs, pairs + out_.pairs.size()), kJudgedPairs, settings);
-    settings.push_back({"compensated", options_at(out_.best())});
-    settings.back().options.canceller = "now";
-    settings.back().options.motor = options_.study.motor;
-    if (!accepted(settings.back().options)) settings.back().options = settings.front().options;
+    StudyOptions on_time = options_at(out_.best());
+    on_time.canceller = "now";
+    on_time.motor = options_.study.motor;
+    const bool compensates = accepted(on_time);
+    if (compensates) settings.push_back({"compensated", std::move(on_time)});
     auto all = simulate("judging with other subjects", settings, judging_subjects());
     for (std::size_t i = 0; i < all.size(); ++i) {
       out_.judged.push_back(judged_of(settings[i].label, std::move(all[i])));
     }
-    out_.compensated = std::move(out_.judged.back());
-    out_.judged.pop_back();
+    for (std::size_t i = 2; i < out_.judged.size(); ++i) {
+      if (settings[i].label != "compensated") {
+        out_.judged[i].log_score += log_prior(out_.find(settings[i].label));
+      }
+    }
+    if (compensates) {
+      out_.compensated = std::move(out_.judged.back());
+      out_.judged.pop_back();
+    }
   }
 
   [[nodiscard]] Judged judged_of(const std::string& name, std::vector<Response> subjects) const {
     Judged out;
     out.name = name;
     out.tables = predict_tables(metrics_of(subjects), subjects.size());
-    out.log_likelihood = fit_tables(out.tables, out_.paper, nuisance_).log_likelihood;
+    Nuisance none = nuisance_;
+    none.slope.setZero();
+    out.log_score = fit_tables(out.tables, out_.paper, none).log_likelihood;
     out.z = (out.tables.mean - out_.paper.values).cwiseQuotient(out_.paper.standard_error);
     for (Eigen::Index k = 0; k < 3; ++k) {
       out.restored[static_cast<std::size_t>(k)] = -out.tables.mean[6 + k] / out.tables.mean[3 + k];
@@ -246,10 +278,23 @@ const Hypothesis& Explanation::find(const std::string& name) const {
   return single.front();
 }
 
+std::vector<Hypothesis> Explanation::all() const {
+  std::vector<Hypothesis> out = single;
+  out.insert(out.end(), pairs.begin(), pairs.end());
+  return out;
+}
+
 const Hypothesis& Explanation::best() const {
   const auto alone = std::ranges::max_element(single, {}, &Hypothesis::log_evidence);
   if (pairs.empty() || alone->log_evidence > pairs.front().log_evidence) return *alone;
   return pairs.front();
+}
+
+void check_base(const ExplainOptions& options) {
+  session::plan(options.study.protocol);
+  for (std::size_t i = 0; i < options.subjects; ++i) {
+    check_subject(options.study, static_cast<std::int64_t>(i));
+  }
 }
 
 Explanation explain_paper(const ExplainOptions& options, const OnStage& on_stage) {
@@ -257,6 +302,7 @@ Explanation explain_paper(const ExplainOptions& options, const OnStage& on_stage
     throw ConfigError("--subjects", std::to_string(options.subjects),
                       "6 or more with --explain-paper");
   }
+  check_base(options);
   const auto start = std::chrono::steady_clock::now();
   Explanation out = Investigation(options, on_stage).run();
   out.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +22,10 @@ struct ExplainOptions {
 /// A hypothesis on subjects that the inference did not see, without any linear step.
 struct Judged {
   std::string name;
-  Prediction tables;                 ///< as simulated
-  double log_likelihood = 0.0;       ///< of the paper's tables there, Eq. SU-9
+  Prediction tables;  ///< as simulated
+  /// Log likelihood of the paper's tables there, with the log prior of the calibration over that of
+  /// no change; nothing is integrated out.
+  double log_score = 0.0;
   TableVector z;                     ///< against the paper, in its standard errors
   std::array<double, 3> restored{};  ///< (B - C) / (B - A) by metric
   std::vector<Response> subjects;
@@ -50,18 +52,24 @@ struct Explanation {
   std::vector<Hypothesis> pairs;   ///< best first
   std::vector<Judged>
       judged;  ///< no cause, the paper's chain, then the best singles, then the best pairs
-  std::size_t judged_singles = 0;  ///< number of them before the pairs
-  Judged compensated;              ///< the best explanation with today's canceller, on time
+  std::size_t judged_singles = 0;     ///< number of them before the pairs
+  std::optional<Judged> compensated;  ///< the best explanation with today's canceller, on time
   std::vector<UnitSensitivity> units;
   double wall_s = 0.0;
 
   [[nodiscard]] const Hypothesis& find(const std::string& name) const;
+  /// Single causes and pairs.
+  [[nodiscard]] std::vector<Hypothesis> all() const;
   /// Of all hypotheses, the one with the largest evidence.
   [[nodiscard]] const Hypothesis& best() const;
 };
 
 /// Reports the stage and its progress from 0 to 1.  @return false to stop early
 using OnStage = std::function<bool(const std::string& stage, double share)>;
+
+/// Checks lengths and subjects of the study that both runs begin with.
+/// @throws ConfigError naming what is out of range
+void check_base(const ExplainOptions& options);
 
 /// Looks for causes of the paper's tables; README, "What explains the paper's C".
 /// @throws ConfigError for options out of range; Interrupted

@@ -31,7 +31,7 @@ ordered_json hypothesis_json(const Hypothesis& one) {
           {"parameters", parameters},
           {"log_evidence", one.log_evidence},
           {"log_evidence_error", one.log_evidence_error},
-          {"predictive_p", one.predictive_p},
+          {"fit_p", one.fit_p},
           {"calibrated_factors", calibrated_again},
           {"z", z_json(one.z)}};
 }
@@ -44,7 +44,7 @@ ordered_json judged_json(const Judged& one) {
     measured[observable.name] = observable.scale * sum / static_cast<double>(one.subjects.size());
   }
   return {{"name", one.name},
-          {"log_likelihood", one.log_likelihood},
+          {"log_score", one.log_score},
           {"z", z_json(one.z)},
           {"restoration",
            {{"rms_error", one.restored[0]},
@@ -67,13 +67,14 @@ std::string explanation_json(const Explanation& explanation) {
   for (const Hypothesis& one : explanation.pairs) out["pairs"].push_back(hypothesis_json(one));
   out["paper_chain_z"] = z_json(explanation.judged[1].z);
   out["indistinguishable"] = ordered_json::array();
-  for (const auto* among : {&explanation.single, &explanation.pairs}) {
-    const auto names = indistinguishable(*among);
+  for (const auto& among : {explanation.single, explanation.all()}) {
+    const auto names = indistinguishable(among);
     if (!names.empty()) out["indistinguishable"].push_back(names);
   }
   out["judged"] = ordered_json::array();
   for (const Judged& one : explanation.judged) out["judged"].push_back(judged_json(one));
-  out["compensated"] = judged_json(explanation.compensated);
+  out["compensated"] =
+      explanation.compensated ? judged_json(*explanation.compensated) : ordered_json(nullptr);
   out["units"] = ordered_json::array();
   for (const UnitSensitivity& one : explanation.units) {
     out["units"].push_back({{"unit_mm", one.unit_mm},

@@ -42,9 +42,8 @@ void print_explanation(const Explanation& explanation) {
     print_hypothesis(explanation.pairs[i], nothing);
   }
   fmt::print("Means and SDs: simulated - paper, in the paper's standard errors.\n");
-  for (const auto* among : {&explanation.single, &explanation.pairs}) {
-    const auto names = indistinguishable(*among);
-    if (names.empty()) continue;
+  const auto names = indistinguishable(explanation.all());
+  if (!names.empty()) {
     fmt::print("The tables cannot tell apart: {}\n", fmt::join(names, ", "));
   }
   fmt::print("On other subjects, restored RMS, dwell, f_c (paper: 47, 32, 27 %):\n");

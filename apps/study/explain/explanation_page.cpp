@@ -53,7 +53,7 @@ report::Table ranking_table(const Explanation& explanation,
          fmt::format("{:.1f} ± {:.1f}", one.log_evidence - nothing, one.log_evidence_error),
          joined(parameters), fmt::format("{:.1f}, {:.1f}, {:.1f}", one.z[6], one.z[7], one.z[8]),
          fmt::format("{:.1f}, {:.1f}, {:.1f}", one.z[12], one.z[13], one.z[14]),
-         short_number(one.predictive_p)});
+         short_number(one.fit_p)});
   }
   return table;
 }
@@ -62,9 +62,10 @@ report::Table judged_table(const Explanation& explanation) {
   report::Table table;
   table.caption =
       "Distance from the paper in its standard errors, on subjects that the inference did not see. "
+      "A-B and B-C stand for the changes B - A and C - B. "
       "Nothing is calibrated again for none and paper_chain.";
-  table.header = {"cause",   "A: RMS, dwell, f_c", "A-B means", "A-B SDs", "B-C means", "B-C SDs",
-                  "restored"};
+  table.header = {"cause",   "A: RMS, dwell, f_c", "A-B means",          "A-B SDs", "B-C means",
+                  "B-C SDs", "restored",           "log score over none"};
   const auto three = [](const TableVector& z, Eigen::Index first) {
     return fmt::format("{:.1f}, {:.1f}, {:.1f}", z[first], z[first + 1], z[first + 2]);
   };
@@ -73,7 +74,7 @@ report::Table judged_table(const Explanation& explanation) {
                           three(one.z, 6), three(one.z, 12),
                           fmt::format("{:.0f}, {:.0f}, {:.0f} %", 100.0 * one.restored[0],
                                       100.0 * one.restored[1], 100.0 * one.restored[2]),
-                          number(one.log_likelihood - explanation.judged[0].log_likelihood, 1)});
+                          number(one.log_score - explanation.judged[0].log_score, 1)});
   }
   return table;
 }
@@ -81,8 +82,8 @@ report::Table judged_table(const Explanation& explanation) {
 report::Table measurable_table(const Explanation& explanation) {
   report::Table table;
   table.caption =
-      "What an experiment would have to measure to decide: mean ± deviation over "
-      "subjects, with each cause.";
+      "What an experiment would have to estimate to decide: mean ± deviation over subjects, with "
+      "each cause. The force is that of the body on a held stick.";
   table.header = {"cause"};
   for (const Observable& observable : observables()) table.header.push_back(observable.name);
   for (const Judged& one : explanation.judged) {
@@ -127,20 +128,27 @@ void add_verdict(report::Page& page, const Explanation& explanation) {
       causes().size(), explanation.pairs.size(), best.name,
       best.log_evidence - explanation.single.front().log_evidence,
       parameters.empty() ? "" : "Posterior median and 95 % interval: " + joined(parameters) + "."));
-  for (const auto* among : {&explanation.single, &explanation.pairs}) {
-    const auto names = indistinguishable(*among);
+  for (const bool all : {false, true}) {
+    const auto names = indistinguishable(all ? explanation.all() : explanation.single);
     if (names.empty()) continue;
     page.paragraph(fmt::format(
         "The tables cannot tell these {} apart (the least probable is less than 20 times less "
         "probable than the best): {}.",
-        among == &explanation.single ? "single causes" : "pairs", joined(names)));
+        all ? "single causes and pairs" : "single causes", joined(names)));
   }
-  page.paragraph(fmt::format(
-      "With the best explanation's subjects and today's canceller, which is on time, {:.0f}, "
-      "{:.0f} and {:.0f} % of RMS error, dwell ratio and f_c are restored. The paper restores 47, "
-      "32 and 27 %.",
-      100.0 * explanation.compensated.restored[0], 100.0 * explanation.compensated.restored[1],
-      100.0 * explanation.compensated.restored[2]));
+  const auto percents = [](const Judged& one) {
+    return fmt::format("{:.0f}, {:.0f} and {:.0f} %", 100.0 * one.restored[0],
+                       100.0 * one.restored[1], 100.0 * one.restored[2]);
+  };
+  page.paragraph(
+      fmt::format("If the paper's chain is the cause, a canceller on time restores {} of RMS "
+                  "error, dwell ratio "
+                  "and f_c. The paper restores 47, 32 and 27 %.",
+                  percents(explanation.judged[0])));
+  if (explanation.compensated) {
+    page.paragraph(fmt::format("With the subjects of the best explanation it restores {}.",
+                               percents(*explanation.compensated)));
+  }
 }
 
 void add_sensitivity(report::Page& page, const Explanation& explanation) {

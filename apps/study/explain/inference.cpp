@@ -39,8 +39,8 @@ class Acting {
   [[nodiscard]] bool has_parameter() const { return !cause_.cause->grid.empty(); }
   [[nodiscard]] double value(int step, int steps) const {
     if (!has_parameter()) return 1.0;
-    const auto& grid = cause_.cause->grid;
-    return grid.front() + (grid.back() - grid.front()) * step / (steps - 1.0);
+    const double least = cause_.cause->grid.front();
+    return least + (cause_.cause->most - least) * step / (steps - 1.0);
   }
   /// The parameter of a draw, Eq. SU-1.
   [[nodiscard]] double drawn(std::size_t draw, double mean, double cv) const {
@@ -109,7 +109,8 @@ std::vector<Metrics> population_at(std::span<const Acting> acting, const Interac
         const Metrics change = acting[c].change(subject, value);
         for (std::size_t i = 0; i < metrics.size(); ++i) metrics[i] += change[i];
         if (interaction != nullptr) {
-          share *= (value - acting[c].none()) / (interaction->at[c] - acting[c].none());
+          share *= std::clamp((value - acting[c].none()) / (interaction->at[c] - acting[c].none()),
+                              0.0, 1.0);
         }
       }
       if (interaction != nullptr) {
@@ -171,6 +172,34 @@ Marginal marginal(const std::vector<Point>& points, double log_evidence, std::st
   return {std::move(name), quantile(0.5), quantile(0.025), quantile(0.975)};
 }
 
+bool is_known(const Metrics& metrics) {
+  return std::ranges::all_of(metrics, [](double value) { return std::isfinite(value); });
+}
+
+// What a subject's metrics with both causes have beyond the sum of both changes.
+Metrics beyond_sum(const Inference& all, const std::vector<Acting>& acting,
+                   const PairResponses& pair, std::size_t subject) {
+  const Metrics first = acting[0].change(subject, pair.values[0]);
+  const Metrics second = acting[1].change(subject, pair.values[1]);
+  Metrics out = pair.at[subject].metrics;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] -= (*all.without)[subject].metrics[k] + first[k] + second[k];
+  }
+  return out;
+}
+
+Metrics mean_of_known(const std::vector<Metrics>& all, std::size_t count) {
+  Metrics out{};
+  double known = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_known(all[i])) continue;
+    known += 1.0;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += all[i][k];
+  }
+  for (double& value : out) value /= known;
+  return out;
+}
+
 class Explaining {
  public:
   Explaining(const Inference& all, std::vector<Acting> acting, const Interaction* interaction,
@@ -182,19 +211,19 @@ class Explaining {
         points_(grid_of(acting_, steps)) {}
 
   Hypothesis explained(std::vector<std::size_t> causes) {
-    const double halves = std::abs(evidence(0, 2) - evidence(1, 2)) / 2.0;
     Hypothesis out;
     out.causes = std::move(causes);
+    out.halves = {evidence(0, 2), evidence(1, 2)};
     out.log_evidence = evidence(0, 1);
-    out.log_evidence_error = halves;
     Point middle;
     for (std::size_t c = 0; c < acting_.size(); ++c) summarise(c, out, middle);
     if (out.name.empty()) out.name = "none";
     const Fit fit = fit_at(middle, 0, 1);
     out.shift.assign(fit.shift.begin(), fit.shift.end());
     out.z = (fit.after - all_.paper.values).cwiseQuotient(all_.paper.standard_error);
-    const boost::math::chi_squared chi(static_cast<double>(kTableFigures));
-    out.predictive_p = cdf(complement(chi, fit.chi_square));
+    const boost::math::chi_squared chi(static_cast<double>(kTableFigures) -
+                                       static_cast<double>(out.parameters.size()));
+    out.fit_p = cdf(complement(chi, fit.chi_square));
     return out;
   }
 
@@ -202,8 +231,9 @@ class Explaining {
   [[nodiscard]] Fit fit_at(const Point& point, std::size_t first, std::size_t step) const {
     const auto subjects =
         population_at(acting_, interaction_, *all_.without, draws_, point, first, step);
-    return fit_tables(predict_tables(subjects, all_.without->size() / step), all_.paper,
-                      all_.nuisance);
+    const auto known = static_cast<std::size_t>(std::ranges::count_if(subjects, is_known));
+    return fit_tables(predict_tables(subjects, known / static_cast<std::size_t>(draws_)),
+                      all_.paper, all_.nuisance);
   }
   double evidence(std::size_t first, std::size_t step) {
     for (Point& point : points_) point.log_likelihood = fit_at(point, first, step).log_likelihood;
@@ -258,20 +288,10 @@ Hypothesis explain_with(const Inference& all, const std::array<const CauseRespon
   }
   Interaction interaction{pair.values, {}};
   for (std::size_t subject = 0; subject < all.without->size(); ++subject) {
-    Metrics beyond{};
     // A pair is simulated for some of the subjects; the others take their mean.
     const bool own = subject < pair.at.size();
-    const std::size_t from = own ? subject : 0;
-    const std::size_t to = own ? subject + 1 : pair.at.size();
-    for (std::size_t s = from; s < to; ++s) {
-      const Metrics first = acting[0].change(s, pair.values[0]);
-      const Metrics second = acting[1].change(s, pair.values[1]);
-      for (std::size_t k = 0; k < beyond.size(); ++k) {
-        beyond[k] += (pair.at[s].metrics[k] - (*all.without)[s].metrics[k] - first[k] - second[k]) /
-                     static_cast<double>(to - from);
-      }
-    }
-    interaction.beyond.push_back(beyond);
+    interaction.beyond.push_back(own ? beyond_sum(all, acting, pair, subject)
+                                     : mean_of_known(interaction.beyond, pair.at.size()));
   }
   return Explaining(all, std::move(acting), &interaction, kValuesPaired, draws)
       .explained({pair.causes[0], pair.causes[1]});

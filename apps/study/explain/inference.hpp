@@ -37,13 +37,14 @@ struct Hypothesis {
   std::string name;                 ///< of the causes, joined by " + "
   std::vector<std::size_t> causes;  ///< indices
   double log_evidence = 0.0;
-  double log_evidence_error = 0.0;  ///< half the difference between two halves of the subjects
+  std::array<double, 2> halves{};   ///< the same of each half of the subjects
+  double log_evidence_error = 0.0;  ///< of log_evidence less that of no cause, from the halves
   std::vector<Marginal> parameters;
   std::vector<double> values;   ///< posterior medians, by cause; 1 for a cause without a parameter
   std::vector<double> spreads;  ///< posterior medians of the coefficients of variation, by cause
   std::vector<double> shift;    ///< of the calibrated means there
   TableVector z;                ///< (prediction - paper) / the paper's standard error there
-  double predictive_p = 0.0;    ///< of tables as far off as the paper's, 15 degrees of freedom
+  double fit_p = 0.0;           ///< of tables as far off; 15 degrees of freedom less the parameters
 };
 
 /// What all hypotheses share.

@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +12,12 @@
 
 namespace stillhand::study {
 namespace {
+
+// Of the logarithm of the standard deviation of n normal values, Eq. SU-8.
+double log_deviation_bias(double n) {
+  return 0.5 * (boost::math::digamma((n - 1.0) / 2.0) - std::log((n - 1.0) / 2.0));
+}
+double log_deviation_variance(double n) { return 0.25 * boost::math::trigamma((n - 1.0) / 2.0); }
 
 using Differences = Eigen::Matrix<double, kTableMeans, 1>;
 
@@ -53,7 +61,7 @@ Prediction predict_tables(const std::vector<Metrics>& subjects, std::size_t simu
       for (Eigen::Index j = 3; j < kTableMeans; ++j) {
         const double squared =
             covariance(i, j) * covariance(i, j) / (covariance(i, i) * covariance(j, j));
-        matrix(6 + i, 6 + j) = squared / (2.0 * (count - 1.0));
+        matrix(6 + i, 6 + j) = squared * log_deviation_variance(count);
       }
     }
   };
@@ -61,7 +69,7 @@ Prediction predict_tables(const std::vector<Metrics>& subjects, std::size_t simu
   fill(out.simulation, static_cast<double>(simulated));
   out.mean.head<kTableMeans>() = mean;
   for (Eigen::Index i = 3; i < kTableMeans; ++i) {
-    out.mean[6 + i] = 0.5 * std::log(covariance(i, i));
+    out.mean[6 + i] = 0.5 * std::log(covariance(i, i)) + log_deviation_bias(kPaperSubjects);
   }
   return out;
 }

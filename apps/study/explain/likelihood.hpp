@@ -17,8 +17,9 @@ struct Prediction {
 };
 
 /// README Eq. SU-8.  Means are normal with the covariance of the subjects over 12; the logarithm of
-/// a standard deviation is normal with variance 1/(2 11), and two of them correlate with the square
-/// of the metrics' correlation.  Subjects without a crossover are left out.
+/// a standard deviation is normal with the bias and variance of 11 degrees of freedom, and two of
+/// them correlate with the square of the metrics' correlation.  Subjects without a crossover are
+/// left out.
 /// @param subjects   metrics of each, real or drawn
 /// @param simulated  number of independent subjects behind them
 /// @throws ConfigError with fewer than three subjects left

@@ -72,13 +72,18 @@ PaperTables paper_tables(double unit_mm) {
     const double of_a = variance_of(at, unit * metric.paper_a, unit);
     const double of_b = variance_of(at, unit * metric.paper_b, unit);
     const double of_c = variance_of(at, unit * metric.paper_c, unit);
-    out.uncertainty(k, k) = of_a;
-    out.uncertainty(k, 3 + k) = out.uncertainty(3 + k, k) = -of_a;
-    out.uncertainty(3 + k, 3 + k) = of_a + of_b;
-    out.uncertainty(3 + k, 6 + k) = out.uncertainty(6 + k, 3 + k) = -of_b;
-    out.uncertainty(6 + k, 6 + k) = of_b + of_c;
-    out.uncertainty(9 + k, 9 + k) = (of_a + of_b) / (ab * ab);
-    out.uncertainty(12 + k, 12 + k) = (of_b + of_c) / (bc * bc);
+    // A, B - A, C - B, ln s of A-B and of B-C as functions of the three conditions.
+    Eigen::Matrix<double, 5, 3> of;
+    of << 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, 0, 0, 0, 0;
+    of.row(3) = of.row(1) / ab;
+    of.row(4) = of.row(2) / bc;
+    Eigen::Matrix3d conditions = Eigen::Vector3d(of_a, of_b, of_c).asDiagonal();
+    // f_c of B and of C were revised by the same amount.
+    if (k == 2) conditions(1, 2) = conditions(2, 1) = kCrossoverRevision_hz * kCrossoverRevision_hz;
+    const Eigen::Matrix<double, 5, 5> own = of * conditions * of.transpose();
+    for (Eigen::Index i = 0; i < 5; ++i) {
+      for (Eigen::Index j = 0; j < 5; ++j) out.uncertainty(3 * i + k, 3 * j + k) = own(i, j);
+    }
     if (k == 0) {
       out.per_log_unit[0] = unit * metric.paper_a;
       out.per_log_unit[3] = ab;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study/explain/responses.hpp"
 
+#include <limits>
+
+#include "services/contract/config_error.hpp"
 #include "services/runtime/process/run_jobs.hpp"
 
 namespace stillhand::study {
@@ -20,6 +23,16 @@ Response response_of(const SubjectResult& result) {
   return out;
 }
 
+Response response_to(const StudyOptions& options, std::size_t subject) {
+  try {
+    return response_of(run_subject(options, static_cast<std::int64_t>(subject)));
+  } catch (const ConfigError&) {
+    Response none;
+    none.metrics.fill(std::numeric_limits<double>::quiet_NaN());
+    return none;
+  }
+}
+
 }  // namespace
 
 std::vector<Metrics> metrics_of(const std::vector<Response>& responses) {
@@ -37,8 +50,7 @@ std::vector<std::vector<Response>> run_settings(const std::vector<Setting>& sett
   const auto job = [&](std::size_t index) {
     const std::size_t setting = index / subjects;
     const std::size_t subject = index % subjects;
-    out[setting][subject] =
-        response_of(run_subject(settings[setting].options, static_cast<std::int64_t>(subject)));
+    out[setting][subject] = response_to(settings[setting].options, subject);
   };
   const auto done = [&](std::size_t count) {
     return on_progress(static_cast<std::int64_t>(count), static_cast<std::int64_t>(jobs));

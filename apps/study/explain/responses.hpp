@@ -39,8 +39,8 @@ struct Setting {
 
 /// Runs the first `subjects` subjects of every setting.  Every setting sees the same subjects,
 /// motion, targets and remnant, so that their differences are the settings'.
-/// @return by setting, then by subject
-/// @throws ConfigError as run_subject(); Interrupted when on_progress returned false
+/// @return by setting, then by subject; NaN for a subject whose limbs no rig accepts
+/// @throws Interrupted when on_progress returned false
 std::vector<std::vector<Response>> run_settings(const std::vector<Setting>& settings,
                                                 std::size_t subjects, unsigned threads,
                                                 const OnProgress& on_progress);

@@ -277,5 +277,52 @@ TEST(BodyTest, RefusesAStickWithoutMass) {
   EXPECT_THROW(Body(BodyConfig{}, stick), ConfigError);
 }
 
+// Eq. RG-28: a level is the body with k_a, k_h times exp(0.02 L) and c_a, c_h times its root.
+TEST(BodyTest, AStiffnessLevelIsTheBodyWithThatStiffness) {
+  constexpr int kLevel = 20;
+  BodyConfig varies;
+  varies.neuromuscular.wander = 0.1;
+  BodyConfig stiff;
+  const double factor = std::exp(StiffnessLevels::kStep * kLevel);
+  stiff.shoulder_stiffness_n_m *= factor;
+  stiff.grip_stiffness_n_m *= factor;
+  stiff.shoulder_damping_n_s_m *= std::sqrt(factor);
+  stiff.grip_damping_n_s_m *= std::sqrt(factor);
+  Body sut(varies, StickConfig{});
+  Body same(stiff, StickConfig{});
+  for (int n = 0; n < 4 * kSecond; ++n) {
+    const double a_m_s2 = 3.0 * std::sin(kTwoPi * 2.0 * n * kDt_s);
+    const bool pegged = n < kSecond;
+    const auto out = sut.step({a_m_s2, 0.0, 0.0, pegged, 0.0, kLevel});
+    const auto expected = same.step({a_m_s2, 0.0, 0.0, pegged});
+    // Rounding of the factors: a few ulp of 20 N.
+    ASSERT_NEAR(out.feedthrough_force_n, expected.feedthrough_force_n, 1e-10) << n;
+    ASSERT_NEAR(out.theta_rad, expected.theta_rad, 1e-12) << n;
+  }
+}
+
+// Eq. RG-29 at rest: a constant force on a held stick meets the shoulder's k_a + k_r in place of
+// k_a; the force on the stick is then that of a body with the stiffer shoulder.
+TEST(BodyTest, AReflexStiffensTheShoulderAtRest) {
+  BodyConfig with;
+  with.neuromuscular.reflex_stiffness_n_m = 200.0;
+  BodyConfig stiff;
+  // Co-contraction multiplies k_a, and not the reflex.
+  stiff.shoulder_stiffness_n_m += 200.0 / stiff.cocontraction_stiffness_factor;
+  Body sut(with, StickConfig{});
+  Body expected(stiff, StickConfig{});
+  Body without(BodyConfig{}, StickConfig{});
+  double force_n = 0.0;
+  double stiff_n = 0.0;
+  double plain_n = 0.0;
+  for (int n = 0; n < 20 * kSecond; ++n) {
+    force_n = sut.step({1.0, 0.0, 0.0, false}).feedthrough_force_n;
+    stiff_n = expected.step({1.0, 0.0, 0.0, false}).feedthrough_force_n;
+    plain_n = without.step({1.0, 0.0, 0.0, false}).feedthrough_force_n;
+  }
+  EXPECT_NEAR(force_n, stiff_n, 1e-6 * std::abs(stiff_n));
+  EXPECT_GT(std::abs(force_n - plain_n), 1e-3 * std::abs(plain_n));
+}
+
 }  // namespace
 }  // namespace stillhand::rig

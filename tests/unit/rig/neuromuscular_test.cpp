@@ -159,6 +159,29 @@ TEST(ReflexTest, ItsForceIsBounded) {
   EXPECT_EQ(most_n, config.reflex_max_force_n);
 }
 
+// A hand that opposes half of the motor moves the stick as half the motor would, after the delay.
+TEST(NeuromuscularTest, InTheRigResistanceTakesItsShareOfTheMotorAway) {
+  RigConfig config;
+  config.stick.coulomb_friction_n = 0.0;
+  config.body.neuromuscular.motor_resistance = 0.5;
+  RigConfig half_motor;
+  half_motor.stick.coulomb_friction_n = 0.0;
+  half_motor.motor.gain = 0.5;
+  Rig sut(config);
+  Rig expected(half_motor);
+  RigInput input{.command_valid = true, .motor_valid = true};
+  input.motor_permitted = true;
+  input.motor_force_n = 10.0;
+  double theta_rad = 0.0;
+  double expected_rad = 0.0;
+  for (int n = 0; n < 10 * kSecond; ++n) {
+    theta_rad = sut.step(input).truth.theta_rad;
+    expected_rad = expected.step(input).truth.theta_rad;
+  }
+  ASSERT_GT(expected_rad, 0.01);
+  EXPECT_NEAR(theta_rad, expected_rad, 1e-6 * expected_rad);
+}
+
 // The largest of everything at once: the stick stays between its stops, and every output finite.
 TEST(NeuromuscularTest, AHandWithEveryEffectAtItsEndKeepsTheRigBounded) {
   RigConfig config;

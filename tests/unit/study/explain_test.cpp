@@ -38,6 +38,10 @@ TEST(PaperTablesTest, HoldTheTablesInTheirOrder) {
   const double of_c_minus_a =
       paper.uncertainty(3, 3) + paper.uncertainty(6, 6) + 2.0 * paper.uncertainty(3, 6);
   EXPECT_NEAR(of_c_minus_a, std::pow(0.05 * 22.22, 2) + std::pow(0.05 * 38.555, 2), 1e-3);
+  // f_c of B and of C were revised together: the difference keeps the rounding alone.
+  EXPECT_NEAR(paper.uncertainty(8, 8), 2.0 * 1e-4 / 12.0, 1e-9);
+  // ln s goes with its difference.
+  EXPECT_NEAR(paper.uncertainty(6, 12), paper.uncertainty(6, 6) / paper.values[6], 1e-9);
   // Another unit scales what is in millimetres.
   const PaperTables larger = paper_tables(5.5 * std::exp(1e-3));
   EXPECT_LT(((larger.values - paper.values) / 1e-3 - paper.per_log_unit).cwiseAbs().maxCoeff(),
@@ -92,8 +96,9 @@ TEST(PredictTablesTest, GivesMeansDeviationsAndTheCovarianceOfTwelve) {
   EXPECT_LT((sut.mean - paper.values).head<9>().cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((sut.mean - paper.values).tail<6>().cwiseAbs().maxCoeff(), 4.0 * 0.0354);
   EXPECT_NEAR(std::sqrt(sut.sampling(6, 6)), paper.standard_error[6], 0.15 * 1.7);
-  EXPECT_NEAR(sut.sampling(12, 12), 1.0 / 22.0, 1e-12);
-  EXPECT_NEAR(sut.simulation(12, 12), 1.0 / 798.0, 1e-12);
+  // R: trigamma(5.5) / 4 = 0.04984; trigamma(199.5) / 4 = 1.2563e-3.
+  EXPECT_NEAR(sut.sampling(12, 12), 0.04984, 1e-5);
+  EXPECT_NEAR(sut.simulation(12, 12), 1.2563e-3, 1e-6);
 }
 
 TEST(PredictTablesTest, LeavesOutASubjectWithoutACrossover) {
@@ -147,6 +152,7 @@ class MadeCause {
     cause_.name = "made";
     cause_.parameter = "size";
     cause_.grid = {0.0, 0.5, 1.0};
+    cause_.most = 1.0;
     responses_.cause = &cause_;
     for (const double value : cause_.grid) {
       auto moved = without_;
@@ -174,8 +180,8 @@ TEST(ExplainTest, ACauseThatIsThereIsFoundWithItsSize) {
   EXPECT_NEAR(sut.parameters[0].median, 0.5, 0.05);
   EXPECT_NEAR(sut.parameters[0].high - sut.parameters[0].low, 4.0 * 0.1, 0.1);
   EXPECT_NEAR(sut.z[7], 0.0, 0.3);
-  EXPECT_GT(sut.predictive_p, 0.05);
-  EXPECT_LT(nothing.predictive_p, sut.predictive_p);
+  EXPECT_GT(sut.fit_p, 0.05);
+  EXPECT_LT(nothing.fit_p, sut.fit_p);
 }
 
 TEST(ExplainTest, AParameterThatDoesNothingCostsNothingAndGainsNothing) {
@@ -202,6 +208,42 @@ TEST(ExplainTest, TwoCausesThatAddUpHaveNoInteraction) {
   // Only their sum is known: half of 1 each, anything from 0 to 1.
   EXPECT_NEAR(sut.parameters[0].median + sut.parameters[1].median, 1.0, 0.15);
   EXPECT_GT(sut.parameters[0].high - sut.parameters[0].low, 0.6);
+}
+
+// Two causes that do nothing alone and lower the dwell ratio together; simulated for half of the
+// subjects.
+TEST(ExplainTest, AnInteractionIsBilinearAndCarriesOverToAllSubjects) {
+  const MadeCause made(0.0);
+  std::vector<Response> both(made.without_.begin(), made.without_.begin() + 200);
+  for (Response& one : both) one.metrics[7] -= 0.14;
+  const PairResponses pair{{0, 0}, {1.0, 1.0}, both};
+  const Hypothesis sut = explain_with(made.inference_, {&made.responses_, &made.responses_}, pair);
+  // The paper's ratio is met where the product of both is 0.07 / 0.14.
+  EXPECT_NEAR(sut.parameters[0].median * sut.parameters[1].median, 0.5, 0.15);
+  EXPECT_GT(sut.log_evidence, explain_nothing(made.inference_).log_evidence + 5.0);
+}
+
+// A personal cause spreads the subjects: C - B of the dwell ratio gets the variance (0.14 m cv)^2.
+TEST(ExplainTest, APersonalCauseExplainsSpread) {
+  MadeCause made(0.14);
+  made.cause_.personal = true;
+  // The subjects without it are alike in C - B: a hundredth of the paper's deviation.
+  for (Response& one : made.without_) {
+    const double mean = 0.08 + 0.07;
+    const double own = one.metrics[7] - one.metrics[4] - mean;
+    one.metrics[7] = one.metrics[4] + mean + 0.01 * own;
+  }
+  made.responses_.at.clear();
+  for (const double value : made.cause_.grid) {
+    auto moved = made.without_;
+    for (Response& one : moved) one.metrics[7] -= 0.14 * value;
+    made.responses_.at.push_back(std::move(moved));
+  }
+  const Hypothesis sut = explain_with(made.inference_, 0, made.responses_);
+  ASSERT_EQ(sut.parameters.size(), 2u);
+  // 0.14 * 0.5 * cv = 0.042: cv = 0.6.
+  EXPECT_NEAR(sut.parameters[1].median, 0.6, 0.21);
+  EXPECT_GT(sut.parameters[1].low, 0.1);
 }
 
 TEST(ExplainTest, NamesWhatTheTablesCannotTellApart) {
