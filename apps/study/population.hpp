@@ -65,7 +65,7 @@ struct Population {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     const auto spread = [&](const char* name, auto& value) {
-      visit(name, value, Range{0.0, 1.0}, "[-] standard deviation over mean");
+      visit(name, value, kSpreads, kSpread);
     };
     visit(
         "body_mass_kg", self.body_mass_kg, Range{40.0, 130.0},
@@ -113,6 +113,19 @@ struct Population {
     visit("regression_error_m", self.regression_error_m, Range{0.005, 1.0},
           "[m] RMS of fast error that halves the crossover; calibrated, README");
     spread("regression_cv", self.regression_cv);
+    added_fields(visit, self);
+  }
+
+ private:
+  static constexpr Range kSpreads{0.0, 1.0};
+  static constexpr const char* kSpread = "[-] standard deviation over mean";
+
+  /// What nerves and muscles add.
+  template <typename Visitor, typename Self>
+  static void added_fields(Visitor&& visit, Self& self) {
+    const auto spread = [&](const char* name, auto& value) {
+      visit(name, value, kSpreads, kSpread);
+    };
     visit("stiffening_by_vibration_s2_m", self.stiffening_by_vibration_s2_m, Range{-0.3, 2.0},
           "[s^2/m] growth of the tracking arm's stiffness per m/s^2 RMS of platform motion; no "
           "source");
