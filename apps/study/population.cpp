@@ -28,6 +28,9 @@ constexpr double kHandShare = 0.0040;
 // Range of the rig's setting.
 constexpr double kMostCocontraction = 4.0;
 
+// Perception takes a millisecond at least.
+constexpr double kShortest_s = 0.001;
+
 using Draw = std::function<double(double mean, double cv)>;
 
 double damping(double ratio, double stiffness_n_m, double mass_kg) {
@@ -79,6 +82,9 @@ Subject subject(const Population& p, const Draw& draw) {
   out.who.crossover_hz = draw(p.crossover_hz, p.crossover_cv);
   out.who.delay_s = draw(p.delay_s, p.delay_cv);
   out.who.muscle_rad_s = draw(p.muscle_rad_s, p.muscle_cv);
+  // The delay of the whole subject contains the lag of the muscle.
+  out.who.delay_s = std::max(
+      out.who.delay_s, 2.0 * out.who.muscle_damping_ratio / out.who.muscle_rad_s + kShortest_s);
   out.who.remnant_ratio = draw(p.remnant_ratio, p.remnant_cv);
   out.who.regression_error_m = draw(p.regression_error_m, p.regression_cv);
   // Later draws come last: a subject's body and tracking do not depend on them.
