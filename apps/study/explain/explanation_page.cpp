@@ -41,6 +41,7 @@ report::Table ranking_table(const Explanation& explanation,
                  report::Align::kRight, report::Align::kRight, report::Align::kRight};
   const double nothing = explanation.single.front().log_evidence;
   std::vector<const Hypothesis*> ranked;
+  ranked.reserve(hypotheses.size());
   for (const Hypothesis& one : hypotheses) ranked.push_back(&one);
   std::ranges::stable_sort(ranked, std::ranges::greater{},
                            [](const Hypothesis* one) { return one->log_evidence; });

@@ -156,6 +156,7 @@ double log_mean_exp(const std::vector<Point>& points) {
 Marginal marginal(const std::vector<Point>& points, double log_evidence, std::string name,
                   const auto& coordinate) {
   std::vector<std::pair<double, double>> weighted;
+  weighted.reserve(points.size());
   for (const Point& point : points) {
     weighted.emplace_back(coordinate(point), std::exp(point.log_likelihood - log_evidence) /
                                                  static_cast<double>(points.size()));

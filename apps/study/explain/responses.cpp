@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "apps/session/paper_table.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/process/run_jobs.hpp"
 

@@ -13,9 +13,10 @@ FractionalLadder::FractionalLadder(double exponent, double period_s) {
   constexpr double kApart = 3.0;
   const double weight = std::log(kApart) * std::sin(exponent * std::numbers::pi) / std::numbers::pi;
   double rate = kTwoPi * kLowest_hz;
-  for (std::size_t i = 0; i < kLags; ++i, rate *= kApart) {
+  for (std::size_t i = 0; i < kLags; ++i) {
     gain_[i] = weight * std::pow(rate, exponent);
     blend_[i] = 1.0 - std::exp(-period_s * rate);
+    rate *= kApart;
   }
 }
 
