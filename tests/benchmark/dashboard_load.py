@@ -20,6 +20,10 @@ import threading
 import time
 import urllib.request
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from waiting import wait_for  # noqa: E402
+
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", "build"))
 TOPICS = 7
 WARM_UP_S = 3.0
@@ -58,14 +62,8 @@ def counted_of(seen):
     return sum(each["samples"] for each in seen["rigs"])
 
 
-def wait_for(what, condition, fails=True, limit_s=LIMIT_S):
-    limit = time.monotonic() + limit_s
-    while not condition():
-        if time.monotonic() > limit:
-            if fails:
-                sys.exit(f"dashboard_load: no {what} within {limit_s:g} s")
-            return
-        time.sleep(POLL_S)
+def refused(why):
+    return SystemExit(f"dashboard_load: {why}")
 
 
 def main():
@@ -84,7 +82,8 @@ def main():
         clients = [Client(address) for _ in range(options.clients)]
         for client in clients:
             client.start()
-        wait_for("the load's first seconds", lambda: snapshot(address)["session"]["tick"] >= 1000 * WARM_UP_S)
+        wait_for("the load's first seconds", lambda: snapshot(address)["session"]["tick"] >= 1000 * WARM_UP_S,
+                 LIMIT_S, POLL_S, refused)
         began, used = time.monotonic(), cpu_s(dashboard.pid)
         events, most_listening = sum(client.events for client in clients), 0
 
@@ -94,13 +93,14 @@ def main():
             seen = snapshot(address)
             most_listening = max(most_listening, seen["dashboard"]["clients"])
             return seen["session"]["tick"] >= 1000 * (options.seconds - 1)
-        wait_for("the load's last second", nearly_over, limit_s=LIMIT_S + options.seconds)
+        wait_for("the load's last second", nearly_over, LIMIT_S + options.seconds, POLL_S, refused)
         share = (cpu_s(dashboard.pid) - used) / (time.monotonic() - began)
         rate = (sum(client.events for client in clients) - events) / (time.monotonic() - began)
-        told = load.stdout.readline().strip()
-        sent = int(re.match(r"sent (\d+)", told)[1])
+        report = load.stdout.readline().strip()
+        sent = int(re.match(r"sent (\d+)", report)[1])
         # Samples on their way arrive; the row shows it if they do not.
-        wait_for("all that was sent", lambda: counted_of(snapshot(address)) == sent, fails=False)
+        wait_for("all that was sent", lambda: counted_of(snapshot(address)) == sent, LIMIT_S, POLL_S,
+                 failure=None)
         seen = snapshot(address)
     finally:
         load.stdin.close()
@@ -109,7 +109,7 @@ def main():
         dashboard.wait()
     counted = counted_of(seen)
     lost = sum(each["lost"] for each in seen["rigs"])
-    print(told)
+    print(report)
     print(f"events {rate:.0f} a second, {rate / options.clients:.1f} a client; {most_listening} listened")
     print("| topics at 1 kHz | messages a second | clients | CPU [% of a core] | sent | counted | lost | dropped |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")

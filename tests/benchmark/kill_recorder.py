@@ -19,6 +19,10 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from waiting import wait_for  # noqa: E402
+
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
 STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
@@ -29,6 +33,7 @@ TOPICS = ("raw_sample", "rig_truth", "sensed", "motor_command")
 CTEST_SKIPPED = 77
 LOST_LIMIT_S = 1.0
 START_LIMIT_S = 15.0
+START_POLL_S = 0.005
 # Behind the first chunk: several flush intervals, so that every phase of one is hit.
 LATEST_KILL_S = 1.5
 
@@ -41,16 +46,6 @@ def run(*words):
     return subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
 
 
-def wait_for(what, condition, process):
-    limit = time.monotonic() + START_LIMIT_S
-    while not condition():
-        if process.poll() is not None:
-            raise Broken(f"the recorder ended with status {process.returncode} before {what}")
-        if time.monotonic() > limit:
-            raise Broken(f"no {what} within {START_LIMIT_S} s")
-        time.sleep(0.005)
-
-
 def size_of(file):
     return file.stat().st_size if file.exists() else 0
 
@@ -61,10 +56,17 @@ def record_and_kill(file, domain, when_s, in_start_up):
                                  "--config", str(SOURCE / "deploy/config"), "--out", str(file)],
                                 stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        wait_for("file", file.exists, recorder)
+        def ended():
+            status = recorder.poll()
+            return status is not None and f"the recorder ended with status {status}"
+
+        def wait(what, condition):
+            wait_for(what, condition, START_LIMIT_S, START_POLL_S, Broken, ended)
+
+        wait("file", file.exists)
         if not in_start_up:
             empty = size_of(file)
-            wait_for("chunk", lambda: size_of(file) > max(empty, 4096), recorder)
+            wait("chunk", lambda: size_of(file) > max(empty, 4096))
         time.sleep(when_s)
         return time.monotonic()
     finally:

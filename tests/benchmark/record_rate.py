@@ -15,10 +15,14 @@ import resource
 import subprocess
 import sys
 import tempfile
-import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from waiting import wait_for  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+TAKEN_LIMIT_S = 10.0
 
 
 def dropped_by_kernel():
@@ -28,14 +32,10 @@ def dropped_by_kernel():
     return int(values[names.index("RcvbufErrors")])
 
 
-def wait_until_taken():
-    """Until no UDP socket of this machine holds a datagram; at most 10 s."""
-    limit = time.monotonic() + 10.0
-    while time.monotonic() < limit:
-        rows = pathlib.Path("/proc/net/udp").read_text().splitlines()[1:]
-        if all(int(row.split()[4].split(":")[1], 16) == 0 for row in rows):
-            return
-        time.sleep(0.01)
+def all_taken():
+    """True if no UDP socket of this machine holds a datagram."""
+    rows = pathlib.Path("/proc/net/udp").read_text().splitlines()[1:]
+    return all(int(row.split()[4].split(":")[1], 16) == 0 for row in rows)
 
 
 def measure(rate, seconds, pattern):
@@ -47,7 +47,7 @@ def measure(rate, seconds, pattern):
         load = subprocess.Popen([BUILD / "tests" / "bus_load", str(domain), str(rate), str(seconds), pattern],
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         sent = load.stdout.readline().strip()
-        wait_until_taken()
+        wait_for("end of the queues", all_taken, TAKEN_LIMIT_S, failure=None)
         load.communicate("\n", timeout=60)
         if load.returncode:
             sys.exit(f"record_rate: bus_load ended with status {load.returncode}")

@@ -13,8 +13,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+
+from waiting import POLL_S, wait_for  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
@@ -29,7 +32,6 @@ TICKS_PER_S = 1000
 MATCH_LIMIT_S = 30.0  # the lab itself gives up after 20 s
 TRIAL_LIMIT_S = 60.0  # of a quick session, until its first tracking trial: 12 s on two cores
 END_LIMIT_S = 20.0    # the lab gives its processes 5 s, and the recorder another 5 s
-POLL_S = 0.05
 DOMAINS = 16
 MOST_OWN_DOMAINS = 6
 _domains_used = 0
@@ -89,16 +91,6 @@ def loose_settings(folder):
     return folder
 
 
-def wait_for(what, condition, limit_s, poll_s=POLL_S):
-    """Returns the condition's first true value; fails if there is none within the limit."""
-    limit = time.monotonic() + limit_s
-    while not (value := condition()):
-        if time.monotonic() > limit:
-            raise AssertionError(f"no {what} within {limit_s} s")
-        time.sleep(poll_s)
-    return value
-
-
 def quick_session(folder):
     """Arguments of a session that soon has a motor force: condition C after a pegged trial of 5 s.
 
@@ -149,16 +141,11 @@ class LabProcess:
 
     def wait_for(self, what, condition, limit_s, poll_s=POLL_S):
         """Returns the condition's first true value; fails after the limit, or if the lab ends before."""
-        limit = time.monotonic() + limit_s
-        while True:
-            value = condition()
-            if value:
-                return value
-            if self.process.poll() is not None:
-                raise AssertionError(f"lab ended with status {self.process.returncode} before {what}: {self.errors()}")
-            if time.monotonic() > limit:
-                raise AssertionError(f"no {what} within {limit_s} s: {self.errors()}")
-            time.sleep(poll_s)
+        def ended():
+            status = self.process.poll()
+            return status is not None and f"lab ended with status {status} before {what}"
+        return wait_for(what, condition, limit_s, poll_s, ended=ended,
+                        failure=lambda why: AssertionError(f"{why}: {self.errors()}"))
 
     def wait_for_start(self):
         self.wait_for("all services", lambda: len(running(self.domain)) > len(SERVICES), MATCH_LIMIT_S)
@@ -178,10 +165,8 @@ class LabProcess:
 
     def wait_until_alone(self, limit_s=END_LIMIT_S):
         """Waits until no process of this lab is left; returns those that are left after the limit."""
-        limit = time.monotonic() + limit_s
-        while (left := running(self.domain)) and time.monotonic() < limit:
-            time.sleep(POLL_S)
-        return left
+        wait_for("end of the lab's processes", lambda: not running(self.domain), limit_s, failure=None)
+        return running(self.domain)
 
     def shared_memory_left(self):
         return shared_memory() - self._shared_memory_before

@@ -17,6 +17,8 @@ constexpr std::uint64_t kRemnantStream = 0x72656d6e616e7400;
 // Eq. HO-7: memory of the felt vibration, and the largest RMS that counts.
 constexpr double kFelt_s = 4.0;
 constexpr double kMostFelt_m_s2 = 5.0;
+// A larger acceleration in a message is no motion of a platform; it is clipped.
+constexpr double kFarthestFelt_m_s2 = 60.0;
 // Wider than any screen; larger positions in a message are clipped.
 constexpr double kFarthestSeen_m = 1.0;
 
@@ -109,7 +111,10 @@ OperatorOutput CrossoverOperator::step(const OperatorInput& input) noexcept {
   if (!seen) flags |= kInputInvalid;
   double force_n = 0.0;
   if (input.active && seen) {
-    const double felt_m_s2 = std::isfinite(input.felt_m_s2) ? input.felt_m_s2 : 0.0;
+    const double felt_m_s2 =
+        std::isfinite(input.felt_m_s2)
+            ? std::clamp(input.felt_m_s2, -kFarthestFelt_m_s2, kFarthestFelt_m_s2)
+            : 0.0;
     force_n = wanted_force(std::clamp(error_m, -kFarthestSeen_m, kFarthestSeen_m), felt_m_s2);
   } else if (!input.active) {
     start_afresh();

@@ -131,6 +131,25 @@ TEST(CrossoverOperatorTest, VibrationMakesTheSubjectAnswerLater) {
   EXPECT_NEAR(static_cast<double>(answer_ticks(2.0) - at_rest), 40.0, 1.0);
 }
 
+// A message may hold any acceleration; its square must not reach the force.
+TEST(CrossoverOperatorTest, NoFeltAccelerationMakesTheForceUnusable) {
+  CrossoverConfig config;
+  config.remnant_by_vibration_s2_m = 20.0;
+  config.delay_by_vibration_s3_m = 0.2;
+  CrossoverOperator sut(config);
+  const double hostile[]{1e300, -1e300, kInfinity, kNan, 1e200};
+  for (Tick t = 0; t < 3000; ++t) {
+    const auto out = sut.step({t, 0.03, 0.0, true, hostile[t % 5]});
+    ASSERT_TRUE(std::isfinite(out.force_n)) << t;
+    ASSERT_LE(std::abs(out.force_n), config.arm.max_force_n) << t;
+  }
+  double largest_n = 0.0;
+  for (Tick t = 3000; t < 6000; ++t) {
+    largest_n = std::max(largest_n, std::abs(sut.step({t, 0.03, 0.0, true, 0.0}).force_n));
+  }
+  EXPECT_GT(largest_n, 0.1);  // the subject still acts
+}
+
 TEST(CrossoverOperatorTest, TheSameSeedGivesTheSameBits) {
   CrossoverConfig config;
   const TrackingRun first = close_the_loop(config, 20.0, 1, kScale_m);
