@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/measurement/grid.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/expects.hpp"
 
@@ -11,6 +12,8 @@ namespace stillhand::close_the_loop {
 namespace {
 
 using cancellation::ControlModel;
+
+constexpr std::size_t kMostValues = 60'000'000;
 
 class Loop {
  public:
@@ -143,8 +146,12 @@ bool Loop::round() {
   diagnose.progress = [&](const std::string& what) {
     return options_.progress("diagnosis: " + what);
   };
-  const Evidence evidence{&result_.trial("I").measured, &result_.trial("B").measured,
-                          &newest_cancelled().measured};
+  const diagnosis::Measurement pegged =
+      measurement::on_grid(result_.trial("I").measured, kMostValues);
+  Evidence evidence;
+  evidence.pegged = &pegged;
+  evidence.moving = {&result_.trial("B").measured};
+  evidence.cancelled = {&newest_cancelled().measured};
   Round round;
   options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
   try_model(round, why_not_augmented(round.verdict));

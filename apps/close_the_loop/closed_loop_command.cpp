@@ -8,6 +8,7 @@
 
 #include "apps/close_the_loop/live_session.hpp"
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/recorded/recorded_command.hpp"
 #include "apps/close_the_loop/repeats.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/lab/undeclared_effect.hpp"
@@ -15,10 +16,10 @@
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
 #include "apps/report/staged_folder.hpp"
-#include "apps/study/population.hpp"
 #include "services/cancellation/control_model_file.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
+#include "services/population/population.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/real_time.hpp"
@@ -33,8 +34,8 @@ struct Words {
   bool live = false;
   bool off_catalogue = false;
   std::int64_t repeats = 10;
-  std::int64_t subject = 1;  ///< of the population, under the session's seed; 0: the rig's default
   unsigned threads = 0;      ///< 0: one per core
+  RecordedOptions recorded;  ///< with --pegged, in place of a session
 };
 
 // Steps of one pass through the loop, and the loop's part of the progress line.
@@ -51,9 +52,9 @@ DeclaredDrive declared_drive(const rig::RigConfig& rig) {
 
 session::CoreConfigs configs_of(const Words& words) {
   session::CoreConfigs configs;
-  if (words.subject == 0) return configs;
-  const study::Subject subject =
-      study::draw_subject({}, words.lab.protocol.seed, words.subject - 1);
+  if (words.lab.subject == 0) return configs;
+  const population::Subject subject =
+      population::draw_subject({}, words.lab.protocol.seed, words.lab.subject - 1);
   configs.rig.body = subject.body;
   configs.human_operator = subject.who;
   return configs;
@@ -65,7 +66,7 @@ LoopRecord new_record(const Words& words) {
   record.command_line = report::command_line();
   record.undeclared_effect = words.lab.undeclared_effect;
   record.live = words.live;
-  record.subject = words.live ? 0 : words.subject;
+  record.subject = words.lab.subject;
   record.options.protocol = words.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
@@ -109,7 +110,7 @@ void run_in_process(const Words& words) {
     folder.write(rig::kCommitmentFile, session.commitment());
   }
   record.result = close_loop(session, record.options);
-  folder.write(kVerdictFile, verdict_json(record.result));
+  folder.write(kVerdictFile, verdict_json(record.result.verdict()));
   RepeatOptions repeats{words.repeats, threads_of(words), {}};
   repeats.progress = [&](double share) {
     progress.show("repeats", kLoopShare + (1.0 - kLoopShare) * share);
@@ -146,12 +147,12 @@ void run_live(const Words& words) {
   record.conditions = own_trials(record.result);
   // The verdict is written before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
-                                                           verdict_json(record.result));
+                                                           verdict_json(record.result.verdict()));
       !status.ok()) {
     throw std::runtime_error(status.text);
   }
   if (!live.sealed.empty()) {
-    lab::open_undeclared_effect(words.lab, live.sealed, kVerdictFile);
+    lab::open_undeclared_effect(words.lab, live, kVerdictFile);
     record.truth = truth_of(recording::read_file((out / rig::kSealedFile).string()));
   }
   live.folder.reset();
@@ -175,11 +176,9 @@ void add_comparison_options(CLI::App& verb, const std::shared_ptr<Words>& words,
       ->excludes(live)
       ->capture_default_str();
   verb.add_option(
-          "--subject", words->subject,
-          "number of the subject that `stillhand study --seed` draws; 0: the rig's default, "
-          "who is the subject with --live")
+          "--subject", words->lab.subject,
+          "number of the subject that `stillhand study --seed` draws; 0: the one in the settings")
       ->check(CLI::Range(0, 10000))
-      ->excludes(live)
       ->capture_default_str();
   verb.add_option("--threads", words->threads,
                   "number of threads; the results do not depend on it; 0: one per core")
@@ -194,6 +193,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
   lab::LabOptions& lab = words->lab;
   lab::set_places(lab);
   lab.headless = true;
+  lab.subject = 1;
   lab.protocol.identify_s = 120.0;  // paper III-A
   lab.protocol.conditions = session::parse_conditions("A,B,C");
   CLI::App* verb = cli.add_subcommand(
@@ -202,23 +202,26 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       "pegged, runs A, B\n"
       "and C with the paper's model, diagnoses the recordings, augments the model "
       "and runs C again (C+),\n"
-      "until nothing new is found or C+ no longer improves.\n"
-      "Example: stillhand close-the-loop --undeclared-effect 7 --out loop1");
+      "until nothing new is found or C+ no longer improves. With --pegged it works on recordings.\n"
+      "Examples: stillhand close-the-loop --undeclared-effect 7 --out loop1\n"
+      "          stillhand close-the-loop --pegged day1.csv day2.csv --out loop2");
   CLI::Option* effect =
       verb->add_option(
               "--undeclared-effect", lab.undeclared_effect,
               "seed of an effect that only the rig knows, revealed after the verdict; 0: none")
           ->check(session::check_seed)
           ->capture_default_str();
-  verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
-      ->check(session::check_seed)
-      ->capture_default_str();
+  CLI::Option* seed =
+      verb->add_option("--seed", lab.protocol.seed, "seed of everything else that is random")
+          ->check(session::check_seed)
+          ->capture_default_str();
   verb->add_option("--out", lab.out, "folder of report, figures and numbers")->required();
-  verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]")
-      ->capture_default_str();
-  verb->add_option("--identify-seconds", lab.protocol.identify_s,
-                   "length of the pegged trial [s]; the paper's is 120")
-      ->capture_default_str();
+  CLI::Option* trial =
+      verb->add_option("--trial-seconds", lab.protocol.trial_s, "length of a tracking trial [s]")
+          ->capture_default_str();
+  CLI::Option* identify = verb->add_option("--identify-seconds", lab.protocol.identify_s,
+                                           "length of the pegged trial [s]; the paper's is 120")
+                              ->capture_default_str();
   CLI::Option* live = verb->add_flag(
       "--live", words->live, "over DDS, with every process, in real time; the recording is kept");
   verb->add_option("--domain", lab.domain, "with --live: DDS domain, 0 to 232")
@@ -228,8 +231,16 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       ->needs(live)
       ->capture_default_str();
   add_comparison_options(*verb, words, effect, live);
+  words->recorded.declared = declared_drive(session::CoreConfigs{}.rig);
+  add_recorded_options(*verb, words->recorded,
+                       {effect, seed, trial, identify, live, verb->get_option("--repeats"),
+                        verb->get_option("--subject")});
   verb->callback([words, &status] {
-    words->live ? run_live(*words) : run_in_process(*words);
+    if (!words->recorded.pegged.empty()) {
+      run_recorded(words->recorded, words->lab.out, words->lab.rig, threads_of(*words));
+    } else {
+      words->live ? run_live(*words) : run_in_process(*words);
+    }
     std::printf("report in %s\n", words->lab.out.string().c_str());
     status = 0;
   });

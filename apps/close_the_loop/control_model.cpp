@@ -8,7 +8,6 @@
 
 #include "apps/close_the_loop/control_laws.hpp"
 #include "apps/close_the_loop/control_response.hpp"
-#include "apps/study/population.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/contract/units.hpp"
@@ -16,6 +15,7 @@
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/diagnosis/core/model/loop.hpp"
 #include "services/diagnosis/core/model/model_run.hpp"
+#include "services/population/population.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -223,7 +223,7 @@ ConvertedModel Conversion::run(const std::vector<double>& denominator) {
 }  // namespace
 
 cancellation::HandCompliance average_hand() {
-  const human_operator::ArmFeel feel = study::mean_subject({}).who.arm;
+  const human_operator::ArmFeel feel = population::mean_subject({}).who.arm;
   return {feel.effective_mass_kg, feel.effective_damping_n_s_m, feel.effective_stiffness_n_m,
           rig::StickConfig{}.lever_m};
 }

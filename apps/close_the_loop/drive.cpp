@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/measurement/read.hpp"
 #include "services/contract/expects.hpp"
 #include "services/contract/tick.hpp"
 #include "services/signal/butterworth.hpp"
@@ -134,7 +135,7 @@ diagnosis::Measurement drive_measurement(const recording::Recording& trial,
   return out;
 }
 
-diagnosis::Diagnosis diagnose_drive(const recording::Recording& trial,
+diagnosis::Diagnosis diagnose_drive(const std::vector<const recording::Recording*>& trials,
                                     const DeclaredDrive& declared,
                                     const diagnosis::DiagnoseOptions& options) {
   diagnosis::DiagnoseOptions own = options;
@@ -142,7 +143,12 @@ diagnosis::Diagnosis diagnose_drive(const recording::Recording& trial,
   own.output = "f_drive";
   own.model = diagnosis::ModelClass::kLinear;
   own.search.most_effects = 1;
-  return diagnosis::diagnose(drive_measurement(trial, declared), own);
+  std::vector<diagnosis::Measurement> parts;
+  for (const recording::Recording* trial : trials) {
+    parts.push_back(drive_measurement(*trial, declared));
+  }
+  return diagnosis::diagnose(
+      parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts)), own);
 }
 
 }  // namespace stillhand::close_the_loop

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "services/diagnosis/core/diagnose.hpp"
 #include "services/recording/core/recording.hpp"
@@ -40,8 +41,8 @@ std::optional<Latency> measure_latency(const recording::Recording& trial,
 diagnosis::Measurement drive_measurement(const recording::Recording& trial,
                                          const DeclaredDrive& declared);
 
-/// Diagnoses it: friction and ripple that are not declared.
-diagnosis::Diagnosis diagnose_drive(const recording::Recording& trial,
+/// Diagnoses it, over all trials together: friction and ripple that are not declared.
+diagnosis::Diagnosis diagnose_drive(const std::vector<const recording::Recording*>& trials,
                                     const DeclaredDrive& declared,
                                     const diagnosis::DiagnoseOptions& options);
 

@@ -103,27 +103,13 @@ ordered_json findings_json(const Verdict& verdict) {
   return list;
 }
 
-ordered_json prediction_json(const Verdict& verdict) {
-  const diagnosis::Diagnosis& body = verdict.body;
-  return {{"before_rmse_n", body.baseline_error.rmse},
-          {"before_ci95", {body.baseline_error.low, body.baseline_error.high}},
-          {"after_rmse_n", body.final_error.rmse},
-          {"after_ci95", {body.final_error.low, body.final_error.high}},
-          {"noise_floor_rmse_n", body.noise_floor.rmse},
-          {"after_over_noise", body.final_error.rmse / body.noise_floor.rmse}};
-}
-
-ordered_json latency_json(const std::optional<Latency>& latency) {
-  if (!latency) return nullptr;
-  return {{"motor_path_s", latency->motor_s}, {"load_cell_s", latency->cell_s}};
-}
-
 ordered_json round_json(const Round& round) {
-  ordered_json treatments = ordered_json::array();
-  for (const Treatment& each : round.verdict.control.treatments) {
-    treatments.push_back({{"kind", each.kind},
-                          {"cancelled", each.cancelled && round.augmented},
-                          {"how", round.augmented ? each.how : round.outcome}});
+  ordered_json treatments = treatments_json(round.verdict.control);
+  if (!round.augmented) {
+    for (ordered_json& each : treatments) {
+      each["cancelled"] = false;
+      each["how"] = round.outcome;
+    }
   }
   ordered_json json{{"findings", findings_json(round.verdict)},
                     {"treatments", treatments},
@@ -139,6 +125,29 @@ ordered_json round_json(const Round& round) {
 }
 
 }  // namespace
+
+ordered_json prediction_json(const Verdict& verdict) {
+  const diagnosis::Diagnosis& body = verdict.body;
+  return {{"before_rmse_n", body.baseline_error.rmse},
+          {"before_ci95", {body.baseline_error.low, body.baseline_error.high}},
+          {"after_rmse_n", body.final_error.rmse},
+          {"after_ci95", {body.final_error.low, body.final_error.high}},
+          {"noise_floor_rmse_n", body.noise_floor.rmse},
+          {"after_over_noise", body.final_error.rmse / body.noise_floor.rmse}};
+}
+
+ordered_json latency_json(const std::optional<Latency>& latency) {
+  if (!latency) return nullptr;
+  return {{"motor_path_s", latency->motor_s}, {"load_cell_s", latency->cell_s}};
+}
+
+ordered_json treatments_json(const ConvertedModel& control) {
+  ordered_json list = ordered_json::array();
+  for (const Treatment& each : control.treatments) {
+    list.push_back({{"kind", each.kind}, {"cancelled", each.cancelled}, {"how", each.how}});
+  }
+  return list;
+}
 
 Truth truth_of(const std::string& sealed_text) {
   const auto json = nlohmann::json::parse(sealed_text);
@@ -175,8 +184,7 @@ bool Truth::agrees_with(const Verdict& verdict) const {
   return strongest.channel == channel && strongest.where == (outside ? place : kBody);
 }
 
-std::string verdict_json(const LoopResult& result) {
-  const Verdict& verdict = result.verdict();
+std::string verdict_json(const Verdict& verdict) {
   ordered_json json{{"kind", verdict.kind()},
                     {"channel", nullptr},
                     {"where", nullptr},
@@ -203,7 +211,7 @@ std::string summary_json(const LoopRecord& record) {
   summary["restoration_c_plus"] = restoration_json(conditions, "C+");
   summary["restoration_interval95"] = restoration_intervals_json(conditions);
   summary["paired"] = changes_json(conditions);
-  summary["verdict"] = ordered_json::parse(verdict_json(result));
+  summary["verdict"] = ordered_json::parse(verdict_json(result.verdict()));
   summary["force_prediction"] = prediction_json(result.verdict());
   summary["rounds"] = ordered_json::array();
   for (const Round& round : result.rounds) summary["rounds"].push_back(round_json(round));
@@ -246,7 +254,7 @@ std::vector<std::string> every_name() {
   std::vector<std::string> names{"report.html",       "summary.json",    kVerdictFile,
                                  "model.json",        kControlModelFile, rig::kSealedFile,
                                  rig::kCommitmentFile};
-  for (const char* figure : {"tracking", "force", "adaptation", "motion"}) {
+  for (const char* figure : {"tracking", "force", "adaptation", "motion", "left"}) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
   return names;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -47,7 +48,13 @@ struct LoopRecord {
 };
 
 /// verdict.json: kind, channel and findings, written before the truth is opened.
-std::string verdict_json(const LoopResult& result);
+std::string verdict_json(const Verdict& verdict);
+/// Parts of summary.json.
+nlohmann::ordered_json prediction_json(const Verdict& verdict);
+nlohmann::ordered_json latency_json(const std::optional<Latency>& latency);
+nlohmann::ordered_json treatments_json(const ConvertedModel& control);
+/// What the canceller does about each effect.  @param used  the model ran
+report::Table treatment_table(const ConvertedModel& control, bool used);
 /// summary.json, README "Files".
 std::string summary_json(const LoopRecord& record);
 /// Tables and verdict, to standard output.

@@ -74,22 +74,6 @@ report::Table prediction_table(const Verdict& verdict) {
   return table;
 }
 
-report::Table treatment_table(const Round& round) {
-  const Verdict& verdict = round.verdict;
-  report::Table table;
-  table.caption = "What the canceller does about each effect";
-  table.header = {"effect", "cancelled", "how"};
-  table.align = {report::Align::kLeft, report::Align::kLeft, report::Align::kLeft};
-  for (const Treatment& each : verdict.control.treatments) {
-    table.rows.push_back(
-        {each.kind,
-         each.cancelled && round.augmented ? Cell("yes", Emphasis::kGood)
-                                           : Cell("no", Emphasis::kFaint),
-         round.augmented ? each.how : "C+ ran without it: the augmented model was not used"});
-  }
-  return table;
-}
-
 report::Table rounds_table(const LoopResult& result) {
   report::Table table;
   table.caption = "Every model that was tried";
@@ -160,7 +144,8 @@ void add_verdict(report::Page& page, const LoopResult& result,
   page.table(prediction_table(verdict));
   page.figure(drawings.at(1));
   if (!verdict.control.treatments.empty()) {
-    page.table(treatment_table(result.rounds[result.final_round]));
+    const Round& round = result.rounds[result.final_round];
+    page.table(treatment_table(verdict.control, round.augmented));
   }
   if (verdict.latency) {
     page.paragraph("The force follows the motor's command after " +
@@ -183,6 +168,20 @@ void add_truth(report::Page& page, const LoopRecord& record) {
 }
 
 }  // namespace
+
+report::Table treatment_table(const ConvertedModel& control, bool used) {
+  report::Table table;
+  table.caption = "What the canceller does about each effect";
+  table.header = {"effect", "cancelled", "how"};
+  table.align = {report::Align::kLeft, report::Align::kLeft, report::Align::kLeft};
+  for (const Treatment& each : control.treatments) {
+    table.rows.push_back(
+        {each.kind,
+         each.cancelled && used ? Cell("yes", Emphasis::kGood) : Cell("no", Emphasis::kFaint),
+         used ? each.how : "C+ ran without it: the augmented model was not used"});
+  }
+  return table;
+}
 
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings) {
   const LoopResult& result = record.result;

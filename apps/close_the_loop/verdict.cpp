@@ -7,9 +7,7 @@
 
 #include "apps/close_the_loop/drive_effects.hpp"
 #include "apps/diagnose/page/wording.hpp"
-#include "apps/measurement/grid.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/contract/tick.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 #include "services/diagnosis/effects/delay.hpp"
 
@@ -22,7 +20,6 @@ constexpr double kWorthFall = 0.2;
 constexpr double kWorthDrive_n = 0.2;
 // Of the friction that was found: the rest keeps the stick from hunting.
 constexpr double kFrictionShare = 0.8;
-constexpr std::size_t kMostValues = 60'000'000;
 
 double explained(const diagnosis::FoundEffect& effect) {
   const double before = effect.before.rmse;
@@ -30,19 +27,32 @@ double explained(const diagnosis::FoundEffect& effect) {
   return std::sqrt(std::max(before * before - after * after, 0.0));
 }
 
-// The force without the delay of its sensor.
-recording::Recording advanced(const recording::Recording& trial, double seconds) {
-  recording::Recording out = trial;
-  const auto ticks = static_cast<std::size_t>(std::lround(seconds * kControlRateHz));
-  const std::size_t rows = trial.row_count() - ticks;
-  out.time_s.resize(rows);
-  for (recording::Column& column : out.columns) {
-    if (column.name == "f") {
-      column.values.erase(column.values.begin(),
-                          column.values.begin() + static_cast<std::ptrdiff_t>(ticks));
-    } else {
-      column.values.resize(rows);
+// The output without the delay of its sensor; what comes after a stretch's end counts as not
+// measured.
+diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,
+                                double seconds) {
+  diagnosis::Measurement out = record;
+  const auto late = static_cast<std::size_t>(std::lround(seconds * record.rate_hz));
+  const auto channel = std::ranges::find(out.channels, output, &diagnosis::Channel::name);
+  if (late == 0 || channel == out.channels.end()) return out;
+  for (const diagnosis::Stretch& stretch : out.stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      const bool known = n + late < stretch.end;
+      channel->values[n] = channel->values[known ? n + late : stretch.end - 1];
+      out.weight[n] = known ? out.weight[n + late] : 0.0;
     }
+  }
+  return out;
+}
+
+// The latest of several recordings: the median would hide a drive that is late now and then.
+std::optional<Latency> latest(const std::vector<const recording::Recording*>& cancelled,
+                              const DeclaredDrive& declared) {
+  std::optional<Latency> out;
+  for (const recording::Recording* each : cancelled) {
+    const auto measured = measure_latency(*each, declared);
+    const auto sum = [](const Latency& latency) { return latency.motor_s + latency.cell_s; };
+    if (measured && (!out || sum(*measured) > sum(*out))) out = measured;
   }
   return out;
 }
@@ -78,6 +88,21 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
                      ", by the stick's own equation"};
 }
 
+std::string unit_of(const diagnosis::Measurement& measurement, const std::string& output) {
+  const diagnosis::Channel* channel = measurement.find(output);
+  return channel == nullptr ? std::string() : channel->unit;
+}
+
+void add_drive_findings(Verdict& out) {
+  for (const diagnosis::FoundEffect& effect : out.drive->effects) {
+    if (explained(effect) < kWorthDrive_n) continue;
+    out.findings.push_back({effect.effect.kind, effect.channel, kDrive, explained(effect),
+                            effect.before.rmse, effect.after.rmse,
+                            diagnose::shown_sentence(effect.evidence, "N")});
+    if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);
+  }
+}
+
 }  // namespace
 
 double detectable_n(const Verdict& verdict, bool in_drive) {
@@ -94,24 +119,24 @@ std::string Verdict::conclusion() const {
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                      const diagnosis::DiagnoseOptions& options) {
   Verdict out;
-  out.latency = measure_latency(*evidence.cancelled, declared);
+  out.latency = latest(evidence.cancelled, declared);
   const auto late = latency_finding(out.latency, declared);
   if (late) out.findings.push_back(*late);
   const bool cell_late = late && late->where == kLoadCell;
 
   diagnosis::DiagnoseOptions own = options;
-  own.inputs = {"a_y"};
-  own.output = "f";
+  own.inputs = evidence.inputs;
+  own.output = evidence.output;
   own.model = diagnosis::ModelClass::kArx;
   own.search.first_least_fall = own.search.least_fall = kWorthFall;
-  const recording::Recording pegged =
-      advanced(*evidence.pegged, cell_late ? out.latency->cell_s : 0.0);
-  const diagnosis::Measurement measurement = measurement::on_grid(pegged, kMostValues);
+  const diagnosis::Measurement measurement =
+      advanced(*evidence.pegged, evidence.output, cell_late ? out.latency->cell_s : 0.0);
+  const std::string unit = unit_of(measurement, evidence.output);
   out.body = diagnosis::diagnose(measurement, own);
   for (const diagnosis::FoundEffect& effect : out.body.effects) {
     out.findings.push_back({effect.effect.kind, effect.channel, place_of(effect.effect),
                             explained(effect), effect.before.rmse, effect.after.rmse,
-                            diagnose::shown_sentence(effect.evidence, "N")});
+                            diagnose::shown_sentence(effect.evidence, unit)});
   }
   const diagnosis::Signals signals(diagnosis::working_set(measurement, own.inputs), own.inputs,
                                    own.output);
@@ -123,14 +148,10 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
     out.not_carried = error.what();
   }
 
-  out.drive = diagnose_drive(*evidence.moving, declared, options);
-  for (const diagnosis::FoundEffect& effect : out.drive.effects) {
+  if (!evidence.moving.empty()) {
+    out.drive = diagnose_drive(evidence.moving, declared, options);
     // A late cell distorts the stick's equation; it is among the findings already.
-    if (cell_late || explained(effect) < kWorthDrive_n) continue;
-    out.findings.push_back({effect.effect.kind, effect.channel, kDrive, explained(effect),
-                            effect.before.rmse, effect.after.rmse,
-                            diagnose::shown_sentence(effect.evidence, "N")});
-    if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);
+    if (!cell_late) add_drive_findings(out);
   }
   std::ranges::stable_sort(out.findings, std::ranges::greater{}, &Finding::explained_n);
   return out;

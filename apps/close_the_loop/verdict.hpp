@@ -28,9 +28,13 @@ inline constexpr const char* kNothing = "nothing missing";
 
 /// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
-  const recording::Recording* pegged = nullptr;     ///< identification: a_y to f
-  const recording::Recording* moving = nullptr;     ///< B: the stick's own equation
-  const recording::Recording* cancelled = nullptr;  ///< C, or the newest C+: the motor's too
+  const diagnosis::Measurement* pegged = nullptr;  ///< identification: inputs to output
+  std::vector<std::string> inputs{"a_y"};
+  std::string output = "f";
+  /// B, 1 kHz: the stick's own equation; none: the drive is not diagnosed.
+  std::vector<const recording::Recording*> moving = {};
+  /// C, or the newest C+, 1 kHz: the motor's too; none: no latency is measured.
+  std::vector<const recording::Recording*> cancelled = {};
 };
 
 /// One effect that the paper's model lacks.
@@ -46,8 +50,8 @@ struct Finding {
 
 /// What is missing, and what the canceller does about it.
 struct Verdict {
-  diagnosis::Diagnosis body;   ///< of the pegged trial, load cell's delay taken off
-  diagnosis::Diagnosis drive;  ///< of the stick's own equation
+  diagnosis::Diagnosis body;                  ///< of the pegged trial, load cell's delay taken off
+  std::optional<diagnosis::Diagnosis> drive;  ///< of the stick's own equation
   std::optional<Latency> latency;
   std::vector<Finding> findings;  ///< strongest first
   ConvertedModel control;

@@ -19,9 +19,10 @@ void check_combinations(const LabOptions& options) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
   if (options.attach &&
-      (options.undeclared_effect != 0 || options.video || options.who == Operator::kMouse ||
-       options.protocol.motion != session::Motion::kBandNoise)) {
-    throw ConfigError("--attach", "--undeclared-effect, --video, --operator or --motion with it",
+      (options.undeclared_effect != 0 || options.subject != 0 || options.video ||
+       options.who == Operator::kMouse || options.protocol.motion != session::Motion::kBandNoise)) {
+    throw ConfigError("--attach",
+                      "--undeclared-effect, --subject, --video, --operator or --motion with it",
                       "these as arguments of the services, which run already");
   }
 }

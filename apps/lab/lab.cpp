@@ -16,6 +16,7 @@
 #include "apps/lab/launches.hpp"
 #include "apps/lab/output_folder.hpp"
 #include "apps/lab/processes.hpp"
+#include "apps/lab/subject_settings.hpp"
 #include "apps/lab/summary.hpp"
 #include "apps/lab/undeclared_effect.hpp"
 #include "services/rig/sealed_file.hpp"
@@ -87,11 +88,15 @@ void run_processes(const LabOptions& options, const AskedMotions& asked, const H
 
 }  // namespace
 
-LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Script& script) {
+LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
+                        const Script& script) {
+  LabOptions options = asked_options;
   const AskedMotions asked = check_options(options);
+  if (options.subject != 0) options.config = options.out / "logs" / "config";
   Hosts hosts(options);
   const DomainLock lock(hosts.domain(), options.rig);
   LiveSession live;
+  live.config = options.config;
   live.folder = std::make_shared<OutputFolder>(
       options.out,
       std::vector<std::filesystem::path>{options.ride, options.model, options.inventory});
@@ -101,6 +106,10 @@ LiveSession run_session(const LabOptions& options, runtime::Stop& stop, const Sc
     hosts.bring_back();
   };
   try {
+    if (options.subject != 0) {
+      write_subject_settings(asked_options.config, options.config, options.protocol.seed,
+                             options.subject);
+    }
     if (options.undeclared_effect != 0) {
       live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});
     }
@@ -139,7 +148,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
   }
   const runtime::OrdinaryWhile ordinary;
   const int status = report_session(options, live.outcomes, live.interrupted);
-  if (!live.sealed.empty()) open_undeclared_effect(options, live.sealed, "summary.json");
+  if (!live.sealed.empty()) open_undeclared_effect(options, live, "summary.json");
   return status;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct LiveSession {
   std::vector<session::TrialOutcome> outcomes;
   bool interrupted = false;
   std::string sealed;                    ///< for open_undeclared_effect()
+  std::filesystem::path config;          ///< settings of its services
   std::shared_ptr<OutputFolder> folder;  ///< keeps the folder from other labs as long as this lives
 };
 

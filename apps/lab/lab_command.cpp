@@ -48,6 +48,11 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
   lab.add_option("--operator", words.who, "who tracks: a simulated subject, or a person's mouse")
       ->check(CLI::IsMember({"simulated", "mouse"}))
       ->capture_default_str();
+  lab.add_option("--subject", options.subject,
+                 "number of the simulated subject that `stillhand study --seed` draws; 0: the one "
+                 "in the settings")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
   lab.add_flag("--wait-for-start", options.wait_for_start,
                "each trial waits until a person presses Start on the dashboard");
 }

@@ -27,6 +27,7 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
+  std::int64_t subject = 0;  ///< of the population, under the session's seed; 0: that of `config`
   std::filesystem::path security;       ///< folder of keys; empty: none, or the inventory's
   std::filesystem::path inventory;      ///< the lab's machines; empty: this one
   std::filesystem::path model;          ///< control model for C; empty: the session's own

@@ -36,7 +36,9 @@ constexpr const char* kResults[]{"session.mcap",
                                  "adaptation.svg",
                                  "adaptation.png",
                                  "motion.svg",
-                                 "motion.png"};
+                                 "motion.png",
+                                 "left.svg",
+                                 "left.png"};
 
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
@@ -47,6 +49,10 @@ std::vector<std::filesystem::path> session_files(const std::filesystem::path& fo
   // Of a session over several machines: the profiles, and the lines of each host.
   files.push_back(folder / "logs" / "profiles.xml");
   std::error_code error;
+  // Of a session with a drawn subject: its settings.
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "logs" / "config", error)) {
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+  }
   for (const auto& entry : std::filesystem::directory_iterator(folder / "logs", error)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("host_") && name.ends_with(".log")) files.push_back(entry.path());
@@ -181,6 +187,7 @@ void OutputFolder::forget_earlier() const {
   for (const std::filesystem::path& file : session_files(earlier_)) {
     std::filesystem::remove(file, error);
   }
+  std::filesystem::remove(earlier_ / "logs" / "config", error);
   std::filesystem::remove(earlier_ / "logs", error);
   std::filesystem::remove(earlier_, error);
 }
@@ -192,6 +199,7 @@ void OutputFolder::clear() const {
   }
   const std::filesystem::path logs = path_ / "logs";
   if (std::filesystem::is_directory(logs, error)) {
+    std::filesystem::remove(logs / "config", error);
     std::filesystem::remove(logs, error);  // unless it holds something else
   }
 }

@@ -170,6 +170,7 @@ ordered_json summary_json(const LabOptions& options,
   summary["recording_damage"] = result.damage;
   summary["interrupted"] = interrupted;
   summary["seed"] = options.protocol.seed;
+  summary["subject"] = options.subject;
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
   summary["reference_note"] =

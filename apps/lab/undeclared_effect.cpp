@@ -13,7 +13,7 @@
 
 namespace stillhand::lab {
 
-void open_undeclared_effect(const LabOptions& options, const std::string& sealed,
+void open_undeclared_effect(const LabOptions& options, const LiveSession& session,
                             const std::string& verdict) {
   constexpr std::int64_t kLimit_ns = 60'000'000'000;
   constexpr std::int64_t kPoll_ns = 20'000'000;
@@ -21,10 +21,10 @@ void open_undeclared_effect(const LabOptions& options, const std::string& sealed
   launch.name = "rig";
   launch.executable = options.programs / "stillhand-rig";
   launch.log = options.out / "logs" / "experiment.log";
-  launch.standard_input = sealed;
+  launch.standard_input = session.sealed;
   launch.arguments = {"--open-undeclared-effect",
                       "--config",
-                      options.config.string(),
+                      session.config.string(),
                       "--out",
                       options.out.string(),
                       "--verdict",

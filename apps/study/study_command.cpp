@@ -206,7 +206,8 @@ void add_study_command(CLI::App& cli, int& status) {
     std::sort(record->options.protocol.conditions.begin(),
               record->options.protocol.conditions.end());
     if (!words->population.empty()) {
-      record->options.population = settings::load<Population>(words->population, "population");
+      record->options.population =
+          settings::load<population::Population>(words->population, "population");
     }
     record->command_line = report::command_line();
     const bool subjects_given = study->count("--subjects") > 0;

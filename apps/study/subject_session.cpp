@@ -42,7 +42,7 @@ std::vector<PlannedTrial> plan_of(const StudyOptions& options, std::int64_t inde
 }
 
 // Settings of every core for this subject under a condition.
-session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subject,
+session::CoreConfigs configs_of(const StudyOptions& options, const population::Subject& subject,
                                 char condition) {
   session::CoreConfigs configs;
   configs.rig.body = subject.body;
@@ -55,9 +55,9 @@ session::CoreConfigs configs_of(const StudyOptions& options, const Subject& subj
     configs.rig.body.arm_rest_damping_n_s_m = options.arm_rest_damping_n_s_m;
   }
   // Each subject practised with the stick as it is in the trial (paper III-C).
-  configs.human_operator.arm = learnt_feel(configs.rig.body, configs.rig.stick);
+  configs.human_operator.arm = population::learnt_feel(configs.rig.body, configs.rig.stick);
   // The command filter uses an average person's arm.
-  const human_operator::ArmFeel average = mean_subject(options.population).who.arm;
+  const human_operator::ArmFeel average = population::mean_subject(options.population).who.arm;
   configs.command_filter.mass_kg = average.effective_mass_kg;
   configs.command_filter.damping_n_s_m = average.effective_damping_n_s_m;
   configs.command_filter.stiffness_n_m = average.effective_stiffness_n_m;
@@ -132,18 +132,19 @@ identification::FeedthroughModel used_model(const Identification& identification
 }
 
 bool is_calibrated(const StudyOptions& options) {
-  return settings::describe(options.population) == settings::describe(Population{}) &&
+  return settings::describe(options.population) == settings::describe(population::Population{}) &&
          options.protocol.trial_s == 180.0 && options.protocol.identify_s == 120.0;
 }
 
 rig::SealedEffect sealed_effect(const StudyOptions& options) {
   rig::RigConfig rig;
-  rig.body = mean_subject(options.population).body;
+  rig.body = population::mean_subject(options.population).body;
   return {options.undeclared_effect, rig};
 }
 
 void check_subject(const StudyOptions& options, std::int64_t index) {
-  const Subject subject = draw_subject(options.population, options.seed, index);
+  const population::Subject subject =
+      population::draw_subject(options.population, options.seed, index);
   try {
     for (const auto condition : options.protocol.conditions) {
       const auto configs = configs_of(options, subject, static_cast<char>(condition));
@@ -158,7 +159,7 @@ void check_subject(const StudyOptions& options, std::int64_t index) {
 
 SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   SubjectResult result;
-  result.subject = draw_subject(options.population, options.seed, index);
+  result.subject = population::draw_subject(options.population, options.seed, index);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const std::uint64_t seed = subject_seed(options.seed, index);
   session::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery,

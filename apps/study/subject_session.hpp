@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "apps/session/in_process.hpp"
-#include "apps/study/population.hpp"
 #include "services/identification/core/arx.hpp"
 #include "services/identification/core/identifier.hpp"
 #include "services/identification/core/output_error.hpp"
 #include "services/identification/core/rate_conversion.hpp"
 #include "services/identification/core/tracking_metrics.hpp"
+#include "services/population/population.hpp"
 #include "services/signal/spectrum.hpp"
 
 namespace stillhand::study {
@@ -22,7 +22,7 @@ struct StudyOptions {
   std::int64_t subjects = 12;
   std::uint64_t seed = 1;
   session::ProtocolOptions protocol;  ///< conditions and lengths; the seed is set for each subject
-  Population population;
+  population::Population population;
   double damped_stick_n_s_m = 20.0;       ///< condition E, added to the stick's own
   double arm_rest_stiffness_n_m = 500.0;  ///< condition F
   double arm_rest_damping_n_s_m = 30.0;   ///< condition F
@@ -59,7 +59,7 @@ struct TrackedTrial {
 
 /// Everything of one subject.
 struct SubjectResult {
-  Subject subject;
+  population::Subject subject;
   Identification identification;
   std::map<char, TrackedTrial> trials;  ///< by condition
   std::string order;                    ///< order in which the conditions were run

@@ -9,21 +9,10 @@
 #include "services/human_operator/codec.hpp"
 #include "services/human_operator/core/crossover_operator.hpp"
 #include "services/human_operator/core/pointer_operator.hpp"
+#include "services/human_operator/core/subject_config.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::human_operator {
-
-/// Settings of both subjects: the simulated one and the arm that a person's pointer moves.
-struct SubjectConfig {
-  CrossoverConfig crossover;
-  PointerOperator::Config pointer;
-
-  template <typename Visitor, typename Self>
-  static void fields(Visitor&& visit, Self& self) {
-    visit.group("crossover", self.crossover);
-    visit.group("pointer", self.pointer);
-  }
-};
 
 /// The process of the subject: one volitional force for each tracking sample, in the receiving
 /// thread.

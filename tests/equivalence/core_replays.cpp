@@ -6,7 +6,7 @@
 #include "services/cancellation/codec.hpp"
 #include "services/display/codec.hpp"
 #include "services/human_operator/codec.hpp"
-#include "services/human_operator/shell.hpp"
+#include "services/human_operator/core/subject_config.hpp"
 #include "services/motion/codec.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/rig/codec.hpp"

@@ -4,6 +4,7 @@
 truth is opened after the verdict is written.
 """
 import json
+import math
 import os
 import pathlib
 import signal
@@ -53,7 +54,8 @@ class CloseTheLoopTest(unittest.TestCase):
             self.assertTrue(low < condition["rms_error_mm"]["mean"] < high)
             self.assertEqual(len(condition["rms_error_mm"]["repeats"]), 3)
         prediction = summary["force_prediction"]
-        self.assertLess(prediction["after_rmse_n"], 0.5 * prediction["before_rmse_n"])
+        # The hand's own involuntary and unmeasured force is left: it is the noise floor.
+        self.assertGreater(math.sqrt(prediction["before_rmse_n"] ** 2 - prediction["after_rmse_n"] ** 2), 0.7)
         self.assertLess(prediction["after_over_noise"], 1.3)
         self.assertEqual((summary["verdict"]["kind"], summary["verdict"]["channel"]), ("coupled_input", "a_x"))
         self.assertEqual((summary["truth"]["kind"], summary["truth"]["channel"]), ("coupled_input", "a_x"))

@@ -19,7 +19,7 @@ SCREEN_M = (0.3048, 0.2286)
 PIXELS_PER_M = WINDOW[0] / SCREEN_M[0]
 TRACK_ABOVE_BOTTOM_M = 0.057
 BOX_WIDTH_M = 0.030
-STIFFNESS_N_M = 844.0
+STIFFNESS_N_M = 1136.0
 CURSOR_PER_HAND = 6.0
 # Pixel columns that the pointer holds, each for HOLD_S: 60 mm right, 60 mm left, ...
 HOLDS = (713, 310, 612, 411, 713, 310)

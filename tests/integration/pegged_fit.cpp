@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/session/in_process.hpp"
-#include "apps/study/population.hpp"
 #include "services/identification/core/arx.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
+#include "services/population/population.hpp"
 
 namespace {
 
@@ -18,7 +18,7 @@ nlohmann::json fitted() {
   options.conditions = session::parse_conditions("A");
   options.identify_s = 120.0;
   session::CoreConfigs configs;
-  configs.rig.body = study::draw_subject({}, 1, 0).body;
+  configs.rig.body = population::draw_subject({}, 1, 0).body;
   session::InProcessLoop loop(configs, options.seed);
   const auto record = identification::preprocessed(loop.run(session::plan(options).front()).pegged);
   const auto fit = identification::fit_arx(record, 4);

@@ -9,6 +9,7 @@
 
 #include "apps/study/explain/slopes.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/settings/yaml_text.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -121,13 +122,6 @@ std::vector<std::string> log_of(const Calibration& calibration) {
   return lines;
 }
 
-struct YamlWriter {
-  std::string text;
-  void operator()(const char* name, double value, Range, const char*) {
-    text += fmt::format("{}: {:.6g}\n", name, value);
-  }
-};
-
 }  // namespace
 
 Calibration calibrate(const ExplainOptions& options, const OnStage& on_stage) {
@@ -142,9 +136,7 @@ std::string population_yaml(const Calibration& calibration, const std::string& c
   std::string text = fmt::format("# Population calibrated by: {}\n# {} subjects of seed {}\n",
                                  command_line, calibration.subjects, calibration.seed);
   for (const std::string& line : log_of(calibration)) text += "# " + line + "\n";
-  YamlWriter writer;
-  Population::fields(writer, calibration.population);
-  return text + "\n" + writer.text;
+  return text + "\n" + settings::yaml_text(calibration.population);
 }
 
 void print_calibration(const Calibration& calibration) {

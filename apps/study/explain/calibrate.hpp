@@ -18,7 +18,7 @@ struct CalibrationStep {
 
 /// A calibrated population and how it came about.
 struct Calibration {
-  Population population;
+  population::Population population;
   std::vector<CalibrationStep> steps;  ///< the start first
   TableVector judged_z;                ///< on the subjects of seed + 1
   std::size_t subjects = 0;

@@ -4,17 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/study/clamp_fields.hpp"
 #include "services/contract/expects.hpp"
+#include "services/settings/clamp_fields.hpp"
 
 namespace stillhand::study {
 namespace {
 
-// A cause that is a mean of the population and its coefficient of variation.
-Cause personal(Cause cause, double Population::*mean, double Population::*cv) {
+// A cause that is a mean of the population and its coefficient of variation.  It is absent at the
+// population's own mean; its spread adds to the population's own.
+Cause personal(Cause cause, double population::Population::*mean,
+               double population::Population::*cv) {
   cause.personal = true;
+  cause.none = population::Population{}.*mean;
   cause.apply = [mean](StudyOptions& options, double value) { options.population.*mean = value; };
-  cause.spread = [cv](Population& population, double value) { population.*cv = value; };
+  cause.spread = [cv](population::Population& population, double value) {
+    population.*cv = std::hypot(population.*cv, value);
+  };
   return cause;
 }
 
@@ -43,25 +48,17 @@ std::vector<Cause> of_the_machine() {
 }
 
 std::vector<Cause> of_the_arm() {
-  using P = Population;
-  Cause level{.name = "cocontraction",
-              .what =
-                  "The tracking arm is stiffer than the idle one, by a factor that differs "
-                  "between subjects.",
-              .source =
-                  "1.2 to 2: Gomi and Osu (1998); to 3 and more between tasks: Burdet et "
-                  "al. (2001), recalled",
-              .parameter = "factor [-]",
-              .none = P{}.cocontraction_factor,
-              .grid = {1.0, 1.3, 1.6, 2.0, 2.5, 3.0, 4.0},
-              .most = 3.0};
-  Cause cocontraction = personal(level, &P::cocontraction_factor, &P::cocontraction_cv);
-  // Added to the spread that the population has already.
-  cocontraction.spread = [](Population& population, double cv) {
-    population.cocontraction_cv = std::hypot(population.cocontraction_cv, cv);
-  };
+  using P = population::Population;
   return {
-      cocontraction,
+      personal({.name = "cocontraction",
+                .what = "The tracking arm is stiffer than the idle one, by a factor that differs "
+                        "between subjects.",
+                .source = "1.2 to 2: Gomi and Osu (1998); to 3 and more between tasks: Burdet et "
+                          "al. (2001), recalled",
+                .parameter = "factor [-]",
+                .grid = {1.0, 1.3, 1.6, 2.0, 2.5, 3.0, 4.0},
+                .most = 3.0},
+               &P::cocontraction_factor, &P::cocontraction_cv),
       personal({.name = "stiffening_by_vibration",
                 .what = "Vibration changes the stiffness of the tracking arm.",
                 .source = "softening of the relaxed body: Huang and Griffin (2008); stiffening: "
@@ -104,7 +101,7 @@ std::vector<Cause> of_the_arm() {
 }
 
 std::vector<Cause> of_the_rest() {
-  using P = Population;
+  using P = population::Population;
   return {
       personal({.name = "cross_axis",
                 .what = "Motion that a_y does not show, as fore-aft and roll, also shakes the "
@@ -112,7 +109,7 @@ std::vector<Cause> of_the_rest() {
                 .source = "mostly in axis: Khoshnewiszadeh and Pool (2021), touch screens; range "
                           "for a stick: none",
                 .parameter = "force_n_s2_m",
-                .grid = {0.0, 0.5, 1.0, 1.5, 2.0, 3.0},
+                .grid = {0.0, 0.75, 1.25, 2.0, 3.0},
                 .most = 2.0},
                &P::unmeasured_force_n_s2_m, &P::unmeasured_force_cv),
       personal({.name = "involuntary_force",
@@ -120,7 +117,7 @@ std::vector<Cause> of_the_rest() {
                 .source = "0.1 to 0.8 N, derived from coefficients of variation of 1 to 5 %, "
                           "Jones et al. (2002), recalled",
                 .parameter = "force_n",
-                .grid = {0.0, 0.25, 0.5, 1.0, 1.5},
+                .grid = {0.0, 0.4, 0.7, 1.0, 1.5},
                 .most = 1.0},
                &P::involuntary_force_n, &P::involuntary_force_cv),
       personal({.name = "remnant_by_vibration",
@@ -141,9 +138,11 @@ std::vector<Cause> of_the_rest() {
                &P::delay_by_vibration_s3_m, &P::delay_by_vibration_cv)};
 }
 
-Calibrated mean(std::string name, double Population::*field, double prior_sd, std::string source) {
-  return {std::move(name), prior_sd, std::move(source),
-          [field](Population& population, double factor) { population.*field *= factor; }};
+Calibrated mean(std::string name, double population::Population::*field, double prior_sd,
+                std::string source) {
+  return {
+      std::move(name), prior_sd, std::move(source),
+      [field](population::Population& population, double factor) { population.*field *= factor; }};
 }
 
 // Every coefficient of variation.
@@ -168,7 +167,7 @@ const std::vector<Cause>& causes() {
 }
 
 const std::vector<Calibrated>& calibrated() {
-  using P = Population;
+  using P = population::Population;
   static const std::vector<Calibrated> kAll{
       mean("seat_frequency_hz", &P::seat_frequency_hz, 0.2, "1.5 to 4 Hz, Fairley and Griffin"),
       mean("shoulder_stiffness_n_m", &P::shoulder_stiffness_n_m, 0.3,
@@ -177,19 +176,20 @@ const std::vector<Calibrated>& calibrated() {
       mean("remnant_ratio", &P::remnant_ratio, 0.4, "0.01 to 0.03, Levison et al. (1969)"),
       mean("regression_error_m", &P::regression_error_m, 0.5, "none"),
       {"spread of every quantity", 0.5, "0.1 to 0.4, assumed",
-       [](Population& population, double factor) {
+       [](population::Population& population, double factor) {
          ScaleSpreads visit{factor};
          P::fields(visit, population);
        }}};
   return kAll;
 }
 
-Population shifted(Population population, const std::vector<double>& shift) {
+population::Population shifted(population::Population population,
+                               const std::vector<double>& shift) {
   STILLHAND_EXPECTS(shift.size() == calibrated().size());
   for (std::size_t i = 0; i < shift.size(); ++i) {
     calibrated()[i].scale(population, std::exp(shift[i]));
   }
-  clamp_fields(population);
+  settings::clamp_fields(population);
   return population;
 }
 

@@ -23,7 +23,7 @@ struct Cause {
   bool personal = false;  ///< the parameter may differ between subjects, Eq. SU-1
   std::function<void(StudyOptions&, double value)> apply = {};
   /// The same with a spread between subjects; for personal ones.
-  std::function<void(Population&, double cv)> spread = {};
+  std::function<void(population::Population&, double cv)> spread = {};
 };
 
 /// Every cause; the paper's chain first.
@@ -35,7 +35,7 @@ struct Calibrated {
   std::string name;
   double prior_sd;  ///< of the logarithm [-]
   std::string source;
-  std::function<void(Population&, double factor)> scale;
+  std::function<void(population::Population&, double factor)> scale;
 };
 
 /// The calibrated means, and the spread of every quantity.
@@ -43,6 +43,6 @@ const std::vector<Calibrated>& calibrated();
 
 /// The population with the logarithm of each calibrated mean moved by `shift`, in their order;
 /// values stay inside their ranges.
-Population shifted(Population population, const std::vector<double>& shift);
+population::Population shifted(population::Population population, const std::vector<double>& shift);
 
 }  // namespace stillhand::study

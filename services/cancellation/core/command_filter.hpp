@@ -7,9 +7,9 @@ namespace stillhand::cancellation {
 
 /// Stick with a tracking arm on it, stated at the hand: M x'' + B x' + K x = f.
 struct CommandFilterConfig {
-  double mass_kg = 1.38;
-  double damping_n_s_m = 9.5;
-  double stiffness_n_m = 844.0;
+  double mass_kg = 1.394;
+  double damping_n_s_m = 11.18;
+  double stiffness_n_m = 1136.0;
   double lever_m = 0.10;  ///< r, hand to pivot; paper II
 };
 

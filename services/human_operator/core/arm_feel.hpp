@@ -16,9 +16,9 @@ namespace stillhand::human_operator {
 /// J^* of the paper is 1 / (M s^2 + B s + K): joystick with the arm's driving-point impedance.
 /// Source: README Eq. HO-1; paper Eq. 2.
 struct ArmFeel {
-  double effective_mass_kg = 1.38;
-  double effective_damping_n_s_m = 9.5;
-  double effective_stiffness_n_m = 844.0;
+  double effective_mass_kg = 1.394;
+  double effective_damping_n_s_m = 11.18;
+  double effective_stiffness_n_m = 1136.0;
   double cursor_per_hand = 6.0;
   double max_force_n = 40.0;
   double max_slew_n_s = 2000.0;

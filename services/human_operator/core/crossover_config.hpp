@@ -11,14 +11,14 @@ namespace stillhand::human_operator {
 /// One simulated subject; README, "Where the numbers come from".
 struct CrossoverConfig {
   std::int64_t seed = 1;
-  double crossover_hz = 0.27;
+  double crossover_hz = 0.337;
   double delay_s = 0.22;
   double muscle_rad_s = 13.0;
   double muscle_damping_ratio = 0.7;
-  double regression_error_m = 0.040;
+  double regression_error_m = 0.0292;
   double regression_above_hz = 0.5;
   double regression_memory_s = 4.0;
-  double remnant_ratio = 0.02;
+  double remnant_ratio = 0.0157;
   double remnant_floor_m = 0.001;
   double remnant_by_vibration_s2_m = 0.0;
   double delay_by_vibration_s3_m = 0.0;

@@ -8,22 +8,27 @@ namespace stillhand::rig {
 
 /// Seated subject as a lateral chain seat - trunk - arm - grip - hand, README Eq. RG-3.  The values
 /// describe the idle, relaxed hand; the factors `cocontraction_*` give those of a tracking hand.
+/// They are the mean subject's of services/population, rounded.
 /// The ranges cover a population of subjects; README, "Where the numbers come from".
 struct BodyConfig {
   double trunk_mass_kg = 30.0;                  ///< m_t
-  double seat_stiffness_n_m = 10500.0;          ///< k_t
-  double seat_damping_n_s_m = 370.0;            ///< c_t
-  double arm_mass_kg = 1.1;                     ///< m_a
-  double shoulder_stiffness_n_m = 1000.0;       ///< k_a
-  double shoulder_damping_n_s_m = 11.0;         ///< c_a
+  double seat_stiffness_n_m = 12280.0;          ///< k_t
+  double seat_damping_n_s_m = 400.6;            ///< c_t
+  double arm_mass_kg = 1.1025;                  ///< m_a
+  double shoulder_stiffness_n_m = 1160.0;       ///< k_a
+  double shoulder_damping_n_s_m = 11.87;        ///< c_a
   double grip_stiffness_n_m = 2400.0;           ///< k_h
-  double grip_damping_n_s_m = 12.0;             ///< c_h
+  double grip_damping_n_s_m = 11.6;             ///< c_h
   double arm_rest_stiffness_n_m = 0.0;          ///< k_r, arm to platform; 0: no arm rest
   double arm_rest_damping_n_s_m = 0.0;          ///< c_r
   double hand_mass_kg = 0.30;                   ///< m_h, moves with the handle
-  double cocontraction_stiffness_factor = 1.3;  ///< on k_a and k_h while not pegged
-  double cocontraction_damping_factor = 1.14;   ///< on c_a and c_h while not pegged
-  NeuromuscularConfig neuromuscular;
+  double cocontraction_stiffness_factor = 1.6;  ///< on k_a and k_h while not pegged
+  double cocontraction_damping_factor = 1.265;  ///< on c_a and c_h while not pegged
+  /// `{}` is a hand without nerves: a linear chain.
+  NeuromuscularConfig neuromuscular{.wander = 0.1,
+                                    .involuntary_force_n = 0.4,
+                                    .tremor_force_n = 0.03,
+                                    .unmeasured_force_n_s2_m = 0.75};
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {

@@ -78,13 +78,16 @@ TEST(DriveTest, WithoutAMotorThereIsNoLatency) {
 TEST(DriveTest, WhatNobodyDeclaredIsFound) {
   const DeclaredDrive declared{{}, 0.002};
   // The declared friction is taken off with a smooth sign: a little of it is left.
-  const auto nothing = diagnose_drive(moved_stick({}, 0.0, 0.0), declared, {});
+  const recording::Recording nothing_trial = moved_stick({}, 0.0, 0.0);
+  const auto nothing = diagnose_drive({&nothing_trial}, declared, {});
   EXPECT_LT(nothing.baseline_error.rmse, 0.1);
-  const auto friction = diagnose_drive(moved_stick({}, 1.2, 0.0), declared, {});
+  const recording::Recording friction_trial = moved_stick({}, 1.2, 0.0);
+  const auto friction = diagnose_drive({&friction_trial}, declared, {});
   ASSERT_EQ(friction.effects.size(), 1u);
   EXPECT_EQ(friction.effects[0].effect.kind, "coulomb_friction");
   EXPECT_EQ(friction.effects[0].channel, "omega");
-  const auto ripple = diagnose_drive(moved_stick({}, 0.0, 1.0), declared, {});
+  const recording::Recording ripple_trial = moved_stick({}, 0.0, 1.0);
+  const auto ripple = diagnose_drive({&ripple_trial}, declared, {});
   ASSERT_EQ(ripple.effects.size(), 1u);
   EXPECT_EQ(ripple.effects[0].effect.kind, "position_ripple");
   EXPECT_NEAR(ripple.effects[0].effect.value(0), 1.0 / 0.08, 0.1);

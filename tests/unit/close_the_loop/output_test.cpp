@@ -59,7 +59,7 @@ json summary_of(const LoopRecord& record) { return json::parse(summary_json(reco
 
 TEST(OutputTest, AVerdictIsItsStrongestFinding) {
   LoopRecord record = made();
-  const json sut = json::parse(verdict_json(record.result));
+  const json sut = json::parse(verdict_json(record.result.verdict()));
   EXPECT_EQ(sut["kind"], "coulomb_friction");
   EXPECT_EQ(sut["channel"], "omega");
   ASSERT_EQ(sut["findings"].size(), 2u);
@@ -70,7 +70,7 @@ TEST(OutputTest, AVerdictIsItsStrongestFinding) {
   EXPECT_EQ(sut["where"], "body");
   EXPECT_EQ(sut["conclusion"], "effects found");
   record.result.rounds[0].verdict.findings.clear();
-  const json none = json::parse(verdict_json(record.result));
+  const json none = json::parse(verdict_json(record.result.verdict()));
   EXPECT_EQ(none["kind"], "none");
   EXPECT_TRUE(none["channel"].is_null());
   EXPECT_TRUE(none["where"].is_null());
@@ -95,7 +95,7 @@ TEST(OutputTest, TheSummaryHasEveryConditionAndItsRestoration) {
   EXPECT_EQ(sut["restoration_c_plus"]["crossover"], 1.0);
   EXPECT_EQ(sut["paired"]["C-C'"]["rms_error_mm"]["mean_difference"], -0.75);
   EXPECT_EQ(sut["paired"]["C'-C+"]["rms_error_mm"]["mean_difference"], -0.75);
-  EXPECT_EQ(sut["verdict"], json::parse(verdict_json(made().result)));
+  EXPECT_EQ(sut["verdict"], json::parse(verdict_json(made().result.verdict())));
   EXPECT_EQ(sut["force_prediction"]["after_over_noise"], 2.0);
   EXPECT_EQ(sut["identification"]["order"], 1);
 }

@@ -72,7 +72,7 @@ TEST(RepeatsTest, TheMotorActsInTheCancellingConditionsAlone) {
     EXPECT_GT(sut.at(label)[0].forces.motor_n, 1.0) << label;
     EXPECT_LT(sut.at(label)[0].forces.left_n, sut.at("B")[0].forces.left_n) << label;
   }
-  EXPECT_LT(sut.at("A")[0].forces.left_n, 0.1 * sut.at("B")[0].forces.left_n);
+  EXPECT_LT(sut.at("A")[0].forces.left_n, 0.2 * sut.at("B")[0].forces.left_n);
 }
 
 // With one model for all, everything that a repeat draws is shared: the trials agree to the bit.

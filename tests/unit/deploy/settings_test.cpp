@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "apps/dashboard/core/config.hpp"
-#include "apps/study/population.hpp"
 #include "places.hpp"
 #include "services/cancellation/core/canceller.hpp"
 #include "services/display/core/tracking_display.hpp"
-#include "services/human_operator/shell.hpp"
+#include "services/human_operator/core/subject_config.hpp"
 #include "services/identification/core/identifier.hpp"
 #include "services/motion/core/motion_generator.hpp"
+#include "services/population/population.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/sensing/core/conditioner.hpp"
@@ -91,7 +91,7 @@ TEST(DeployedSettingsTest, EveryFileShowsEveryKeyWithItsDefault) {
   expect_in_step<human_operator::SubjectConfig>("config/human_operator.yaml");
   expect_in_step<identification::Config>("config/identification.yaml");
   expect_in_step<dashboard::Config>("config/dashboard.yaml");
-  expect_in_step<study::Population>("experiments/population.yaml");
+  expect_in_step<population::Population>("experiments/population.yaml");
 }
 
 }  // namespace

@@ -224,8 +224,8 @@ TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, ElementsAre("conditions", "t_tests", "manova", "restoration", "identification",
                                 "control_model", "canceller", "trials", "lost_ticks", "clocks",
-                                "recording_damage", "interrupted", "seed", "trial_seconds",
-                                "identify_seconds", "reference_note", "version"));
+                                "recording_damage", "interrupted", "seed", "subject",
+                                "trial_seconds", "identify_seconds", "reference_note", "version"));
   EXPECT_EQ(json["conditions"], ordered_json::object());
   EXPECT_EQ(json["clocks"], ordered_json::object());
   EXPECT_EQ(json["trials"], ordered_json::array());

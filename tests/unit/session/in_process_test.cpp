@@ -102,14 +102,15 @@ TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
   EXPECT_GT(rms(session.signals.at('C').motor_n), 1.0);
 }
 
-// The arm that tracks is stiffer than the idle one that was identified: 15 % of the force cannot be
-// known to the model (services/rig/README.md), and the loop's delay of two ticks and the motor's
-// lag add less than 3 %.  More than 0.95 cancelled would mean that something knows too much.
+// What the model cannot know, services/rig/README.md: the arm that tracks is stiffer than the idle
+// one that was identified, 25 % of the force; unmeasured motion 20 %, involuntary force 6 %, wander
+// up to 10 %; together 34 % in RMS.  The delay of two ticks and the motor's lag add less than 3 %.
+// More than 0.8 cancelled would mean that something knows too much.
 TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
   const TrialSignals signals = run_session(1).signals.at('C');
   const double cancelled = cancelled_share(signals.feedthrough_n, signals.motor_n);
-  EXPECT_GT(cancelled, 0.80);
-  EXPECT_LT(cancelled, 0.95);
+  EXPECT_GT(cancelled, 0.55);
+  EXPECT_LT(cancelled, 0.80);
 }
 
 }  // namespace

@@ -283,7 +283,8 @@ TEST(CausesTest, EachCauseChangesTheOptionsAndHasASource) {
 TEST(CausesTest, ShiftsMoveTheCalibratedMeansAndStayInRange) {
   std::vector<double> shift(calibrated().size(), 0.0);
   shift[0] = std::log(1.1);
-  EXPECT_NEAR(shifted({}, shift).seat_frequency_hz, 1.1 * Population{}.seat_frequency_hz, 1e-12);
+  EXPECT_NEAR(shifted({}, shift).seat_frequency_hz,
+              1.1 * population::Population{}.seat_frequency_hz, 1e-12);
   shift.assign(shift.size(), 5.0);
   EXPECT_NO_THROW(validate(shifted({}, shift), "population"));
 }

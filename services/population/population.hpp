@@ -7,7 +7,7 @@
 #include "services/human_operator/core/crossover_config.hpp"
 #include "services/rig/core/body_config.hpp"
 
-namespace stillhand::study {
+namespace stillhand::population {
 
 /// Distributions of a study's subjects: for each quantity a mean and a coefficient of variation
 /// (standard deviation over mean), README "The population".  Every draw is lognormal, so no mass or
@@ -15,11 +15,11 @@ namespace stillhand::study {
 struct Population {
   double body_mass_kg = 75.0;
   double body_mass_cv = 0.13;
-  double seat_frequency_hz = 3.2;
+  double seat_frequency_hz = 3.22;
   double seat_frequency_cv = 0.08;
   double seat_damping_ratio = 0.33;
   double seat_damping_cv = 0.15;
-  double shoulder_stiffness_n_m = 1200.0;
+  double shoulder_stiffness_n_m = 1160.0;
   double shoulder_stiffness_cv = 0.20;
   double shoulder_damping_ratio = 0.166;
   double shoulder_damping_cv = 0.20;
@@ -29,34 +29,34 @@ struct Population {
   double grip_damping_cv = 0.20;
   double cocontraction_factor = 1.6;
   double cocontraction_cv = 0.10;
-  double crossover_hz = 0.325;
+  double crossover_hz = 0.337;
   double crossover_cv = 0.15;
   double delay_s = 0.22;
   double delay_cv = 0.08;
   double muscle_rad_s = 13.0;
   double muscle_cv = 0.10;
-  double remnant_ratio = 0.015;
+  double remnant_ratio = 0.0157;
   double remnant_cv = 0.25;
-  double regression_error_m = 0.028;
+  double regression_error_m = 0.0292;
   double regression_cv = 0.15;
-  // What nerves and muscles add, 0: nothing; README, "Causes".
+  // What nerves and muscles add, 0: nothing; apps/study/explain/causes.cpp names each as a cause.
   double stiffening_by_vibration_s2_m = 0.0;
   double stiffening_by_vibration_cv = 0.0;
   double stiffening_by_motor_n = 0.0;
   double stiffening_by_motor_cv = 0.0;
-  double wander = 0.0;
-  double wander_cv = 0.0;
+  double wander = 0.1;
+  double wander_cv = 0.3;
   double reflex_stiffness_n_m = 0.0;
   double reflex_stiffness_cv = 0.0;
   double reflex_damping_time_s = 0.125;
   double motor_resistance = 0.0;
   double motor_resistance_cv = 0.0;
-  double involuntary_force_n = 0.0;
-  double involuntary_force_cv = 0.0;
-  double tremor_force_n = 0.0;
-  double tremor_force_cv = 0.0;
-  double unmeasured_force_n_s2_m = 0.0;
-  double unmeasured_force_cv = 0.0;
+  double involuntary_force_n = 0.4;
+  double involuntary_force_cv = 0.3;
+  double tremor_force_n = 0.03;
+  double tremor_force_cv = 0.3;
+  double unmeasured_force_n_s2_m = 0.75;
+  double unmeasured_force_cv = 0.3;
   double remnant_by_vibration_s2_m = 0.0;
   double remnant_by_vibration_cv = 0.0;
   double delay_by_vibration_s3_m = 0.0;
@@ -184,4 +184,4 @@ Subject mean_subject(const Population& population);
 /// @throws stillhand::ConfigError when the population's fields are out of range.
 Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index);
 
-}  // namespace stillhand::study
+}  // namespace stillhand::population

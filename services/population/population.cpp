@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/study/population.hpp"
+#include "services/population/population.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "apps/study/clamp_fields.hpp"
 #include "services/rig/core/body_response.hpp"
+#include "services/settings/clamp_fields.hpp"
 #include "services/signal/random.hpp"
 
-namespace stillhand::study {
+namespace stillhand::population {
 namespace {
 
 // Stream of the draws under the study's seed; the subject's index is added.
@@ -72,7 +72,7 @@ rig::NeuromuscularConfig neuromuscular(const Population& p, const Draw& draw) {
   out.involuntary_force_n = draw(p.involuntary_force_n, p.involuntary_force_cv);
   out.tremor_force_n = draw(p.tremor_force_n, p.tremor_force_cv);
   out.unmeasured_force_n_s2_m = draw(p.unmeasured_force_n_s2_m, p.unmeasured_force_cv);
-  clamp_fields(out);
+  settings::clamp_fields(out);
   return out;
 }
 
@@ -138,4 +138,4 @@ Subject draw_subject(const Population& population, std::uint64_t seed, std::int6
   });
 }
 
-}  // namespace stillhand::study
+}  // namespace stillhand::population

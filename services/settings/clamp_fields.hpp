@@ -5,7 +5,7 @@
 
 #include "services/contract/config_field.hpp"
 
-namespace stillhand::study {
+namespace stillhand::settings {
 
 /// Visitor that sets a number outside its range to the end of that range.
 struct ClampFields {
@@ -21,4 +21,4 @@ void clamp_fields(Config& config) {
   Config::fields(visit, config);
 }
 
-}  // namespace stillhand::study
+}  // namespace stillhand::settings

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subjects of a study: Eq. SU-1 and SU-2.
-#include "apps/study/population.hpp"
+// Subjects of a population: Eq. SU-1 and SU-2.
+#include "services/population/population.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "services/settings/load.hpp"
 #include "services/statistics/descriptive.hpp"
 
-namespace stillhand::study {
+namespace stillhand::population {
 namespace {
 
 std::vector<double> drawn(const Population& population, int count, double (*of)(const Subject&)) {
@@ -68,6 +68,7 @@ TEST(PopulationTest, TheLearntStiffnessIsWhatTheRigAnswersWith) {
   const Subject subject = mean_subject({});
   rig::RigConfig config;
   config.body = subject.body;
+  config.body.neuromuscular = {};
   config.stick.coulomb_friction_n = 0.0;
   rig::Rig rig(config);
   rig::RigInput input;
@@ -79,6 +80,36 @@ TEST(PopulationTest, TheLearntStiffnessIsWhatTheRigAnswersWith) {
   const double moved_m = theta_rad * config.stick.lever_m;
   EXPECT_NEAR(5.0 / moved_m, subject.who.arm.effective_stiffness_n_m,
               1e-4 * subject.who.arm.effective_stiffness_n_m);
+}
+
+// Largest relative distance between the numbers of two settings.
+struct Numbers {
+  std::vector<double> values;
+  void operator()(const char*, double value, Range, const char*) { values.push_back(value); }
+  void operator()(const char*, std::int64_t, Range, const char*) {}
+  template <typename Group>
+  void group(const char*, const Group& fields) {
+    Group::fields(*this, fields);
+  }
+};
+
+template <typename Config>
+std::vector<double> numbers(const Config& config) {
+  Numbers visit;
+  Config::fields(visit, config);
+  return visit.values;
+}
+
+TEST(PopulationTest, RigAndOperatorHaveTheMeanSubjectsHandByDefault) {
+  const Subject mean = mean_subject({});
+  using testing::DoubleNear;
+  const auto near = [](const std::vector<double>& expected) {
+    std::vector<testing::Matcher<double>> all;
+    for (const double value : expected) all.push_back(DoubleNear(value, 1e-3 * std::abs(value)));
+    return testing::ElementsAreArray(all);
+  };
+  EXPECT_THAT(numbers(rig::BodyConfig{}), near(numbers(mean.body)));
+  EXPECT_THAT(numbers(human_operator::CrossoverConfig{}), near(numbers(mean.who)));
 }
 
 TEST(PopulationTest, ANegativeStiffnessIsRefusedByName) {
@@ -103,4 +134,4 @@ TEST(PopulationTest, AMisspeltKeyIsNamedWithTheRightOne) {
 }
 
 }  // namespace
-}  // namespace stillhand::study
+}  // namespace stillhand::population

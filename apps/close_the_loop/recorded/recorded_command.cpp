@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/recorded/recorded_command.hpp"
+
+#include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/recorded/recorded_output.hpp"
+#include "apps/report/command_line.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/progress.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "services/cancellation/control_model_file.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/diagnosis/model_file.hpp"
+#include "services/runtime/process/run_jobs.hpp"
+#include "services/runtime/process/stop.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+// A record that is fitted to must not judge the fit.
+void check_apart(const RecordedOptions& options) {
+  std::vector<std::string> all = options.pegged;
+  all.insert(all.end(), options.unseen.begin(), options.unseen.end());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code error;
+      if (!std::filesystem::equivalent(all[i], all[j], error)) continue;
+      throw ConfigError(i < options.pegged.size() ? "--pegged" : "--unseen",
+                        all[j] + " and " + all[i] + ", the same file", "each recording once");
+    }
+  }
+}
+
+CLI::Option* add_files(CLI::App& verb, const char* name, std::vector<std::string>& files,
+                       const char* help) {
+  return verb.add_option(name, files, help)->check(CLI::ExistingFile)->group("From recordings");
+}
+
+}  // namespace
+
+void add_recorded_options(CLI::App& verb, RecordedOptions& options,
+                          const std::vector<CLI::Option*>& others) {
+  CLI::Option* pegged =
+      add_files(verb, "--pegged", options.pegged,
+                "recording(s) with the stick held, CSV or MCAP: closes the loop from recordings, "
+                "without a rig");
+  add_files(verb, "--moving", options.moving,
+            "recording(s) of condition B, 1 kHz with theta, f and f_motor: friction and ripple")
+      ->needs(pegged);
+  add_files(verb, "--cancelled", options.cancelled,
+            "recording(s) of condition C, the same: the delay of motor and load cell")
+      ->needs(pegged);
+  add_files(verb, "--unseen", options.unseen,
+            "pegged recording(s) for judging; without: the last of --pegged, or its last 30 %")
+      ->needs(pegged);
+  verb.add_option("--input", options.inputs, "inputs of the model: channel(s), comma-separated")
+      ->delimiter(',')
+      ->expected(1)
+      ->needs(pegged)
+      ->capture_default_str()
+      ->group("From recordings");
+  verb.add_option("--output", options.output, "channel that the model predicts")
+      ->needs(pegged)
+      ->capture_default_str()
+      ->group("From recordings");
+  for (CLI::Option* other : others) pegged->excludes(other);
+}
+
+void run_recorded(RecordedOptions options, const std::filesystem::path& out, std::uint32_t rig,
+                  unsigned threads) {
+  runtime::Stop stop;
+  check_apart(options);
+  report::StagedFolder folder(out);
+  report::require_gnuplot();
+  report::ProgressLine progress;
+  double done = 0.0;
+  options.progress = [&](const std::string& step) {
+    progress.show(step, done);
+    done += 0.3 * (1.0 - done);  // the number of steps is not known in advance
+    return !stop.requested();
+  };
+  options.for_each = [threads](std::size_t count, const auto& job) {
+    runtime::run_jobs(count, threads, job);
+  };
+  const RecordedLoop loop = close_recorded_loop(options);
+  progress.finish();
+  folder.write(kVerdictFile, verdict_json(loop.verdict));
+  folder.write("summary.json", recorded_summary_json(loop, options));
+  folder.write("model.json", diagnosis::model_json(loop.verdict.body.model));
+  if (loop.no_motor.empty() && loop.verdict.not_carried.empty()) {
+    cancellation::ControlModel model = loop.verdict.control.model;
+    model.adapts = average_hand();
+    folder.write(kControlModelFile, cancellation::control_model_json(model, rig));
+  }
+  const auto drawings = report::render(recorded_figures(loop), folder.path());
+  recorded_page(loop, options, report::command_line(), drawings)
+      .write(folder.path() / "report.html");
+  folder.publish(every_name());
+  print_recorded(loop);
+}
+
+}  // namespace stillhand::close_the_loop

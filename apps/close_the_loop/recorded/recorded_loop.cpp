@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/close_the_loop/recorded/recorded_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/measurement/read.hpp"
+#include "apps/measurement/session.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
+#include "services/diagnosis/core/working_set.hpp"
+
+namespace stillhand::close_the_loop {
+namespace {
+
+// Of a single pegged record: its end is kept apart for judging.
+constexpr double kKeptApart = 0.3;
+// A rate that differs by more is not the control rate.
+constexpr double kRateTolerance = 1e-3;
+
+bool is_session(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".mcap";
+}
+
+diagnosis::Measurement read(const std::string& path, const char* trial) {
+  measurement::ReadOptions options;
+  if (is_session(path)) options.trial = trial;
+  return measurement::read_measurement(path, options);
+}
+
+// The stick's own signals, at 1 kHz.
+recording::Recording read_stick(const std::string& path, const char* trial) {
+  if (is_session(path)) return measurement::read_session_rows(path, trial).rows;
+  const diagnosis::Measurement measured = measurement::read_measurement(path);
+  if (std::abs(measured.rate_hz / kControlRateHz - 1.0) > kRateTolerance) {
+    throw ConfigError(path, fmt::format("{:.6g} Hz", measured.rate_hz),
+                      "1000 Hz: the delays of the motor are a few milliseconds");
+  }
+  recording::Recording out;
+  out.source = path;
+  out.rate_hz = kControlRateHz;
+  out.time_s = measured.time_s();
+  for (const diagnosis::Channel& channel : measured.channels) {
+    out.columns.push_back({channel.name, channel.unit, channel.values});
+  }
+  return out;
+}
+
+void want_channels(const recording::Recording& record, const std::string& path) {
+  constexpr std::size_t kLeast_s = 5;
+  for (const char* name : {"theta", "f", "f_motor"}) {
+    if (record.find(name) == nullptr) {
+      throw ConfigError(path, fmt::format("no channel {}", name),
+                        "theta [rad], f [N] and f_motor [N] of the stick");
+    }
+  }
+  if (record.row_count() < kLeast_s * static_cast<std::size_t>(kControlRateHz)) {
+    throw ConfigError(path, fmt::format("{} rows", record.row_count()),
+                      fmt::format("{} s of the stick's motion at least", kLeast_s));
+  }
+}
+
+class RecordedLoopRun {
+ public:
+  explicit RecordedLoopRun(const RecordedOptions& options) : options_(options) {}
+
+  RecordedLoop run() {
+    step("reading");
+    read_pegged();
+    for (const std::string& path : options_.moving) {
+      moving_.push_back(read_stick(path, "B"));
+      want_channels(moving_.back(), path);
+    }
+    for (const std::string& path : options_.cancelled) {
+      cancelled_.push_back(read_stick(path, "C"));
+      want_channels(cancelled_.back(), path);
+    }
+    diagnose();
+    convert_linear();
+    for (const diagnosis::Measurement& record : unseen_) judge(record);
+    return std::move(out_);
+  }
+
+ private:
+  void step(const std::string& name) const {
+    if (!options_.progress(name)) throw diagnosis::Interrupted();
+  }
+
+  void read_pegged() {
+    std::vector<diagnosis::Measurement> parts;
+    for (const std::string& path : options_.pegged) parts.push_back(read(path, "I"));
+    for (const std::string& path : options_.unseen) unseen_.push_back(read(path, "I"));
+    if (unseen_.empty() && parts.size() > 1) {
+      unseen_.push_back(std::move(parts.back()));
+      parts.pop_back();
+    } else if (unseen_.empty()) {
+      auto [seen, unseen] = split_off_end(parts.front(), kKeptApart);
+      unseen.source += fmt::format(", its last {:.0f} %", 100.0 * kKeptApart);
+      parts.front() = std::move(seen);
+      unseen_.push_back(std::move(unseen));
+    }
+    pegged_ = parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
+    const diagnosis::Channel* output = pegged_.find(options_.output);
+    if (output == nullptr) {
+      throw ConfigError(pegged_.source, "no channel " + options_.output, "--output with its name");
+    }
+    out_.unit = output->unit;
+    out_.notes = pegged_.notes;
+  }
+
+  void diagnose() {
+    diagnosis::DiagnoseOptions diagnose;
+    diagnose.for_each = options_.for_each;
+    diagnose.progress = [&](const std::string& what) {
+      return options_.progress("diagnosis: " + what);
+    };
+    Evidence evidence{&pegged_, options_.inputs, options_.output};
+    for (const recording::Recording& record : moving_) evidence.moving.push_back(&record);
+    for (const recording::Recording& record : cancelled_) evidence.cancelled.push_back(&record);
+    out_.verdict = diagnose_all(evidence, options_.declared, diagnose);
+  }
+
+  // The linear model at the canceller's rate, for C next to C+.
+  void convert_linear() {
+    const auto carried = [](const std::string& name) {
+      return std::ranges::any_of(cancellation::kChannelFacts,
+                                 [&](const auto& facts) { return facts.name == name; });
+    };
+    if (out_.unit != "N" || !std::ranges::all_of(options_.inputs, carried)) {
+      out_.no_motor = "the canceller reads a_x, a_y, a_z, roll, theta and omega, and gives N";
+      return;
+    }
+    const diagnosis::Signals signals(diagnosis::working_set(pegged_, options_.inputs),
+                                     options_.inputs, options_.output);
+    ControlOptions control;
+    control.lead_s =
+        out_.verdict.latency ? out_.verdict.latency->motor_s : options_.declared.motor_delay_s;
+    try {
+      out_.linear_control =
+          to_control_model(out_.verdict.body.baseline.model, signals, control).model;
+    } catch (const ConfigError& error) {
+      out_.no_motor = error.what();
+    }
+  }
+
+  void judge(const diagnosis::Measurement& record) {
+    step("judging " + record.source);
+    const Verdict& verdict = out_.verdict;
+    Judged judged;
+    judged.source = record.source;
+    judged.seconds = static_cast<double>(record.size()) / record.rate_hz;
+    judged.linear = left_by_prediction(verdict.body.baseline.model, record);
+    judged.augmented = left_by_prediction(verdict.body.model, record);
+    if (out_.linear_control) {
+      judged.motor_linear = left_by_motor(*out_.linear_control, record, options_.output);
+      if (verdict.not_carried.empty()) {
+        judged.motor_augmented = left_by_motor(verdict.control.model, record, options_.output);
+      }
+    }
+    out_.judged.push_back(std::move(judged));
+  }
+
+  const RecordedOptions& options_;
+  diagnosis::Measurement pegged_;
+  std::vector<diagnosis::Measurement> unseen_;
+  std::vector<recording::Recording> moving_;
+  std::vector<recording::Recording> cancelled_;
+  RecordedLoop out_;
+};
+
+}  // namespace
+
+RecordedLoop close_recorded_loop(const RecordedOptions& options) {
+  return RecordedLoopRun(options).run();
+}
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/cancellation/core/control_model.hpp"
+#include "services/diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+#include "services/statistics/ratio.hpp"
+
+namespace stillhand::close_the_loop {
+
+/// RMS of a signal about its mean over a record, README Eq. CL-6.
+struct Level {
+  double rms = 0.0;                                     ///< in the output's unit
+  std::optional<std::pair<double, double>> interval95;  ///< none with fewer than three blocks
+  std::vector<double> block_mean_squares;               ///< of blocks of 10 s, in order
+};
+
+/// What a record of the pegged stick keeps of its force under a model, README Eq. CL-6.
+struct Remaining {
+  Level without;  ///< the force itself
+  Level left;     ///< the force less the prediction, or plus the motor's
+  /// 1 - rms(left) / rms(without), with its 95 % interval over the blocks where there is one.
+  [[nodiscard]] double cut() const { return 1.0 - left.rms / without.rms; }
+  [[nodiscard]] std::optional<std::pair<double, double>> cut_interval95() const;
+};
+
+/// Subtracts the model's free run from the record, as a canceller without limits or delay would.
+/// @throws stillhand::ConfigError as predict()
+Remaining left_by_prediction(const diagnosis::Model& model, const diagnosis::Measurement& record);
+
+/// Runs the record's channels through canceller and motor of the rig at 1 kHz and adds the motor's
+/// force: limits, fades, lags and the delay of a tick act as in a session.
+/// @param output  channel of the force [N]
+/// @throws stillhand::ConfigError if the canceller refuses the model; it reports why
+Remaining left_by_motor(const cancellation::ControlModel& model,
+                        const diagnosis::Measurement& record, const std::string& output);
+
+/// The last part of a record, and what comes before it.
+std::pair<diagnosis::Measurement, diagnosis::Measurement> split_off_end(
+    const diagnosis::Measurement& record, double share);
+
+}  // namespace stillhand::close_the_loop

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/subject_settings.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "services/human_operator/core/subject_config.hpp"
+#include "services/population/population.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/settings/load.hpp"
+#include "services/settings/yaml_text.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  const auto status = recording::write_file_atomically(file.string(), text);
+  if (!status.ok()) throw std::runtime_error(status.text);
+}
+
+}  // namespace
+
+void write_subject_settings(const std::filesystem::path& config, const std::filesystem::path& to,
+                            std::uint64_t seed, std::int64_t subject) {
+  auto rig = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
+  auto person = settings::load<human_operator::SubjectConfig>(config / "human_operator.yaml",
+                                                              "human_operator");
+  const population::Subject drawn = population::draw_subject({}, seed, subject - 1);
+  rig.body = drawn.body;
+  person.crossover = drawn.who;
+  person.pointer.arm = drawn.who.arm;
+  std::filesystem::create_directories(to);
+  for (const auto& entry : std::filesystem::directory_iterator(config)) {
+    if (entry.path().extension() != ".yaml") continue;
+    write(to / entry.path().filename(), recording::read_file(entry.path().string()));
+  }
+  write(to / "rig.yaml", settings::yaml_text(rig));
+  write(to / "human_operator.yaml", settings::yaml_text(person));
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace stillhand::lab {
+
+/// Writes the settings of a session with a drawn subject: every file of `config`, in which rig and
+/// operator have the body, the tracker and the learnt feel of that subject.
+/// @param config   folder of the services' settings
+/// @param to       folder that gets them; it is made
+/// @param seed     of the draw, Eq. SU-1; `stillhand study --seed` draws the same person with it
+/// @param subject  number of the subject, from 1 on
+/// @throws ConfigError for a file of `config` that is wrong; std::runtime_error if `to` cannot be
+///         written
+void write_subject_settings(const std::filesystem::path& config, const std::filesystem::path& to,
+                            std::uint64_t seed, std::int64_t subject);
+
+}  // namespace stillhand::lab

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/subject_settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/human_operator/core/subject_config.hpp"
+#include "services/population/population.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/settings/describe.hpp"
+#include "services/settings/load.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+const std::filesystem::path kConfig = std::filesystem::path(STILLHAND_SOURCE) / "deploy/config";
+
+TEST(SubjectSettingsTest, RigAndOperatorAreTheSubjectThatTheStudyDraws) {
+  const std::filesystem::path to = std::filesystem::path(testing::TempDir()) / "subject_settings";
+  write_subject_settings(kConfig, to, 7, 3);
+  const population::Subject drawn = population::draw_subject({}, 7, 2);
+  const auto rig = settings::load<rig::RigConfig>(to / "rig.yaml", "rig");
+  const auto person =
+      settings::load<human_operator::SubjectConfig>(to / "human_operator.yaml", "human_operator");
+  EXPECT_EQ(rig.body.shoulder_stiffness_n_m, drawn.body.shoulder_stiffness_n_m);
+  EXPECT_EQ(settings::describe(rig.body), settings::describe(drawn.body));
+  EXPECT_EQ(settings::describe(rig.stick), settings::describe(rig::StickConfig{}));
+  EXPECT_EQ(settings::describe(person.crossover), settings::describe(drawn.who));
+  EXPECT_EQ(person.pointer.arm.effective_stiffness_n_m, drawn.who.arm.effective_stiffness_n_m);
+  for (const auto& entry : std::filesystem::directory_iterator(kConfig)) {
+    EXPECT_TRUE(std::filesystem::exists(to / entry.path().filename())) << entry.path();
+  }
+  EXPECT_EQ(recording::read_file((to / "motion.yaml").string()),
+            recording::read_file((kConfig / "motion.yaml").string()));
+  std::filesystem::remove_all(to);
+}
+
+TEST(SubjectSettingsTest, ASettingsFolderWithoutTheRigIsRefused) {
+  const std::filesystem::path to = std::filesystem::path(testing::TempDir()) / "nothing_here";
+  EXPECT_THROW(write_subject_settings(to, to / "config", 1, 1), ConfigError);
+  EXPECT_FALSE(std::filesystem::exists(to));
+}
+
+}  // namespace
+}  // namespace stillhand::lab
