@@ -39,7 +39,9 @@ void print_table(const session::SessionResult& result) {
     std::printf("   %.2f, %.2f, %.2f, %.0f %%\n", metric.paper_a, metric.paper_b, metric.paper_c,
                 metric.paper_restored_percent);
   }
-  std::printf("The paper's RMS error has no unit; one unit is near 5.5 mm.\n");
+  std::printf(
+      "The paper's RMS error has no unit; one unit is near 5.5 mm. One trial of each condition has "
+      "no interval;\n`stillhand close-the-loop --repeats` measures it.\n");
 }
 
 void print_models(const session::SessionResult& result,

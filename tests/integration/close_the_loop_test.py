@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import random
 import signal
 import subprocess
 import tempfile
@@ -155,6 +156,81 @@ class CloseTheLoopTest(unittest.TestCase):
         _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1, errors)
         self.assertFalse(self.out.exists())
+
+
+class FromRecordingsTest(unittest.TestCase):
+    """`--pegged`: two recordings of a stand that this test computes. f = body(a_y) + 1.5 kg body(a_x) + noise, body a
+    second-order system of 3 Hz and damping ratio 0.4 with 3 N at 0 Hz for 1 m/s^2.
+    """
+    SECONDS, RATE_HZ, STEPS = 60, 100, 10
+    CROSS_KG = 1.5
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="stillhand-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.out = self.folder / "loop"
+
+    def stand(self, name, seed):
+        chance = random.Random(seed)
+        motions = [[(chance.uniform(0.5, 4.0), chance.uniform(0.0, 6.28)) for _ in range(12)] for _ in range(2)]
+
+        def motion(lines, t_s):
+            return sum(0.5 * math.sin(2.0 * math.pi * hz * t_s + phase) for hz, phase in lines)
+        natural_rad_s = 2.0 * math.pi * 3.0
+        x = v = 0.0
+        step_s = 1.0 / self.RATE_HZ / self.STEPS
+        rows = ["t [s],a_y [m/s^2],a_x [m/s^2],f [N]"]
+        for n in range(self.SECONDS * self.RATE_HZ):
+            t_s = n / self.RATE_HZ
+            a_y, a_x = (motion(lines, t_s) for lines in motions)
+            force_n = -3.0 * x + chance.gauss(0.0, 0.2)
+            rows.append(f"{t_s:.2f},{a_y:.6f},{a_x:.6f},{force_n:.6f}")
+            for k in range(self.STEPS):
+                drive = motion(motions[0], t_s + k * step_s) + self.CROSS_KG / 3.0 * motion(motions[1], t_s + k * step_s)
+                v += step_s * (natural_rad_s ** 2 * (drive - x) - 0.8 * natural_rad_s * v)
+                x += step_s * v
+        path = self.folder / name
+        path.write_text("\n".join(rows) + "\n")
+        return path
+
+    def test_the_effect_is_found_and_leaves_less_of_a_record_that_no_fit_has_seen(self):
+        first, second = self.stand("first.csv", 1), self.stand("second.csv", 2)
+        ran = close_the_loop("--pegged", first, second, "--out", self.out)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual((summary["verdict"]["kind"], summary["verdict"]["channel"]), ("coupled_input", "a_x"))
+        self.assertTrue(summary["kept"])
+        self.assertEqual([record["source"] for record in summary["unseen"]], ["second.csv"])
+        left = {name: summary["unseen"][0][name]["left"]["rms"] for name in ("linear", "augmented", "motor_augmented")}
+        # The noise of 0.2 N is left in any case; the motor is 2 ms late, 5 % of a sine of 4 Hz.
+        self.assertLess(left["augmented"], 0.25)
+        self.assertGreater(left["linear"], 1.0)
+        self.assertLess(left["motor_augmented"], 0.3)
+        low, high = summary["unseen"][0]["augmented"]["cut_interval95"]
+        self.assertTrue(low < summary["unseen"][0]["augmented"]["cut"] < high)
+        self.assertEqual(json.loads((self.out / "control_model.json").read_text())["rate_hz"], 1000.0)
+        self.assertEqual((self.out / "report.html").read_text().count("<svg"), 2)
+
+    def test_wrong_words_are_refused_and_leave_nothing(self):
+        first = self.stand("first.csv", 1)
+        empty = self.folder / "empty.csv"
+        empty.write_text("")
+        for arguments, word in ((["--pegged", first, first], "--pegged"),
+                                (["--pegged", first, "--unseen", first], "--unseen"),
+                                (["--pegged", self.folder / "none.csv"], "--pegged"),
+                                (["--pegged", empty], "empty.csv"),
+                                (["--pegged", first, "--moving", first], "1000 Hz"),
+                                (["--pegged", first, "--input", "a_q"], "a_q"),
+                                (["--pegged", first, "--output", "g"], "--output"),
+                                (["--pegged", first, "--live"], "--live"),
+                                (["--pegged", first, "--undeclared-effect", 3], "--undeclared-effect"),
+                                (["--cancelled", first], "--pegged")):
+            ran = close_the_loop(*arguments, "--out", self.out)
+            self.assertEqual(ran.returncode, 2, (arguments, ran.stderr))
+            self.assertEqual(ran.stderr.count("\n"), 1, ran.stderr)
+            self.assertIn(word, ran.stderr)
+            self.assertFalse(self.out.exists(), arguments)
 
 
 if __name__ == "__main__":

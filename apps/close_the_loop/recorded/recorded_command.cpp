@@ -30,6 +30,13 @@ void check_apart(const RecordedOptions& options) {
   }
 }
 
+// The model for `stillhand lab --model`; none where no motor could run.
+std::optional<cancellation::ControlModel> control_model_of(const RecordedLoop& loop) {
+  if (!loop.kept) return loop.linear_control;
+  if (!loop.no_motor.empty() || !loop.verdict.not_carried.empty()) return std::nullopt;
+  return loop.verdict.control.model;
+}
+
 CLI::Option* add_files(CLI::App& verb, const char* name, std::vector<std::string>& files,
                        const char* help) {
   return verb.add_option(name, files, help)->check(CLI::ExistingFile)->group("From recordings");
@@ -85,11 +92,10 @@ void run_recorded(RecordedOptions options, const std::filesystem::path& out, std
   progress.finish();
   folder.write(kVerdictFile, verdict_json(loop.verdict));
   folder.write("summary.json", recorded_summary_json(loop, options));
-  folder.write("model.json", diagnosis::model_json(loop.verdict.body.model));
-  if (loop.no_motor.empty() && loop.verdict.not_carried.empty()) {
-    cancellation::ControlModel model = loop.verdict.control.model;
-    model.adapts = average_hand();
-    folder.write(kControlModelFile, cancellation::control_model_json(model, rig));
+  folder.write("model.json", diagnosis::model_json(loop.model()));
+  if (auto model = control_model_of(loop)) {
+    model->adapts = average_hand();
+    folder.write(kControlModelFile, cancellation::control_model_json(*model, rig));
   }
   const auto drawings = report::render(recorded_figures(loop), folder.path());
   recorded_page(loop, options, report::command_line(), drawings)

@@ -8,6 +8,7 @@
 
 #include "apps/measurement/read.hpp"
 #include "apps/measurement/session.hpp"
+#include "services/cancellation/core/canceller.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/diagnosis/core/working_set.hpp"
@@ -62,6 +63,13 @@ void want_channels(const recording::Recording& record, const std::string& path) 
   }
 }
 
+// Why the canceller would not run a model, or empty.
+std::string refused(const cancellation::ControlModel& model) {
+  const auto check = cancellation::check_model(model, cancellation::bounds({}));
+  if (check.refusal == cancellation::Refusal::kNone) return {};
+  return "the canceller refuses it: " + std::string(cancellation::describe(check.refusal));
+}
+
 class RecordedLoopRun {
  public:
   explicit RecordedLoopRun(const RecordedOptions& options) : options_(options) {}
@@ -79,7 +87,17 @@ class RecordedLoopRun {
     }
     diagnose();
     convert_linear();
+    if (out_.verdict.not_carried.empty()) {
+      out_.verdict.not_carried = refused(out_.verdict.control.model);
+    }
     for (const diagnosis::Measurement& record : unseen_) judge(record);
+    double linear = 0.0;
+    double augmented = 0.0;
+    for (const Judged& judged : out_.judged) {
+      linear += judged.linear.left.rms * judged.linear.left.rms * judged.seconds;
+      augmented += judged.augmented.left.rms * judged.augmented.left.rms * judged.seconds;
+    }
+    out_.kept = augmented <= linear;
     return std::move(out_);
   }
 
@@ -97,7 +115,7 @@ class RecordedLoopRun {
       parts.pop_back();
     } else if (unseen_.empty()) {
       auto [seen, unseen] = split_off_end(parts.front(), kKeptApart);
-      unseen.source += fmt::format(", its last {:.0f} %", 100.0 * kKeptApart);
+      unseen.source += fmt::format(", the last {:.0f} %", 100.0 * kKeptApart);
       parts.front() = std::move(seen);
       unseen_.push_back(std::move(unseen));
     }
@@ -140,24 +158,26 @@ class RecordedLoopRun {
     try {
       out_.linear_control =
           to_control_model(out_.verdict.body.baseline.model, signals, control).model;
+      out_.linear_not_carried = refused(*out_.linear_control);
     } catch (const ConfigError& error) {
-      out_.no_motor = error.what();
+      out_.linear_not_carried = error.what();
     }
+    if (!out_.linear_not_carried.empty()) out_.linear_control.reset();
   }
 
   void judge(const diagnosis::Measurement& record) {
     step("judging " + record.source);
     const Verdict& verdict = out_.verdict;
     Judged judged;
-    judged.source = record.source;
+    judged.source = std::filesystem::path(record.source).filename().string();
     judged.seconds = static_cast<double>(record.size()) / record.rate_hz;
     judged.linear = left_by_prediction(verdict.body.baseline.model, record);
     judged.augmented = left_by_prediction(verdict.body.model, record);
     if (out_.linear_control) {
       judged.motor_linear = left_by_motor(*out_.linear_control, record, options_.output);
-      if (verdict.not_carried.empty()) {
-        judged.motor_augmented = left_by_motor(verdict.control.model, record, options_.output);
-      }
+    }
+    if (out_.no_motor.empty() && verdict.not_carried.empty()) {
+      judged.motor_augmented = left_by_motor(verdict.control.model, record, options_.output);
     }
     out_.judged.push_back(std::move(judged));
   }

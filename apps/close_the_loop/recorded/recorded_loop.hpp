@@ -40,13 +40,21 @@ struct RecordedLoop {
   std::string unit;  ///< of the output
   Verdict verdict;
   std::optional<cancellation::ControlModel> linear_control;
-  std::string no_motor;  ///< why no motor was run, or empty
+  std::string no_motor;            ///< why no motor was run, or empty
+  std::string linear_not_carried;  ///< why it was not run with the linear model, or empty
   std::vector<Judged> judged;
+  bool kept =
+      true;  ///< the augmented model leaves no more on the unseen records than the linear one
   std::vector<std::string> notes;  ///< of the readers
+
+  /// The model that goes on: with the effects if it is kept.
+  [[nodiscard]] const diagnosis::Model& model() const {
+    return kept ? verdict.body.model : verdict.body.baseline.model;
+  }
 };
 
 /// Diagnoses the recordings, and judges the linear and the augmented model on the unseen ones:
-/// README "From recordings".
+/// README "From recordings".  An augmented model that leaves more there is not kept.
 /// @throws ConfigError for a recording that cannot be used, diagnosis::Interrupted
 RecordedLoop close_recorded_loop(const RecordedOptions& options);
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/close_the_loop/output.hpp"
+#include "apps/diagnose/page/wording.hpp"
 #include "apps/report/or_null.hpp"
 #include "apps/report/text.hpp"
 #include "version.hpp"
@@ -81,9 +82,10 @@ std::vector<Row> rows_of(const Judged& judged) {
 }
 
 std::string finding_text(const Finding& finding, const std::string& unit) {
-  return fmt::format("{}{} in the {}, {} {} RMS: {}", finding.kind,
+  return fmt::format("{}{} in the {}, {} {} RMS: {}", diagnose::spaced(finding.kind),
                      finding.channel.empty() ? "" : " (" + finding.channel + ")", finding.where,
-                     report::short_number(finding.explained_n), unit, finding.evidence);
+                     report::short_number(finding.explained_n), diagnose::shown_unit(unit),
+                     finding.evidence);
 }
 
 std::string conclusion_text(const Verdict& verdict) {
@@ -93,13 +95,26 @@ std::string conclusion_text(const Verdict& verdict) {
              : "The model lacks nothing that is large enough to move a hand.";
 }
 
+// What became of the augmented model on the unseen records.
+std::string kept_text(const RecordedLoop& loop) {
+  if (loop.verdict.findings.empty()) return {};
+  return loop.kept ? "The augmented model leaves less on the unseen records: it is kept."
+                   : "The augmented model leaves more on the unseen records: the linear model is "
+                     "kept.";
+}
+
 // Why no motor ran, or ran with one model alone; empty: both ran.
 std::string motor_text(const RecordedLoop& loop) {
   if (!loop.no_motor.empty()) return "No motor was run: " + loop.no_motor + ".";
-  if (!loop.verdict.not_carried.empty()) {
-    return "The motor was not run with the augmented model: " + loop.verdict.not_carried + ".";
-  }
-  return {};
+  std::string text;
+  const auto add = [&](const char* model, const std::string& why) {
+    if (why.empty()) return;
+    text += fmt::format("{}The motor was not run with the {} model: {}.", text.empty() ? "" : " ",
+                        model, why);
+  };
+  add("linear", loop.linear_not_carried);
+  add("augmented", loop.verdict.not_carried);
+  return text;
 }
 
 }  // namespace
@@ -119,7 +134,9 @@ std::string recorded_summary_json(const RecordedLoop& loop, const RecordedOption
   summary["treatments"] = treatments_json(loop.verdict.control);
   summary["unseen"] = ordered_json::array();
   for (const Judged& judged : loop.judged) summary["unseen"].push_back(judged_json(judged));
+  summary["kept"] = loop.kept;
   summary["no_motor"] = report::or_null(loop.no_motor);
+  summary["linear_not_carried"] = report::or_null(loop.linear_not_carried);
   summary["not_carried"] = report::or_null(loop.verdict.not_carried);
   summary["notes"] = loop.notes;
   summary["version"] = kVersion;
@@ -135,12 +152,14 @@ void print_recorded(const RecordedLoop& loop) {
   for (const Judged& judged : loop.judged) {
     fmt::print("\n{}, {:.0f} s that no fit has seen\n{:<44} {:<28} {}\n", judged.source,
                judged.seconds, "what acts against the force",
-               fmt::format("left [{}], 95 %", loop.unit), "cut");
+               fmt::format("left [{}], 95 %", diagnose::shown_unit(loop.unit)), "cut");
     for (const Row& row : rows_of(judged)) {
       fmt::print("{:<44} {:<28} {}\n", row.what, row.left, row.cut);
     }
   }
-  if (const std::string text = motor_text(loop); !text.empty()) fmt::print("\n{}\n", text);
+  for (const std::string& text : {kept_text(loop), motor_text(loop)}) {
+    if (!text.empty()) fmt::print("\n{}\n", text);
+  }
 }
 
 report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& options,
@@ -158,19 +177,21 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
                   last.source, cut_text(last.linear), cut_text(last.augmented)));
   page.facts({{"command", command_line},
               {"inputs", fmt::format("{}", fmt::join(options.inputs, ", "))},
-              {"output", options.output + " [" + loop.unit + "]"},
+              {"output", diagnose::axis_label(options.output, loop.unit)},
               {"version", kVersion}});
   page.section("What is left on unseen records");
   for (const Judged& judged : loop.judged) {
     report::Table table;
     table.caption = fmt::format("{}, {:.0f} s: RMS about the mean, and the share of it taken away",
                                 judged.source, judged.seconds);
-    table.header = {"what acts against the force", fmt::format("left [{}], 95 %", loop.unit),
-                    "cut, 95 %"};
+    table.header = {"what acts against the force",
+                    fmt::format("left [{}], 95 %", diagnose::shown_unit(loop.unit)), "cut, 95 %"};
     for (const Row& row : rows_of(judged)) table.rows.push_back({row.what, row.left, row.cut});
     page.table(table);
   }
-  if (const std::string text = motor_text(loop); !text.empty()) page.paragraph(text);
+  for (const std::string& text : {kept_text(loop), motor_text(loop)}) {
+    if (!text.empty()) page.paragraph(text);
+  }
   for (const report::Drawing& drawing : drawings) page.figure(drawing);
   page.section("What the model lacks");
   std::vector<std::string> findings;
@@ -183,46 +204,85 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
   return page;
 }
 
+namespace {
+
+// A panel with the bars of one record.
+report::Panel bars(const RecordedLoop& loop, const Judged& judged) {
+  report::Panel panel;
+  panel.title = judged.source;
+  panel.y.label = "left [" + diagnose::shown_unit(loop.unit) + "]";
+  panel.y.low = 0.0;
+  panel.legend = report::Legend::kNone;
+  double at = 0.0;
+  const auto bar = [&](const char* label, report::Colour colour, const Level& level) {
+    at += 1.0;
+    panel.series.push_back(
+        {.kind = report::Kind::kBars, .colour = colour, .x = {at}, .y = {level.rms}});
+    if (level.interval95) {
+      panel.series.push_back({.kind = report::Kind::kErrorBars,
+                              .colour = report::Colour::kTarget,
+                              .x = {at},
+                              .y = {level.rms},
+                              .y_low = {level.interval95->first},
+                              .y_high = {level.interval95->second},
+                              .point_size = 0.1});
+    }
+    panel.x.ticks.push_back({at, label});
+  };
+  bar("nothing", report::Colour::kMeasured, judged.linear.without);
+  bar("linear", report::Colour::kWarning, judged.linear.left);
+  bar("augmented", report::Colour::kAccent, judged.augmented.left);
+  if (judged.motor_linear) bar("C", report::Colour::kConditionC, judged.motor_linear->left);
+  if (judged.motor_augmented) {
+    bar("C+", report::Colour::kConditionCPlus, judged.motor_augmented->left);
+  }
+  panel.x.low = 0.4;
+  panel.x.high = at + 0.6;
+  return panel;
+}
+
+report::Series line(const char* label, report::Colour colour, const Excerpt& excerpt,
+                    const std::vector<double>& values) {
+  report::Series out{.label = label, .colour = colour, .x = {}, .y = values};
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    out.x.push_back(static_cast<double>(n) / excerpt.rate_hz);
+  }
+  return out;
+}
+
+// Twelve seconds of one record: the force, and what each model leaves.
+report::Panel trace(const RecordedLoop& loop, const Judged& judged) {
+  report::Panel panel;
+  panel.title = judged.source;
+  panel.x.label = "time [s]";
+  panel.y.label = "[" + diagnose::shown_unit(loop.unit) + "]";
+  const Excerpt& linear = judged.linear.excerpt;
+  const Excerpt& augmented = judged.augmented.excerpt;
+  panel.series = {
+      line("measured", report::Colour::kMeasured, linear, linear.force),
+      line("left by the linear model", report::Colour::kWarning, linear, linear.left),
+      line("left by the augmented model", report::Colour::kAccent, augmented, augmented.left)};
+  return panel;
+}
+
+}  // namespace
+
 std::vector<report::Figure> recorded_figures(const RecordedLoop& loop) {
+  report::Figure traces;
+  traces.name = "force";
+  traces.caption = "Twelve seconds from the middle of each unseen record.";
+  traces.columns = 1;
+  traces.height_px = 340 * static_cast<int>(loop.judged.size());
   report::Figure figure;
   figure.name = "left";
   figure.caption =
       "What is left of the force on each unseen record, and its 95 % interval over blocks of 10 s.";
   figure.columns = static_cast<int>(loop.judged.size());
   for (const Judged& judged : loop.judged) {
-    report::Panel panel;
-    panel.title = judged.source;
-    panel.y.label = "left [" + loop.unit + "]";
-    panel.y.low = 0.0;
-    panel.legend = report::Legend::kNone;
-    double at = 0.0;
-    const auto bar = [&](const char* label, report::Colour colour, const Level& level) {
-      at += 1.0;
-      panel.series.push_back(
-          {.kind = report::Kind::kBars, .colour = colour, .x = {at}, .y = {level.rms}});
-      if (level.interval95) {
-        panel.series.push_back({.kind = report::Kind::kErrorBars,
-                                .colour = report::Colour::kTarget,
-                                .x = {at},
-                                .y = {level.rms},
-                                .y_low = {level.interval95->first},
-                                .y_high = {level.interval95->second},
-                                .point_size = 0.1});
-      }
-      panel.x.ticks.push_back({at, label});
-    };
-    bar("nothing", report::Colour::kMeasured, judged.linear.without);
-    bar("linear", report::Colour::kWarning, judged.linear.left);
-    bar("augmented", report::Colour::kAccent, judged.augmented.left);
-    if (judged.motor_linear) bar("C", report::Colour::kConditionC, judged.motor_linear->left);
-    if (judged.motor_augmented) {
-      bar("C+", report::Colour::kConditionCPlus, judged.motor_augmented->left);
-    }
-    panel.x.low = 0.4;
-    panel.x.high = at + 0.6;
-    figure.panels.push_back(std::move(panel));
+    figure.panels.push_back(bars(loop, judged));
+    traces.panels.push_back(trace(loop, judged));
   }
-  return {figure};
+  return {figure, traces};
 }
 
 }  // namespace stillhand::close_the_loop

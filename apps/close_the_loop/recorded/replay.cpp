@@ -22,6 +22,7 @@ namespace {
 // A model does not know what came before a stretch; a motor's model also settles and fades in.
 constexpr double kSettle_s = 2.0;
 constexpr double kBlock_s = 10.0;
+constexpr double kExcerpt_s = 12.0;
 constexpr std::size_t kLeastBlocks = 3;
 
 // Force and what is left of it, sample by sample, in runs without a gap.
@@ -68,13 +69,26 @@ Level level_of(const std::vector<Run>& runs, const std::vector<double> Run::*of,
   return out;
 }
 
+Excerpt excerpt_of(const std::vector<Run>& runs, double rate_hz) {
+  const Run& longest =
+      *std::ranges::max_element(runs, {}, [](const Run& run) { return run.force.size(); });
+  const std::size_t count =
+      std::min(longest.force.size(), static_cast<std::size_t>(kExcerpt_s * rate_hz));
+  const auto from = static_cast<std::ptrdiff_t>((longest.force.size() - count) / 2);
+  const auto to = from + static_cast<std::ptrdiff_t>(count);
+  return {rate_hz,
+          {longest.force.begin() + from, longest.force.begin() + to},
+          {longest.left.begin() + from, longest.left.begin() + to}};
+}
+
 Remaining remaining(const std::vector<Run>& runs, double rate_hz, const std::string& source) {
   const bool empty = std::ranges::all_of(runs, [](const Run& run) { return run.force.empty(); });
   if (empty) {
     throw ConfigError(source, "no stretch longer than 2 s",
                       "a record that goes on when the model has settled");
   }
-  return {level_of(runs, &Run::force, rate_hz), level_of(runs, &Run::left, rate_hz)};
+  return {level_of(runs, &Run::force, rate_hz), level_of(runs, &Run::left, rate_hz),
+          excerpt_of(runs, rate_hz)};
 }
 
 const diagnosis::Channel& channel_of(const diagnosis::Measurement& record,

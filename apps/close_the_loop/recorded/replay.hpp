@@ -20,10 +20,18 @@ struct Level {
   std::vector<double> block_mean_squares;               ///< of blocks of 10 s, in order
 };
 
+/// Twelve seconds from the middle of the longest stretch, for figures.
+struct Excerpt {
+  double rate_hz = 0.0;
+  std::vector<double> force;
+  std::vector<double> left;
+};
+
 /// What a record of the pegged stick keeps of its force under a model, README Eq. CL-6.
 struct Remaining {
   Level without;  ///< the force itself
   Level left;     ///< the force less the prediction, or plus the motor's
+  Excerpt excerpt;
   /// 1 - rms(left) / rms(without), with its 95 % interval over the blocks where there is one.
   [[nodiscard]] double cut() const { return 1.0 - left.rms / without.rms; }
   [[nodiscard]] std::optional<std::pair<double, double>> cut_interval95() const;
