@@ -46,14 +46,14 @@ ordered_json judged_json(const Judged& judged) {
 }
 
 std::string level_text(const Level& level) {
-  const std::string text = report::short_number(level.rms);
+  std::string text = report::short_number(level.rms);
   if (!level.interval95) return text;
   return fmt::format("{} [{}, {}]", text, report::short_number(level.interval95->first),
                      report::short_number(level.interval95->second));
 }
 
 std::string cut_text(const Remaining& remaining) {
-  const std::string text = number(100.0 * remaining.cut(), 1) + " %";
+  std::string text = number(100.0 * remaining.cut(), 1) + " %";
   const Interval interval = remaining.cut_interval95();
   if (!interval) return text;
   return fmt::format("{} [{}, {}]", text, number(100.0 * interval->first, 1),

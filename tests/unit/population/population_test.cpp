@@ -18,6 +18,7 @@ namespace {
 
 std::vector<double> drawn(const Population& population, int count, double (*of)(const Subject&)) {
   std::vector<double> out;
+  out.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) out.push_back(of(draw_subject(population, 7, i)));
   return out;
 }
@@ -105,6 +106,7 @@ TEST(PopulationTest, RigAndOperatorHaveTheMeanSubjectsHandByDefault) {
   using testing::DoubleNear;
   const auto near = [](const std::vector<double>& expected) {
     std::vector<testing::Matcher<double>> all;
+    all.reserve(expected.size());
     for (const double value : expected) all.push_back(DoubleNear(value, 1e-3 * std::abs(value)));
     return testing::ElementsAreArray(all);
   };
