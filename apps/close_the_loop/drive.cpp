@@ -106,6 +106,7 @@ std::optional<Latency> measure_latency(const recording::Recording& trial,
     const double as_cell = residual(signals, usual, late);
     if (as_cell < best.residual_n) best = {declared.motor_delay_s, seconds, 0.0, as_cell};
   }
+  if (!std::isfinite(best.residual_n)) return std::nullopt;
   const double before = residual(signals, usual, 0);
   best.explained_n = std::sqrt(std::max(before * before - best.residual_n * best.residual_n, 0.0));
   return best;

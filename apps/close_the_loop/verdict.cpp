@@ -27,24 +27,6 @@ double explained(const diagnosis::FoundEffect& effect) {
   return std::sqrt(std::max(before * before - after * after, 0.0));
 }
 
-// The output without the delay of its sensor; what comes after a stretch's end counts as not
-// measured.
-diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,
-                                double seconds) {
-  diagnosis::Measurement out = record;
-  const auto late = static_cast<std::size_t>(std::lround(seconds * record.rate_hz));
-  const auto channel = std::ranges::find(out.channels, output, &diagnosis::Channel::name);
-  if (late == 0 || channel == out.channels.end()) return out;
-  for (const diagnosis::Stretch& stretch : out.stretches) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      const bool known = n + late < stretch.end;
-      channel->values[n] = channel->values[known ? n + late : stretch.end - 1];
-      out.weight[n] = known ? out.weight[n + late] : 0.0;
-    }
-  }
-  return out;
-}
-
 // The latest of several recordings: the median would hide a drive that is late now and then.
 std::optional<Latency> latest(const std::vector<const recording::Recording*>& cancelled,
                               const DeclaredDrive& declared) {
@@ -105,6 +87,22 @@ void add_drive_findings(Verdict& out) {
 
 }  // namespace
 
+diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,
+                                double seconds) {
+  diagnosis::Measurement out = record;
+  const auto late = static_cast<std::size_t>(std::lround(seconds * record.rate_hz));
+  const auto channel = std::ranges::find(out.channels, output, &diagnosis::Channel::name);
+  if (late == 0 || channel == out.channels.end()) return out;
+  for (const diagnosis::Stretch& stretch : out.stretches) {
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
+      const bool known = n + late < stretch.end;
+      channel->values[n] = channel->values[known ? n + late : stretch.end - 1];
+      out.weight[n] = known ? out.weight[n + late] : 0.0;
+    }
+  }
+  return out;
+}
+
 double detectable_n(const Verdict& verdict, bool in_drive) {
   if (in_drive) return kWorthDrive_n;
   const double kept = 1.0 - kWorthFall;
@@ -123,6 +121,7 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
   const auto late = latency_finding(out.latency, declared);
   if (late) out.findings.push_back(*late);
   const bool cell_late = late && late->where == kLoadCell;
+  out.cell_is_late = cell_late;
 
   diagnosis::DiagnoseOptions own = options;
   own.inputs = evidence.inputs;

@@ -53,6 +53,7 @@ struct Verdict {
   diagnosis::Diagnosis body;                  ///< of the pegged trial, load cell's delay taken off
   std::optional<diagnosis::Diagnosis> drive;  ///< of the stick's own equation
   std::optional<Latency> latency;
+  bool cell_is_late = false;      ///< the latency is the load cell's, and large enough to count
   std::vector<Finding> findings;  ///< strongest first
   ConvertedModel control;
   std::string not_carried;  ///< why there is no control model, or empty
@@ -69,6 +70,11 @@ struct Verdict {
 /// the held-out error a quarter larger than the noise floor, so that an effect's part of it counts;
 /// in the drive it is the least that counts.
 double detectable_n(const Verdict& verdict, bool in_drive);
+
+/// A record with the output as if its sensor were not late; the last samples of a stretch then
+/// count as not measured.  @param seconds  [s] delay of the sensor
+diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,
+                                double seconds);
 
 /// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
 /// verdict".

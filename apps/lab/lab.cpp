@@ -19,6 +19,7 @@
 #include "apps/lab/subject_settings.hpp"
 #include "apps/lab/summary.hpp"
 #include "apps/lab/undeclared_effect.hpp"
+#include "services/contract/config_error.hpp"
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/real_time.hpp"
@@ -92,7 +93,12 @@ LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
                         const Script& script) {
   LabOptions options = asked_options;
   const AskedMotions asked = check_options(options);
-  if (options.subject != 0) options.config = options.out / "logs" / "config";
+  const std::filesystem::path own_config = options.out / "logs" / "config";
+  if (std::error_code error; std::filesystem::equivalent(options.config, own_config, error)) {
+    throw ConfigError("--config", options.config.string() + ", which this session would replace",
+                      "a copy of it, or another --out");
+  }
+  if (options.subject != 0) options.config = own_config;
   Hosts hosts(options);
   const DomainLock lock(hosts.domain(), options.rig);
   LiveSession live;

@@ -199,7 +199,9 @@ void OutputFolder::clear() const {
   }
   const std::filesystem::path logs = path_ / "logs";
   if (std::filesystem::is_directory(logs, error)) {
-    std::filesystem::remove(logs / "config", error);
+    if (std::filesystem::is_directory(logs / "config", error)) {
+      std::filesystem::remove(logs / "config", error);
+    }
     std::filesystem::remove(logs, error);  // unless it holds something else
   }
 }

@@ -7,7 +7,7 @@
 namespace stillhand::lab {
 
 /// Writes the settings of a session with a drawn subject: every file of `config`, in which rig and
-/// operator have the body, the tracker and the learnt feel of that subject.
+/// operator have the drawn quantities of that subject and the learnt feel of the rig's stick.
 /// @param config   folder of the services' settings
 /// @param to       folder that gets them; it is made
 /// @param seed     of the draw, Eq. SU-1; `stillhand study --seed` draws the same person with it

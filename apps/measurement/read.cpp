@@ -104,7 +104,9 @@ diagnosis::Measurement read_measurement(const std::string& path, const ReadOptio
     }
     return on_grid(read_table(path, options.most_values), options.most_values);
   }
-  SessionRows session = read_session_rows(path, options.trial);
+  SessionRows session = options.session_trial.empty()
+                            ? read_session_rows(path, options.trial)
+                            : read_session_rows(path, options.session_trial, true);
   if (!session.loss.empty()) std::fprintf(stderr, "stillhand: %s\n", session.loss.c_str());
   diagnosis::Measurement out = on_grid(std::move(session.rows), options.most_values);
   out.notes.insert(out.notes.begin(), session.notes.begin(), session.notes.end());

@@ -13,7 +13,10 @@ struct ReadOptions {
   /// Trial of a session's recording: its number, or the letter of its condition (I: identification)
   /// if only one trial has it.  Empty: the longest identification trial, or the longest trial if
   /// there is none.
-  std::string trial;
+  std::string trial = {};
+  /// Letter of a condition, as `trial`, for files that may also be tables; of several trials with
+  /// it the last.  Empty: `trial` alone counts.
+  std::string session_trial = {};
   /// [-] samples times channels that are read at most; 8 B each, and as much again while reading.
   std::size_t most_values = 60'000'000;
 };

@@ -140,14 +140,14 @@ recording::Recording table_of(TrialStreams streams, bool with_motor, bool with_t
 
 }  // namespace
 
-SessionRows read_session_rows(const std::string& path, const std::string& trial) {
+SessionRows read_session_rows(const std::string& path, const std::string& trial, bool last) {
   recording::FileSource file(path);
   recording::McapReader reader(file);
   if (!reader.status().ok()) {
     throw ConfigError(path, reader.status().text, "an MCAP recording of a session, or CSV");
   }
   const SessionTrials trials = find_trials(reader, path);
-  const SessionTrial& chosen = choose(trials, trial, path);
+  const SessionTrial& chosen = choose(trials, trial, path, last);
   SessionRows out;
   out.notes = notes_of(trials, chosen);
   TrialStreams streams = read_streams(reader, chosen, trials.rig);

@@ -24,7 +24,8 @@ struct SessionRows {
 /// trial, `stillhand/tracking_sample` (x_r, x_p).  A tick is a missing row if one of these topics
 /// lacks it or the sensors gave no valid value.  The readable part of a damaged file is used.
 /// @param trial  as ReadOptions::trial
+/// @param last   of several trials that match take the last, instead of none
 /// @throws stillhand::ConfigError when the file is no session's recording, or has no such trial.
-SessionRows read_session_rows(const std::string& path, const std::string& trial);
+SessionRows read_session_rows(const std::string& path, const std::string& trial, bool last = false);
 
 }  // namespace stillhand::measurement

@@ -160,7 +160,7 @@ SessionTrials find_trials(recording::McapReader& reader, const std::string& path
 }
 
 const SessionTrial& choose(const SessionTrials& trials, const std::string& wanted,
-                           const std::string& path) {
+                           const std::string& path, bool last) {
   if (trials.trials.empty()) {
     throw ConfigError(path, "a session without a recorded trial", "at least one trial");
   }
@@ -168,8 +168,12 @@ const SessionTrial& choose(const SessionTrials& trials, const std::string& wante
   const auto answers = [&](const SessionTrial& trial) { return answers_to(trial, wanted); };
   const auto found = std::ranges::find_if(trials.trials, answers);
   const auto count = std::ranges::count_if(trials.trials, answers);
+  if (last && count > 0) {
+    return *std::find_if(trials.trials.rbegin(), trials.trials.rend(), answers);
+  }
   if (count != 1) {
-    throw ConfigError("--trial", wanted + (count == 0 ? "" : ", which matches several trials"),
+    throw ConfigError(last ? path : "--trial",
+                      wanted + (count == 0 ? "" : ", which matches several trials"),
                       "one of " + all_names(trials.trials, nullptr) + " in " + path);
   }
   return *found;

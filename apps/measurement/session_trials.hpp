@@ -37,9 +37,10 @@ struct SessionTrials {
 SessionTrials find_trials(recording::McapReader& reader, const std::string& path);
 
 /// @param wanted  as ReadOptions::trial
+/// @param last    of several that match take the last, instead of none
 /// @throws stillhand::ConfigError naming the trials of the recording.
 const SessionTrial& choose(const SessionTrials& trials, const std::string& wanted,
-                           const std::string& path);
+                           const std::string& path, bool last = false);
 
 /// Notes on the chosen trial and on the others of the recording.
 std::vector<std::string> notes_of(const SessionTrials& trials, const SessionTrial& chosen);

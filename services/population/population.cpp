@@ -121,6 +121,32 @@ human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::Stic
   return feel;
 }
 
+void assign(const Subject& subject, const rig::StickConfig& stick, rig::BodyConfig& body,
+            human_operator::CrossoverConfig& who) {
+  rig::BodyConfig drawn = subject.body;
+  drawn.arm_rest_stiffness_n_m = body.arm_rest_stiffness_n_m;
+  drawn.arm_rest_damping_n_s_m = body.arm_rest_damping_n_s_m;
+  rig::NeuromuscularConfig& nerves = drawn.neuromuscular;
+  nerves.wander_time_s = body.neuromuscular.wander_time_s;
+  nerves.reflex_delay_s = body.neuromuscular.reflex_delay_s;
+  nerves.reflex_muscle_hz = body.neuromuscular.reflex_muscle_hz;
+  nerves.reflex_muscle_damping = body.neuromuscular.reflex_muscle_damping;
+  nerves.reflex_max_force_n = body.neuromuscular.reflex_max_force_n;
+  nerves.motor_resistance_delay_s = body.neuromuscular.motor_resistance_delay_s;
+  body = drawn;
+  who.crossover_hz = subject.who.crossover_hz;
+  who.delay_s = subject.who.delay_s;
+  who.muscle_rad_s = subject.who.muscle_rad_s;
+  who.remnant_ratio = subject.who.remnant_ratio;
+  who.regression_error_m = subject.who.regression_error_m;
+  who.remnant_by_vibration_s2_m = subject.who.remnant_by_vibration_s2_m;
+  who.delay_by_vibration_s3_m = subject.who.delay_by_vibration_s3_m;
+  const human_operator::ArmFeel feel = learnt_feel(body, stick);
+  who.arm.effective_mass_kg = feel.effective_mass_kg;
+  who.arm.effective_damping_n_s_m = feel.effective_damping_n_s_m;
+  who.arm.effective_stiffness_n_m = feel.effective_stiffness_n_m;
+}
+
 Subject mean_subject(const Population& population) {
   validate(population, "population");
   return subject(population, [](double mean, double) { return mean; });

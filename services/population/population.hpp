@@ -177,6 +177,11 @@ struct Subject {
 /// to 1 Hz.
 human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick);
 
+/// Gives body and tracker the quantities that are drawn, and the learnt feel of that body on the
+/// stick; what no population draws (an arm rest, delays of nerves, bounds of the force) stays.
+void assign(const Subject& subject, const rig::StickConfig& stick, rig::BodyConfig& body,
+            human_operator::CrossoverConfig& who);
+
 /// The subject in which every quantity has its mean.
 Subject mean_subject(const Population& population);
 

@@ -194,6 +194,12 @@ class FromRecordingsTest(unittest.TestCase):
         path.write_text("\n".join(rows) + "\n")
         return path
 
+    def constant(self):
+        path = self.folder / "constant.csv"
+        rows = (f"{n / 100.0:.2f},{math.sin(0.1 * n):.4f},{math.cos(0.13 * n):.4f},2.0" for n in range(3000))
+        path.write_text("t [s],a_y [m/s^2],a_x [m/s^2],f [N]\n" + "\n".join(rows) + "\n")
+        return path
+
     def test_the_effect_is_found_and_leaves_less_of_a_record_that_no_fit_has_seen(self):
         first, second = self.stand("first.csv", 1), self.stand("second.csv", 2)
         ran = close_the_loop("--pegged", first, second, "--out", self.out)
@@ -212,6 +218,14 @@ class FromRecordingsTest(unittest.TestCase):
         self.assertEqual(json.loads((self.out / "control_model.json").read_text())["rate_hz"], 1000.0)
         self.assertEqual((self.out / "report.html").read_text().count("<svg"), 2)
 
+        # With both accelerations as inputs the linear model lacks nothing.
+        ran = close_the_loop("--pegged", first, second, "--input", "a_y,a_x", "--out", self.folder / "both")
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        both = json.loads((self.folder / "both" / "summary.json").read_text())
+        self.assertEqual(both["inputs"], ["a_y", "a_x"])
+        self.assertEqual(both["verdict"]["kind"], "none")
+        self.assertLess(both["unseen"][0]["linear"]["left"]["rms"], 0.25)
+
     def test_wrong_words_are_refused_and_leave_nothing(self):
         first = self.stand("first.csv", 1)
         empty = self.folder / "empty.csv"
@@ -223,6 +237,7 @@ class FromRecordingsTest(unittest.TestCase):
                                 (["--pegged", first, "--moving", first], "1000 Hz"),
                                 (["--pegged", first, "--input", "a_q"], "a_q"),
                                 (["--pegged", first, "--output", "g"], "--output"),
+                                (["--pegged", first, "--unseen", self.constant()], "constant"),
                                 (["--pegged", first, "--live"], "--live"),
                                 (["--pegged", first, "--undeclared-effect", 3], "--undeclared-effect"),
                                 (["--cancelled", first], "--pegged")):

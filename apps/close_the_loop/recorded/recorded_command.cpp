@@ -37,6 +37,25 @@ std::optional<cancellation::ControlModel> control_model_of(const RecordedLoop& l
   return loop.verdict.control.model;
 }
 
+// What this run would replace or stand next to.
+void check_folder(const RecordedOptions& options, const std::filesystem::path& out) {
+  std::error_code error;
+  if (std::filesystem::exists(out / "session.mcap", error)) {
+    throw ConfigError("--out", out.string() + ", which holds the recording of a session",
+                      "a folder without one");
+  }
+  for (const auto* files :
+       {&options.pegged, &options.moving, &options.cancelled, &options.unseen}) {
+    for (const std::string& file : *files) {
+      for (const std::string& name : every_name()) {
+        if (!std::filesystem::equivalent(file, out / name, error)) continue;
+        throw ConfigError("--out", file + ", which is read and would be replaced",
+                          "another folder");
+      }
+    }
+  }
+}
+
 CLI::Option* add_files(CLI::App& verb, const char* name, std::vector<std::string>& files,
                        const char* help) {
   return verb.add_option(name, files, help)->check(CLI::ExistingFile)->group("From recordings");
@@ -61,6 +80,7 @@ void add_recorded_options(CLI::App& verb, RecordedOptions& options,
       ->needs(pegged);
   verb.add_option("--input", options.inputs, "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->needs(pegged)
       ->capture_default_str()
@@ -76,6 +96,7 @@ void run_recorded(RecordedOptions options, const std::filesystem::path& out, std
                   unsigned threads) {
   runtime::Stop stop;
   check_apart(options);
+  check_folder(options, out);
   report::StagedFolder folder(out);
   report::require_gnuplot();
   report::ProgressLine progress;

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "apps/measurement/read.hpp"
-#include "apps/measurement/session.hpp"
 #include "services/cancellation/core/canceller.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
@@ -21,39 +21,52 @@ constexpr double kKeptApart = 0.3;
 // A rate that differs by more is not the control rate.
 constexpr double kRateTolerance = 1e-3;
 
-bool is_session(const std::string& path) {
-  return std::filesystem::path(path).extension() == ".mcap";
-}
-
 diagnosis::Measurement read(const std::string& path, const char* trial) {
   measurement::ReadOptions options;
-  if (is_session(path)) options.trial = trial;
+  options.session_trial = trial;
   return measurement::read_measurement(path, options);
 }
 
-// The stick's own signals, at 1 kHz.
-recording::Recording read_stick(const std::string& path, const char* trial) {
-  if (is_session(path)) return measurement::read_session_rows(path, trial).rows;
-  const diagnosis::Measurement measured = measurement::read_measurement(path);
+// The stick's own signals, at 1 kHz: the longest stretch without a long gap, whose short gaps are
+// filled in.
+recording::Recording read_stick(const std::string& path, const char* trial,
+                                std::vector<std::string>& notes) {
+  const diagnosis::Measurement measured = read(path, trial);
   if (std::abs(measured.rate_hz / kControlRateHz - 1.0) > kRateTolerance) {
     throw ConfigError(path, fmt::format("{:.6g} Hz", measured.rate_hz),
                       "1000 Hz: the delays of the motor are a few milliseconds");
   }
+  const diagnosis::Stretch& longest = *std::ranges::max_element(
+      measured.stretches, {}, [](const auto& stretch) { return stretch.end - stretch.first; });
+  if (measured.stretches.size() > 1) {
+    notes.push_back(fmt::format("{}: the longest of {} stretches is used, {:.1f} s.", path,
+                                measured.stretches.size(),
+                                static_cast<double>(longest.end - longest.first) / kControlRateHz));
+  }
+  const auto part = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(longest.first),
+                               values.begin() + static_cast<std::ptrdiff_t>(longest.end));
+  };
   recording::Recording out;
   out.source = path;
   out.rate_hz = kControlRateHz;
-  out.time_s = measured.time_s();
+  out.time_s = part(measured.time_s());
   for (const diagnosis::Channel& channel : measured.channels) {
-    out.columns.push_back({channel.name, channel.unit, channel.values});
+    out.columns.push_back({channel.name, channel.unit, part(channel.values)});
   }
   return out;
 }
 
 void want_channels(const recording::Recording& record, const std::string& path) {
   constexpr std::size_t kLeast_s = 5;
-  for (const char* name : {"theta", "f", "f_motor"}) {
-    if (record.find(name) == nullptr) {
-      throw ConfigError(path, fmt::format("no channel {}", name),
+  constexpr std::array<std::pair<const char*, const char*>, 3> kWanted{
+      {{"theta", "rad"}, {"f", "N"}, {"f_motor", "N"}}};
+  for (const auto& [name, unit] : kWanted) {
+    const recording::Column* column = record.find(name);
+    if (column == nullptr || column->unit != unit) {
+      throw ConfigError(path,
+                        column == nullptr ? fmt::format("no channel {}", name)
+                                          : fmt::format("{} in {}", name, column->unit),
                         "theta [rad], f [N] and f_motor [N] of the stick");
     }
   }
@@ -78,11 +91,11 @@ class RecordedLoopRun {
     step("reading");
     read_pegged();
     for (const std::string& path : options_.moving) {
-      moving_.push_back(read_stick(path, "B"));
+      moving_.push_back(read_stick(path, "B", out_.notes));
       want_channels(moving_.back(), path);
     }
     for (const std::string& path : options_.cancelled) {
-      cancelled_.push_back(read_stick(path, "C"));
+      cancelled_.push_back(read_stick(path, "C", out_.notes));
       want_channels(cancelled_.back(), path);
     }
     diagnose();
@@ -126,6 +139,20 @@ class RecordedLoopRun {
     }
     out_.unit = output->unit;
     out_.notes = pegged_.notes;
+    for (const diagnosis::Measurement& record : unseen_) check_unseen(record);
+  }
+
+  void check_unseen(const diagnosis::Measurement& record) {
+    std::vector<std::string> wanted = options_.inputs;
+    wanted.push_back(options_.output);
+    for (const std::string& name : wanted) {
+      if (record.find(name) == nullptr) {
+        throw ConfigError(record.source, "no channel " + name, "those of the first --pegged");
+      }
+    }
+    for (const std::string& note : record.notes) {
+      if (std::ranges::find(out_.notes, note) == out_.notes.end()) out_.notes.push_back(note);
+    }
   }
 
   void diagnose() {
@@ -165,19 +192,36 @@ class RecordedLoopRun {
     if (!out_.linear_not_carried.empty()) out_.linear_control.reset();
   }
 
-  void judge(const diagnosis::Measurement& record) {
-    step("judging " + record.source);
+  // What the motor leaves; none for a record that ends before the model has settled.
+  std::optional<Remaining> by_motor(const cancellation::ControlModel& model,
+                                    const diagnosis::Measurement& record) {
+    const double late_s = out_.verdict.latency
+                              ? out_.verdict.latency->motor_s - options_.declared.motor_delay_s
+                              : 0.0;
+    try {
+      return left_by_motor(model, record, options_.output, std::max(late_s, 0.0));
+    } catch (const ConfigError& error) {
+      out_.notes.push_back(fmt::format("{}: no motor was run: {}", record.source, error.what()));
+      return std::nullopt;
+    }
+  }
+
+  void judge(const diagnosis::Measurement& as_measured) {
+    step("judging " + as_measured.source);
     const Verdict& verdict = out_.verdict;
+    // A late load cell is late here, too.
+    const diagnosis::Measurement record = advanced(
+        as_measured, options_.output, verdict.cell_is_late ? verdict.latency->cell_s : 0.0);
     Judged judged;
     judged.source = std::filesystem::path(record.source).filename().string();
     judged.seconds = static_cast<double>(record.size()) / record.rate_hz;
     judged.linear = left_by_prediction(verdict.body.baseline.model, record);
     judged.augmented = left_by_prediction(verdict.body.model, record);
     if (out_.linear_control) {
-      judged.motor_linear = left_by_motor(*out_.linear_control, record, options_.output);
+      judged.motor_linear = by_motor(*out_.linear_control, record);
     }
     if (out_.no_motor.empty() && verdict.not_carried.empty()) {
-      judged.motor_augmented = left_by_motor(verdict.control.model, record, options_.output);
+      judged.motor_augmented = by_motor(verdict.control.model, record);
     }
     out_.judged.push_back(std::move(judged));
   }

@@ -97,10 +97,10 @@ std::string conclusion_text(const Verdict& verdict) {
 
 // What became of the augmented model on the unseen records.
 std::string kept_text(const RecordedLoop& loop) {
-  if (loop.verdict.findings.empty()) return {};
+  if (loop.verdict.body.effects.empty()) return {};
   return loop.kept ? "The augmented model leaves less on the unseen records: it is kept."
                    : "The augmented model leaves more on the unseen records: the linear model is "
-                     "kept.";
+                     "kept, also for the canceller.";
 }
 
 // Why no motor ran, or ran with one model alone; empty: both ran.
@@ -200,7 +200,7 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
   }
   if (findings.empty()) page.paragraph(conclusion_text(verdict));
   if (!findings.empty()) page.list(findings);
-  if (!verdict.control.treatments.empty()) page.table(treatment_table(verdict.control, true));
+  if (!verdict.control.treatments.empty()) page.table(treatment_table(verdict.control, loop.kept));
   return page;
 }
 

@@ -41,7 +41,7 @@ double mean_over(const std::vector<Run>& runs, const std::vector<double> Run::*o
   return sum / count;
 }
 
-// Eq. CL-6; a run's incomplete last block counts only if the record has no whole one.
+// Eq. CL-6; incomplete blocks count only if there is no interval.
 Level level_of(const std::vector<Run>& runs, const std::vector<double> Run::*of, double rate_hz) {
   const double mean = mean_over(runs, of);
   const auto length = static_cast<std::size_t>(kBlock_s * rate_hz);
@@ -64,6 +64,7 @@ Level level_of(const std::vector<Run>& runs, const std::vector<double> Run::*of,
   out.rms = std::sqrt(square / count);
   if (out.block_mean_squares.size() >= kLeastBlocks) {
     const auto interval = statistics::mean_interval(out.block_mean_squares);
+    out.rms = std::sqrt(statistics::mean(out.block_mean_squares));  // of the same samples
     out.interval95 = {std::sqrt(std::max(interval.low, 0.0)), std::sqrt(interval.high)};
   }
   return out;
@@ -84,11 +85,20 @@ Excerpt excerpt_of(const std::vector<Run>& runs, double rate_hz) {
 Remaining remaining(const std::vector<Run>& runs, double rate_hz, const std::string& source) {
   const bool empty = std::ranges::all_of(runs, [](const Run& run) { return run.force.empty(); });
   if (empty) {
-    throw ConfigError(source, "no stretch longer than 2 s",
-                      "a record that goes on when the model has settled");
+    throw ConfigError(source, "no stretch that goes on when the model has settled",
+                      "10 s or more without a gap");
   }
-  return {level_of(runs, &Run::force, rate_hz), level_of(runs, &Run::left, rate_hz),
-          excerpt_of(runs, rate_hz)};
+  Remaining out{level_of(runs, &Run::force, rate_hz), level_of(runs, &Run::left, rate_hz),
+                excerpt_of(runs, rate_hz)};
+  constexpr double kLeastShare = 1e-6;  // of the largest value: less is rounding
+  double largest = 0.0;
+  for (const Run& run : runs) {
+    for (const double value : run.force) largest = std::max(largest, std::abs(value));
+  }
+  if (out.without.rms <= kLeastShare * largest) {
+    throw ConfigError(source, "a constant output", "a record in which it changes");
+  }
+  return out;
 }
 
 const diagnosis::Channel& channel_of(const diagnosis::Measurement& record,
@@ -131,14 +141,16 @@ std::vector<cancellation::ChannelSample> sensed(const diagnosis::Measurement& re
 
 // Motor force [N] at the hand, tick by tick, for the motion of a stretch.
 std::vector<double> motor_force(const cancellation::ControlModel& model,
-                                const std::vector<cancellation::ChannelSample>& motion) {
+                                const std::vector<cancellation::ChannelSample>& motion,
+                                double late_s) {
   cancellation::Canceller canceller{cancellation::Config{}};
   const cancellation::Refusal refusal = canceller.load_model(model);
   if (refusal != cancellation::Refusal::kNone) {
     throw ConfigError("the canceller's model", std::string(cancellation::describe(refusal)),
                       "one that the canceller accepts");
   }
-  const rig::RigConfig rig;
+  rig::RigConfig rig;
+  rig.motor.delay_s = late_s;
   rig::Motor motor(rig.motor, rig.stick.lever_m);
   std::vector<double> out;
   double command_n = 0.0;
@@ -182,7 +194,8 @@ Remaining left_by_prediction(const diagnosis::Model& model, const diagnosis::Mea
 }
 
 Remaining left_by_motor(const cancellation::ControlModel& model,
-                        const diagnosis::Measurement& record, const std::string& output) {
+                        const diagnosis::Measurement& record, const std::string& output,
+                        double late_s) {
   const std::vector<double>& force = channel_of(record, output).values;
   const cancellation::Config config;
   const auto settle = static_cast<std::size_t>(
@@ -193,7 +206,7 @@ Remaining left_by_motor(const cancellation::ControlModel& model,
   std::vector<Run> runs;
   for (const diagnosis::Stretch& stretch : record.stretches) {
     if (stretch.end - stretch.first < 2) continue;
-    const std::vector<double> motor = motor_force(model, sensed(record, stretch));
+    const std::vector<double> motor = motor_force(model, sensed(record, stretch), late_s);
     const std::vector<double> felt = at_control_rate(force, stretch, record.rate_hz);
     const std::vector<double> counts = at_control_rate(record.weight, stretch, record.rate_hz);
     runs.emplace_back();

@@ -44,9 +44,11 @@ Remaining left_by_prediction(const diagnosis::Model& model, const diagnosis::Mea
 /// Runs the record's channels through canceller and motor of the rig at 1 kHz and adds the motor's
 /// force: limits, fades, lags and the delay of a tick act as in a session.
 /// @param output  channel of the force [N]
+/// @param late_s  [s] delay of the motor path beyond the rig's
 /// @throws stillhand::ConfigError if the canceller refuses the model; it reports why
 Remaining left_by_motor(const cancellation::ControlModel& model,
-                        const diagnosis::Measurement& record, const std::string& output);
+                        const diagnosis::Measurement& record, const std::string& output,
+                        double late_s = 0.0);
 
 /// The last part of a record, and what comes before it.
 std::pair<diagnosis::Measurement, diagnosis::Measurement> split_off_end(

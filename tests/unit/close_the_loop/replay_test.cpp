@@ -54,6 +54,12 @@ TEST(ReplayTest, TheMotorTakesAwayWhatItsDelayLetsIt) {
   }
 }
 
+// The same with 14.055 ms: 7.9 % and 15 %, whose RMS is 10.6 %.
+TEST(ReplayTest, ALateMotorPathLeavesMore) {
+  EXPECT_NEAR(left_by_motor(gain(kGain), pegged(1000.0, 40.0), "f", 0.012).cut(), 1.0 - 0.106,
+              0.001);
+}
+
 TEST(ReplayTest, AModelOfHalfTheGainTakesHalfAndOneOfTheWrongSignAdds) {
   EXPECT_NEAR(left_by_motor(gain(0.5 * kGain), pegged(200.0, 40.0), "f").cut(), 0.5, 0.01);
   EXPECT_NEAR(left_by_motor(gain(-kGain), pegged(200.0, 40.0), "f").cut(), -1.0, 0.02);
