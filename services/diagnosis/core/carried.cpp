@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kThirds = 3;  // of a single recording
 constexpr double kHelps = 0.01;     // of a recording's error, as SearchOptions::least_fall
 constexpr int kCarryIterations = 30;
-constexpr int kPartIterations = 5;
+constexpr int kPartIterations = 3;
 
 // Each part is whole: thirds of a recording, or the recordings that were joined.
 Blocks by_part(const Blocks& blocks, const Signals& signals) {
