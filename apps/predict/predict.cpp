@@ -23,7 +23,7 @@ using diagnosis::Measurement;
 // stretch that is shorter than one sample of the model: NaN there.
 std::vector<double> spread_out(const std::vector<double>& x, const Measurement& from,
                                const Measurement& to, std::size_t factor) {
-  if (factor == 1) return x;
+  if (factor <= 1) return x;
   std::vector<double> y;
   auto stretch = from.stretches.begin();
   for (const diagnosis::Stretch& fine : to.stretches) {
@@ -63,14 +63,19 @@ void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& predi
     const diagnosis::SeenRange& range = each.range;
     const std::string what = range.of == "argument" ? "what it acts on" : range.of;
     const std::string unit = range.unit.empty() ? "" : " " + range.unit;
-    prediction.notes.push_back((each.effect.empty() ? "" : each.effect + ": ") + what +
-                               " leaves the range that was seen, " + digits_of(range.low) + " to " +
-                               digits_of(range.high) + unit + ", in " +
-                               digits_of(100.0 * each.share) + " % of the samples; " +
-                               (each.effect.empty()
-                                    ? "the linear part goes on"
-                                    : "the effect is held below " + digits_of(range.lower_edge()) +
-                                          " and above " + digits_of(range.upper_edge())));
+    std::string note = each.effect.empty() ? what : each.effect + ": " + what;
+    note += " leaves the range that was seen, " + digits_of(range.low);
+    note += " to " + digits_of(range.high);
+    note += unit;
+    note += ", in " + digits_of(100.0 * each.share);
+    note += " % of the samples; ";
+    if (each.effect.empty()) {
+      note += "the linear part goes on";
+    } else {
+      note += "the effect is held below " + digits_of(range.lower_edge());
+      note += " and above " + digits_of(range.upper_edge());
+    }
+    prediction.notes.push_back(std::move(note));
   }
 }
 
