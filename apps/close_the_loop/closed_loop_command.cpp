@@ -78,7 +78,8 @@ LoopRecord new_record(const Words& words) {
 
 void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFolder& folder) {
   folder.write("summary.json", summary_json(record));
-  folder.write("model.json", diagnosis::model_json(record.result.verdict().body.model));
+  const diagnosis::Diagnosis& body = record.result.verdict().body;
+  folder.write("model.json", diagnosis::model_json(body.model, body.carried));
   folder.write(kControlModelFile,
                cancellation::control_model_json(record.result.control_model, rig));
   const auto drawings = report::render(loop_figures(record), folder.path());

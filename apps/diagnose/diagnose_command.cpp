@@ -86,7 +86,8 @@ int run(const Words& words) {
   };
   const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
   progress.finish();
-  if (files.wants("--save")) files.set("--save", diagnosis::model_json(result.model));
+  if (files.wants("--save"))
+    files.set("--save", diagnosis::model_json(result.model, result.carried));
   if (files.wants("--json")) files.set("--json", diagnosis_json(result));
   if (folder) write_report(result, measurement, words.recordings, *folder);
   files.publish();

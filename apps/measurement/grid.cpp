@@ -164,6 +164,9 @@ Measurement on_grid(recording::Recording rows, std::size_t most_values) {
   const auto filled = static_cast<std::size_t>(std::ranges::count(out.weight, 0.0));
   note_what_happened(places, long_gaps, filled, out.notes);
   out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
+  if (rows.repeated_rows > 0) {
+    out.notes.push_back(counted(rows.repeated_rows, "row") + " left out, equal to an earlier one.");
+  }
   return out;
 }
 

@@ -2,8 +2,10 @@
 #include "apps/predict/predict.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -21,7 +23,7 @@ using diagnosis::Measurement;
 // stretch that is shorter than one sample of the model: NaN there.
 std::vector<double> spread_out(const std::vector<double>& x, const Measurement& from,
                                const Measurement& to, std::size_t factor) {
-  if (factor == 1) return x;
+  if (factor <= 1) return x;
   std::vector<double> y;
   auto stretch = from.stretches.begin();
   for (const diagnosis::Stretch& fine : to.stretches) {
@@ -49,8 +51,44 @@ std::vector<double> spread_out(const std::vector<double>& x, const Measurement& 
   return y;
 }
 
-void add_notes(const diagnosis::Model& model, Prediction& prediction) {
-  for (const diagnosis::Effect& effect : model.effects) {
+std::string digits_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+// Where the recording leaves a range in which the model was seen, Eq. DG-56.
+void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& prediction) {
+  for (const diagnosis::LeftRange& each : left) {
+    const diagnosis::SeenRange& range = each.range;
+    const std::string what = range.of == "argument" ? "what it acts on" : range.of;
+    const std::string unit = range.unit.empty() ? "" : " " + range.unit;
+    std::string note = each.effect.empty() ? what : each.effect + ": " + what;
+    note += " leaves the range that was seen, " + digits_of(range.low);
+    note += " to " + digits_of(range.high);
+    note += unit;
+    note += ", in " + digits_of(100.0 * each.share);
+    note += " % of the samples; ";
+    if (each.effect.empty()) {
+      note += "the linear part goes on";
+    } else {
+      note += "the effect is held below " + digits_of(range.lower_edge());
+      note += " and above " + digits_of(range.upper_edge());
+    }
+    prediction.notes.push_back(std::move(note));
+  }
+}
+
+void add_notes(const diagnosis::CarriedModel& carried, Prediction& prediction) {
+  for (const diagnosis::LeftOut& each : carried.left_out) {
+    prediction.notes.push_back(each.kind + ": left out, because " + each.why);
+  }
+  if (carried.stability == diagnosis::Stability::kTested) {
+    prediction.notes.emplace_back(
+        "the model's stability was tested on the inputs that it was fitted to and on others of "
+        "their spectrum, and is not proved");
+  }
+  for (const diagnosis::Effect& effect : carried.model.effects) {
     const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
     if (!kind.time_only(effect)) continue;
     const bool gain = kind.stage(effect) == diagnosis::Stage::kGain;
@@ -62,7 +100,8 @@ void add_notes(const diagnosis::Model& model, Prediction& prediction) {
 
 }  // namespace
 
-Prediction predict(const diagnosis::Model& model, const Measurement& measurement) {
+Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& measurement) {
+  const diagnosis::Model& model = carried.model;
   Measurement whole = measurement;
   if (whole.find(model.output) == nullptr) {
     whole.channels.push_back(
@@ -88,7 +127,8 @@ Prediction predict(const diagnosis::Model& model, const Measurement& measurement
   }
   Prediction prediction;
   prediction.notes = measurement.notes;
-  add_notes(model, prediction);
+  add_notes(carried, prediction);
+  add_ranges(diagnosis::left_ranges(model, carried.inputs, signals, run), prediction);
   const auto values = spread_out(run.prediction, working, whole, factor);
   const std::vector<double> time_s = whole.time_s();
   recording::Column column{model.output + "_model", model.output_unit, {}};

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "services/diagnosis/core/carried.hpp"
 #include "services/diagnosis/core/measurement.hpp"
-#include "services/diagnosis/core/model/model.hpp"
 #include "services/recording/core/recording.hpp"
 
 namespace stillhand::predict {
@@ -13,14 +13,16 @@ namespace stillhand::predict {
 /// A free run over a recording that need not hold the output.
 struct Prediction {
   recording::Recording table;      ///< `t [s]`, `<output>_model [unit]`, a row a measured sample
-  std::vector<std::string> notes;  ///< one clause for each effect that was left out
+  std::vector<std::string> notes;  ///< effects left out, ranges left: one clause each
 };
 
-/// From rest at the start of every stretch, from the inputs alone: effects that the inputs do not
-/// determine (a tone, a drift, a burst) are left out, a changing gain is taken at its mean.
+/// From the inputs alone; every stretch from the steady state of its first second (DG-54), every
+/// effect held at the edges of the range in which it was seen (DG-56).  Of a model without ranges,
+/// effects that the inputs do not determine (a tone, a drift, a burst) are left out, and a changing
+/// gain is taken at 1.
 /// @throws stillhand::ConfigError when a channel is missing, or the rate is neither the model's nor
-/// a
-///         whole multiple of it.
-Prediction predict(const diagnosis::Model& model, const diagnosis::Measurement& measurement);
+///         a whole multiple of it.
+Prediction predict(const diagnosis::CarriedModel& carried,
+                   const diagnosis::Measurement& measurement);
 
 }  // namespace stillhand::predict

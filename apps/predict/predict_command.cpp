@@ -26,10 +26,11 @@ struct Words {
 
 int run(const Words& words) {
   report::ResultFiles files({{"--out", words.out}}, {words.model, words.recording});
-  const diagnosis::Model model =
-      diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
+  const diagnosis::CarriedModel carried = diagnosis::parse_carried_model(
+      recording::read_file(words.model.string()), words.model.string());
+  const diagnosis::Model& model = carried.model;
   const Prediction prediction =
-      predict(model, measurement::read_measurement(words.recording, words.read));
+      predict(carried, measurement::read_measurement(words.recording, words.read));
   files.set("--out", recording::to_csv(prediction.table));
   files.publish();
   std::printf("%zu samples of %s from", prediction.table.row_count(), model.output.c_str());
@@ -46,9 +47,9 @@ void add_predict_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\n"
-      "The recording need not hold the output. Effects that the inputs do not determine (a tone, "
-      "a\n"
-      "drift, a burst) are left out; a changing gain is taken at its mean. A note reports each.\n"
+      "The recording need not hold the output. Effects that another recording does not share (a\n"
+      "tone, a drift, a burst, a changing gain) are left out; beyond the range in which it was\n"
+      "seen, an effect is held at its edge. A note reports each.\n"
       "Example: stillhand predict model.json ride.csv --out prediction.csv");
   verb->add_option("MODEL", words->model, "model file")->required();
   verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();

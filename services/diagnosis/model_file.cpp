@@ -25,6 +25,21 @@ constexpr std::size_t kMostInputs = 16;
 constexpr std::size_t kMostEffects = 16;
 constexpr std::size_t kMostNumbers = 200;
 
+Json json_of(const SeenRange& range) {
+  return {{"of", range.of}, {"unit", range.unit}, {"low", range.low}, {"high", range.high}};
+}
+
+Json json_of(const std::vector<SeenRange>& ranges) {
+  Json all = Json::array();
+  for (const SeenRange& range : ranges) all.push_back(json_of(range));
+  return all;
+}
+
+Json json_of(const Body& body) {
+  return {
+      {"numerators", body.numerators}, {"denominator", body.denominator}, {"offset", body.offset}};
+}
+
 Json json_of(const Effect& effect) {
   Json parameters = Json::array();
   for (const Parameter& p : effect.parameters) {
@@ -35,11 +50,50 @@ Json json_of(const Effect& effect) {
                           {"upper", p.upper},
                           {"fitted", p.fitted}});
   }
-  return {{"kind", effect.kind},
-          {"form", effect.form},
-          {"channels", effect.channels},
-          {"parameters", parameters},
-          {"coefficients", effect.coefficients}};
+  Json json{{"kind", effect.kind},
+            {"form", effect.form},
+            {"channels", effect.channels},
+            {"parameters", parameters},
+            {"coefficients", effect.coefficients}};
+  if (!effect.seen.empty()) json["seen"] = json_of(effect.seen);
+  return json;
+}
+
+Json json_of(const std::vector<Effect>& effects) {
+  Json all = Json::array();
+  for (const Effect& effect : effects) all.push_back(json_of(effect));
+  return all;
+}
+
+Json json_of(const CarriedModel& carried) {
+  Json left_out = Json::array();
+  for (const LeftOut& each : carried.left_out) {
+    left_out.push_back(
+        {{"kind", each.kind}, {"form", each.form}, {"channels", each.channels}, {"why", each.why}});
+  }
+  return {{"body", json_of(carried.model.body)},
+          {"effects", json_of(carried.model.effects)},
+          {"inputs", json_of(carried.inputs)},
+          {"left_out", left_out},
+          {"stability", name_of(carried.stability)}};
+}
+
+Json json_of(const Model& model) {
+  return {{"format", kFormat},           {"version", kModelFormatVersion},
+          {"rate_hz", model.rate_hz},    {"inputs", model.inputs},
+          {"output", model.output},      {"output_unit", model.output_unit},
+          {"body", json_of(model.body)}, {"effects", json_of(model.effects)}};
+}
+
+std::vector<SeenRange> ranges_of(const Entry& entry, std::size_t most) {
+  std::vector<SeenRange> ranges;
+  for (const Entry& each : entry.entries(0, most)) {
+    SeenRange range{each.at("of").text(), each.at("unit").text(), each.at("low").number(),
+                    each.at("high").number()};
+    if (range.low > range.high) each.at("high").refuse("a number from low on");
+    ranges.push_back(std::move(range));
+  }
+  return ranges;
 }
 
 Parameter parameter_of(const Entry& entry) {
@@ -67,6 +121,7 @@ Effect effect_of(const Entry& entry, std::size_t order) {
     effect.parameters.push_back(parameter_of(parameter));
   }
   effect.coefficients = entry.at("coefficients").numbers(0, kMostNumbers);
+  if (entry.has("seen")) effect.seen = ranges_of(entry.at("seen"), 2);
   if ((*known)->stage(effect) == Stage::kFeedback) {
     const std::size_t count = effect.coefficients.size();
     if (count != loop_coefficients(true, order) && count != loop_coefficients(false, order)) {
@@ -148,25 +203,33 @@ Body body_of(const Entry& entry) {
   return body;
 }
 
+// Body and effects.
+void read_parts(const Entry& entry, Model& model) {
+  model.body = body_of(entry.at("body"));
+  if (model.body.numerators.size() != model.inputs.size()) {
+    entry.at("body").at("numerators").refuse("one an input");
+  }
+  const std::vector<Entry> effects = entry.at("effects").entries(0, kMostEffects);
+  for (const Entry& effect : effects) {
+    model.effects.push_back(effect_of(effect, model.body.order()));
+  }
+  check_effects(model, effects);
+}
+
 }  // namespace
 
 std::string model_json(const Model& model) {
-  Json effects = Json::array();
-  for (const Effect& effect : model.effects) effects.push_back(json_of(effect));
-  const Json json{{"format", kFormat},
-                  {"version", kModelFormatVersion},
-                  {"rate_hz", model.rate_hz},
-                  {"inputs", model.inputs},
-                  {"output", model.output},
-                  {"output_unit", model.output_unit},
-                  {"body",
-                   {{"numerators", model.body.numerators},
-                    {"denominator", model.body.denominator},
-                    {"offset", model.body.offset}}},
-                  {"effects", effects}};
-  std::string text = json.dump(2) + "\n";
+  std::string text = json_of(model).dump(2) + "\n";
   // A number that isn't finite would be written as null: what can't be read isn't written.
   static_cast<void>(parse_model(text, "model"));
+  return text;
+}
+
+std::string model_json(const Model& found, const CarriedModel& carried) {
+  Json json = json_of(found);
+  json["carried"] = json_of(carried);
+  std::string text = json.dump(2) + "\n";
+  static_cast<void>(parse_carried_model(text, "model"));
   return text;
 }
 
@@ -188,16 +251,33 @@ Model parse_model(std::string_view json, const std::string& origin) {
   }
   model.output = top.at("output").text();
   model.output_unit = top.at("output_unit").text();
-  model.body = body_of(top.at("body"));
-  if (model.body.numerators.size() != model.inputs.size()) {
-    top.at("body").at("numerators").refuse("one an input");
-  }
-  const std::vector<Entry> effects = top.at("effects").entries(0, kMostEffects);
-  for (const Entry& effect : effects) {
-    model.effects.push_back(effect_of(effect, model.body.order()));
-  }
-  check_effects(model, effects);
+  read_parts(top, model);
   return model;
+}
+
+CarriedModel parse_carried_model(std::string_view json, const std::string& origin) {
+  Model found = parse_model(json, origin);
+  const Json whole = settings::parsed_json(json, origin, "JSON of a diagnosed model");
+  const Entry top(whole, origin);
+  if (!top.has("carried")) return carried_as_it_is(std::move(found));
+  const Entry entry = top.at("carried");
+  CarriedModel carried = carried_as_it_is(std::move(found));
+  carried.model.effects.clear();
+  read_parts(entry, carried.model);
+  carried.inputs = ranges_of(entry.at("inputs"), kMostInputs);
+  for (const Entry& each : entry.at("left_out").entries(0, kMostEffects)) {
+    LeftOut left{each.at("kind").text(), each.at("form").text(), {}, each.at("why").text()};
+    for (const Entry& channel : each.at("channels").entries(0, 2)) {
+      left.channels.push_back(channel.text());
+    }
+    carried.left_out.push_back(std::move(left));
+  }
+  const std::string stability = entry.at("stability").text();
+  if (stability != name_of(Stability::kProved) && stability != name_of(Stability::kTested)) {
+    entry.at("stability").refuse("proved or tested");
+  }
+  if (stability == name_of(Stability::kTested)) carried.stability = Stability::kTested;
+  return carried;
 }
 
 }  // namespace stillhand::diagnosis

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/carried.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -14,11 +14,17 @@ inline constexpr int kModelFormatVersion = 1;
 
 /// JSON text of a model; README "Model file".  Numbers keep every bit.
 std::string model_json(const Model& model);
+/// The same with the model that predicts other recordings.
+std::string model_json(const Model& found, const CarriedModel& carried);
 
 /// Reads it back.  @param origin  name of the text in messages, for example its path
 /// @throws stillhand::ConfigError naming line and column of a syntax error, or the entry that is
 /// missing, has the wrong type or size, is not finite, names an unknown kind, makes the body
 /// unstable, or has a newer version.
 Model parse_model(std::string_view json, const std::string& origin);
+
+/// The model that predicts other recordings; of a file without one, as older versions wrote them,
+/// the model that was found, as it is.  @throws stillhand::ConfigError as parse_model()
+CarriedModel parse_carried_model(std::string_view json, const std::string& origin);
 
 }  // namespace stillhand::diagnosis

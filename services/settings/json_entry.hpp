@@ -18,6 +18,8 @@ class JsonEntry {
 
   /// All of these throw stillhand::ConfigError with the path, the present and the wanted value.
   [[nodiscard]] JsonEntry at(const std::string& key) const;
+  /// False for what is no object, too.
+  [[nodiscard]] bool has(const std::string& key) const { return json_.contains(key); }
   /// Refuses an object with any other key, because such a key would have no effect.
   void allow_only(std::initializer_list<std::string_view> keys) const;
   [[nodiscard]] bool is_null() const { return json_.is_null(); }

@@ -19,6 +19,9 @@ void write_all(const std::string& folder, const SeriesPlan& plan, std::size_t co
     char stem[32];
     std::snprintf(stem, sizeof stem, "rec_%04zu", i + 1);
     write_csv(std::filesystem::path(folder) / (std::string(stem) + ".csv"), draft.recording);
+    if (draft.again) {
+      write_csv(std::filesystem::path(folder) / (std::string(stem) + ".again.csv"), *draft.again);
+    }
     write_truth(std::filesystem::path(folder) / (std::string(stem) + ".truth.json"), draft.truth);
     if (!list) continue;
     std::printf("%s  snr %2.0f dB  irreducible %.4f  order 4 leaves %.4f  evidence %8.1f  %s%s%s",
@@ -58,6 +61,10 @@ int main(int argc, char** argv) {
                  "draw an effect again until it shows this clearly: samples (left / noise)^2");
   app.add_option("--length", plan.length_s, "of a recording [s]");
   app.add_option("--rate", plan.rate_hz, "of a recording [Hz]");
+  app.add_flag("--twice", plan.twice,
+               "also rec_0001.again.csv: the same body and effect on another ride, other noise");
+  app.add_option("--again-length", plan.again_length_s, "of that [s]; default: as --length");
+  app.add_option("--again-rate", plan.again_rate_hz, "of that [Hz]; default: as --rate");
   app.add_flag("--list", list, "say what was planted");
   CLI11_PARSE(app, argc, argv);
   try {

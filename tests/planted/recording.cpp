@@ -13,6 +13,7 @@ namespace {
 
 /// Streams of one seed: adding an effect changes neither body nor ride nor noise.
 enum Stream : std::uint64_t { kBody = 1, kRide, kChannels, kNoise, kLoss, kEffects = 100 };
+constexpr std::uint64_t kAgain = 500;
 constexpr std::uint64_t kStreamsARound = 1000;
 
 void require(bool condition, const char* message) {
@@ -141,6 +142,24 @@ Losses disturb(std::uint64_t seed, std::uint64_t streams, const Spec& spec, cons
   return losses;
 }
 
+/// The body and its effects on another ride.
+Recording again(std::uint64_t seed, std::uint64_t streams, Spec spec, const Body& body,
+                const std::vector<SizedEffect>& sized) {
+  if (spec.again_length_s > 0.0) spec.length_s = spec.again_length_s;
+  if (spec.again_rate_hz > 0.0) spec.rate_hz = spec.again_rate_hz;
+  Draw ride_draw(seed, streams + kRide);
+  Draw channel_draw(seed, streams + kChannels);
+  const Excitation excitation =
+      spec.excitation ? *spec.excitation : draw_excitation(ride_draw, spec.length_s, spec.rate_hz);
+  const Scene scene = draw_scene(channel_draw, spec.length_s, spec.rate_hz, excitation);
+  const Stand stand(body, scene);
+  Series force_n = stand.force_n(sized);
+  Truth truth;
+  truth.force_rms_n = spread_of(force_n);
+  const Losses losses = disturb(seed, streams, spec, stand, sized, force_n, truth);
+  return recorded(scene, force_n, losses.lost);
+}
+
 /// One body on one ride; `round` counts those that were tried before.
 Draft draw_once(std::uint64_t seed, std::uint64_t round, const Spec& spec) {
   const std::uint64_t streams = round * kStreamsARound;
@@ -173,6 +192,7 @@ Draft draw_once(std::uint64_t seed, std::uint64_t round, const Spec& spec) {
   truth.excitation = excitation;
   const Losses losses = disturb(seed, streams, spec, stand, sized, force_n, truth);
   out.recording = recorded(scene, force_n, losses.lost);
+  if (spec.twice) out.again = again(seed, streams + kAgain, spec, body, sized);
   return out;
 }
 

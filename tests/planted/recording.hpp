@@ -27,6 +27,9 @@ struct Spec {
   bool gaps = false;
   bool single_rows = false;
   std::optional<Excitation> excitation;
+  bool twice = false;           ///< also Draft::again
+  double again_length_s = 0.0;  ///< 0: as length_s
+  double again_rate_hz = 0.0;   ///< 0: as rate_hz
 };
 
 /// Measured channels: a_y first, f last.
@@ -81,6 +84,9 @@ struct Truth {
 struct Draft {
   Recording recording;
   Truth truth;
+  /// Spec::twice: the same body and effects, with the same numbers, on another ride with other
+  /// channels, noise and losses.
+  std::optional<Recording> again;
 };
 
 /// The same seed and spec give the same recording to the last bit.

@@ -113,7 +113,8 @@ const Series& Scene::of(std::string_view name) const {
 }
 
 Scene draw_scene(Draw& draw, double length_s, double rate_hz, const Excitation& excitation) {
-  Scene scene{Grid(length_s, rate_hz), excitation, {}, excitation.lines_hz};
+  Scene scene{Grid(length_s, rate_hz), excitation, {}, excitation.lines_hz, {}};
+  scene.identity = std::make_shared<const int>(0);
   const Grid& grid = scene.grid;
   const auto add = [&](const char* name, const char* unit, Series values) {
     scene.signals.push_back({name, unit, std::move(values)});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +54,9 @@ struct Scene {
   std::vector<Signal>
       signals;  ///< a_y first; a_y is the recorded signal, which can differ from the acting one
   std::vector<double> periodic_hz;  ///< lines of any signal: a planted tone stays away from them
+
+  /// The same object in every copy of this scene, and in no other scene.
+  std::shared_ptr<const int> identity;
 
   [[nodiscard]] const Series& of(std::string_view name) const;
 };

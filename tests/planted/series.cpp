@@ -62,6 +62,9 @@ std::pair<std::uint64_t, Spec> SeriesPlan::at(std::size_t i) const {
   Spec spec;
   spec.length_s = length_s;
   spec.rate_hz = rate_hz;
+  spec.twice = twice;
+  spec.again_length_s = again_length_s;
+  spec.again_rate_hz = again_rate_hz;
   spec.least_evidence = least_evidence;
   const std::size_t round = i / names.size();
   spec.strengths = {strengths[round % strengths.size()]};

@@ -24,6 +24,9 @@ struct SeriesPlan {
   double least_evidence = 100.0;  ///< see Spec; ten standard deviations of the noise
   double length_s = 120.0;
   double rate_hz = 100.0;
+  bool twice = false;  ///< see Spec
+  double again_length_s = 0.0;
+  double again_rate_hz = 0.0;
 
   /// @throws std::invalid_argument on a name that is no kind or noise, an empty list, a size.
   void check() const;

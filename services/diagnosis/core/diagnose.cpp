@@ -167,6 +167,41 @@ void note_refuted(Diagnosis& diagnosis) {
   }
 }
 
+// An effect of a slow channel that could be one of time, Eq. DG-59, ties with the best of those
+// that were tried with it.
+void tie_with_time(FoundEffect& found, const Addition& addition) {
+  for (const Trial& trial : addition.tried) {
+    const Effect& effect = trial.model.effects.back();
+    if (!std::isfinite(trial.rmse) || passes_over_samples(trial)) continue;
+    if (!effect_kind(effect.kind).time_only(effect)) continue;
+    if (std::ranges::find(found.ties, effect.kind) == found.ties.end()) {
+      found.ties.push_back(effect.kind);
+    }
+    return;
+  }
+}
+
+void add_ties_with_time(Diagnosis& diagnosis) {
+  for (const LeftOut& each : diagnosis.carried.left_out) {
+    if (!each.like_time) continue;
+    for (std::size_t e = 0; e < diagnosis.effects.size(); ++e) {
+      const Effect& effect = diagnosis.effects[e].effect;
+      if (effect.kind == each.kind && effect.form == each.form &&
+          effect.channels == each.channels) {
+        tie_with_time(diagnosis.effects[e], diagnosis.search.additions[e]);
+      }
+    }
+  }
+}
+
+// A note for each effect that `predict` leaves out.
+void note_left_out(Diagnosis& diagnosis) {
+  for (const LeftOut& each : diagnosis.carried.left_out) {
+    diagnosis.notes.push_back("predict leaves " + each.kind + " (" + each.form +
+                              ") out: " + each.why);
+  }
+}
+
 }  // namespace
 
 std::string Diagnosis::verdict() const {
@@ -207,6 +242,9 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
   note_refuted(diagnosis);
+  diagnosis.carried = carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks);
+  add_ties_with_time(diagnosis);
+  note_left_out(diagnosis);
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
   diagnosis.after = detected(screening, excitation);
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "services/diagnosis/core/carried.hpp"
 #include "services/diagnosis/core/detection/detection.hpp"
 #include "services/diagnosis/core/detection/noise_floor.hpp"
 #include "services/diagnosis/core/search.hpp"
@@ -66,6 +67,7 @@ struct Diagnosis {
   HeldOutError final_error;
   std::optional<Unexplained> unexplained;
   Model model;             ///< baseline and effects, fitted together to all samples
+  CarriedModel carried;    ///< what predicts other recordings
   DetectionResult before;  ///< of the baseline's residual
   DetectionResult after;   ///< of the final model's
   SearchResult search;     ///< the candidates of every step

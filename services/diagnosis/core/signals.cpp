@@ -179,7 +179,10 @@ void Signals::add_derived() {
       made.quantity = sibling = Quantity::kRate;
       const signal::Butterworth high_pass(2, kIntegralHighPassHz, rate_hz_,
                                           signal::Passband::kHigh);
-      made.values = signal::filtered(high_pass, trapezoidal_sum(from.values, rate_hz_, stretches_));
+      // About the mean: the integral of an offset, such as gravity's, is a ramp.
+      std::vector<double> moved = from.values;
+      for (double& value : moved) value -= from.mean;
+      made.values = signal::filtered(high_pass, trapezoidal_sum(moved, rate_hz_, stretches_));
     } else {
       continue;
     }
@@ -225,6 +228,23 @@ const Signal* Signals::rate_of(const Signal& position) const noexcept {
 Signals Signals::weighed(std::vector<double> weight) const {
   Signals other = *this;
   other.weight_ = std::move(weight);
+  return other;
+}
+
+Signals Signals::replaced(std::string_view name, std::vector<double> values) const {
+  Signals other = *this;
+  const auto found = std::ranges::find(other.all_, name, &Signal::name);
+  if (found != other.all_.end()) found->values = std::move(values);
+  return other;
+}
+
+Signals Signals::within(const std::vector<SeenRange>& ranges) const {
+  Signals other = *this;
+  for (const SeenRange& range : ranges) {
+    const auto found = std::ranges::find(other.all_, range.of, &Signal::name);
+    if (found == other.all_.end()) continue;
+    for (double& value : found->values) value = range.held(value);
+  }
   return other;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/diagnosis/core/measurement.hpp"
+#include "services/diagnosis/core/model/effect.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -51,6 +52,10 @@ class Signals {
   [[nodiscard]] const std::vector<double>& weight() const noexcept { return weight_; }
   /// The same signals with other weights, one a sample.
   [[nodiscard]] Signals weighed(std::vector<double> weight) const;
+  /// The same signals, one of them with other values.
+  [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
+  /// The same signals, each held within its range; the inputs as the body sees them stay.
+  [[nodiscard]] Signals within(const std::vector<SeenRange>& ranges) const;
   [[nodiscard]] const std::vector<double>& time_s() const noexcept { return time_s_; }
   /// [s] from the first to the last sample.
   [[nodiscard]] double duration_s() const noexcept { return time_s_.back() - time_s_.front(); }

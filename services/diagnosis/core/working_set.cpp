@@ -131,7 +131,7 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
 }
 
 std::size_t rate_factor(const Measurement& measurement, double rate_hz) {
-  constexpr double kSame = 1e-3;
+  constexpr double kSame = 4e-3;  // the clock of a recording with much jitter is off by as much
   const double ratio = measurement.rate_hz / rate_hz;
   const double whole = std::round(ratio);
   if (whole < 1.0 || std::abs(ratio - whole) > kSame * whole) {

@@ -3,34 +3,45 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
 constexpr double kStartLag_s[] = {0.05, 0.2, 0.8, 3.0, 10.0};
-constexpr double kSettled_s = 1.0;
-constexpr double kLongestLag = 0.2;  // [record lengths]
+constexpr double kLongestLag = 0.2;   // [record lengths]
+constexpr double kLeastPassed = 0.1;  // of the channel's deviation
 
-std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals& signals) {
+// From these levels on; on the first value alone, of a signal that swings, it would fade like a
+// drift.
+std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals& signals,
+                               const std::vector<double>& levels) {
   const double keep = std::exp(-1.0 / (lag_s * signals.rate_hz()));
   std::vector<double> y(signal.values.size());
-  for (const Stretch& stretch : signals.stretches()) {
-    // Settled on its mean over the first second, which weighs nothing; on the first value alone, of
-    // a signal that swings, it would fade like a drift.
-    const auto settled = std::min(static_cast<std::size_t>(kSettled_s * signals.rate_hz()) + 1,
-                                  stretch.end - stretch.first);
-    const auto first = signal.values.begin() + static_cast<std::ptrdiff_t>(stretch.first);
-    double state = std::accumulate(first, first + static_cast<std::ptrdiff_t>(settled), 0.0) /
-                   static_cast<double>(settled);
+  for (std::size_t s = 0; s < levels.size(); ++s) {
+    const Stretch& stretch = signals.stretches()[s];
+    double state = levels[s];
     for (std::size_t n = stretch.first; n < stretch.end; ++n) {
       state += (1.0 - keep) * (signal.values[n] - state);
       y[n] = state;
     }
   }
   return y;
+}
+
+// README Eq. DG-55: behind a longer lag little is left of the channel but its start and its slowest
+// part, which would imitate a drift.
+double longest_lag_s(const Signal& signal, const Signals& signals) {
+  const std::vector<double> means(signals.stretches().size(), signal.mean);
+  const double most_s = kLongestLag * signals.duration_s();
+  double lag_s = kStartLag_s[0];
+  while (2.0 * lag_s <= most_s && deviation_of(low_passed(signal, 2.0 * lag_s, signals, means)) >=
+                                      kLeastPassed * signal.deviation) {
+    lag_s *= 2.0;
+  }
+  return std::min(lag_s, most_s);
 }
 
 bool lagged(const Effect& effect) { return effect.form == "lagged"; }
@@ -44,7 +55,8 @@ class CoupledInput final : public EffectKind {
     for (const std::string& channel : effect.channels) {
       const Signal& signal = signals.at(channel);
       if (lagged(effect)) {
-        columns.push_back(low_passed(signal, effect.value(0), signals));
+        columns.push_back(
+            low_passed(signal, effect.value(0), signals, start_levels(signal.values, signals)));
         continue;
       }
       columns.push_back(signal.values);
@@ -78,14 +90,14 @@ std::vector<Proposal> CoupledInput::proposed(const Screening& screening) const {
     std::vector<Effect> forms;
     if (!signal.derived) {
       forms.push_back({"coupled_input", "static", {signal.name}, {}, {}});
+      const double longest_s = longest_lag_s(signal, signals);
       for (const double lag_s : kStartLag_s) {
-        if (lag_s > kLongestLag * signals.duration_s()) break;
-        forms.push_back(
-            {"coupled_input",
-             "lagged",
-             {signal.name},
-             {{"lag", "s", lag_s, 0.5 / signals.rate_hz(), kLongestLag * signals.duration_s()}},
-             {}});
+        if (lag_s > longest_s) break;
+        forms.push_back({"coupled_input",
+                         "lagged",
+                         {signal.name},
+                         {{"lag", "s", lag_s, 0.5 / signals.rate_hz(), longest_s}},
+                         {}});
       }
       if (dynamic) forms.push_back({"coupled_input", "through the body", {signal.name}, {}, {}});
       if (const Signal* rate = signals.rate_of(signal); rate != nullptr && rate != &signal) {

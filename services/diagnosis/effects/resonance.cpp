@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "services/diagnosis/core/fitting/modes.hpp"
+#include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
 namespace stillhand::diagnosis {
@@ -27,9 +28,9 @@ class Resonance final : public EffectKind {
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const auto denominator = mode_denominator(effect.value(0), effect.value(1), signals.rate_hz());
     for (const Signal& input : signals.inputs()) {
-      std::vector<double> x = through_poles(input.values, denominator, signals.stretches());
-      columns.push_back(differenced(x, signals.stretches()));
-      columns.push_back(std::move(x));
+      Settled x = through_poles(settled(input.values, signals), denominator, signals.stretches());
+      columns.push_back(differenced(x, signals.stretches()).values);
+      columns.push_back(std::move(x.values));
     }
   }
   // A mode that rings on through the record would take a tone for its free response.

@@ -159,7 +159,29 @@ double parse_number(const CsvText& text, std::string_view cell, const Column& co
   text.fail(raw.data(), quoted(raw), want);
 }
 
-void parse_row(const CsvText& text, std::string_view line, std::vector<Column>& columns) {
+// True for a row that is in the columns already, as a recorder writes a block of rows twice.
+bool repeats(const std::vector<double>& row, const std::vector<Column>& columns) {
+  const std::vector<double>& time_s = columns[0].values;
+  const auto found = std::ranges::lower_bound(time_s, row[0]);
+  if (found == time_s.end() || *found != row[0]) return false;
+  const auto at = static_cast<std::size_t>(found - time_s.begin());
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    if (columns[i].values[at] != row[i]) return false;
+  }
+  return true;
+}
+
+[[noreturn]] void fail_early(const CsvText& text, std::string_view cell, double before_s) {
+  std::array<char, 32> before{};
+  const auto end = std::to_chars(before.begin(), before.end(), before_s).ptr;
+  text.fail(cell.data(), "time " + std::string(cell) + " s",
+            "more than " + std::string(before.data(), end) + " s, the time of the row before");
+}
+
+// False: it repeats an earlier row.  @param row  of the last line; its memory is used again
+bool parse_row(const CsvText& text, std::string_view line, std::vector<double>& row,
+               std::vector<Column>& columns) {
+  row.clear();
   std::size_t start = 0;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (start > line.size()) {
@@ -168,20 +190,20 @@ void parse_row(const CsvText& text, std::string_view line, std::vector<Column>& 
     }
     const std::size_t comma = std::min(line.find(',', start), line.size());
     const std::string_view cell = line.substr(start, comma - start);
-    const double number = parse_number(text, cell, columns[i]);
-    if (i == 0 && !columns[0].values.empty() && !(number > columns[0].values.back())) {
-      std::array<char, 32> before{};
-      const auto end = std::to_chars(before.begin(), before.end(), columns[0].values.back()).ptr;
-      text.fail(trimmed(cell).data(), "time " + std::string(trimmed(cell)) + " s",
-                "more than " + std::string(before.data(), end) + " s, the time of the row before");
-    }
-    columns[i].values.push_back(number);
+    row.push_back(parse_number(text, cell, columns[i]));
     start = comma + 1;
   }
   if (start <= line.size()) {
     text.fail(line.data() + start - 1, "more than " + std::to_string(columns.size()) + " cells",
               std::to_string(columns.size()) + ", as the header has");
   }
+  const std::vector<double>& time_s = columns[0].values;
+  if (!time_s.empty() && !(row[0] > time_s.back())) {
+    if (repeats(row, columns)) return false;
+    fail_early(text, trimmed(line.substr(0, line.find(','))), time_s.back());
+  }
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i].values.push_back(row[i]);
+  return true;
 }
 
 }  // namespace
@@ -198,18 +220,19 @@ Recording parse_csv(std::string_view text, const std::string& source) {
   std::vector<Column> columns = parse_header(csv, line);
   const auto rows = static_cast<std::size_t>(std::ranges::count(csv.rest(), '\n')) + 1;
   for (Column& column : columns) column.values.reserve(rows);
+  Recording recording;
+  std::vector<double> row;
   while (csv.next_line(line)) {
     if (trimmed(line).empty()) {
       if (csv.rest().find_first_not_of(" \t\r\n") == std::string_view::npos) break;
       csv.fail(line.data(), "an empty line", "a row; leave out rows without a value altogether");
     }
-    parse_row(csv, line, columns);
+    if (!parse_row(csv, line, row, columns)) ++recording.repeated_rows;
   }
   if (columns[0].values.size() < 2) {
     throw ConfigError(source, std::to_string(columns[0].values.size()) + " rows",
                       "at least 2 below the header");
   }
-  Recording recording;
   recording.source = source;
   recording.time_s = std::move(columns[0].values);
   columns.erase(columns.begin());

@@ -24,11 +24,12 @@ struct Gap {
 
 /// A table of samples over time, as in a CSV file (README, "CSV").
 struct Recording {
-  std::string source;           ///< name for messages, usually the file
-  std::vector<double> time_s;   ///< [s] strictly increasing
-  std::vector<Column> columns;  ///< every other column, in the order of the file
-  double rate_hz = 0.0;         ///< [Hz] set by estimate_timing()
-  std::vector<Gap> gaps;        ///< in order
+  std::string source;             ///< name for messages, usually the file
+  std::vector<double> time_s;     ///< [s] strictly increasing
+  std::vector<Column> columns;    ///< every other column, in the order of the file
+  double rate_hz = 0.0;           ///< [Hz] set by estimate_timing()
+  std::vector<Gap> gaps;          ///< in order
+  std::size_t repeated_rows = 0;  ///< [-] of the file, equal to an earlier row and left out
 
   [[nodiscard]] std::size_t row_count() const noexcept { return time_s.size(); }
   /// Column of that name, or nullptr.

@@ -90,5 +90,59 @@ TEST(DiagnosedModelFileTest, MissingChannelsAndParametersAreRefused) {
               AllOf(HasSubstr("effects"), HasSubstr("channels and parameters")));
 }
 
+CarriedModel carried_path() {
+  CarriedModel carried = carried_as_it_is(model_with(path_from_roll()));
+  carried.model.effects[0].seen = {{"roll", "rad", -0.125, 0.1}};
+  carried.model.body.offset = 1.0 / 3.0;
+  carried.inputs = {{"a_y", "m/s^2", -4.0, 5.0}};
+  carried.left_out.push_back({"tone", "fixed", {}, "the inputs do not determine it"});
+  carried.stability = Stability::kTested;
+  return carried;
+}
+
+TEST(DiagnosedModelFileTest, WhatIsCarriedComesBackNextToWhatWasFound) {
+  const std::string text = model_json(model_with(tone()), carried_path());
+  EXPECT_EQ(parse_model(text, "m.json").effects.at(0).kind, "tone");
+  const CarriedModel sut = parse_carried_model(text, "m.json");
+  EXPECT_EQ(sut.model.effects.at(0).kind, "coupled_input");
+  EXPECT_EQ(sut.model.body.offset, 1.0 / 3.0);
+  ASSERT_EQ(sut.model.effects[0].seen.size(), 1u);
+  EXPECT_EQ(sut.model.effects[0].seen[0].of, "roll");
+  EXPECT_EQ(sut.model.effects[0].seen[0].low, -0.125);
+  EXPECT_EQ(sut.inputs.at(0).high, 5.0);
+  EXPECT_EQ(sut.left_out.at(0).why, "the inputs do not determine it");
+  EXPECT_EQ(sut.stability, Stability::kTested);
+}
+
+TEST(DiagnosedModelFileTest, AFileOfAnOlderVersionIsCarriedAsItIs) {
+  const CarriedModel sut = parse_carried_model(model_json(model_with(tone())), "m.json");
+  EXPECT_EQ(sut.model.effects.at(0).kind, "tone");
+  EXPECT_TRUE(sut.model.effects[0].seen.empty());
+  EXPECT_TRUE(sut.left_out.empty());
+}
+
+TEST(DiagnosedModelFileTest, AWrongPartOfWhatIsCarriedIsNamed) {
+  const auto refused = [](const auto& change) -> std::string {
+    json file = json::parse(model_json(model_with(tone()), carried_path()));
+    change(file["carried"]);
+    try {
+      static_cast<void>(parse_carried_model(file.dump(), "m.json"));
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refused([](json&) {}), "accepted");
+  EXPECT_THAT(refused([](json& entry) { entry["stability"] = "refused"; }),
+              HasSubstr("proved or tested"));
+  EXPECT_THAT(refused([](json& entry) { entry["effects"][0]["seen"][0]["low"] = 1.0; }),
+              AllOf(HasSubstr("seen"), HasSubstr("from low on")));
+  EXPECT_THAT(refused([](json& entry) {
+                entry["body"]["denominator"] = {1.0, -2.0, 1.0};
+              }),
+              HasSubstr("unit circle"));
+  EXPECT_THAT(refused([](json& entry) { entry.erase("left_out"); }), HasSubstr("left_out"));
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

@@ -96,8 +96,8 @@ TEST(EffectTermsTest, ARippleRepeatsWithThePosition) {
   }
 }
 
-// x(n) = x(n-1) + (1 - e^(-T/lag)) (u(n) - x(n-1)), settled on the mean of a stretch's first
-// second.
+// x(n) = x(n-1) + (1 - e^(-T/lag)) (u(n) - x(n-1)), settled on the stretch's level
+// (DG-54).
 TEST(EffectTermsTest, ALaggedPathSettlesAgainInEveryStretch) {
   constexpr double kLag_s = 0.15;
   const Effect effect{"coupled_input", "lagged", {"theta"}, {{"lag", "s", kLag_s, 0.0, 9.0}}, {}};
@@ -107,8 +107,8 @@ TEST(EffectTermsTest, ALaggedPathSettlesAgainInEveryStretch) {
   ASSERT_EQ(sut.size(), 1u);
   const double share = -std::expm1(-1.0 / (kLag_s * made::kRateHz));
   for (const auto& [first, end] : {std::pair{std::size_t{0}, kCut}, std::pair{kCut, kCount}}) {
-    double state = 0.0;
-    for (std::size_t n = first; n <= first + 100; ++n) state += theta[n] / 101.0;
+    double state = made::level_of({theta.begin() + static_cast<std::ptrdiff_t>(first),
+                                   theta.begin() + static_cast<std::ptrdiff_t>(end)});
     for (std::size_t n = first; n < end; ++n) {
       state += share * (theta[n] - state);
       // 101 roundings of numbers near 1, and as many that fade.

@@ -166,7 +166,7 @@ TEST(EvaluationTest, WhatIsNotTheBodysIsTakenOffTheOutput) {
   ASSERT_EQ(inputs.size(), 1u);
   EXPECT_EQ(inputs[0], limited);
   // Left: body and offset / gain, gain at least 0.05.
-  const auto y = made::answer(body.numerators[0], body.denominator, limited);
+  const auto y = made::settled_answer(body.numerators[0], body.denominator, limited);
   for (std::size_t n = 0; n < kCount; ++n) {
     ASSERT_NEAR(output[n], y[n] + 0.7 / (1.0 + 0.1 * v[n]), 1e-11) << n;
   }

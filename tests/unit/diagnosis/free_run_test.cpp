@@ -24,6 +24,7 @@ constexpr double kPause_s = 3.0;
 // hundred.
 constexpr double kRounding = 1e-13;
 
+// They swing about 0, so that every stretch starts from rest (Eq. DG-54).
 const std::vector<double> kU = made::white(kCount, 1);
 const std::vector<double> kV = made::white(kCount, 2);
 const Body kBody = made::two_pole_body();

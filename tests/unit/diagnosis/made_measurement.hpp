@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -79,6 +80,30 @@ inline std::vector<double> answer(const std::vector<double>& b, const std::vecto
     for (std::size_t j = 1; j < a.size() && j <= n; ++j) y[n] -= a[j] * y[n - j];
   }
   return y;
+}
+
+/// Before a stretch, Eq. DG-54: the mean m of the first second and its swing s.
+inline double level_of(const std::vector<double>& u) {
+  const auto count = std::min<std::size_t>(static_cast<std::size_t>(kRateHz) + 1, u.size());
+  double m = 0.0;
+  double square = 0.0;
+  for (std::size_t n = 0; n < count; ++n) m += u[n] / static_cast<double>(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    square += std::pow(u[n] - m, 2) / static_cast<double>(count);
+  }
+  if (m * m <= square) return 0.0;
+  return m * m >= 4.0 * square ? m : m * (m * m - square) / (3.0 * square);
+}
+
+/// The same after 40 s at that level: in its steady state.
+inline std::vector<double> settled_answer(const std::vector<double>& b,
+                                          const std::vector<double>& a,
+                                          const std::vector<double>& u) {
+  constexpr std::size_t kBefore = 4000;
+  std::vector<double> longer(kBefore, level_of(u));
+  longer.insert(longer.end(), u.begin(), u.end());
+  const std::vector<double> y = answer(b, a, longer);
+  return {y.begin() + kBefore, y.end()};
 }
 
 /// Product of polynomials in q^-1.

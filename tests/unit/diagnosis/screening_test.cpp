@@ -80,8 +80,8 @@ TEST(ScreeningTest, PassagesThroughTheBodyAreDifferencesBehindItsPoles) {
   const Columns sut = of.screening.through_body(x);
   ASSERT_EQ(sut.size(), 3u);
   const auto& a = of.baseline.model.body.denominator;
-  const auto passed = made::answer({1.0}, a, x);
-  const auto differences = made::answer({1.0, -2.0, 1.0}, a, x);
+  const auto passed = made::settled_answer({1.0}, a, x);
+  const auto differences = made::settled_answer({1.0, -2.0, 1.0}, a, x);
   for (std::size_t n = 0; n < kCount; n += 7) {
     // Sums of some hundred terms of up to 20: rounding.
     ASSERT_NEAR(sut[0][n], passed[n], 1e-10) << n;

@@ -104,6 +104,20 @@ TEST(ReadTest, ATimeThatIsRepeatedIsRefusedWithItsLine) {
               StartsWith(":42:1: got time 0.39 s, want more than 0.39 s"));
 }
 
+// A recorder that sends a block again: rows 40 to 49 come twice, and so does row 99.
+TEST(ReadTest, RowsThatAreThereTwiceAreLeftOutWithANote) {
+  std::string block;
+  const Measurement sut = read_measurement(file_of(table(200, [&](int i, std::string row) {
+    if (i >= 40 && i < 50) block += "\n" + row;
+    if (i == 49) return row + block;
+    return i == 99 ? row + "\n" + row : row;
+  })));
+  check(sut);
+  EXPECT_EQ(sut.size(), 200u);
+  EXPECT_EQ(sut.stretches.size(), 1u);
+  EXPECT_THAT(sut.notes, testing::Contains(HasSubstr("11 rows left out, equal to an earlier one")));
+}
+
 TEST(ReadTest, TimeRunningBackwardsIsRefusedWithItsLine) {
   const auto back = [](int i, std::string row) { return i == 60 ? "0.12" + row.substr(4) : row; };
   EXPECT_THAT(complaint(table(100, back)),

@@ -31,6 +31,10 @@ namespace made = diagnosis::made;
 // Sums of a few terms near 1 in a body that forgets within 30 samples: 1e-16 times a few hundred.
 constexpr double kRounding = 1e-13;
 
+Prediction predict(const Model& model, const Measurement& measurement) {
+  return stillhand::predict::predict(diagnosis::carried_as_it_is(model), measurement);
+}
+
 const std::vector<double>& values_of(const Prediction& prediction) {
   return prediction.table.columns.at(0).values;
 }
@@ -55,13 +59,14 @@ std::vector<double> ramp(std::size_t count) {
   return u;
 }
 
-TEST(PredictTest, IsTheDifferenceEquationFromRest) {
+TEST(PredictTest, IsTheDifferenceEquationFromItsSteadyState) {
   const auto u = made::white(400, 1);
   const Prediction sut =
       predict(made::model_of(made::two_pole_body()), made::measurement_of({{"u", "V", u}}));
   const Body body = made::two_pole_body();
-  EXPECT_THAT(values_of(sut), Pointwise(DoubleNear(kRounding),
-                                        made::answer(body.numerators[0], body.denominator, u)));
+  EXPECT_THAT(values_of(sut),
+              Pointwise(DoubleNear(kRounding),
+                        made::settled_answer(body.numerators[0], body.denominator, u)));
   EXPECT_EQ(sut.table.columns[0].name, "y_model");
   EXPECT_EQ(sut.table.columns[0].unit, "N");
   EXPECT_DOUBLE_EQ(sut.table.time_s[399], 3.99);
@@ -77,7 +82,7 @@ TEST(PredictTest, AMeasuredOutputHasNoSay) {
   EXPECT_EQ(values_of(without), values_of(with));
 }
 
-TEST(PredictTest, EveryStretchStartsFromRest) {
+TEST(PredictTest, EveryStretchStartsByItself) {
   const auto u = made::white(500, 4);
   const Model model = made::model_of(made::two_pole_body());
   const Prediction sut =

@@ -13,8 +13,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kLeastWeight = 0.9;    // of the samples of a periodic part
-constexpr double kFirstDiffers = 0.01;  // significance
+constexpr double kLeastPeriodicWeight = 0.9;  // of the samples of a periodic part
+constexpr double kFirstDiffers = 0.01;        // significance
 
 // Periods of a residual, one a column; samples that don't count at their mean over the others.
 struct Periods {
@@ -92,7 +92,7 @@ std::optional<RepeatedResidual> repeated_residual(const Periodicity& periodicity
   for (std::size_t n = periodicity.first; n < periodicity.end(); ++n) {
     counted += weight[n] > 0.0 ? 1.0 : 0.0;
   }
-  if (counted < kLeastWeight * static_cast<double>(periodicity.end() - periodicity.first)) {
+  if (counted < kLeastPeriodicWeight * static_cast<double>(periodicity.end() - periodicity.first)) {
     return {};
   }
   const auto lines_of = [](const Periods& periods) {

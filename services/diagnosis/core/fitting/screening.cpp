@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/signal/decompositions.hpp"
 #include "services/statistics/signed_rank.hpp"
 
 namespace stillhand::diagnosis {
-namespace {}  // namespace
-
 Screening::Screening(const Model& model, const Signals& signals, const Blocks& blocks,
                      const ImpulseResponse& impulse_response)
     : model_(model),
@@ -79,9 +78,12 @@ ScreenedGain Screening::gain(const Columns& columns) const {
 }
 
 Columns Screening::through_body(const std::vector<double>& column) const {
-  Columns columns{through_poles(column, model_.body.denominator, signals_.stretches())};
+  Settled passed =
+      through_poles(settled(column, signals_), model_.body.denominator, signals_.stretches());
+  Columns columns{passed.values};
   for (std::size_t i = 0; i < model_.body.order(); ++i) {
-    columns.push_back(differenced(columns.back(), signals_.stretches()));
+    passed = differenced(passed, signals_.stretches());
+    columns.push_back(passed.values);
   }
   return columns;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,25 @@ struct Parameter {
   bool fitted = true;  ///< false: found by search, held fixed in the joint fit
 };
 
+/// Where an effect was seen: the range of a signal that it reads, or of what its nonlinearity is
+/// given.  It goes on as it is for a quarter of the range on each side, and is held there, README
+/// Eq. DG-56.
+struct SeenRange {
+  static constexpr double kWider = 0.25;  ///< [-] of the range
+
+  std::string of;    ///< a signal, as Signals names it; "argument": of a map or a nonlinearity
+  std::string unit;  ///< empty: none that can be named
+  double low = 0.0;
+  double high = 0.0;
+
+  [[nodiscard]] bool holds(double value) const { return value >= low && value <= high; }
+  [[nodiscard]] double lower_edge() const { return low - kWider * (high - low); }
+  [[nodiscard]] double upper_edge() const { return high + kWider * (high - low); }
+  [[nodiscard]] double held(double value) const {
+    return std::clamp(value, lower_edge(), upper_edge());
+  }
+};
+
 /// One effect of a model: plain numbers, to which its kind gives a meaning (effect_kind.hpp).
 struct Effect {
   std::string kind;                   ///< name in effect_kinds(), for example "delay"
@@ -35,6 +55,7 @@ struct Effect {
   std::vector<std::string> channels;  ///< signals that it reads, as Signals names them
   std::vector<Parameter> parameters;  ///< nonlinear ones
   std::vector<double> coefficients;   ///< linear ones, of the terms or of the feedback path
+  std::vector<SeenRange> seen = {};   ///< empty: everywhere, as while it is fitted
 
   [[nodiscard]] double value(std::size_t i) const { return parameters.at(i).value; }
 };

@@ -12,6 +12,20 @@
 namespace stillhand::diagnosis {
 namespace {
 
+// A map goes on straight where it was not seen, Eq. DG-56.
+double mapped_within(const EffectKind& kind, const Effect& effect, double value) {
+  if (effect.seen.empty()) return kind.mapped(effect, value);
+  constexpr double kStep = 1e-6;  // of the way from the middle to the edge
+  const SeenRange& range = effect.seen.front();
+  const double edge = range.held(value);
+  const double inside = kind.mapped(effect, edge);
+  if (edge == value) return inside;
+  const double step = kStep * (edge - 0.5 * (range.low + range.high));
+  if (step == 0.0) return inside;
+  const double slope = (inside - kind.mapped(effect, edge - step)) / step;
+  return inside + slope * (value - edge);
+}
+
 std::vector<double> shaped_input(const Model& model, const Signals& signals, std::size_t k) {
   std::vector<double> u = signals.inputs()[k].values;
   for (const Effect& effect : model.effects) {
@@ -22,9 +36,14 @@ std::vector<double> shaped_input(const Model& model, const Signals& signals, std
   for (const Effect& effect : model.effects) {
     if (!acts_at(effect, Stage::kInputValue) || effect.channels.at(0) != model.inputs[k]) continue;
     const EffectKind& kind = effect_kind(effect.kind);
-    for (double& value : u) value = kind.mapped(effect, value);
+    for (double& value : u) value = mapped_within(kind, effect, value);
   }
   return u;
+}
+
+Settled nothing(const Signals& signals) {
+  return {std::vector<double>(signals.size(), 0.0),
+          std::vector<double>(signals.stretches().size(), 0.0)};
 }
 
 void add_scaled(const std::vector<double>& x, double factor, std::vector<double>& sum) {
@@ -32,8 +51,8 @@ void add_scaled(const std::vector<double>& x, double factor, std::vector<double>
 }
 
 // sum_i c_i D^i x
-void add_differences(std::vector<double> x, std::span<const double> coefficients,
-                     const std::vector<Stretch>& stretches, std::vector<double>& sum) {
+void add_differences(Settled x, std::span<const double> coefficients,
+                     const std::vector<Stretch>& stretches, Settled& sum) {
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
     if (i > 0) x = differenced(x, stretches);
     add_scaled(x, coefficients[i], sum);
@@ -47,54 +66,79 @@ void run_body(const Model& model, const Signals& signals, ModelRun& run) {
   }
   if (!feedback.empty()) {
     for (std::size_t k = 0; k < model.inputs.size(); ++k) {
-      run.inputs.push_back(shaped_input(model, signals, k));
+      run.inputs.push_back(settled(shaped_input(model, signals, k), signals));
     }
     LoopRun loop;
     run.free.finite = run_loop(model.body, feedback, run.inputs, signals, loop);
     run.free.body = std::move(loop.output);
     run.free.argument = std::move(loop.argument);
     run.free.phi = std::move(loop.phi);
+    run.body_before = std::move(loop.output_before);
+    run.phi_before = std::move(loop.phi_before);
     return;
   }
-  run.free.body.assign(signals.size(), 0.0);
+  Settled body = nothing(signals);
   for (std::size_t k = 0; k < model.inputs.size(); ++k) {
-    run.filtered_inputs.push_back(through_poles(shaped_input(model, signals, k),
+    run.filtered_inputs.push_back(through_poles(settled(shaped_input(model, signals, k), signals),
                                                 model.body.denominator, signals.stretches()));
     add_differences(run.filtered_inputs.back(), difference_basis(model.body.numerators[k]),
-                    signals.stretches(), run.free.body);
+                    signals.stretches(), body);
+  }
+  run.free.body = std::move(body.values);
+  run.body_before = std::move(body.before);
+}
+
+// The columns of a term as they are weighed: through A where the form says so.
+void weigh_columns(const Model& model, const Signals& signals, const Columns& columns,
+                   std::size_t e, ModelRun& run) {
+  const Effect& effect = model.effects[e];
+  std::size_t next = 0;
+  for (const auto& each : columns) {
+    if (!effect_kind(effect.kind).through_body(effect)) {
+      add_scaled(each, effect.coefficients.at(next++), run.free.prediction);
+      run.term_columns[e].push_back(each);
+      continue;
+    }
+    run.passes_terms = true;
+    Settled column =
+        through_poles(settled(each, signals), model.body.denominator, signals.stretches());
+    for (std::size_t i = 0; i <= model.body.order(); ++i) {
+      if (i > 0) column = differenced(column, signals.stretches());
+      const double weight = effect.coefficients.at(next++);
+      add_scaled(column.values, weight, run.free.prediction);
+      add_scaled(column, weight, run.through_body);
+      run.term_columns[e].push_back(column.values);
+    }
   }
 }
 
 void add_terms(const Model& model, const Signals& signals, ModelRun& run) {
   run.term_columns.resize(model.effects.size());
-  run.through_body.assign(signals.size(), 0.0);
+  run.through_body = nothing(signals);
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const Effect& effect = model.effects[e];
     const EffectKind& kind = effect_kind(effect.kind);
     if (kind.stage(effect) != Stage::kTerm) continue;
     Columns columns;
-    kind.terms(effect, signals, run.free.body, columns);
-    const bool through = kind.through_body(effect);
-    run.passes_terms = run.passes_terms || through;
-    std::size_t next = 0;
-    for (auto& column : columns) {
-      if (through) column = through_poles(column, model.body.denominator, signals.stretches());
-      const std::size_t taps = through ? model.body.order() + 1 : 1;
-      for (std::size_t i = 0; i < taps; ++i) {
-        if (i > 0) column = differenced(column, signals.stretches());
-        const double weight = effect.coefficients.at(next++);
-        add_scaled(column, weight, run.free.prediction);
-        if (through) add_scaled(column, weight, run.through_body);
-        run.term_columns[e].push_back(column);
-      }
+    if (effect.seen.empty()) {
+      kind.terms(effect, signals, run.free.body, columns);
+    } else {
+      kind.terms(effect, signals.within(effect.seen), run.free.body, columns);
     }
+    weigh_columns(model, signals, columns, e, run);
   }
 }
 
 void apply_gain(const Model& model, const Signals& signals, ModelRun& run) {
   run.gain.assign(signals.size(), 1.0);
   for (const Effect& effect : model.effects) {
-    if (acts_at(effect, Stage::kGain)) effect_kind(effect.kind).gain(effect, signals, run.gain);
+    if (!acts_at(effect, Stage::kGain)) continue;
+    const EffectKind& kind = effect_kind(effect.kind);
+    if (effect.seen.empty()) {
+      kind.gain(effect, signals, run.gain);
+    } else {
+      kind.gain(effect, signals.within(effect.seen), run.gain);
+    }
   }
   run.free.prediction.resize(signals.size());
   for (std::size_t n = 0; n < signals.size(); ++n) {
@@ -110,9 +154,10 @@ void apply_output_maps(const Model& model, const Signals& signals, ModelRun& run
     const Stage stage = kind.stage(effect);
     if (stage == Stage::kWeight) kind.weigh(effect, signals, run.free.weight);
     if (stage != Stage::kOutputValue) continue;
+    if (!effect.seen.empty()) run.free.unmapped.push_back(run.free.prediction);
     for (std::size_t n = 0; n < signals.size(); ++n) {
       run.free.output_slope[n] *= kind.slope(effect, run.free.prediction[n]);
-      run.free.prediction[n] = kind.mapped(effect, run.free.prediction[n]);
+      run.free.prediction[n] = mapped_within(kind, effect, run.free.prediction[n]);
     }
   }
 }

@@ -16,6 +16,7 @@ struct FreeRun {
   std::vector<double> argument;      ///< z of Eq. DG-4, with feedback
   std::vector<double> phi;           ///< phi(z)
   std::vector<double> prediction;    ///< [unit of the output]
+  Columns unmapped;                  ///< what each output map with a range was given
   std::vector<double> output_slope;  ///< of the output maps, [-]
   std::vector<double> weight;        ///< of the measurement, 0 where the model claims nothing
 };
@@ -24,8 +25,9 @@ struct FreeRun {
 /// from the inputs alone, 1e30.
 double runaway_bound(const Signal& output);
 
-/// Every stretch from rest, the inputs alone.  @param with_time_only  false: without the effects
-/// that the inputs do not determine (EffectKind::time_only)
+/// Every stretch from the steady state of its first second, Eq. DG-54, the inputs alone.
+/// @param with_time_only  false: without the effects that the inputs do not determine
+/// (EffectKind::time_only)
 FreeRun free_run(const Model& model, const Signals& signals, bool with_time_only = true);
 
 /// The signals between which a linear body lies: the inputs as they reach it, the output without

@@ -64,22 +64,17 @@ class ColumnWriter {
 };
 
 // q^-1 x / A
-std::vector<double> late_through_poles(const std::vector<double>& x, const Model& model,
-                                       const std::vector<Stretch>& stretches) {
-  std::vector<double> late = through_poles(x, model.body.denominator, stretches);
-  for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.end; n-- > stretch.first + 1;) late[n] = late[n - 1];
-    late[stretch.first] = 0.0;
-  }
-  return late;
+Settled late_through_poles(const Settled& x, const Model& model,
+                           const std::vector<Stretch>& stretches) {
+  return late(through_poles(x, model.body.denominator, stretches), stretches);
 }
 
 // x, D x, .. D^p x behind the gain.
-void write_differences(std::vector<double> x, const Model& model, const Signals& signals,
-                       const ModelRun& run, ColumnWriter& writer) {
+void write_differences(Settled x, const Model& model, const Signals& signals, const ModelRun& run,
+                       ColumnWriter& writer) {
   for (std::size_t i = 0; i <= model.body.order(); ++i) {
     if (i > 0) x = differenced(x, signals.stretches());
-    writer.write(x, 1.0, &run.gain);
+    writer.write(x.values, 1.0, &run.gain);
   }
 }
 
@@ -91,15 +86,15 @@ void write_body_columns(const Model& model, const Signals& signals, const ModelR
   }
   // d/dg_i of B u / A with A = 1 + q^-1 sum g_i D^i: -q^-1 D^i y / A, behind which comes the gain;
   // terms that pass the body do so without it.
-  std::vector<double> late = late_through_poles(run.free.body, model, stretches);
-  std::vector<double> terms;
+  Settled late = late_through_poles({run.free.body, run.body_before}, model, stretches);
+  Settled terms;
   if (run.passes_terms) terms = late_through_poles(run.through_body, model, stretches);
   for (std::size_t i = 0; i < model.body.order(); ++i) {
     if (i > 0) late = differenced(late, stretches);
     if (i > 0 && run.passes_terms) terms = differenced(terms, stretches);
-    std::vector<double> both(late.size());
+    std::vector<double> both(signals.size());
     for (std::size_t n = 0; n < both.size(); ++n) {
-      both[n] = run.gain[n] * late[n] + (run.passes_terms ? terms[n] : 0.0);
+      both[n] = run.gain[n] * late.values[n] + (run.passes_terms ? terms.values[n] : 0.0);
     }
     writer.write(both, -1.0, nullptr);
   }
@@ -107,7 +102,7 @@ void write_body_columns(const Model& model, const Signals& signals, const ModelR
 
 void write_loop_columns(const Model& model, const Signals& signals, const ModelRun& run, Loop loop,
                         ColumnWriter& writer) {
-  for (const auto& input : run.inputs) {
+  for (const Settled& input : run.inputs) {
     if (loop == Loop::kOfOutput) {
       writer.skip(model.body.order() + 1);
     } else {
@@ -130,8 +125,9 @@ void write_exact_columns(const Model& model, const Signals& signals, const Model
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const Effect& effect = model.effects[e];
     if (loop == Loop::kInside && acts_at(effect, Stage::kFeedback)) {
-      write_differences(through_poles(run.free.phi, model.body.denominator, signals.stretches()),
-                        model, signals, run, writer);
+      const Settled phi{run.free.phi, run.phi_before};
+      write_differences(through_poles(phi, model.body.denominator, signals.stretches()), model,
+                        signals, run, writer);
       writer.skip(effect.coefficients.size() - model.body.order() - 1);
     } else if (run.term_columns[e].empty()) {
       writer.skip(effect.coefficients.size());

@@ -5,6 +5,7 @@
 
 #include "services/diagnosis/core/model/effect.hpp"
 #include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/diagnosis/core/signals.hpp"
 
 namespace stillhand::diagnosis {
@@ -28,19 +29,22 @@ struct LoopPath {
 
 /// Signals in the loop, each as long as the measurement.
 struct LoopRun {
-  std::vector<double> output;    ///< y_b
-  std::vector<double> argument;  ///< z of the first nonlinearity
-  std::vector<double> phi;       ///< its phi(z)
+  std::vector<double> output;         ///< y_b
+  std::vector<double> argument;       ///< z of the first nonlinearity
+  std::vector<double> phi;            ///< its phi(z)
+  std::vector<double> output_before;  ///< [stretches] level of y_b before each
+  std::vector<double> phi_before;     ///< [stretches] of the first phi(z)
 };
 
 /// Coefficients that a feedback effect has for a body of this order.
 std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
 LoopPath loop_path(const Effect& effect, std::size_t order);
 
-/// Runs the body with its nonlinearities, every stretch from rest.
-/// @param inputs  what reaches the body, [inputs][samples]
+/// Runs the body with its nonlinearities, every stretch from the steady state of its inputs'
+/// levels, Eq. DG-54.  An effect with a range holds phi at its edges, Eq. DG-56.
+/// @param inputs  what reaches the body, by input
 /// @return false when it ran away
 bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
-              const std::vector<std::vector<double>>& inputs, const Signals& signals, LoopRun& run);
+              const std::vector<Settled>& inputs, const Signals& signals, LoopRun& run);
 
 }  // namespace stillhand::diagnosis

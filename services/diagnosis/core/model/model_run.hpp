@@ -5,6 +5,7 @@
 
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/diagnosis/core/model/steady_start.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -13,10 +14,12 @@ struct ModelRun {
   FreeRun free;
   std::vector<double> gain;           ///< on the body's output
   std::vector<Columns> term_columns;  ///< by effect, as weighed: through A where the form says so
-  std::vector<double> through_body;   ///< sum of the terms that passed A
+  Settled through_body;               ///< sum of the terms that passed A
   bool passes_terms = false;          ///< any did
-  Columns filtered_inputs;            ///< u_k / A; none with feedback
-  Columns inputs;                     ///< u_k as they reach the body; with feedback alone
+  std::vector<Settled> filtered_inputs;  ///< u_k / A; none with feedback
+  std::vector<Settled> inputs;           ///< u_k as they reach the body; with feedback alone
+  std::vector<double> body_before;       ///< [stretches] level of y_b before each
+  std::vector<double> phi_before;        ///< [stretches] of phi(z); with feedback alone
 };
 
 /// Runs a model over its signals, README "The model".

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/apart_from_time.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+
+#include "services/diagnosis/core/fitting/held_out.hpp"
+#include "services/diagnosis/core/selection.hpp"
+#include "services/signal/decompositions.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr int kHalfCosines = 8;
+constexpr double kSlow = 0.3;  // of the variance, beyond the half-cosines
+constexpr double kBorneOut = 0.01;
+constexpr int kTimeIterations = 10;
+
+// The channel as a smooth function of time, Eq. DG-59: a constant and the slowest half-cosines over
+// the record.
+std::vector<double> smooth_of(const std::vector<double>& x, const Signals& signals) {
+  const auto rows = static_cast<Eigen::Index>(x.size());
+  Eigen::MatrixXd shapes(rows, kHalfCosines + 1);
+  for (Eigen::Index n = 0; n < rows; ++n) {
+    const double t = (signals.time_s()[static_cast<std::size_t>(n)] - signals.time_s().front()) /
+                     signals.duration_s();
+    for (int k = 0; k <= kHalfCosines; ++k) shapes(n, k) = std::cos(std::numbers::pi * k * t);
+  }
+  const Eigen::Map<const Eigen::VectorXd> values(x.data(), rows);
+  const Eigen::VectorXd weights =
+      signal::solve_symmetric(shapes.transpose() * shapes, shapes.transpose() * values);
+  const Eigen::VectorXd smooth = shapes * weights;
+  return {smooth.data(), smooth.data() + rows};
+}
+
+double square_of_difference(const std::vector<double>& x, const std::vector<double>& y) {
+  double square = 0.0;
+  for (std::size_t n = 0; n < x.size(); ++n) square += (x[n] - y[n]) * (x[n] - y[n]);
+  return square / static_cast<double>(x.size());
+}
+
+// The quick part of the channel says the same as the slow one: with it the blocks are better.
+bool is_borne_out(const Model& model, const Signals& signals, const Signals& smooth,
+                  const Blocks& blocks) {
+  FitOptions options;
+  options.max_iterations = kTimeIterations;
+  Model of_time = model;
+  fit(of_time, smooth, blocks, options);
+  const HeldOut by_time = held_out(of_time, smooth, blocks);
+  const HeldOut by_channel = held_out(model, signals, blocks);
+  if (!by_time.finite) return true;
+  const Comparison comparison = compared(by_time, by_channel);
+  return comparison.rmse_ratio < 1.0 && comparison.p < kBorneOut;
+}
+
+}  // namespace
+
+bool is_apart_from_time(const Model& model, std::size_t effect, const Signals& signals,
+                        const Blocks& blocks) {
+  for (const std::string& channel : model.effects[effect].channels) {
+    const Signal& signal = signals.at(channel);
+    if (signals.is_input(signal.source)) continue;
+    std::vector<double> smooth = smooth_of(signal.values, signals);
+    const double quick = square_of_difference(signal.values, smooth);
+    if (quick > kSlow * signal.deviation * signal.deviation) continue;
+    if (!is_borne_out(model, signals, signals.replaced(channel, std::move(smooth)), blocks)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace stillhand::diagnosis

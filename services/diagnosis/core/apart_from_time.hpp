@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "services/diagnosis/core/fitting/blocks.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/signals.hpp"
+
+namespace stillhand::diagnosis {
+
+/// README Eq. DG-59: whether a recording distinguishes an effect of a slow channel from one of time
+/// alone.  Always true for an effect of no channel, of inputs, or of channels that are not slow.
+/// Pure.
+/// @param model  fitted, the effect among its effects
+bool is_apart_from_time(const Model& model, std::size_t effect, const Signals& signals,
+                        const Blocks& blocks);
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/carried.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "services/diagnosis/core/apart_from_time.hpp"
+#include "services/diagnosis/core/fitting/held_out.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kThirds = 3;  // of a single recording
+constexpr double kHelps = 0.01;     // of a recording's error, as SearchOptions::least_fall
+constexpr int kCarryIterations = 30;
+constexpr int kPartIterations = 3;
+
+// Each part is whole: thirds of a recording, or the recordings that were joined.
+Blocks by_part(const Blocks& blocks, const Signals& signals) {
+  if (signals.stretches().back().recording > 0) return by_recording(blocks, signals);
+  Blocks result = blocks;
+  result.folds = kThirds;
+  for (std::size_t b = 0; b < blocks.count; ++b) result.fold.push_back(b * kThirds / blocks.count);
+  return result;
+}
+
+struct PartErrors {
+  std::vector<double> squares;  ///< [parts] mean squares
+  double rmse = std::numeric_limits<double>::infinity();
+};
+
+// With terms that weigh nothing: what the other parts do not determine stays at 0, instead of at
+// what the part itself says.
+Model bare_of_terms(const Model& model) {
+  Model bare = model;
+  for (Effect& effect : bare.effects) {
+    if (effect_kind(effect.kind).stage(effect) == Stage::kTerm) {
+      std::ranges::fill(effect.coefficients, 0.0);
+    }
+  }
+  return bare;
+}
+
+class Carrying {
+ public:
+  Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks)
+      : all_(signals), fitted_(without_bursts), blocks_(blocks), parts_(by_part(blocks, signals)) {}
+
+  [[nodiscard]] bool several() const { return all_.stretches().back().recording > 0; }
+
+  // Error of each part, by a fit to the others; bursts are left out of the fits alone.
+  [[nodiscard]] PartErrors errors(const Model& model, const Signals& fitted) const {
+    PartErrors errors;
+    double sum = 0.0;
+    double weight = 0.0;
+    for (std::size_t part = 0; part < parts_.folds; ++part) {
+      Model refitted = bare_of_terms(model);
+      FitOptions options;
+      options.max_iterations = kPartIterations;
+      options.without_fold = static_cast<int>(part);
+      fit(refitted, fitted, parts_, options);
+      FreeRun run;
+      const Eigen::VectorXd residual = residual_of(refitted, all_, run);
+      if (!run.finite) return {};
+      double of_part = 0.0;
+      double weight_of_part = 0.0;
+      for (std::size_t n = 0; n < all_.size(); ++n) {
+        if (parts_.fold_of(n / parts_.length) != part) continue;
+        const double r = residual[static_cast<Eigen::Index>(n)];
+        of_part += r * r;
+        weight_of_part += run.weight[n];
+      }
+      errors.squares.push_back(of_part / std::max(weight_of_part, 1.0));
+      sum += of_part;
+      weight += weight_of_part;
+    }
+    errors.rmse = std::sqrt(sum / std::max(weight, 1.0));
+    return errors;
+  }
+  [[nodiscard]] PartErrors errors(const Model& model) const { return errors(model, fitted_); }
+  [[nodiscard]] PartErrors errors_of_baseline(const Model& model) const {
+    return errors(model, all_);
+  }
+
+  // Fitted from its own numbers and from another body's, whichever ends better.
+  [[nodiscard]] Model refitted(Model model, const Body& other) const {
+    FitOptions options;
+    options.max_iterations = kCarryIterations;
+    options.relative_tolerance = 1e-9;
+    Model from_other = model;
+    const FitResult own = fit(model, fitted_, blocks_, options);
+    if (other.order() != model.body.order()) return model;
+    from_other.body = other;
+    const FitResult second = fit(from_other, fitted_, blocks_, options);
+    return second.finite && second.rmse < own.rmse ? from_other : model;
+  }
+
+ private:
+  const Signals& all_;
+  const Signals& fitted_;
+  const Blocks& blocks_;
+  const Blocks parts_;
+};
+
+LeftOut left_out(const Effect& effect, std::string why) {
+  return {effect.kind, effect.form, effect.channels, std::move(why)};
+}
+
+// The part of a model that another recording can share; the rest goes to `out`.
+Model shared_part(const Model& found, const Signals& signals, const Blocks& blocks,
+                  std::vector<LeftOut>& out) {
+  Model shared = found;
+  shared.effects.clear();
+  for (std::size_t e = 0; e < found.effects.size(); ++e) {
+    const Effect& effect = found.effects[e];
+    const EffectKind& kind = effect_kind(effect.kind);
+    if (kind.stage(effect) == Stage::kWeight) {
+      out.push_back(left_out(effect, "nothing predicts when a burst comes"));
+    } else if (kind.time_only(effect)) {
+      out.push_back(left_out(effect, "the inputs do not determine it"));
+    } else if (!is_apart_from_time(found, e, signals, blocks)) {
+      out.push_back(
+          left_out(effect, "this recording does not distinguish its slow channel from time alone"));
+      out.back().like_time = true;
+    } else {
+      shared.effects.push_back(effect);
+    }
+  }
+  return shared;
+}
+
+Model without(const Model& model, std::size_t effect) {
+  Model other = model;
+  other.effects.erase(other.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  return other;
+}
+
+// The effect, last added first, without which the parts are predicted as well or better, or that
+// helps none of several recordings.
+std::optional<std::size_t> idle(const Model& model, const PartErrors& with, const Body& baseline,
+                                const Carrying& carrying) {
+  if (model.effects.size() < 2 && !carrying.several()) return std::nullopt;
+  for (std::size_t e = model.effects.size(); e-- > 0;) {
+    const PartErrors bare = carrying.errors(carrying.refitted(without(model, e), baseline));
+    if (!(with.rmse < bare.rmse)) return e;
+    if (!carrying.several()) continue;
+    bool helps = false;
+    for (std::size_t r = 0; r < bare.squares.size(); ++r) {
+      helps = helps || std::sqrt(with.squares[r] / bare.squares[r]) < 1.0 - kHelps;
+    }
+    if (!helps) return e;
+  }
+  return std::nullopt;
+}
+
+bool has_feedback(const Effect& effect) {
+  return effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
+}
+
+void drop(CarriedModel& carried, std::size_t effect, const std::string& why, const Body& baseline,
+          const Carrying& carrying) {
+  carried.left_out.push_back(left_out(carried.model.effects[effect], why));
+  carried.model = carrying.refitted(without(carried.model, effect), baseline);
+}
+
+// Drops the nonlinearities inside the body of a model that is not stable.
+void keep_stable(CarriedModel& carried, const Signals& signals, const Body& baseline,
+                 const Carrying& carrying) {
+  while (true) {
+    Model held = carried.model;
+    note_seen(held, signals);
+    carried.stability = stability_of(held, signals);
+    if (carried.stability != Stability::kRefused) return;
+    const auto& effects = carried.model.effects;
+    const auto found = std::ranges::find_if(effects, has_feedback);
+    if (found == effects.end()) return;  // the body alone: the fit keeps it stable
+    drop(carried, static_cast<std::size_t>(found - effects.begin()),
+         "with it the model is not stable over the range that was seen", baseline, carrying);
+  }
+}
+
+Signals bursts_masked(const Model& found, const Signals& signals) {
+  std::vector<double> weight = signals.weight();
+  for (const Effect& effect : found.effects) {
+    const EffectKind& kind = effect_kind(effect.kind);
+    if (kind.stage(effect) == Stage::kWeight) kind.weigh(effect, signals, weight);
+  }
+  return signals.weighed(std::move(weight));
+}
+
+}  // namespace
+
+CarriedModel carried_model(const Model& found, const Model& baseline, const Signals& signals,
+                           const Blocks& blocks) {
+  CarriedModel carried;
+  carried.inputs = input_ranges(signals);
+  carried.model = baseline;
+  if (!found.effects.empty()) {
+    const Signals masked = bursts_masked(found, signals);
+    const Carrying carrying(signals, masked, blocks);
+    carried.model = shared_part(found, signals, blocks, carried.left_out);
+    if (!carried.left_out.empty()) {
+      carried.model = carrying.refitted(std::move(carried.model), baseline.body);
+    }
+    keep_stable(carried, signals, baseline.body, carrying);
+    PartErrors errors = carrying.errors(carried.model);
+    while (const auto effect = idle(carried.model, errors, baseline.body, carrying)) {
+      drop(carried, *effect,
+           carrying.several() ? "it helps to predict no recording that it was not fitted to"
+                              : "it helps to predict no third of the recording from the others",
+           baseline.body, carrying);
+      errors = carrying.errors(carried.model);
+    }
+    keep_stable(carried, signals, baseline.body, carrying);
+    if (!(carrying.errors(carried.model).rmse < carrying.errors_of_baseline(baseline).rmse)) {
+      for (const Effect& effect : carried.model.effects) {
+        carried.left_out.push_back(left_out(
+            effect, "parts of the recording are predicted as well without it from the others"));
+      }
+      carried.model = baseline;
+    }
+  }
+  note_seen(carried.model, signals);
+  carried.stability = stability_of(carried.model, signals);
+  return carried;
+}
+
+CarriedModel carried_as_it_is(Model model) { return {std::move(model), {}, {}, {}}; }
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/diagnosis/core/fitting/baseline.hpp"
+#include "services/diagnosis/core/model/seen_range.hpp"
+#include "services/diagnosis/core/model/stability.hpp"
+
+namespace stillhand::diagnosis {
+
+/// An effect that was found in a recording and does not help to predict another one.
+struct LeftOut {
+  std::string kind;
+  std::string form;
+  std::vector<std::string> channels;
+  std::string why;  ///< a clause
+  /// Its slow channel is not distinguished from time, Eq. DG-59.
+  bool like_time = false;
+};
+
+/// The model that predicts other recordings of the same rig, README Eq. DG-58: the effects that
+/// another recording can share, fitted again without the others, each with the range in which it
+/// was seen.
+struct CarriedModel {
+  Model model;
+  std::vector<LeftOut> left_out;
+  std::vector<SeenRange> inputs;  ///< ranges of the inputs
+  Stability stability = Stability::kProved;
+};
+
+/// @param found     baseline and effects, fitted together
+/// @param baseline  without any effect
+/// Pure.  @throws nothing of its own
+CarriedModel carried_model(const Model& found, const Model& baseline, const Signals& signals,
+                           const Blocks& blocks);
+
+/// A model as it is, for a file that holds no other: nothing left out, no range known.
+CarriedModel carried_as_it_is(Model model);
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of a found model predicts another recording, Eq. DG-58 and DG-59.
+#include "services/diagnosis/core/carried.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "services/diagnosis/core/apart_from_time.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::size_t kCount = 6000;
+constexpr double kLength_s = 60.0;
+
+double time_s(std::size_t n) { return 0.01 * static_cast<double>(n); }
+
+// A room that warms up, with a thermostat's waves of `waves` degrees.
+std::vector<double> temperature(double waves) {
+  std::vector<double> x(kCount);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    x[n] = 23.0 + 4.0 * (1.0 - std::exp(-time_s(n) / 20.0)) + waves * std::sin(0.9 * time_s(n));
+  }
+  return x;
+}
+
+struct Made {
+  std::vector<double> u = made::ride(kCount, 1);
+  std::vector<double> v = made::ride(kCount, 2);
+  std::vector<double> temp = temperature(0.4);
+  std::vector<double> y = made::white(kCount, 3);
+
+  // 2 u + noise of 0.1 + more
+  explicit Made(const std::function<double(const Made&, std::size_t)>& more) {
+    for (std::size_t n = 0; n < kCount; ++n) y[n] = 0.1 * y[n] + 2.0 * u[n] + more(*this, n);
+  }
+  [[nodiscard]] Measurement measurement() const {
+    return made::measurement_of(
+        {{"u", "V", u}, {"v", "V", v}, {"temp", "degC", temp}, {"y", "N", y}});
+  }
+};
+
+// Fitted with these effects, and what is carried of it.
+struct Sut {
+  Sut(const Measurement& measurement, std::vector<Effect> effects)
+      : studied(measurement, 0), found(studied.baseline.model) {
+    found.effects = std::move(effects);
+    fit(found, studied.signals, studied.blocks);
+    carried = carried_model(found, studied.baseline.model, studied.signals, studied.blocks);
+  }
+  made::Studied studied;
+  Model found;
+  CarriedModel carried;
+};
+
+const Effect kOfV{"coupled_input", "static", {"v"}, {}, {0.0}};
+const Effect kOfTemp{"coupled_input", "static", {"temp"}, {}, {0.0}};
+const Effect kDrift{"drift", "exponential", {}, {{"time_constant", "s", 20.0, 1.0, 100.0}}, {0.0}};
+
+TEST(CarriedTest, WhereNothingWasFoundItIsTheBaseline) {
+  const Sut sut(Made([](const Made&, std::size_t) { return 0.0; }).measurement(), {});
+  EXPECT_EQ(packed(sut.carried.model), packed(sut.studied.baseline.model));
+  EXPECT_THAT(sut.carried.left_out, IsEmpty());
+  EXPECT_THAT(sut.carried.inputs, SizeIs(1));
+}
+
+// An exponential's offset is where it ends; another recording begins where this one did.  The
+// baseline's is the mean.
+TEST(CarriedTest, OfADriftAloneTheBaselineIsLeft) {
+  const Sut sut(Made([](const Made&, std::size_t n) {
+                  return 3.0 * std::exp(-time_s(n) / 20.0);
+                }).measurement(),
+                {kDrift});
+  EXPECT_GT(std::abs(sut.found.body.offset - sut.studied.baseline.model.body.offset), 0.5);
+  EXPECT_EQ(packed(sut.carried.model), packed(sut.studied.baseline.model));
+  ASSERT_THAT(sut.carried.left_out, SizeIs(1));
+  EXPECT_EQ(sut.carried.left_out[0].kind, "drift");
+}
+
+TEST(CarriedTest, AnEffectThatTheInputsDetermineIsCarriedWithItsRange) {
+  const Sut sut(Made([](const Made& m, std::size_t n) {
+                  return 0.5 * m.v[n] + 3.0 * std::exp(-time_s(n) / 20.0);
+                }).measurement(),
+                {kDrift, kOfV});
+  ASSERT_THAT(sut.carried.model.effects, SizeIs(1));
+  const Effect& effect = sut.carried.model.effects[0];
+  EXPECT_EQ(effect.kind, "coupled_input");
+  // Noise of a drift's 0.8 and 0.1 over 6000 samples.
+  EXPECT_NEAR(effect.coefficients[0], 0.5, 0.05);
+  ASSERT_THAT(effect.seen, SizeIs(1));
+  EXPECT_EQ(effect.seen[0].of, "v");
+  EXPECT_LT(effect.seen[0].low, -2.0);
+  EXPECT_GT(effect.seen[0].high, 2.0);
+}
+
+TEST(CarriedTest, AnEffectThatHelpsToPredictNothingIsDropped) {
+  const Sut sut(Made([](const Made& m, std::size_t n) {
+                  return n < kCount / 3 ? 0.3 * m.v[n] : (n < 2 * kCount / 3 ? -0.3 : 0.0) * m.v[n];
+                }).measurement(),
+                {kOfV});
+  EXPECT_THAT(sut.carried.model.effects, IsEmpty());
+  EXPECT_EQ(packed(sut.carried.model), packed(sut.studied.baseline.model));
+}
+
+// 0.05 N/K: 0.2 N of warming up, 0.014 N RMS of waves in noise of 0.1, over 5900 samples.
+TEST(CarriedTest, ATemperatureThatIsBorneOutByItsWavesIsCarried) {
+  const Sut sut(Made([](const Made& m, std::size_t n) { return 0.2 * m.temp[n]; }).measurement(),
+                {kOfTemp});
+  EXPECT_TRUE(is_apart_from_time(sut.found, 0, sut.studied.signals, sut.studied.blocks));
+  ASSERT_THAT(sut.carried.model.effects, SizeIs(1));
+  EXPECT_NEAR(sut.carried.model.effects[0].coefficients[0], 0.2, 0.01);
+}
+
+// The same, but the force follows the clock and the temperature only looks alike.
+TEST(CarriedTest, ATemperatureThatOnlyLooksLikeADriftIsLeftOut) {
+  const Sut sut(Made([](const Made&, std::size_t n) {
+                  return -0.8 * std::exp(-time_s(n) / 18.0);
+                }).measurement(),
+                {kOfTemp});
+  EXPECT_FALSE(is_apart_from_time(sut.found, 0, sut.studied.signals, sut.studied.blocks));
+  EXPECT_THAT(sut.carried.model.effects, IsEmpty());
+  ASSERT_THAT(sut.carried.left_out, SizeIs(1));
+  EXPECT_THAT(sut.carried.left_out[0].why, HasSubstr("time alone"));
+}
+
+TEST(CarriedTest, AFastChannelIsApartFromTime) {
+  const Sut sut(Made([](const Made& m, std::size_t n) { return 0.01 * m.v[n]; }).measurement(),
+                {kOfV});
+  EXPECT_TRUE(is_apart_from_time(sut.found, 0, sut.studied.signals, sut.studied.blocks));
+}
+
+// Three recordings; v acts in the first one alone, and without harm to the others.
+TEST(CarriedTest, AnEffectOfOneOfSeveralRecordingsIsDropped) {
+  Made data([](const Made&, std::size_t) { return 0.0; });
+  for (std::size_t n = 0; n < kCount; ++n) {
+    if (n >= kCount / 3) data.v[n] = 0.0;
+    data.y[n] += 0.2 * data.v[n];
+  }
+  Measurement joined = data.measurement();
+  joined.stretches.clear();
+  for (std::size_t r = 0; r < 3; ++r) {
+    joined.stretches.push_back(
+        {r * kCount / 3, (r + 1) * kCount / 3, kLength_s * static_cast<double>(r) / 3.0, r});
+  }
+  const Sut sut(joined, {kOfV});
+  EXPECT_THAT(sut.carried.model.effects, IsEmpty());
+}
+
+TEST(CarriedTest, BurstsAreLeftOutOfTheFitAndOfNothingElse) {
+  const Made data([](const Made& m, std::size_t n) {
+    return 0.5 * m.v[n] + (n % 1000 < 20 ? 20.0 * m.u[n] : 0.0);
+  });
+  Effect bursts{"transients", "isolated bursts", {}, {}, {}};
+  for (int i = 0; i < 6; ++i) {
+    bursts.parameters.push_back({"begin", "s", 10.0 * i - 0.05, -1.0, 99.0, false});
+    bursts.parameters.push_back({"end", "s", 10.0 * i + 0.25, -1.0, 99.0, false});
+  }
+  const Sut sut(data.measurement(), {bursts, kOfV});
+  ASSERT_THAT(sut.carried.model.effects, SizeIs(1));
+  EXPECT_EQ(sut.carried.model.effects[0].kind, "coupled_input");
+  EXPECT_NEAR(sut.carried.model.body.numerators[0][0], 2.0, 0.01) << "as without bursts";
+  EXPECT_GT(std::abs(sut.studied.baseline.model.body.numerators[0][0] - 2.0), 0.05);
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis

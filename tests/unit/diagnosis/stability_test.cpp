@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is proved of a model, and what is refused, Eq. DG-57.
+#include "services/diagnosis/core/model/stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/diagnosis/core/model/seen_range.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kCount = 3000;
+
+Signals signals_of(double scale = 1.0) {
+  std::vector<double> u = made::ride(kCount, 1);
+  for (double& value : u) value *= scale;
+  return {made::measurement_of({{"u", "V", u}, {"y", "N", made::white(kCount, 2)}}), {"u"}, "y"};
+}
+
+// A y = B u + q^-1 (e_0 + e_1 D) phi(y / threshold)
+Model looped(const char* kind, const char* form, double threshold, double e0, double e1) {
+  Model model =
+      made::model_of(made::two_pole_body(),
+                     {{kind, form, {}, {{"threshold", "N", threshold, 1e-3, 1e3}}, {e0, e1}}});
+  note_seen(model, signals_of());
+  return model;
+}
+
+TEST(StabilityTest, ALinearModelIsProved) {
+  EXPECT_EQ(stability_of(made::model_of(made::four_pole_body()), signals_of()), Stability::kProved);
+  Model unstable = made::model_of(made::two_pole_body());
+  unstable.body.denominator = {1.0, -2.1, 1.1};
+  EXPECT_EQ(stability_of(unstable, signals_of()), Stability::kRefused);
+}
+
+TEST(StabilityTest, ASlightSpringIsProved) {
+  const Model sut = looped("nonlinear_stiffness", "levelled of the output", 1.0, 0.005, 0.0);
+  EXPECT_EQ(stability_of(sut, signals_of()), Stability::kProved);
+}
+
+// With memory there is no slope at a place: the criterion does not hold for it.
+TEST(StabilityTest, AnElementWithMemoryIsTested) {
+  const Model sut = looped("hysteresis", "elastic-plastic of the output", 1.0, 0.005, 0.0);
+  EXPECT_EQ(stability_of(sut, signals_of()), Stability::kTested);
+}
+
+// a_2 = 0.893 with e_1 = 1.5 over a threshold of 10: a pole pair of radius sqrt(1.043) while |y| is
+// below it, and a stable body beyond.  It swings by itself, far above the ride's 2 N.
+TEST(StabilityTest, ALoopThatSwingsByItselfIsRefused) {
+  const Model sut = looped("dead_zone", "play of the output", 10.0, 0.0, 1.5);
+  const FreeRun run = free_run(sut, signals_of());
+  ASSERT_TRUE(run.finite);
+  EXPECT_EQ(stability_of(sut, signals_of()), Stability::kRefused);
+}
+
+// Held at its edges its force is bounded, so its output is.  Without a range a cube runs away on
+// what is ten times as large.
+TEST(StabilityTest, WhatWasRefusedOrNotIsBoundedOnAnyInput) {
+  Model sut = looped("nonlinear_stiffness", "cubic of the output", 0.7, 0.02, 0.0);
+  EXPECT_TRUE(free_run(sut, signals_of(100.0)).finite);
+  sut.effects[0].seen.clear();
+  EXPECT_FALSE(free_run(sut, signals_of(100.0)).finite);
+  EXPECT_EQ(stability_of(sut, signals_of()), Stability::kRefused) << "no range, nothing held";
+}
+
+TEST(StabilityTest, NamesAreThoseOfTheFile) {
+  EXPECT_EQ(name_of(Stability::kProved), "proved");
+  EXPECT_EQ(name_of(Stability::kTested), "tested");
+  EXPECT_EQ(name_of(Stability::kRefused), "refused");
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
