@@ -215,8 +215,9 @@ class RecordedLoopRun {
     Judged judged;
     judged.source = std::filesystem::path(record.source).filename().string();
     judged.seconds = static_cast<double>(record.size()) / record.rate_hz;
-    judged.linear = left_by_prediction(verdict.body.baseline.model, record);
-    judged.augmented = left_by_prediction(verdict.body.model, record);
+    judged.linear =
+        left_by_prediction(diagnosis::carried_as_it_is(verdict.body.baseline.model), record);
+    judged.augmented = left_by_prediction(verdict.body.carried, record);
     if (out_.linear_control) {
       judged.motor_linear = by_motor(*out_.linear_control, record);
     }

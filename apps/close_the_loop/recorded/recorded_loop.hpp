@@ -46,11 +46,6 @@ struct RecordedLoop {
   bool kept =
       true;  ///< the augmented model leaves no more on the unseen records than the linear one
   std::vector<std::string> notes;  ///< of the readers
-
-  /// The model that goes on: with the effects if it is kept.
-  [[nodiscard]] const diagnosis::Model& model() const {
-    return kept ? verdict.body.model : verdict.body.baseline.model;
-  }
 };
 
 /// Diagnoses the recordings, and judges the linear and the augmented model on the unseen ones:

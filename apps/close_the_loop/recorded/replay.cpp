@@ -174,9 +174,10 @@ std::optional<std::pair<double, double>> Remaining::cut_interval95() const {
                    1.0 - std::sqrt(std::max(ratio->low, 0.0))};
 }
 
-Remaining left_by_prediction(const diagnosis::Model& model, const diagnosis::Measurement& record) {
+Remaining left_by_prediction(const diagnosis::CarriedModel& model,
+                             const diagnosis::Measurement& record) {
   const recording::Recording predicted = predict::predict(model, record).table;
-  const std::vector<double>& force = channel_of(record, model.output).values;
+  const std::vector<double>& force = channel_of(record, model.model.output).values;
   const std::vector<double> time_s = record.time_s();
   std::vector<Run> runs;
   std::size_t row = 0;

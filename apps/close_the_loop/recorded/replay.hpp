@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "services/cancellation/core/control_model.hpp"
+#include "services/diagnosis/core/carried.hpp"
 #include "services/diagnosis/core/measurement.hpp"
-#include "services/diagnosis/core/model/model.hpp"
 #include "services/statistics/ratio.hpp"
 
 namespace stillhand::close_the_loop {
@@ -39,7 +39,8 @@ struct Remaining {
 
 /// Subtracts the model's free run from the record, as a canceller without limits or delay would.
 /// @throws stillhand::ConfigError as predict()
-Remaining left_by_prediction(const diagnosis::Model& model, const diagnosis::Measurement& record);
+Remaining left_by_prediction(const diagnosis::CarriedModel& model,
+                             const diagnosis::Measurement& record);
 
 /// Runs the record's channels through canceller and motor of the rig at 1 kHz and adds the motor's
 /// force: limits, fades, lags and the delay of a tick act as in a session.
