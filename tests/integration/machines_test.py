@@ -41,9 +41,10 @@ class MachinesTest(LabTestCase):
         shares = [result["cancelled_share"] for result in results]
         print(f"RMS error {errors_mm[0]:.3f} and {errors_mm[1]:.3f} mm, cancelled {shares[0]:.4f} and {shares[1]:.4f}; "
               f"ticks lost {across.summary()['lost_ticks']} and {one.summary()['lost_ticks']}", flush=True)
-        # As from session to session on one machine, the simulated subject receives a tick a little sooner or later.
-        self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.05 * errors_mm[1])
-        self.assertAlmostEqual(shares[0], shares[1], delta=0.02)
+        # As from session to session on one machine, the trials begin a few ticks sooner or later, and with them the
+        # part of the hand's involuntary force that falls into them (secured_session_test.py).
+        self.assertAlmostEqual(errors_mm[0], errors_mm[1], delta=0.1 * errors_mm[1])
+        self.assertAlmostEqual(shares[0], shares[1], delta=0.08)
         self.assert_clocks_are_known(across.summary()["clocks"])
         self.assertGreater((across.out / "screen.avi").stat().st_size, 100_000)
         for machine in self.network.machines.values():
