@@ -59,14 +59,32 @@ std::vector<double> ramp(std::size_t count) {
   return u;
 }
 
-TEST(PredictTest, IsTheDifferenceEquationFromItsSteadyState) {
+// The past of Eq. DG-60 and the signal: the signal's beginning in reverse before it.
+std::vector<double> with_past(const std::vector<double>& u) {
+  std::vector<double> out(u.rbegin(), u.rend() - 1);
+  out.insert(out.end(), u.begin(), u.end());
+  return out;
+}
+
+// 1/(1 + 0.99 q^-1) rings at half the rate and forgets in 100 samples.  A cosine that began with a
+// jump would ring with half its amplitude; after the past it answers 1/1.99 at once.
+TEST(PredictTest, AModeNearHalfTheRateDoesNotRingAtTheStart) {
+  std::vector<double> u;
+  for (int n = 0; n < 2000; ++n) u.push_back(std::cos(0.03 * n));
+  const Prediction sut = predict(made::model_of({{{1.0, 0.0}}, {1.0, 0.99}, 0.0}),
+                                 made::measurement_of({{"u", "V", u}}));
+  for (std::size_t n = 0; n < 100; ++n) EXPECT_NEAR(values_of(sut)[n], u[n] / 1.99, 0.01) << n;
+}
+
+TEST(PredictTest, IsTheDifferenceEquationAfterItsReflectedPast) {
   const auto u = made::white(400, 1);
   const Prediction sut =
       predict(made::model_of(made::two_pole_body()), made::measurement_of({{"u", "V", u}}));
   const Body body = made::two_pole_body();
-  EXPECT_THAT(values_of(sut),
-              Pointwise(DoubleNear(kRounding),
-                        made::settled_answer(body.numerators[0], body.denominator, u)));
+  std::vector<double> expected =
+      made::settled_answer(body.numerators[0], body.denominator, with_past(u));
+  expected.erase(expected.begin(), expected.end() - 400);
+  EXPECT_THAT(values_of(sut), Pointwise(DoubleNear(kRounding), expected));
   EXPECT_EQ(sut.table.columns[0].name, "y_model");
   EXPECT_EQ(sut.table.columns[0].unit, "N");
   EXPECT_DOUBLE_EQ(sut.table.time_s[399], 3.99);
