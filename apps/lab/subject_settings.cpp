@@ -26,12 +26,11 @@ void write_subject_settings(const std::filesystem::path& config, const std::file
   auto rig = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
   auto person = settings::load<human_operator::SubjectConfig>(config / "human_operator.yaml",
                                                               "human_operator");
-  population::assign(population::draw_subject({}, seed, subject - 1), rig.stick, rig.body,
-                     person.crossover);
-  human_operator::ArmFeel& arm = person.pointer.arm;
-  arm.effective_mass_kg = person.crossover.arm.effective_mass_kg;
-  arm.effective_damping_n_s_m = person.crossover.arm.effective_damping_n_s_m;
-  arm.effective_stiffness_n_m = person.crossover.arm.effective_stiffness_n_m;
+  const population::Subject drawn =
+      population::draw_subject({}, seed, subject - 1, {rig.body, person.crossover}, rig.stick);
+  rig.body = drawn.body;
+  person.crossover = drawn.who;
+  person.pointer.arm = population::learnt_feel(rig.body, rig.stick, person.pointer.arm);
   std::filesystem::create_directories(to);
   for (const auto& entry : std::filesystem::directory_iterator(config)) {
     if (entry.path().extension() != ".yaml") continue;

@@ -37,8 +37,7 @@ double damping(double ratio, double stiffness_n_m, double mass_kg) {
   return 2.0 * ratio * std::sqrt(stiffness_n_m * mass_kg);
 }
 
-rig::BodyConfig body(const Population& p, const Draw& draw) {
-  rig::BodyConfig out;
+rig::BodyConfig body(const Population& p, const Draw& draw, rig::BodyConfig out) {
   const double mass_kg = draw(p.body_mass_kg, p.body_mass_cv);
   out.trunk_mass_kg = kTrunkShare * mass_kg;
   out.arm_mass_kg = kArmShare * mass_kg;
@@ -60,8 +59,8 @@ rig::BodyConfig body(const Population& p, const Draw& draw) {
   return out;
 }
 
-rig::NeuromuscularConfig neuromuscular(const Population& p, const Draw& draw) {
-  rig::NeuromuscularConfig out;
+rig::NeuromuscularConfig neuromuscular(const Population& p, const Draw& draw,
+                                       rig::NeuromuscularConfig out) {
   out.stiffening_by_vibration_s2_m =
       draw(p.stiffening_by_vibration_s2_m, p.stiffening_by_vibration_cv);
   out.stiffening_by_motor_n = draw(p.stiffening_by_motor_n, p.stiffening_by_motor_cv);
@@ -76,9 +75,8 @@ rig::NeuromuscularConfig neuromuscular(const Population& p, const Draw& draw) {
   return out;
 }
 
-Subject subject(const Population& p, const Draw& draw) {
-  Subject out;
-  out.body = body(p, draw);
+Subject subject(const Population& p, const Draw& draw, Subject out, const rig::StickConfig& stick) {
+  out.body = body(p, draw, out.body);
   out.who.crossover_hz = draw(p.crossover_hz, p.crossover_cv);
   out.who.delay_s = draw(p.delay_s, p.delay_cv);
   out.who.muscle_rad_s = draw(p.muscle_rad_s, p.muscle_cv);
@@ -88,17 +86,17 @@ Subject subject(const Population& p, const Draw& draw) {
   out.who.remnant_ratio = draw(p.remnant_ratio, p.remnant_cv);
   out.who.regression_error_m = draw(p.regression_error_m, p.regression_cv);
   // Later draws come last: a subject's body and tracking do not depend on them.
-  out.body.neuromuscular = neuromuscular(p, draw);
+  out.body.neuromuscular = neuromuscular(p, draw, out.body.neuromuscular);
   out.who.remnant_by_vibration_s2_m = draw(p.remnant_by_vibration_s2_m, p.remnant_by_vibration_cv);
   out.who.delay_by_vibration_s3_m = draw(p.delay_by_vibration_s3_m, p.delay_by_vibration_cv);
-  out.who.arm = learnt_feel(out.body, {});
+  out.who.arm = learnt_feel(out.body, stick, out.who.arm);
   return out;
 }
 
 }  // namespace
 
-human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick) {
-  human_operator::ArmFeel feel;
+human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick,
+                                    human_operator::ArmFeel feel) {
   const auto impedance = [&](double hz) {
     return 1.0 / rig::hand_admittance(body, stick, false, hz);
   };
@@ -121,47 +119,23 @@ human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::Stic
   return feel;
 }
 
-void assign(const Subject& subject, const rig::StickConfig& stick, rig::BodyConfig& body,
-            human_operator::CrossoverConfig& who) {
-  rig::BodyConfig drawn = subject.body;
-  drawn.arm_rest_stiffness_n_m = body.arm_rest_stiffness_n_m;
-  drawn.arm_rest_damping_n_s_m = body.arm_rest_damping_n_s_m;
-  rig::NeuromuscularConfig& nerves = drawn.neuromuscular;
-  nerves.wander_time_s = body.neuromuscular.wander_time_s;
-  nerves.reflex_delay_s = body.neuromuscular.reflex_delay_s;
-  nerves.reflex_muscle_hz = body.neuromuscular.reflex_muscle_hz;
-  nerves.reflex_muscle_damping = body.neuromuscular.reflex_muscle_damping;
-  nerves.reflex_max_force_n = body.neuromuscular.reflex_max_force_n;
-  nerves.motor_resistance_delay_s = body.neuromuscular.motor_resistance_delay_s;
-  body = drawn;
-  who.crossover_hz = subject.who.crossover_hz;
-  who.delay_s = subject.who.delay_s;
-  who.muscle_rad_s = subject.who.muscle_rad_s;
-  who.remnant_ratio = subject.who.remnant_ratio;
-  who.regression_error_m = subject.who.regression_error_m;
-  who.remnant_by_vibration_s2_m = subject.who.remnant_by_vibration_s2_m;
-  who.delay_by_vibration_s3_m = subject.who.delay_by_vibration_s3_m;
-  const human_operator::ArmFeel feel = learnt_feel(body, stick);
-  who.arm.effective_mass_kg = feel.effective_mass_kg;
-  who.arm.effective_damping_n_s_m = feel.effective_damping_n_s_m;
-  who.arm.effective_stiffness_n_m = feel.effective_stiffness_n_m;
-}
-
 Subject mean_subject(const Population& population) {
   validate(population, "population");
-  return subject(population, [](double mean, double) { return mean; });
+  return subject(population, [](double mean, double) { return mean; }, {}, {});
 }
 
-Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index) {
+Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index,
+                     const Subject& base, const rig::StickConfig& stick) {
   validate(population, "population");
   signal::Gaussian deviate(seed, kSubjectStream + static_cast<std::uint64_t>(index));
-  return subject(population, [&](double mean, double cv) {
+  const Draw draw = [&](double mean, double cv) {
     double z = deviate();
     while (std::abs(z) > kFarthestDeviate) z = deviate();
     // Eq. SU-1: mean and standard deviation of the lognormal, before the cut.
     const double log_variance = std::log1p(cv * cv);
     return mean * std::exp(std::sqrt(log_variance) * z - 0.5 * log_variance);
-  });
+  };
+  return subject(population, draw, base, stick);
 }
 
 }  // namespace stillhand::population

@@ -175,18 +175,18 @@ struct Subject {
 /// Feel of the stick for a subject who has learnt it, Eq. SU-2: M, B, K of the driving-point
 /// impedance of stick and tracking arm at the hand (README of rig, RG-7), by least squares over 0.1
 /// to 1 Hz.
-human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick);
-
-/// Gives body and tracker the quantities that are drawn, and the learnt feel of that body on the
-/// stick; what no population draws (an arm rest, delays of nerves, bounds of the force) stays.
-void assign(const Subject& subject, const rig::StickConfig& stick, rig::BodyConfig& body,
-            human_operator::CrossoverConfig& who);
+/// @param feel  gives the bounds of the force and the scale of the cursor
+human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick,
+                                    human_operator::ArmFeel feel = {});
 
 /// The subject in which every quantity has its mean.
 Subject mean_subject(const Population& population);
 
 /// Subject `index` of the study with this seed, Eq. SU-1.  It does not depend on other draws.
+/// @param base   gives what no population draws: an arm rest, delays of nerves, bounds of the force
+/// @param stick  that the subject has learnt
 /// @throws stillhand::ConfigError when the population's fields are out of range.
-Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index);
+Subject draw_subject(const Population& population, std::uint64_t seed, std::int64_t index,
+                     const Subject& base = {}, const rig::StickConfig& stick = {});
 
 }  // namespace stillhand::population

@@ -21,7 +21,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
-from waiting import wait_for  # noqa: E402
+from waiting import hold, wait_for  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
@@ -67,7 +67,7 @@ def record_and_kill(file, domain, when_s, in_start_up):
         if not in_start_up:
             empty = size_of(file)
             wait("chunk", lambda: size_of(file) > max(empty, 4096))
-        time.sleep(when_s)
+        hold(when_s)
         return time.monotonic()
     finally:
         recorder.send_signal(signal.SIGKILL)

@@ -17,13 +17,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integration"))
 
 import lab_process  # noqa: E402
 import network  # noqa: E402
-from lab_process import INSPECT, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabProcess, next_domain, quick_session  # noqa: E402
+from lab_process import INSPECT, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabProcess, hold, next_domain, quick_session  # noqa: E402
 
 TRIAL_S = 15
 FAULT_AT_S = 3
@@ -45,7 +44,7 @@ def nothing():
 def unplugged(machine, seconds):
     machine.unplug()
     try:
-        time.sleep(seconds)
+        hold(seconds)
     finally:
         machine.plug_back()
     yield

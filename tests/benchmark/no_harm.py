@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """No harm: a model with the effects that were found predicts an unseen recording no worse than the linear one.
 
-Pairs of recordings from build/tests/planted_recordings: the same body and effect on two rides. `diagnose` sees the first one,
-`predict` runs its model and the linear baseline on the second one. The table has a row for each kind; the exit status is 1
-where a model with effects is more than 5 % worse than the linear one in any case.
+Pairs of recordings from build/tests/planted_recordings: the same body and effect on two rides. `diagnose` sees the
+first one, `predict` runs its model and the linear baseline on the second one. The table has a row for each kind; the
+exit status is 1 where a model with effects is more than 5 % worse than the linear one in any case.
 
     STILLHAND_BUILD=build python3 tests/benchmark/no_harm.py            # 152 pairs, about 20 minutes
     STILLHAND_BUILD=build python3 tests/benchmark/no_harm.py --short    # five pairs, about half a minute

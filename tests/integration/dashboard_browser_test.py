@@ -16,7 +16,7 @@ import time
 import browser
 import lab_process
 from dashboard_test import PAGE, TOKEN, DashboardCase, streams, wait_for
-from lab_process import BUILD, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, next_domain, quick_session
+from lab_process import BUILD, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, hold, next_domain, quick_session
 
 AXE = BUILD / "apps" / "dashboard" / "web" / "node_modules" / "axe-core" / "axe.min.js"
 SHOWN_WITHIN_MS = 1000  # a person sees a miss within 1 s
@@ -141,7 +141,7 @@ class SessionTest(BrowserCase):
         pid = lab.pid_of("sensing")
         since_ms = now_ms()
         os.kill(pid, signal.SIGSTOP)
-        time.sleep(DELAY_MS / 1000)  # the delay itself
+        hold(DELAY_MS / 1000)
         os.kill(pid, signal.SIGCONT)
         took_ms = self.shows(lab, page, since_ms, named, "the delay")
         print(f"{DELAY_MS} ms of delay in sensing shown {took_ms:.0f} ms after its beginning")

@@ -12,7 +12,7 @@ import threading
 import time
 
 from dashboard_test import LIMIT_S, TOKEN, DashboardCase, main, streams, wait_for
-from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, campaign, next_domain, quick_session
+from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, campaign, next_domain, quick_session, repeat
 
 CONNECTIONS = 10000
 MOST_CONNECTIONS = 64
@@ -153,15 +153,12 @@ class HostileClientsTest(ClientsCase):
         slow = [self.connected(dashboard, HEAD) for _ in range(MOST_CONNECTIONS // 2)]
 
         def trickle():
-            end = time.monotonic() + 2 * REQUEST_LIMIT_S
-            while time.monotonic() < end:
-                for client in slow:
-                    try:
-                        client.send(b"X")
-                    except OSError:
-                        pass
-                time.sleep(0.5)
-        threading.Thread(target=trickle, daemon=True).start()
+            for client in slow:
+                try:
+                    client.send(b"X")
+                except OSError:
+                    pass
+        threading.Thread(target=repeat, args=(trickle, 2 * REQUEST_LIMIT_S, 0.5), daemon=True).start()
         return slow
 
     def traverse(self, dashboard):

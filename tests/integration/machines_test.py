@@ -7,11 +7,10 @@ jumps; services that run already.
 """
 import os
 import subprocess
-import time
 
 import lab_process
 import network
-from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick_session
+from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, hold, next_domain, quick_session
 
 SESSION_LIMIT_S = 150
 FORCE_LIMIT_TICKS = 50
@@ -141,7 +140,7 @@ class MachinesTest(LabTestCase):
         screen = self.network["screen-pc"]
         screen.unplug()
         self.addCleanup(screen.plug_back)
-        time.sleep(2.0)  # for so long the cable is out
+        hold(2.0)
         screen.plug_back()
         self.assertEqual(lab.end_status(END_LIMIT_S), 1)
         self.assertIn("a process is missing", str(lab.summary()["trials"][-1]) + str(lab.errors()))

@@ -9,7 +9,7 @@ import os
 import time
 
 import lab_process
-from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, loose_settings
+from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, loose_settings, repeat
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
@@ -89,6 +89,12 @@ class MouseTestCase(LabTestCase):
 
 
 class MouseTest(MouseTestCase):
+    def take_picture(self, pictures):
+        before_ns = time.monotonic_ns()
+        seen = picture(self.display)
+        if seen:
+            pictures.append((before_ns, *seen, time.monotonic_ns()))
+
     def track(self):
         """A session with the pointer moved through the holds; pictures are (ns before, target, cursor, ns after)."""
         lab = self.start()
@@ -98,13 +104,8 @@ class MouseTest(MouseTestCase):
         pictures = []
         for column in HOLDS:
             self.display.xdotool("mousemove", column, 400)
-            until = time.monotonic() + HOLD_S
-            while time.monotonic() < until:  # the person holds the place for this time; the test reads the screen
-                before_ns = time.monotonic_ns()
-                seen = picture(self.display)
-                if seen:
-                    pictures.append((before_ns, *seen, time.monotonic_ns()))
-                time.sleep(0.1)
+            # The person holds the place for this time; the test reads the screen.
+            repeat(lambda: self.take_picture(pictures), HOLD_S, 0.1)
         self.assertEqual(lab.end_status(END_LIMIT_S), 0, lab.errors())
         self.assertEqual(lab.errors(), [])
         self.assert_nothing_left(lab)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Waiting for a condition with a limit: the one place where a test in Python sleeps to poll."""
+"""Waiting for a condition with a limit, and keeping a state for a time: the one place where a test in Python sleeps."""
 import time
 
 POLL_S = 0.05
@@ -20,3 +20,16 @@ def wait_for(what, condition, limit_s, poll_s=POLL_S, failure=AssertionError, en
             raise failure(why)
         time.sleep(poll_s)
     return value
+
+
+def hold(seconds):
+    """Keeps what the test has done (a cable out, a process stopped) for a time that is itself the test's stimulus."""
+    time.sleep(seconds)
+
+
+def repeat(step, seconds, every_s):
+    """Calls `step` again and again for a time."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        step()
+        time.sleep(every_s)

@@ -37,6 +37,33 @@ TEST(SubjectSettingsTest, RigAndOperatorAreTheSubjectThatTheStudyDraws) {
   std::filesystem::remove_all(to);
 }
 
+TEST(SubjectSettingsTest, WhatNoPopulationDrawsStaysAndTheFeelIsThatOfTheStick) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "own_settings";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, const std::string& text) {
+    ASSERT_TRUE(recording::write_file_atomically((folder / name).string(), text).ok());
+  };
+  write("rig.yaml",
+        "body:\n  arm_rest_stiffness_n_m: 50\n  neuromuscular:\n    wander_time_s: 7\n"
+        "stick:\n  centring_stiffness_n_m: 500\n");
+  write("human_operator.yaml",
+        "crossover:\n  arm:\n    max_force_n: 11\npointer:\n  arm:\n    max_force_n: 12\n");
+  write_subject_settings(folder, folder / "own", 7, 3);
+  const auto rig = settings::load<rig::RigConfig>(folder / "own" / "rig.yaml", "rig");
+  const auto person = settings::load<human_operator::SubjectConfig>(
+      folder / "own" / "human_operator.yaml", "human_operator");
+  EXPECT_EQ(rig.body.arm_rest_stiffness_n_m, 50.0);
+  EXPECT_EQ(rig.body.neuromuscular.wander_time_s, 7.0);
+  EXPECT_EQ(person.crossover.arm.max_force_n, 11.0);
+  EXPECT_EQ(person.pointer.arm.max_force_n, 12.0);
+  const double plain_n_m =
+      population::learnt_feel(rig.body, rig::StickConfig{}).effective_stiffness_n_m;
+  EXPECT_NEAR(person.crossover.arm.effective_stiffness_n_m, plain_n_m + 500.0, 1e-6);
+  EXPECT_EQ(person.pointer.arm.effective_stiffness_n_m,
+            person.crossover.arm.effective_stiffness_n_m);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(SubjectSettingsTest, ASettingsFolderWithoutTheRigIsRefused) {
   const std::filesystem::path to = std::filesystem::path(testing::TempDir()) / "nothing_here";
   EXPECT_THROW(write_subject_settings(to, to / "config", 1, 1), ConfigError);
