@@ -111,9 +111,7 @@ void Shell::note_interlock(const Trial& trial) {
   if (interlock_.latched(trial) == reported_latch_) return;
   reported_latch_ = !reported_latch_;
   if (!reported_latch_) return;
-  service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().replay_present()
-                                                                  ? "a replay is on the bus"
-                                                                  : "a process is missing");
+  service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, service_.bus().why_not_alive());
 }
 
 void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {

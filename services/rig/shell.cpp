@@ -118,9 +118,8 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
       interlock_report_.step(interlock_.latched(trial), interlock_.stopped(), tick, motor_force_n);
   if (notice.opened) {
     service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
-                        interlock_.stopped()              ? topics::kEmergencyStop.data()
-                        : service_.bus().replay_present() ? "a replay is on the bus"
-                                                          : "a process is missing");
+                        interlock_.stopped() ? topics::kEmergencyStop.data()
+                                             : service_.bus().why_not_alive());
   }
   if (notice.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",

@@ -207,6 +207,7 @@ std::vector<std::string> Bus::missing_peers() const {
 
 std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.duplicates(); }
 bool Bus::peers_alive() const noexcept { return impl_->peers.alive(); }
+const char* Bus::why_not_alive() const noexcept { return impl_->peers.why_not_alive(); }
 bool Bus::replay_present() const noexcept { return impl_->peers.replay_present(); }
 std::vector<std::string> Bus::lost_peers() const { return impl_->peers.lost(); }
 void Bus::set_clock_offset(const std::string& service, std::int64_t offset_ns) {

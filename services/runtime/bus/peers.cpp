@@ -20,7 +20,11 @@ Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWrit
       prefix_(participant_name(rig, "")),
       answers_replay_(answers_replay),
       writers_(writers),
-      secured_(secured) {}
+      secured_(secured) {
+  for (const std::string_view service : topics::kServices) {
+    missing_lines_.push_back("a process is missing: " + std::string(service));
+  }
+}
 
 std::string Peers::participant_name(std::uint32_t rig, const std::string& service) {
   return "stillhand/" + std::to_string(rig) + "/" + service;
@@ -111,13 +115,23 @@ bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
 }
 
 void Peers::refresh() {
-  const bool all = std::all_of(
-      topics::kServices.begin(), topics::kServices.end(), [this](std::string_view service) {
-        return service == self_ ||
-               std::any_of(alive_writers_.begin(), alive_writers_.end(),
-                           [&](const auto& writer) { return writer.second == service; });
-      });
+  const auto missing = std::ranges::find_if(topics::kServices, [this](std::string_view service) {
+    return service != self_ && std::ranges::none_of(alive_writers_, [&](const auto& writer) {
+             return writer.second == service;
+           });
+  });
+  const bool all = missing == topics::kServices.end();
+  if (!all) {
+    newest_missing_.store(static_cast<std::size_t>(missing - topics::kServices.begin()),
+                          std::memory_order_release);
+  }
   all_alive_.store(all, std::memory_order_release);
+}
+
+const char* Peers::why_not_alive() const noexcept {
+  if (answers_replay_) return "no replay is on the bus";
+  if (replay_present()) return "a replay is on the bus";
+  return missing_lines_[newest_missing_.load(std::memory_order_acquire)].c_str();
 }
 
 std::vector<std::string> Peers::lost() const {

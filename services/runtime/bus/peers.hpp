@@ -4,6 +4,7 @@
 #include <fastdds/rtps/common/InstanceHandle.h>
 
 #include <atomic>
+#include <cstddef>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
@@ -53,6 +54,9 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
     if (answers_replay_) return replay_present();
     return all_alive_.load(std::memory_order_acquire) && !replay_present();
   }
+  /// Why alive() is false, in one line: a replay, or the process without a life sign that was
+  /// noticed last.  The text lives as long as this object.  Wait-free.
+  [[nodiscard]] const char* why_not_alive() const noexcept;
   /// A marked participant is on the bus now.  Wait-free.
   [[nodiscard]] bool replay_present() const noexcept {
     return replay_present_.load(std::memory_order_acquire);
@@ -85,7 +89,9 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> marked_now_;
   // Never forgotten: a sample may outlive its writer in a reader's history.
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> ever_marked_;
+  std::vector<std::string> missing_lines_;  // one for each of topics::kServices
   std::atomic<bool> all_alive_{false};
+  std::atomic<std::size_t> newest_missing_{0};  // place in missing_lines_
   std::atomic<bool> replay_present_{false};
   std::atomic<bool> replay_seen_{false};
 };

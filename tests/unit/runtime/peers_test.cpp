@@ -106,6 +106,17 @@ TEST_F(PeersTest, ASecondLifeSignOfAServiceKeepsItAlive) {
   EXPECT_THAT(sut_.lost(), IsEmpty());
 }
 
+TEST_F(PeersTest, TheProcessWithoutALifeSignIsNamed) {
+  all_live(sut_);
+  sut_.set_alive(handle_of(number_of("motion")), false);
+  EXPECT_STREQ(sut_.why_not_alive(), "a process is missing: motion");
+  sut_.set_alive(handle_of(number_of("motion")), true);
+  sut_.set_alive(handle_of(number_of("display")), false);
+  EXPECT_STREQ(sut_.why_not_alive(), "a process is missing: display");
+  join(sut_, kReplay, "stillhand-replay/1", true);
+  EXPECT_STREQ(sut_.why_not_alive(), "a replay is on the bus");
+}
+
 TEST_F(PeersTest, AServiceThatIsThereTwiceIsNamedAlsoIfItIsOneself) {
   all_live(sut_);
   EXPECT_THAT(sut_.duplicates(), IsEmpty());
