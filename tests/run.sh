@@ -19,11 +19,12 @@ deploy/setup.sh
 .ci/links
 deploy/build.sh tests
 
-# Two tests at a time; those that judge timing run alone (tests/CMakeLists.txt).
+# Three tests at a time, of which at most one is a session; those that judge timing run alone
+# (tests/CMakeLists.txt).
 tests() {
   local tree=$1
   shift
-  ctest --test-dir "$tree" --output-on-failure --timeout 900 -j 2 "$@"
+  ctest --test-dir "$tree" --output-on-failure --timeout 900 -j 3 "$@"
 }
 
 if [ -z "$all" ]; then

@@ -118,6 +118,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                             {"high", diagnosis.noise_floor.high},
                             {"method", diagnosis.noise_floor.method},
                             {"estimates", estimates}}},
+                          {"detection_limit", diagnosis.detection_limit},
                           {"verdict", diagnosis.verdict()},
                           {"effects", effects},
                           {"final",

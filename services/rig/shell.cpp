@@ -117,9 +117,9 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
   const auto notice =
       interlock_report_.step(interlock_.latched(trial), interlock_.stopped(), tick, motor_force_n);
   if (notice.opened) {
-    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
-                        interlock_.stopped() ? topics::kEmergencyStop.data()
-                                             : service_.bus().why_not_alive());
+    service_.note_event(
+        stillhand_msgs::EVENT_INTERLOCK_OPENED,
+        interlock_.stopped() ? topics::kEmergencyStop.data() : service_.bus().why_not_alive());
   }
   if (notice.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",

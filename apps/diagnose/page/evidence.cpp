@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "services/diagnosis/core/fitting/held_out.hpp"
+#include "services/diagnosis/core/detection/detection_limit.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 
@@ -18,32 +18,12 @@ using diagnosis::Effect;
 using diagnosis::Model;
 using diagnosis::Stage;
 
-constexpr double kLongestCorrelation_s = 10.0;
-constexpr double kUncorrelated = 0.05;  // a correlation below it ends the sum
-
 std::vector<double> plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 
 ModelRun run_of(const Model& model, const diagnosis::Signals& signals) {
   ModelRun result;
   result.residual = plain(diagnosis::residual_of(model, signals, result.run));
   return result;
-}
-
-// 1 + 2 sum rho_k up to the first that is small: the number of samples that hold as much
-// information as one independent sample.
-double correlation_of(const std::vector<double>& residual, double rate_hz) {
-  const Eigen::Map<const Eigen::VectorXd> r(residual.data(),
-                                            static_cast<Eigen::Index>(residual.size()));
-  const double power = std::max(r.squaredNorm(), 1e-300);
-  const auto longest =
-      std::min(r.size() / 4, static_cast<Eigen::Index>(kLongestCorrelation_s * rate_hz));
-  double sum = 1.0;
-  for (Eigen::Index lag = 1; lag <= longest; ++lag) {
-    const double rho = r.head(r.size() - lag).dot(r.tail(r.size() - lag)) / power;
-    if (rho < kUncorrelated) break;
-    sum += 2.0 * rho;
-  }
-  return sum;
 }
 
 std::vector<double> errors_of(const diagnosis::Linearisation& line, double correlation) {
@@ -80,11 +60,8 @@ Evidence::Evidence(const Diagnosis& verdict, const diagnosis::Measurement& measu
       before(run_of(found.baseline.model, signals)) {
   diagnosis::Linearisation line = diagnosis::linearised(found.model, signals);
   after.residual = plain(line.residual);
-  correlation_samples = correlation_of(after.residual, signals.rate_hz());
+  correlation_samples = diagnosis::correlation_samples(line.residual, signals.rate_hz());
   standard_errors = errors_of(line, correlation_samples);
-  const diagnosis::Blocks blocks = diagnosis::make_blocks(signals);
-  after_held_out = diagnosis::held_out_linearised(
-      diagnosis::grams_of(line.jacobian, line.residual, line.run.weight, blocks), blocks);
   after.run = std::move(line.run);
 }
 

@@ -26,9 +26,8 @@ struct Evidence {
   const diagnosis::Diagnosis& found;
   diagnosis::Measurement working;
   diagnosis::Signals signals;
-  ModelRun before;                    ///< of the baseline
-  ModelRun after;                     ///< of the baseline with the effects
-  diagnosis::HeldOut after_held_out;  ///< of the latter, from one linearisation
+  ModelRun before;  ///< of the baseline
+  ModelRun after;   ///< of the baseline with the effects
   /// Of the latter's numbers, in the order of packed(); NaN where the record does not determine
   /// them.  From the linearised fit, with samples counted once a correlation length.
   std::vector<double> standard_errors;

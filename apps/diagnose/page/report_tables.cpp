@@ -173,12 +173,14 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
     const diagnosis::Addition& addition = found.search.additions[s];
     std::string caption =
         "Step " + std::to_string(s + 1) + ": " + candidates_in_words(addition.tried) +
-        ". RMSE: on held-out blocks. Numbers: the fitted ones of the whole model.";
+        ". RMSE: on held-out blocks" +
+        (found.search.whitened ? ", behind the filter that makes the noise white" : "") +
+        ". Numbers: the fitted ones of the whole model.";
     if (!addition.ties.empty()) {
       caption += " As good as the added one: " + spaced(listed(addition.ties)) + ".";
     }
     tables.push_back(tried_table(
-        found, {addition.before, addition.tried, addition.chosen, addition.ties}, caption));
+        found, {addition.current, addition.tried, addition.chosen, addition.ties}, caption));
   }
   const auto& last = found.search.last_tried;
   if (!last.empty()) {
@@ -192,7 +194,8 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         "than " +
         percent(found.options.search.large_fall, 0) + "; at most " +
         std::to_string(found.options.search.most_effects) + " effects are added.";
-    tables.push_back(tried_table(found, {evidence.after_held_out, last, last.size(), {}}, caption));
+    tables.push_back(
+        tried_table(found, {found.search.last_current, last, last.size(), {}}, caption));
   }
   return tables;
 }

@@ -32,11 +32,6 @@ std::string model_name(const Diagnosis& diagnosis) {
   return "a linear model of order " + std::to_string(order);
 }
 
-std::string capital(std::string text) {
-  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z') text.front() -= 'a' - 'A';
-  return text;
-}
-
 // "a", "a and b", "a, b and c".
 std::string enumerated(const std::vector<std::string>& names) {
   if (names.size() < 2) return fmt::format("{}", fmt::join(names, ""));
@@ -45,8 +40,8 @@ std::string enumerated(const std::vector<std::string>& names) {
 
 std::string error_in_words(const Diagnosis& diagnosis) {
   const std::string unit = diagnosis.output_unit;
-  return "the RMS error on held-out data falls from " + shown(diagnosis.baseline_error.rmse, unit) +
-         " to " + shown(diagnosis.final_error.rmse, unit) +
+  return "the RMS error on held-out data is " + shown(diagnosis.baseline_error.rmse, unit) +
+         " instead of " + shown(diagnosis.final_error.rmse, unit) +
          " (95 %: " + interval(diagnosis.final_error.low, diagnosis.final_error.high) +
          "); the noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ")";
@@ -120,36 +115,41 @@ std::string percent(double share, int decimals) {
 
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   const std::string model = model_name(diagnosis);
-  std::string text;
   if (!diagnosis.effects.empty()) {
     std::vector<std::string> names;
+    double largest_p = 0.0;
     bool tied = false;
     for (const FoundEffect& effect : diagnosis.effects) {
       names.push_back(effect_title(effect));
+      largest_p = std::max(largest_p, effect.p);
       tied = tied || !effect.ties.empty();
     }
-    text = "Effects found. " + capital(model) + " lacks: " + enumerated(names) + ". With " +
-           (names.size() == 1 ? "it " : "them ") + error_in_words(diagnosis) + ".";
-    if (tied) text += " Other kinds explain some of it equally well: see the ties.";
-    text += diagnosis.unexplained
-                ? " A part of the residual is left that no kind of effect explains."
-                : " The rest depends on none of the quantities that were tested.";
-    return text;
+    return "Effects found: " + model + " lacks " + enumerated(names) +
+           (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") +
+           ". How sure: by chance an improvement like " +
+           (names.size() == 1 ? "it" : "the least of them") + " has p = " + p_value(largest_p) +
+           (tied ? ", but other kinds explain some of it equally well (see the ties)" : "") +
+           ". What it costs: without " + (names.size() == 1 ? "it " : "them ") +
+           error_in_words(diagnosis) + ".";
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +
                            " RMS on held-out data (95 %: " +
                            interval(diagnosis.baseline_error.low, diagnosis.baseline_error.high) +
                            ")";
   if (diagnosis.unexplained) {
-    return "Unexplained residual. " + capital(model) + " leaves " + left +
-           ". This is more than noise (noise floor " +
-           shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) +
-           "), and no kind of effect explains it.";
+    return "Unexplained residual: " + model +
+           " leaves more than noise, and no kind of effect explains it. How sure: the residual "
+           "depends on something that was asked about, and chance does not make that. What it "
+           "costs: the model leaves " +
+           left + ", where the noise floor is " +
+           shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) + ".";
   }
-  return "Nothing missing. " + capital(model) + " leaves " + left +
-         ". This residual depends on none of the quantities that were tested, and no effect "
-         "reduces "
-         "it by more than chance does.";
+  return "Nothing missing: no effect reduces the error of " + model +
+         " by more than chance does. How sure: an effect that adds " +
+         shown(diagnosis.detection_limit, diagnosis.output_unit) +
+         " RMS that a linear model cannot imitate is found as often as not; a smaller one may be "
+         "there. What is left: " +
+         left + ", which depends on none of the quantities that were tested.";
 }
 
 }  // namespace stillhand::diagnose

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/detection/detection_limit.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 
 namespace stillhand::diagnosis {
@@ -136,7 +137,8 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
     found.channel = measured_channel(effect, signals, diagnosis.options.inputs);
     found.before = held_out_error(errors[e], variance);
     found.after = held_out_error(errors[e + 1], variance);
-    found.p = compared(errors[e], errors[e + 1]).p;
+    found.p = diagnosis.search.removed == 0 ? diagnosis.search.additions[e].comparison.p
+                                            : compared(errors[e], errors[e + 1]).p;
     found.evidence = effect_kind(effect.kind).evidence(effect);
     found.ties = diagnosis.search.additions[e].ties;
     diagnosis.effects.push_back(std::move(found));
@@ -202,6 +204,17 @@ void note_left_out(Diagnosis& diagnosis) {
   }
 }
 
+double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
+  FreeRun run;
+  const Eigen::VectorXd residual = residual_of(diagnosis.model, signals, run);
+  return detection_limit(
+      {.rmse = diagnosis.final_error.rmse,
+       .independent = sum_of(run.weight) / correlation_samples(residual, signals.rate_hz()),
+       .blocks = blocks.count,
+       .candidates = diagnosis.search.last_tried.size()},
+      diagnosis.options.search);
+}
+
 }  // namespace
 
 std::string Diagnosis::verdict() const {
@@ -239,6 +252,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
                             });
   step("judging");
   diagnosis.model = diagnosis.search.model;
+  if (diagnosis.search.whitened) fit(diagnosis.model, signals, blocks, {});
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
   note_refuted(diagnosis);
@@ -250,6 +264,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {
     diagnosis.unexplained = unexplained_of(diagnosis.after, screening);
   }
+  diagnosis.detection_limit = limit_of(diagnosis, signals, blocks);
   diagnosis.noise_floor = noise_floor_of(diagnosis.after, screening,
                                          {diagnosis.final_error.low, diagnosis.final_error.high,
                                           diagnosis.baseline.impulse_response_rmse});

@@ -66,11 +66,12 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   HeldOutError final_error;
   std::optional<Unexplained> unexplained;
-  Model model;             ///< baseline and effects, fitted together to all samples
-  CarriedModel carried;    ///< what predicts other recordings
-  DetectionResult before;  ///< of the baseline's residual
-  DetectionResult after;   ///< of the final model's
-  SearchResult search;     ///< the candidates of every step
+  double detection_limit = 0.0;  ///< [unit of the output] of a further effect, Eq. DG-62
+  Model model;                   ///< baseline and effects, fitted together to all samples
+  CarriedModel carried;          ///< what predicts other recordings
+  DetectionResult before;        ///< of the baseline's residual
+  DetectionResult after;         ///< of the final model's
+  SearchResult search;           ///< the candidates of every step
 
   [[nodiscard]] std::string verdict() const;
 };

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "services/diagnosis/core/fitting/noise_model.hpp"
 #include "services/diagnosis/core/recordings_out.hpp"
 
 namespace stillhand::diagnosis {
@@ -86,8 +87,7 @@ class Forward {
         options_(options),
         for_each_(for_each),
         progress_(progress),
-        impulse_response_(fit_impulse_response(signals)),
-        recordings_(signals, blocks) {}
+        impulse_response_(fit_impulse_response(signals)) {}
 
   [[nodiscard]] SearchResult from_baseline() const {
     SearchResult result;
@@ -107,37 +107,102 @@ class Forward {
     if (!trial.held_out.finite) return result;
     result.model = trial.model;
     const HeldOut after = trial.held_out;
-    result.additions.push_back({before, after, compared(before, after), {std::move(trial)}, 0, {}});
+    result.additions.push_back(
+        {before, after, before, compared(before, after), {std::move(trial)}, 0, {}});
     extend(result);
     return result;
   }
 
  private:
+  // Judged behind a filter that makes this model's residual white, Eq. DG-61.
+  [[nodiscard]] Signals judged_by(const Model& model) const {
+    FreeRun run;
+    const Eigen::VectorXd residual = residual_of(model, signals_, run);
+    return signals_.whitened(run.finite ? whitening_taps(residual, signals_)
+                                        : std::vector<double>());
+  }
+
   void extend(SearchResult& result) const {
-    HeldOut current = held_out(result.model, signals_, blocks_);
-    while (!is_rounding(current.rmse(), signals_) &&
-           progress_("effect " + std::to_string(result.additions.size() + 1))) {
-      if (!extend_by_one(result, current)) return;
-      if (retest(result, signals_, blocks_, options_)) ++result.removed;
+    while (progress_("effect " + std::to_string(result.additions.size() + 1))) {
+      Signals judged = signals_;
+      if (!extended(result, judged)) return;
+      if (retest(result, judged, blocks_, options_)) ++result.removed;
       if (result.removed > options_.most_effects) return;  // it goes in circles
-      current = held_out(result.model, signals_, blocks_);
     }
   }
 
-  [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current) const {
-    std::vector<Trial> tried = trials(result.model, current.rmse(), signals_, blocks_,
-                                      impulse_response_, baseline_.order, options_, for_each_);
+  // One round.  What is missing colours the residual too: noise is what the best candidate leaves.
+  // Where that is coloured, the round is made again behind the filter, and the first one counts
+  // only if nothing is worth adding there.
+  // @param judged  gets the signals by which an effect was added
+  bool extended(SearchResult& result, Signals& judged) const {
+    if (result.whitened) fit(result.model, signals_, blocks_, refitting());
+    const HeldOut current = held_out(result.model, signals_, blocks_);
+    if (is_rounding(current.rmse(), signals_)) return false;
+    std::vector<Trial> tried = trials_of(result.model, current, signals_);
+    if (!tried.empty() && std::isfinite(tried.front().rmse)) {
+      Signals whitened = judged_by(tried.front().model);
+      if (whitened.is_whitened() && extended_behind(whitened, result)) {
+        judged = std::move(whitened);
+        return true;
+      }
+    }
+    return extend_by_one(result, current, std::move(tried), signals_);
+  }
+
+  bool extended_behind(const Signals& whitened, SearchResult& result) const {
+    SearchResult other = result;
+    if (other.model.effects.empty()) {
+      other.model = fit_baseline(whitened, blocks_, baseline_.order).model;
+    } else {
+      fit(other.model, whitened, blocks_, refitting());
+    }
+    const HeldOut current = held_out(other.model, whitened, blocks_);
+    if (!extend_by_one(other, current, trials_of(other.model, current, whitened), whitened)) {
+      return false;
+    }
+    result = std::move(other);
+    result.whitened = true;
+    return true;
+  }
+
+  [[nodiscard]] static FitOptions refitting() {
+    FitOptions options;
+    options.max_iterations = 40;
+    options.relative_tolerance = 1e-9;
+    return options;
+  }
+
+  [[nodiscard]] std::vector<Trial> trials_of(const Model& model, const HeldOut& current,
+                                             const Signals& judged) const {
+    return trials(model, current.rmse(), judged, blocks_, impulse_response_, baseline_.order,
+                  options_, for_each_);
+  }
+
+  [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current,
+                                   std::vector<Trial> tried, const Signals& judged) const {
     const double least_fall =
         result.additions.empty() ? options_.first_least_fall : options_.least_fall;
     const auto chosen = result.additions.size() == options_.most_effects
                             ? std::nullopt
-                            : confirmed(tried, current, least_fall, recordings_, options_, result);
-    if (!chosen) {
-      if (!tried.empty() && std::isfinite(tried.front().rmse)) result.last_tried = std::move(tried);
+                            : confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_),
+                                        options_, result);
+    HeldOut before = current;
+    HeldOut after = chosen ? tried[*chosen].held_out : current;
+    if (chosen && judged.is_whitened()) {
+      before = held_out(result.model, signals_, blocks_);
+      after = held_out(tried[*chosen].model, signals_, blocks_);
+    }
+    if (!chosen || !(after.rmse() < (1.0 - least_fall) * before.rmse())) {
+      if (!tried.empty() && std::isfinite(tried.front().rmse)) {
+        result.last_tried = std::move(tried);
+        result.last_current = current;
+      }
       return false;
     }
-    const Comparison comparison = compared(current, tried[*chosen].held_out);
-    Addition addition{current, tried[*chosen].held_out, comparison, std::move(tried), *chosen, {}};
+    Addition addition{
+        before,           after,   current, compared(current, tried[*chosen].held_out),
+        std::move(tried), *chosen, {}};
     addition.ties = tied_kinds(addition.tried, *chosen, current.rmse(), options_);
     result.model = addition.tried[*chosen].model;
     result.additions.push_back(std::move(addition));
@@ -151,7 +216,6 @@ class Forward {
   const ForEach& for_each_;
   const std::function<bool(const std::string&)>& progress_;
   const ImpulseResponse impulse_response_;
-  const RecordingsOut recordings_;
 };
 
 }  // namespace

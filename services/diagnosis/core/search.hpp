@@ -16,9 +16,10 @@ namespace stillhand::diagnosis {
 
 /// One effect that was added, and the candidates that it was chosen from.
 struct Addition {
-  HeldOut before;
-  HeldOut after;
-  Comparison comparison;
+  HeldOut before;   ///< [unit of the output]
+  HeldOut after;    ///< likewise
+  HeldOut current;  ///< `before` as the candidates were judged: behind the noise model's filter
+  Comparison comparison;          ///< with the chosen one, as judged
   std::vector<Trial> tried;       ///< best first, the chosen one included
   std::size_t chosen = 0;         ///< in `tried`
   std::vector<std::string> ties;  ///< other kinds that explain as much: one standard error, or
@@ -36,8 +37,10 @@ struct SearchResult {
   Model model;
   std::vector<Addition> additions;     ///< one an effect of the model, in its order
   std::size_t removed = 0;             ///< effects that later ones replaced
+  bool whitened = false;               ///< judged behind a noise model, Eq. DG-61
   std::vector<RefutedEffect> refuted;  ///< of all rounds
   std::vector<Trial> last_tried;       ///< after the last addition, best first: all were rejected
+  HeldOut last_current;                ///< what they were compared with
 };
 
 /// Forward selection with re-testing, README "Selection": propose, fit jointly, compare on held-out

@@ -231,6 +231,28 @@ Signals Signals::weighed(std::vector<double> weight) const {
   return other;
 }
 
+Signals Signals::whitened(std::vector<double> taps) const {
+  Signals other = *this;
+  other.whitening_ = std::move(taps);
+  return other;
+}
+
+void Signals::whiten(Eigen::Ref<Eigen::MatrixXd> columns, const std::vector<double>& weight) const {
+  if (whitening_.empty()) return;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    double* const x = columns.col(c).data();
+    for (const Stretch& stretch : stretches_) {
+      // From the end: what a sample needs is still unfiltered.
+      for (std::size_t n = stretch.end; n-- > stretch.first;) {
+        const std::size_t past = std::min(whitening_.size() - 1, n - stretch.first);
+        double sum = 0.0;
+        for (std::size_t k = 0; k <= past; ++k) sum += whitening_[k] * x[n - k];
+        x[n] = weight[n] > 0.0 ? sum : 0.0;
+      }
+    }
+  }
+}
+
 Signals Signals::replaced(std::string_view name, std::vector<double> values) const {
   Signals other = *this;
   const auto found = std::ranges::find(other.all_, name, &Signal::name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Dense>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,13 @@ class Signals {
   [[nodiscard]] const std::vector<double>& weight() const noexcept { return weight_; }
   /// The same signals with other weights, one a sample.
   [[nodiscard]] Signals weighed(std::vector<double> weight) const;
+  /// The same signals, their output's errors judged behind a filter that makes the noise white, Eq.
+  /// DG-61.  @param taps  c_0, c_1, ..; empty: as they are
+  [[nodiscard]] Signals whitened(std::vector<double> taps) const;
+  /// Filters columns of errors, or of what changes them, [samples x columns]; samples whose weight
+  /// is 0 stay 0.
+  void whiten(Eigen::Ref<Eigen::MatrixXd> columns, const std::vector<double>& weight) const;
+  [[nodiscard]] bool is_whitened() const noexcept { return !whitening_.empty(); }
   /// The same signals, one of them with other values.
   [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
   /// The same signals, each held within its range; the inputs as the body sees them stay.
@@ -80,6 +88,7 @@ class Signals {
   double rate_hz_;
   std::vector<Stretch> stretches_;
   std::vector<double> weight_;
+  std::vector<double> whitening_;
   std::vector<double> time_s_;
   Signal output_;
   std::vector<Signal> inputs_;

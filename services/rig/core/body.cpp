@@ -88,15 +88,19 @@ ChainParameters stiffened(ChainParameters p, double factor) {
 }  // namespace
 
 std::vector<Body::Muscles> Body::muscles(const BodyConfig& body, const StickConfig& stick,
-                                         bool relaxed, double period_s) {
+                                         bool relaxed, double period_s, bool pushed) {
   const ChainParameters at_rest = chain_parameters(body, stick, relaxed);
   const bool varies = changes_stiffness(body.neuromuscular);
   std::vector<Muscles> levels;
   for (int level = varies ? StiffnessLevels::kLowest : 0;
        level <= (varies ? StiffnessLevels::kHighest : 0); ++level) {
     const ChainParameters p = stiffened(at_rest, std::exp(StiffnessLevels::kStep * level));
-    levels.push_back({p, free_chain(p, period_s), held_chain(p, period_s),
-                      free_force_columns(p, period_s), held_force_columns(p, period_s)});
+    Muscles muscles{p, free_chain(p, period_s), held_chain(p, period_s), {}, {}};
+    if (pushed) {
+      muscles.free_forces = free_force_columns(p, period_s);
+      muscles.held_forces = held_force_columns(p, period_s);
+    }
+    levels.push_back(muscles);
   }
   return levels;
 }
@@ -108,10 +112,10 @@ Body::Body(const BodyConfig& body, const StickConfig& stick, double period_s,
       stop_m_(stick.stop_angle_rad * stick.lever_m),
       seating_keep_(std::exp(-period_s / stick.peg_seat_time_s)),
       friction_n_(stick.coulomb_friction_n + effect.friction_n),
-      relaxed_(muscles(body, stick, true, period_s)),
-      tense_(muscles(body, stick, false, period_s)),
       extra_{EffectOnChain(effect, period_s), Reflex(body.neuromuscular, period_s)},
-      copy_extra_(extra_) {}
+      copy_extra_(extra_),
+      relaxed_(muscles(body, stick, true, period_s, extra_.acts())),
+      tense_(muscles(body, stick, false, period_s, extra_.acts())) {}
 
 const Body::Muscles& Body::muscles_now() const noexcept {
   const auto& levels = pegged_ ? relaxed_ : tense_;

@@ -55,8 +55,9 @@ class Body {
     ForceColumns<4> held_forces;
   };
   /// By stiffness level from kLowest on; one where the body's stiffness never changes.
+  /// @param pushed  false: nothing pushes trunk or arm, and the columns of such forces stay 0
   static std::vector<Muscles> muscles(const BodyConfig& body, const StickConfig& stick,
-                                      bool relaxed, double period_s);
+                                      bool relaxed, double period_s, bool pushed);
   /// Of the present state of the peg and the present level.
   [[nodiscard]] const Muscles& muscles_now() const noexcept;
 
@@ -66,6 +67,7 @@ class Body {
   struct Extra {
     EffectOnChain effect;
     Reflex reflex;
+    [[nodiscard]] bool acts() const noexcept { return effect.acts() || reflex.acts(); }
   };
   /// A tick of the chain with the stick held at 0, effect and reflex included.
   [[nodiscard]] HeldChain::State held_ahead(const HeldChain::State& from, const Input& input,
@@ -85,10 +87,10 @@ class Body {
   double stop_m_;        ///< where the rubber begins, at the hand
   double seating_keep_;  ///< exp(-dt / peg_seat_time)
   double friction_n_;    ///< F_c plus the friction of the effect
+  Extra extra_;          ///< on x_
+  Extra copy_extra_;     ///< on copy_
   std::vector<Muscles> relaxed_;
   std::vector<Muscles> tense_;
-  Extra extra_;              ///< on x_
-  Extra copy_extra_;         ///< on copy_
   FreeChain::State x_{};     ///< trunk, arm, stick
   HeldChain::State copy_{};  ///< trunk and arm with the stick always held at 0
   double last_acceleration_m_s2_ = 0.0;

@@ -181,8 +181,8 @@ class Bus {
   [[nodiscard]] bool peers_alive() const noexcept;
   /// A participant that carries the replay's mark is on the domain.
   [[nodiscard]] bool replay_present() const noexcept;
-  /// Why peers_alive() is false, in one line with the name of the process that is missing.  The text
-  /// lives as long as the bus.
+  /// Why peers_alive() is false, in one line with the name of the process that is missing.  The
+  /// text lives as long as the bus.
   [[nodiscard]] const char* why_not_alive() const noexcept;
   /// Names of services whose status writer was alive once and is not now.
   [[nodiscard]] std::vector<std::string> lost_peers() const;

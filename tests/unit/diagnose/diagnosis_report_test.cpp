@@ -126,14 +126,14 @@ TEST_F(DiagnosisReportTest, EverySectionAndFigureIsThere) {
 
 TEST_F(DiagnosisReportTest, TheVerdictIsSaidInWordsAtTheTop) {
   const std::string top = with_friction_->html.substr(0, with_friction_->html.find("<dl>"));
-  EXPECT_THAT(top, HasSubstr("Effects found."));
+  EXPECT_THAT(top, HasSubstr("Effects found:"));
   EXPECT_THAT(top, HasSubstr("coulomb friction (omega)"));
   EXPECT_THAT(top, HasSubstr("noise floor"));
 }
 
 TEST_F(DiagnosisReportTest, NothingMissingIsAPageToo) {
   ASSERT_EQ(without_->found.verdict(), "nothing missing");
-  EXPECT_THAT(without_->html, HasSubstr("Nothing missing."));
+  EXPECT_THAT(without_->html, HasSubstr("Nothing missing:"));
   EXPECT_THAT(without_->html, HasSubstr("No effect was found."));
   EXPECT_THAT(without_->html, HasSubstr("No effect was worth adding"));
   EXPECT_FALSE(std::filesystem::exists(without_->folder.path() / "effect_1.svg"));
@@ -187,7 +187,7 @@ TEST_F(DiagnosisReportTest, WhatIsLeftIsDescribed) {
       diagnosis::Unexplained{"it depends on the moon", {0.5, 2.0}, {12.0}, {"roll"}};
   const Evidence evidence(found, without_->measurement);
   const std::string html = diagnosis_page(evidence, {"ride.csv"}, {}).html();
-  for (const char* part : {"Unexplained residual.", "Not explained: it depends on the moon",
+  for (const char* part : {"Unexplained residual:", "Not explained: it depends on the moon",
                            "0.5 to 2 Hz", "strongest around 12 s", "depends on roll"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }

@@ -56,6 +56,8 @@ Rated rated(const Body& start, const std::vector<std::vector<double>>& inputs,
   initial.remove_from(matrix);
   Eigen::Ref<Eigen::MatrixXd> view(right);
   initial.remove_from(view);
+  signals.whiten(matrix, signals.weight());
+  signals.whiten(view, signals.weight());
   const Eigen::VectorXd scale = matrix.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   Eigen::MatrixXd normal =
       scale.asDiagonal() * (matrix.transpose() * matrix).eval() * scale.asDiagonal();
@@ -202,7 +204,9 @@ Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order) {
     options.max_iterations = 40;
     options.relative_tolerance = 1e-9;
     baseline.rmse = fit(baseline.model, signals, blocks, options).rmse;
-    if (p == 4 && baseline.rmse > kClearlyAbove * impulse_response.rmse) {
+    // Behind a filter the impulse response, which is fitted without it, is no bound.
+    if (p == 4 &&
+        (signals.is_whitened() || baseline.rmse > kClearlyAbove * impulse_response.rmse)) {
       Model other = baseline.model;
       other.body = with_other_mode(other.body, inputs, signals.output().values, signals);
       const double rmse = fit(other, signals, blocks, options).rmse;

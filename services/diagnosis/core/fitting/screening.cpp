@@ -34,6 +34,7 @@ ScreenedGain Screening::gain(const Columns& columns) const {
     }
   }
   initial_.remove_from(more);
+  signals_.whiten(more, line_.run.weight);
   Grams grams;
   grams.weights = grams_.weights;
   for (std::size_t b = 0; b < blocks_.count; ++b) {

@@ -266,6 +266,7 @@ Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun&
   const InitialStates initial(model, signals, run.weight);
   Eigen::Ref<Eigen::MatrixXd> view(residual);
   initial.remove_from(view);
+  signals.whiten(view, run.weight);
   return residual;
 }
 

@@ -37,7 +37,8 @@ bool without_effects(const Model& model, const Signals& signals,
                      std::vector<std::vector<double>>& inputs, std::vector<double>& output);
 
 /// A model's error and how it changes with the fitted numbers, packed()'s order, Eq. DG-9.
-/// Weighted, with the initial state of every stretch fitted (projected out, Eq. DG-10).
+/// Weighted, with the initial state of every stretch fitted (projected out, Eq. DG-10), and through
+/// the signals' filter, Eq. DG-61.
 struct Linearisation {
   bool finite = true;
   Eigen::MatrixXd jacobian;  ///< d prediction / d numbers, [samples x numbers]

@@ -191,6 +191,8 @@ Linearisation linearised(const Model& model, const Signals& signals) {
     initial.remove_from(result.jacobian);
     Eigen::Ref<Eigen::MatrixXd> view(result.residual);
     initial.remove_from(view);
+    signals.whiten(result.jacobian, run.free.weight);
+    signals.whiten(view, run.free.weight);
   }
   result.run = std::move(run.free);
   return result;
