@@ -189,11 +189,14 @@ class Forward {
                                         options_, result);
     HeldOut before = current;
     HeldOut after = chosen ? tried[*chosen].held_out : current;
-    if (chosen && judged.is_whitened()) {
+    bool worth = chosen.has_value();
+    if (worth && judged.is_whitened()) {
       before = held_out(result.model, signals_, blocks_);
       after = held_out(tried[*chosen].model, signals_, blocks_);
+      const double fall = std::min(least_fall, options_.large_fall);
+      worth = after.rmse() < (1.0 - fall) * before.rmse();
     }
-    if (!chosen || !(after.rmse() < (1.0 - least_fall) * before.rmse())) {
+    if (!worth) {
       if (!tried.empty() && std::isfinite(tried.front().rmse)) {
         result.last_tried = std::move(tried);
         result.last_current = current;
