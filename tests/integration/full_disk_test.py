@@ -12,6 +12,8 @@ import sys
 import tempfile
 import unittest
 
+from lab_process import next_domain
+
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
 STILLHAND = pathlib.Path(os.environ.get("STILLHAND_PROGRAMS", BUILD / "bin")) / "stillhand"
@@ -36,7 +38,8 @@ class FullDiskTest(unittest.TestCase):
         out = tempfile.TemporaryDirectory(prefix="out-", dir=self.disk.parent)
         self.addCleanup(out.cleanup)
         self.out = pathlib.Path(out.name)
-        self.domain = 214 - os.getpid() % 4
+        # Another one for each case, above the ports that Linux gives to other sockets.
+        self.domain = next_domain()
 
     def fill(self, bytes_used):
         (self.disk / "other").write_bytes(bytes(bytes_used))
