@@ -28,7 +28,8 @@ Player::Player(MessageSource& source, std::uint64_t first_ns, std::uint64_t last
       loop_(loop),
       release_(std::move(release)),
       clock_(0, static_cast<std::int64_t>(first_ns), rate),
-      loop_from_ns_(first_ns) {}
+      loop_from_ns_(first_ns),
+      end_ns_(last_ns) {}
 
 void Player::begin(bool paused) {
   if (paused) clock_.pause(0);  // before it runs: the position is the first instant exactly
@@ -38,8 +39,8 @@ void Player::begin(bool paused) {
 
 // The clock starts again when the first stretch has been read: reading is not lateness.
 void Player::jump(std::uint64_t to_ns) {
-  const std::uint64_t end_ns = loop_to_ns_ && *loop_to_ns_ > to_ns ? *loop_to_ns_ : last_ns_;
-  source_.seek(to_ns, end_ns);
+  end_ns_ = loop_to_ns_ && *loop_to_ns_ > to_ns ? *loop_to_ns_ : last_ns_;
+  source_.seek(to_ns, end_ns_);
   stretch_ = source_.wait_next();  // the state before
   next_ = 0;
   if (stretch_.batch.messages.empty()) stretch_ = source_.wait_next();
@@ -123,7 +124,7 @@ void Player::step_once() {
 
 std::int64_t Player::position_ns() const noexcept {
   return std::clamp(clock_.recorded_at(monotonic_ns()), static_cast<std::int64_t>(first_ns_),
-                    static_cast<std::int64_t>(last_ns_));
+                    static_cast<std::int64_t>(end_ns_));
 }
 
 void Player::loop_from_here() { loop_from_ns_ = static_cast<std::uint64_t>(position_ns()); }

@@ -45,7 +45,7 @@ class Player {
   [[nodiscard]] bool looping() const noexcept { return loop_ || loop_to_ns_.has_value(); }
   [[nodiscard]] bool paused() const noexcept { return clock_.paused(); }
   [[nodiscard]] recording::PlayRate rate() const noexcept { return clock_.rate(); }
-  /// Log time [ns] played now.
+  /// Log time [ns] played now, not behind the end of the stretch that plays.
   [[nodiscard]] std::int64_t position_ns() const noexcept;
   [[nodiscard]] std::uint64_t released() const noexcept { return released_; }
   /// How often the machine held the replay up for more than 10 ms.
@@ -70,6 +70,7 @@ class Player {
   std::size_t next_ = 0;
   std::uint64_t loop_from_ns_;
   std::optional<std::uint64_t> loop_to_ns_;
+  std::uint64_t end_ns_;  ///< of the stretch that plays: of the loop, or of the recording
   std::int64_t began_ns_ = 0;
   std::uint64_t released_ = 0;
   struct Released {

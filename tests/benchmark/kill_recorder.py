@@ -67,7 +67,8 @@ def record_and_kill(file, domain, when_s, in_start_up):
         if not in_start_up:
             empty = size_of(file)
             wait("chunk", lambda: size_of(file) > max(empty, 4096))
-        hold(when_s)
+        if why := hold(when_s, ended):
+            raise Broken(why)
         return time.monotonic()
     finally:
         recorder.send_signal(signal.SIGKILL)

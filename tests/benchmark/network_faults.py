@@ -22,7 +22,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "integratio
 
 import lab_process  # noqa: E402
 import network  # noqa: E402
-from lab_process import INSPECT, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabProcess, hold, next_domain, quick_session  # noqa: E402
+from lab_process import (INSPECT, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabProcess, hold,  # noqa: E402
+                         next_domain, quick_session)
 
 TRIAL_S = 15
 FAULT_AT_S = 3

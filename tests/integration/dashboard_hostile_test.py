@@ -12,7 +12,7 @@ import threading
 import time
 
 from dashboard_test import LIMIT_S, TOKEN, DashboardCase, main, streams, wait_for
-from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, campaign, next_domain, quick_session, repeat
+from lab_process import TICKS_PER_S, TRIAL_LIMIT_S, campaign, hold, next_domain, quick_session
 
 CONNECTIONS = 10000
 MOST_CONNECTIONS = 64
@@ -158,7 +158,7 @@ class HostileClientsTest(ClientsCase):
                     client.send(b"X")
                 except OSError:
                     pass
-        threading.Thread(target=repeat, args=(trickle, 2 * REQUEST_LIMIT_S, 0.5), daemon=True).start()
+        threading.Thread(target=hold, args=(2 * REQUEST_LIMIT_S, trickle, 0.5), daemon=True).start()
         return slow
 
     def traverse(self, dashboard):

@@ -17,7 +17,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
-from waiting import POLL_S, hold, repeat, wait_for  # noqa: E402,F401  also for its users
+from waiting import POLL_S, hold, wait_for  # noqa: E402,F401  also for its users
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))

@@ -9,7 +9,7 @@ import os
 import time
 
 import lab_process
-from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, loose_settings, repeat
+from lab_process import MATCH_LIMIT_S, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, hold, loose_settings
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
@@ -105,7 +105,7 @@ class MouseTest(MouseTestCase):
         for column in HOLDS:
             self.display.xdotool("mousemove", column, 400)
             # The person holds the place for this time; the test reads the screen.
-            repeat(lambda: self.take_picture(pictures), HOLD_S, 0.1)
+            hold(HOLD_S, lambda: self.take_picture(pictures), poll_s=0.1)
         self.assertEqual(lab.end_status(END_LIMIT_S), 0, lab.errors())
         self.assertEqual(lab.errors(), [])
         self.assert_nothing_left(lab)

@@ -27,12 +27,12 @@ class Clock(threading.Thread):
         super().__init__(daemon=True)
         self.core = core
         self.longest_s = 0.0
+        self.ended = threading.Event()
 
     def run(self):
         os.sched_setaffinity(0, {self.core})
         before = time.monotonic()
-        while True:
-            time.sleep(TICK_S)
+        while not self.ended.wait(TICK_S):
             now = time.monotonic()
             self.longest_s = max(self.longest_s, now - before - TICK_S)
             before = now
@@ -47,6 +47,9 @@ def main():
     for clock in clocks:
         clock.start()
     status = subprocess.run(command, check=False).returncode
+    for clock in clocks:
+        clock.ended.set()
+        clock.join()
     longest_s = max(clock.longest_s for clock in clocks)
     if status in (0, CTEST_SKIPPED) or longest_s < STANDSTILL_S:
         return status

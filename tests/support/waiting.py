@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Waiting for a condition with a limit, and keeping a state for a time: the one place where a test in Python sleeps."""
+"""Waiting for a condition with a limit, and keeping a state for a time: the one place where a Python test polls."""
 import time
 
 POLL_S = 0.05
@@ -13,23 +13,19 @@ def wait_for(what, condition, limit_s, poll_s=POLL_S, failure=AssertionError, en
     """
     limit = time.monotonic() + limit_s
     while not (value := condition()):
-        why = ended() or (f"no {what} within {limit_s:g} s" if time.monotonic() > limit else None)
+        left_s = limit - time.monotonic()
+        why = ended() or (f"no {what} within {limit_s:g} s" if left_s <= 0 else None)
         if why:
             if failure is None:
                 return None
             raise failure(why)
-        time.sleep(poll_s)
+        time.sleep(min(poll_s, left_s))
     return value
 
 
-def hold(seconds):
-    """Keeps what the test has done (a cable out, a process stopped) for a time that is itself the test's stimulus."""
-    time.sleep(seconds)
+def hold(seconds, until=lambda: None, poll_s=POLL_S):
+    """Keeps what the test has done (a cable out, a process stopped) for a time that is itself the test's stimulus.
 
-
-def repeat(step, seconds, every_s):
-    """Calls `step` again and again for a time."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        step()
-        time.sleep(every_s)
+    Ends before it if `until` returns a value, which it returns.
+    """
+    return wait_for("end of the hold", until, seconds, poll_s, failure=None)

@@ -226,6 +226,16 @@ TEST_F(PlayerTest, ALoopBetweenTwoInstantsReleasesNothingOutsideUntilItIsOff) {
   EXPECT_EQ(released_.back(), kCount - 1);
 }
 
+// Nothing steps, as when the machine holds the replay up: the clock runs on, the position does not.
+TEST_F(PlayerTest, AReplayThatIsHeldUpIsNotBehindTheEndOfItsLoop) {
+  Player& sut = player(1000);
+  sut.begin(false);
+  sut.loop_between(kStart + 5 * kMs, kStart + 7 * kMs);
+  const std::int64_t begun_ns = monotonic_ns();
+  ASSERT_TRUE(eventually([&] { return monotonic_ns() > begun_ns + 10 * kMs; }));
+  EXPECT_EQ(sut.position_ns(), kStart + 7 * kMs);
+}
+
 TEST_F(PlayerTest, ALoopIsSetByItsStartAndThenItsEnd) {
   Player& sut = player(1000);
   sut.begin(true);
