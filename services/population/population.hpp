@@ -10,8 +10,9 @@
 namespace stillhand::population {
 
 /// Distributions of a study's subjects: for each quantity a mean and a coefficient of variation
-/// (standard deviation over mean), README "The population".  Every draw is lognormal, so no mass or
-/// stiffness is negative, and cut at 2.5 standard deviations of its logarithm, Eq. SU-1.
+/// (standard deviation over mean), the study's README, "The population".  Every draw is lognormal,
+/// so no mass or stiffness is negative, and cut at 2.5 standard deviations of its logarithm,
+/// Eq. SU-1.
 struct Population {
   double body_mass_kg = 75.0;
   double body_mass_cv = 0.13;
@@ -39,7 +40,8 @@ struct Population {
   double remnant_cv = 0.25;
   double regression_error_m = 0.0292;
   double regression_cv = 0.15;
-  // What nerves and muscles add, 0: nothing; apps/study/explain/causes.cpp names each as a cause.
+  // What nerves and muscles add, 0: nothing; each with a spread but tremor is a cause in
+  // apps/study/explain/causes.cpp.
   double stiffening_by_vibration_s2_m = 0.0;
   double stiffening_by_vibration_cv = 0.0;
   double stiffening_by_motor_n = 0.0;

@@ -43,7 +43,7 @@ class StudyTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    # Trials of 20 s show that every part works, and nothing about the paper.
+    # Trials of 30 s show that every part works, and nothing about the paper.
     BRIEF = ["--trial-seconds", "30", "--identify-seconds", "20", "--subjects", "6", "--seed", "5"]
 
     def test_explain_paper_ranks_every_cause_and_pair(self):

@@ -9,7 +9,8 @@
 
 namespace stillhand::study {
 
-/// A candidate cause of what the model lacks, with at most one parameter; README, "Causes".
+/// A candidate cause of what the model lacks, with at most one parameter; README, "What explains
+/// the paper's C".
 struct Cause {
   std::string name;            ///< in explanation.json
   std::string what;            ///< one sentence
