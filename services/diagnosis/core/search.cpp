@@ -140,29 +140,64 @@ class Forward {
     const HeldOut current = held_out(result.model, signals_, blocks_);
     if (is_rounding(current.rmse(), signals_)) return false;
     std::vector<Trial> tried = trials_of(result.model, current, signals_);
+    std::optional<SearchResult> behind;
     if (!tried.empty() && std::isfinite(tried.front().rmse)) {
       Signals whitened = judged_by(tried.front().model);
-      if (whitened.is_whitened() && extended_behind(whitened, result)) {
+      if (whitened.is_whitened()) {
+        behind = refitted_behind(whitened, result);
         judged = std::move(whitened);
-        return true;
       }
     }
-    return extend_by_one(result, current, std::move(tried), signals_);
+    if (behind && extended_as_judged(*behind, judged, result)) return true;
+    if (extend_by_one(result, current, std::move(tried), signals_)) {
+      judged = signals_;
+      return true;
+    }
+    return extended_freely(behind ? *behind : result, judged, result);
   }
 
-  bool extended_behind(const Signals& whitened, SearchResult& result) const {
+  [[nodiscard]] SearchResult refitted_behind(const Signals& whitened,
+                                             const SearchResult& result) const {
     SearchResult other = result;
     if (other.model.effects.empty()) {
       other.model = fit_baseline(whitened, blocks_, baseline_.order).model;
     } else {
       fit(other.model, whitened, blocks_, refitting());
     }
-    const HeldOut current = held_out(other.model, whitened, blocks_);
-    if (!extend_by_one(other, current, trials_of(other.model, current, whitened), whitened)) {
+    other.whitened = true;
+    return other;
+  }
+
+  bool extended_as_judged(SearchResult& behind, const Signals& judged, SearchResult& result) const {
+    const HeldOut current = held_out(behind.model, judged, blocks_);
+    if (!extend_by_one(behind, current, trials_of(behind.model, current, judged), judged)) {
       return false;
     }
-    result = std::move(other);
-    result.whitened = true;
+    result = std::move(behind);
+    return true;
+  }
+
+  // No named kind is worth adding.  If a free form is, something is there; a named kind that
+  // explains as much with fewer numbers is then added all the same.
+  // @param from  after its round: `last_tried` holds the named ones as they were judged
+  bool extended_freely(SearchResult from, const Signals& judged, SearchResult& result) const {
+    if (from.additions.size() == options_.most_effects) return false;
+    const HeldOut current = held_out(from.model, judged, blocks_);
+    std::vector<Trial> tried = trials_of(from.model, current, judged, Shapes::kAny);
+    if (!confirmed(tried, current, options_.least_fall, RecordingsOut(judged, blocks_), options_,
+                   from)) {
+      return false;
+    }
+    for (const Trial& named : from.last_tried) {
+      if (std::isfinite(named.rmse) && !passes_over_samples(named) &&
+          is_worth_adding(named, current, options_.least_fall, 1, options_)) {
+        tried.push_back(named);
+      }
+    }
+    std::ranges::stable_sort(tried, by_rmse);
+    const std::size_t chosen = chosen_of(tried, current.rmse(), options_);
+    if (!add(from, current, std::move(tried), chosen, judged, options_.least_fall)) return false;
+    result = std::move(from);
     return true;
   }
 
@@ -174,40 +209,59 @@ class Forward {
   }
 
   [[nodiscard]] std::vector<Trial> trials_of(const Model& model, const HeldOut& current,
-                                             const Signals& judged) const {
+                                             const Signals& judged,
+                                             Shapes shapes = Shapes::kNamed) const {
     return trials(model, current.rmse(), judged, blocks_, impulse_response_, baseline_.order,
-                  options_, for_each_);
+                  options_, for_each_, shapes);
   }
 
   [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current,
                                    std::vector<Trial> tried, const Signals& judged) const {
     const double least_fall =
         result.additions.empty() ? options_.first_least_fall : options_.least_fall;
-    const auto chosen = result.additions.size() == options_.most_effects
-                            ? std::nullopt
-                            : confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_),
-                                        options_, result);
-    HeldOut before = current;
-    HeldOut after = chosen ? tried[*chosen].held_out : current;
-    bool worth = chosen.has_value();
-    if (worth && judged.is_whitened()) {
-      before = held_out(result.model, signals_, blocks_);
-      after = held_out(tried[*chosen].model, signals_, blocks_);
-      const double fall = std::min(least_fall, options_.large_fall);
-      worth = after.rmse() < (1.0 - fall) * before.rmse();
-    }
-    if (!worth) {
-      if (!tried.empty() && std::isfinite(tried.front().rmse)) {
-        result.last_tried = std::move(tried);
-        result.last_current = current;
+    auto chosen = result.additions.size() == options_.most_effects
+                      ? std::nullopt
+                      : confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_),
+                                  options_, result);
+    if (chosen) {
+      // A kind that fits a part of a shape, or bursts, which explain nothing, may hide it.
+      const Trial& named = tried[*chosen];
+      const double clearly_less = passes_over_samples(named)
+                                      ? (1.0 - options_.large_fall) * current.rmse()
+                                      : (1.0 - options_.tie) * named.rmse;
+      std::vector<Trial> shapes = trials_of(result.model, current, judged, Shapes::kAny);
+      if (!shapes.empty() && shapes.front().rmse < clearly_less) {
+        const auto shape = confirmed(shapes, current, options_.least_fall,
+                                     RecordingsOut(judged, blocks_), options_, result);
+        if (shape && shapes[*shape].rmse < clearly_less) {
+          tried = std::move(shapes);
+          chosen = shape;
+        }
       }
-      return false;
     }
-    Addition addition{
-        before,           after,   current, compared(current, tried[*chosen].held_out),
-        std::move(tried), *chosen, {}};
-    addition.ties = tied_kinds(addition.tried, *chosen, current.rmse(), options_);
-    result.model = addition.tried[*chosen].model;
+    if (chosen && add(result, current, tried, *chosen, judged, least_fall)) return true;
+    if (!tried.empty() && std::isfinite(tried.front().rmse)) {
+      result.last_tried = std::move(tried);
+      result.last_current = current;
+    }
+    return false;
+  }
+
+  // Behind a filter the error without it has to fall as well.
+  bool add(SearchResult& result, const HeldOut& current, std::vector<Trial> tried,
+           std::size_t chosen, const Signals& judged, double least_fall) const {
+    HeldOut before = current;
+    HeldOut after = tried[chosen].held_out;
+    if (judged.is_whitened()) {
+      before = held_out(result.model, signals_, blocks_);
+      after = held_out(tried[chosen].model, signals_, blocks_);
+      const double fall = std::min(least_fall, options_.large_fall);
+      if (!(after.rmse() < (1.0 - fall) * before.rmse())) return false;
+    }
+    Addition addition{before,           after,  current, compared(current, tried[chosen].held_out),
+                      std::move(tried), chosen, {}};
+    addition.ties = tied_kinds(addition.tried, chosen, current.rmse(), options_);
+    result.model = addition.tried[chosen].model;
     result.additions.push_back(std::move(addition));
     return true;
   }

@@ -2,6 +2,7 @@
 #include "services/diagnosis/core/trials.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "services/diagnosis/core/fitting/screening.hpp"
@@ -120,12 +121,15 @@ bool passes_over_samples(const Trial& trial) {
 
 std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
                           const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
-                          const SearchOptions& options, const ForEach& for_each) {
+                          const SearchOptions& options, const ForEach& for_each, Shapes shapes) {
   constexpr double kGains = 0.985;
   constexpr double kExplainsMuch = 0.85;
   constexpr std::size_t kFewest = 5;
   const Screening screening(current, signals, blocks, impulse_response);
-  const auto& kinds = effect_kinds();
+  std::vector<const EffectKind*> kinds;
+  std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
+    return kind->any_shape() == (shapes == Shapes::kAny);
+  });
   std::vector<std::vector<Proposal>> proposals(kinds.size());
   for_each(kinds.size(), [&](std::size_t k) { proposals[k] = kinds[k]->proposed(screening); });
   std::vector<Model> models;
@@ -137,6 +141,7 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
       models.push_back(std::move(model));
     }
   }
+  if (models.empty()) return {};
   std::vector<Trial> all(models.size());
   for_each(models.size(), [&](std::size_t i) {
     all[i] =

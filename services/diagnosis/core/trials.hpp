@@ -18,6 +18,9 @@ using ForEach =
 /// One after the other.
 void in_order(std::size_t count, const std::function<void(std::size_t)>& task);
 
+/// Which kinds a round tries: those with a law, or those that take any shape.
+enum class Shapes { kNamed, kAny };
+
 /// The model fitted in at most `iterations` steps, and its held-out error: by refitting, Eq. DG-12
 /// by one linearisation otherwise.
 Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, int iterations,
@@ -32,6 +35,7 @@ bool passes_over_samples(const Trial& trial);
 /// @param order  of the body, before it was reduced
 std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
                           const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
-                          const SearchOptions& options, const ForEach& for_each);
+                          const SearchOptions& options, const ForEach& for_each,
+                          Shapes shapes = Shapes::kNamed);
 
 }  // namespace stillhand::diagnosis

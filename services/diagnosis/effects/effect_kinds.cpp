@@ -8,6 +8,7 @@
 #include "services/diagnosis/effects/dead_zone.hpp"
 #include "services/diagnosis/effects/delay.hpp"
 #include "services/diagnosis/effects/drift.hpp"
+#include "services/diagnosis/effects/free_form.hpp"
 #include "services/diagnosis/effects/hysteresis.hpp"
 #include "services/diagnosis/effects/input_saturation.hpp"
 #include "services/diagnosis/effects/nonlinear_stiffness.hpp"
@@ -41,7 +42,8 @@ const std::vector<const EffectKind*>& effect_kinds() {
                                                      &regime_change_kind(),
                                                      &clock_drift_kind(),
                                                      &bilinear_kind(),
-                                                     &transients_kind()};
+                                                     &transients_kind(),
+                                                     &free_form_kind()};
   return kKinds;
 }
 

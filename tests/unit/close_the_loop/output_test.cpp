@@ -187,6 +187,10 @@ TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
   LoopRecord sut = made();
   sut.truth = Truth{"delayed_reflex", "", "shoulder", "", 1.0};
   EXPECT_FALSE(sut.right()) << "a kind of the catalogue is named";
+  const std::string named = sut.result.rounds[0].verdict.findings[0].kind;
+  sut.result.rounds[0].verdict.findings[0].kind = "free_form";
+  EXPECT_TRUE(sut.right()) << "a shape without a name is right";
+  sut.result.rounds[0].verdict.findings[0].kind = named;
   EXPECT_NEAR(summary_of(sut)["truth"]["detectable_n"], 0.375, 1e-12);
   sut.result.rounds[0].verdict.findings.clear();
   EXPECT_FALSE(sut.right()) << "large enough to be seen";

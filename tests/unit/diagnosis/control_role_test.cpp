@@ -25,7 +25,7 @@ struct Role {
 
 const std::size_t kNone = index_of(LeftOut{});
 
-// One effect of each of the first eighteen kinds, and of every form that acts at another stage.
+// One effect of each kind, and of every form that acts at another stage.
 std::vector<Role> every_role() {
   const auto spring = index_of(Spring{});
   const auto before = index_of(InputMap{});
@@ -70,7 +70,8 @@ std::vector<Role> every_role() {
       {{"bilinear", "beside the body", {"a_x", "theta"}, {{"c", "", 0.0}, {"d", "", 0.0}}, {1.0}},
        kNone,
        kNone},
-      {{"transients", "isolated bursts", {}, {}, {}}, kNone, kNone}};
+      {{"transients", "isolated bursts", {}, {}, {}}, kNone, kNone},
+      {{"free_form", "gain over a channel", {"temp"}, {}, {}}, kNone, kNone}};
 }
 
 TEST(ControlRoleTest, AKindStatesWhatTheCancellerDoesAboutIt) {

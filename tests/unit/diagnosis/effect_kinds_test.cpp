@@ -24,7 +24,7 @@ TEST(EffectKindsTest, EveryKindOfTheContractIsThere) {
                                    "nonlinear_stiffness", "asymmetry", "hysteresis", "dead_zone",
                                    "output_saturation", "input_saturation", "position_ripple",
                                    "tone", "drift", "time_varying_gain", "regime_change",
-                                   "clock_drift", "bilinear", "transients"));
+                                   "clock_drift", "bilinear", "transients", "free_form"));
   for (const std::string& name : names) EXPECT_EQ(effect_kind(name).name(), name);
 }
 

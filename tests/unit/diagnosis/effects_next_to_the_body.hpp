@@ -10,7 +10,13 @@ namespace stillhand::diagnosis::made {
 /// One effect of every kind and form that adds terms, for a body of order 2: every_effect.hpp.
 inline std::vector<Effect> effects_next_to_the_body() {
   const Parameter centre = constant("centre", "rad", 0.05);
+  const auto knots = [](const char* unit) {
+    return std::vector<Parameter>{constant("knot_1", unit, -1.0), constant("knot_2", unit, 0.1),
+                                  constant("knot_3", unit, 1.2)};
+  };
   return {
+      {"free_form", "force over a channel", {"theta"}, knots("rad"), {0.3, -0.2}},
+      {"free_form", "factor over a channel", {"omega", "theta"}, knots("rad"), {0.3, 0.1, -0.2}},
       {"resonance",
        "beside the body",
        {},

@@ -64,7 +64,29 @@ inline std::vector<Effect> effects_inside_the_body() {
 }
 
 inline std::vector<Effect> effects_on_the_gain() {
+  const auto change = [](const char* name, double value) {
+    return Parameter{name, "-", value, -3.0, 3.0};
+  };
   return {
+      {"free_form",
+       "gain over a channel",
+       {"temp"},
+       {constant("knot_1", "degC", -1.0), constant("knot_2", "degC", 0.1),
+        constant("knot_3", "degC", 1.2), change("change_1", -0.2), change("change_2", 0.4)},
+       {}},
+      {"free_form",
+       "gain over the size of an input",
+       {"u"},
+       {constant("memory", "s", 2.0), constant("knot_1", "m/s^2", 0.7),
+        constant("knot_2", "m/s^2", 0.9), constant("knot_3", "m/s^2", 1.4),
+        change("change_1", -0.3), change("change_2", 0.2)},
+       {}},
+      {"free_form",
+       "gain over time",
+       {},
+       {constant("knot_1", "s", 0.0), constant("knot_2", "s", 4.0), constant("knot_3", "s", 8.0),
+        change("change_1", 0.3), change("change_2", -0.2)},
+       {}},
       {"time_varying_gain", "linear", {}, {{"change", "-", 0.2, -3.0, 3.0}}, {}},
       {"time_varying_gain",
        "slow cosines",

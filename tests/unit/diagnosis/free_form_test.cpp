@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes that no named kind has, as the whole search finds them, and what a curve is beyond its
+// knots.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "services/diagnosis/core/diagnose.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kCount = 6000;
+
+struct Recorded {
+  std::vector<double> u = made::ride(kCount, 1);
+  std::vector<double> theta = made::ride(kCount, 2, 0.1, 1.0);
+  std::vector<double> noise = made::white(kCount, 3);
+  std::vector<double> y =
+      made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, u);
+
+  [[nodiscard]] Diagnosis diagnosed(double noise_n) const {
+    std::vector<double> with_noise = y;
+    for (std::size_t n = 0; n < kCount; ++n) with_noise[n] += noise_n * noise[n];
+    DiagnoseOptions options;
+    options.inputs = {"u"};
+    options.output = "y";
+    return diagnose(
+        made::measurement_of({{"u", "m/s^2", u}, {"theta", "rad", theta}, {"y", "N", with_noise}}),
+        options);
+  }
+};
+
+// Numbers of a found curve: knots, and heights with that of the centre put in.
+struct Curve {
+  explicit Curve(const Effect& effect, double at_centre) {
+    heights = effect.coefficients;
+    for (const Parameter& parameter : effect.parameters) {
+      if (parameter.name.starts_with("knot_")) knots.push_back(parameter.value);
+      if (parameter.name.starts_with("change_")) heights.push_back(1.0 + parameter.value);
+    }
+    heights.insert(heights.begin() + static_cast<std::ptrdiff_t>(knots.size() / 2), at_centre);
+  }
+  std::vector<double> knots;
+  std::vector<double> heights;
+};
+
+// A spring that the stick meets on one side alone.  The curve is straight between knots, the
+// spring bends between two of them: a fifth of the largest force.
+TEST(FreeFormTest, AForceOverAPosition) {
+  Recorded sut;
+  const auto spring = [](double x) { return 0.5 * std::max(0.0, x - 0.8); };
+  for (std::size_t n = 0; n < kCount; ++n) sut.y[n] += spring(sut.theta[n]);
+  const Diagnosis found = sut.diagnosed(0.05);
+  ASSERT_FALSE(found.effects.empty());
+  const Effect& effect = found.model.effects.front();
+  ASSERT_EQ(effect.kind, "free_form") << effect.form;
+  EXPECT_EQ(effect.form, "force over a channel");
+  EXPECT_EQ(found.effects.front().channel, "theta");
+  const Curve curve(effect, 0.0);
+  const double largest = spring(curve.knots.back());
+  for (std::size_t k = 0; k < curve.knots.size(); ++k) {
+    EXPECT_NEAR(curve.heights[k], spring(curve.knots[k]), 0.2 * largest) << "at " << curve.knots[k];
+  }
+  EXPECT_LT(found.final_error.rmse, 0.8 * found.baseline_error.rmse);
+}
+
+// The hand gives way where the vibration of the last seconds is large.
+TEST(FreeFormTest, AGainThatFollowsTheVibration) {
+  Recorded sut;
+  // The vibration comes and goes every 12 s, by a factor of four.
+  for (std::size_t n = 0; n < kCount; ++n) {
+    sut.u[n] *= std::exp2(std::sin(2.0 * std::numbers::pi * static_cast<double>(n) / 1200.0));
+  }
+  sut.y =
+      made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, sut.u);
+  double square = 1.0;
+  for (std::size_t n = 0; n < kCount; ++n) {
+    square += (sut.u[n] * sut.u[n] - square) * 0.005;  // 2 s at 100 Hz
+    sut.y[n] /= 0.5 + 0.5 * std::sqrt(square);
+  }
+  const Diagnosis found = sut.diagnosed(0.05);
+  ASSERT_FALSE(found.effects.empty());
+  const Effect& effect = found.model.effects.front();
+  ASSERT_EQ(effect.kind, "free_form") << effect.form;
+  EXPECT_EQ(effect.form, "gain over the size of an input");
+  const Curve curve(effect, 1.0);
+  EXPECT_GT(curve.heights.front(), 1.1);
+  EXPECT_LT(curve.heights.back(), 0.9);
+}
+
+// Two coefficients: -1 at the first knot, 2 at the last one, 0 at the centre.
+TEST(FreeFormTest, ACurveIsLevelBeyondItsOuterKnots) {
+  const Effect sut{"free_form",
+                   "force over a channel",
+                   {"theta"},
+                   {constant("knot_1", "rad", -1.0), constant("knot_2", "rad", 0.0),
+                    constant("knot_3", "rad", 2.0)},
+                   {-1.0, 2.0}};
+  const std::vector<double> theta{-1e6, -1.0, -0.25, 0.0, 0.5, 2.0, 1e6};
+  const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(theta.size(), 5)},
+                                              {"theta", "rad", theta},
+                                              {"y", "N", made::white(theta.size(), 6)}}),
+                        {"u"}, "y");
+  Columns columns;
+  effect_kind("free_form").terms(sut, signals, {}, columns);
+  ASSERT_EQ(columns.size(), 2u);
+  const double wanted[] = {-1.0, -1.0, -0.25, 0.0, 0.5, 2.0, 2.0};
+  for (std::size_t n = 0; n < theta.size(); ++n) {
+    EXPECT_DOUBLE_EQ(sut.coefficients[0] * columns[0][n] + sut.coefficients[1] * columns[1][n],
+                     wanted[n]);
+  }
+}
+
+// A form in words, with a height for each knot.
+TEST(FreeFormTest, TheEvidenceGivesTheCurve) {
+  const Effect sut{"free_form",
+                   "force over a channel",
+                   {"theta"},
+                   {constant("knot_1", "rad", -1.0), constant("knot_2", "rad", 0.0),
+                    constant("knot_3", "rad", 2.0)},
+                   {-1.0, 2.0}};
+  EXPECT_EQ(effect_kind("free_form").evidence(sut),
+            "no named kind has this shape; the force over theta is -1 at -1 rad, 0 at 0 rad, 2 at "
+            "2 rad");
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
