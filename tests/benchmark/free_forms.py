@@ -64,7 +64,7 @@ def damped_in_the_middle(ride, first, _):
     return ride["omega"] * numpy.exp(-((theta / (0.5 * first["theta"].std())) ** 2))
 
 
-# Each with the channels that a free form of it is over; none: time.
+# Each with the channels that a free form of it is over; no form is over time.
 SHAPES = {"gain falls with vibration": (falls_with_vibration, ("a_y",)), "gain wanders": (wanders, ()),
           "one-sided spring": (one_sided, ("theta",)), "damping by position": (damped_in_the_middle, ("omega", "theta"))}
 
@@ -106,9 +106,9 @@ def judged(pair):
 
 
 def is_right(found, channels):
-    """The first effect is a free form, over this channel; time has none."""
+    """The first effect is a free form over one of these channels."""
     first = found["effects"][0]
-    return first["kind"] == "free_form" and (first["channel"] in channels or first["channel"] is None)
+    return first["kind"] == "free_form" and first["channel"] in channels
 
 
 def row(shape, strength, found, channels):

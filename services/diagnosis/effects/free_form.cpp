@@ -15,11 +15,9 @@ constexpr const char* kForce = "force over a channel";
 constexpr const char* kFactor = "factor over a channel";
 constexpr const char* kGain = "gain over a channel";
 constexpr const char* kSize = "gain over the size of an input";
-constexpr const char* kTime = "gain over time";
 
 // Shares of the samples below each knot: close in the middle, where there are many samples.
 constexpr double kKnotShares[] = {0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99};
-constexpr std::size_t kTimeKnots = 10;
 constexpr std::size_t kFewestKnots = 3;
 constexpr double kApart = 0.02;  // knots, of the distance between the outer ones
 constexpr double kMemories_s[] = {0.5, 2.0, 8.0};
@@ -72,13 +70,8 @@ std::vector<double> size_of(const std::vector<double>& values, double memory_s,
   return size;
 }
 
-// What the curve is over, one value a sample.
+// What the curve is over, one value a sample.  Not time: time_varying_gain has a curve over it.
 std::vector<double> argument(const Effect& effect, const Signals& signals) {
-  if (effect.form == kTime) {
-    std::vector<double> time_s = signals.time_s();
-    for (double& t : time_s) t -= signals.time_s().front();
-    return time_s;
-  }
   const std::vector<double>& values = signals.at(effect.channels.back()).values;
   return effect.form == kSize ? size_of(values, effect.parameters.at(0).value, signals) : values;
 }
@@ -100,14 +93,6 @@ std::vector<double> knots_over(const std::vector<double>& values,
     if (knots.empty() || at(share) - knots.back() > least) knots.push_back(at(share));
   }
   return knots.size() < kFewestKnots ? std::vector<double>{} : knots;
-}
-
-std::vector<double> even_knots(double last) {
-  std::vector<double> knots;
-  for (std::size_t k = 0; k < kTimeKnots; ++k) {
-    knots.push_back(last * static_cast<double>(k) / static_cast<double>(kTimeKnots - 1));
-  }
-  return knots;
 }
 
 // L_k of every sample times `factor`, all knots but `without`.
@@ -142,7 +127,6 @@ class FreeForm final : public EffectKind {
   [[nodiscard]] Stage stage(const Effect& effect) const override {
     return is_gain(effect) ? Stage::kGain : Stage::kTerm;
   }
-  [[nodiscard]] bool time_only(const Effect& effect) const override { return effect.form == kTime; }
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const std::vector<double> knots = knots_of(effect);
@@ -201,8 +185,6 @@ std::string FreeForm::evidence(const Effect& effect) const {
     text += "force over " + effect.channels.at(0);
   } else if (effect.form == kFactor) {
     text += "factor on " + effect.channels.at(0) + " over " + effect.channels.at(1);
-  } else if (effect.form == kTime) {
-    text += "gain over time";
   } else if (effect.form == kSize) {
     text += "gain over the RMS of " + effect.channels.at(0) + " in the last " +
             with_unit(effect.value(0), "s");
@@ -253,7 +235,6 @@ std::vector<Proposal> FreeForm::proposed(const Screening& screening) const {
       propose_gain(std::move(effect));
     }
   }
-  propose_gain(with_knots(kTime, {}, "s", even_knots(signals.duration_s())));
   return best_of(std::move(proposals), kMostProposals);
 }
 
