@@ -181,7 +181,7 @@ class Forward {
   // explains as much with fewer numbers is then added all the same.
   // @param from  after its round: `last_tried` holds the named ones as they were judged
   bool extended_freely(SearchResult from, const Signals& judged, SearchResult& result) const {
-    if (from.additions.size() == options_.most_effects) return false;
+    if (!from.additions.empty()) return false;  // next to a law it would take the law's numbers
     const HeldOut current = held_out(from.model, judged, blocks_);
     std::vector<Trial> tried = trials_of(from.model, current, judged, Shapes::kAny);
     if (!confirmed(tried, current, options_.least_fall, RecordingsOut(judged, blocks_), options_,
@@ -223,7 +223,7 @@ class Forward {
                       ? std::nullopt
                       : confirmed(tried, current, least_fall, RecordingsOut(judged, blocks_),
                                   options_, result);
-    if (chosen) {
+    if (chosen && result.additions.empty()) {
       // A kind that fits a part of a shape, or bursts, which explain nothing, may hide it.
       const Trial& named = tried[*chosen];
       const double clearly_less = passes_over_samples(named)

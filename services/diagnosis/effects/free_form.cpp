@@ -32,7 +32,15 @@ std::vector<double> named(const Effect& effect, std::string_view prefix) {
   return values;
 }
 
-std::vector<double> knots_of(const Effect& effect) { return named(effect, "knot_"); }
+// @throws std::out_of_range for what no search made: a file's
+std::vector<double> knots_of(const Effect& effect) {
+  std::vector<double> knots = named(effect, "knot_");
+  const auto not_above = [](double a, double b) { return !(a < b); };
+  if (knots.size() < 2 || std::ranges::adjacent_find(knots, not_above) != knots.end()) {
+    throw std::out_of_range("two knots or more, ascending");
+  }
+  return knots;
+}
 
 // A value's place between two knots: `share` of the way from knot `below` to the next.
 struct Place {
@@ -72,8 +80,12 @@ std::vector<double> size_of(const std::vector<double>& values, double memory_s,
 
 // What the curve is over, one value a sample.  Not time: time_varying_gain has a curve over it.
 std::vector<double> argument(const Effect& effect, const Signals& signals) {
+  if (effect.channels.empty()) throw std::out_of_range("a channel");
   const std::vector<double>& values = signals.at(effect.channels.back()).values;
-  return effect.form == kSize ? size_of(values, effect.parameters.at(0).value, signals) : values;
+  if (effect.form != kSize) return values;
+  const double memory_s = effect.parameters.at(0).value;
+  if (!(memory_s > 0.0)) throw std::out_of_range("a memory above 0");
+  return size_of(values, memory_s, signals);
 }
 
 std::vector<double> knots_over(const std::vector<double>& values,
@@ -130,7 +142,6 @@ class FreeForm final : public EffectKind {
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const std::vector<double> knots = knots_of(effect);
-    if (knots.size() < 2) throw std::out_of_range("knots");
     const bool force = effect.form == kForce;
     const std::vector<double>* factor = force ? nullptr : &signals.at(effect.channels.at(0)).values;
     for (auto& column : hats(argument(effect, signals), knots, factor,
@@ -141,7 +152,7 @@ class FreeForm final : public EffectKind {
   void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const override {
     const std::vector<double> knots = knots_of(effect);
     const std::vector<double> factors = factors_of(effect);
-    if (knots.size() < 2 || factors.size() != knots.size()) throw std::out_of_range("knots");
+    if (factors.size() != knots.size()) throw std::out_of_range("a change for each knot but one");
     const std::vector<double> over = argument(effect, signals);
     for (std::size_t n = 0; n < gain.size(); ++n) {
       const Place place = place_of(over[n], knots);

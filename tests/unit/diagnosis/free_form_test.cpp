@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 
 #include "services/diagnosis/core/diagnose.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
@@ -111,6 +113,40 @@ TEST(FreeFormTest, ACurveIsLevelBeyondItsOuterKnots) {
     EXPECT_DOUBLE_EQ(sut.coefficients[0] * columns[0][n] + sut.coefficients[1] * columns[1][n],
                      wanted[n]);
   }
+}
+
+// A model file may hold anything.
+TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
+  const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(50, 5)},
+                                              {"theta", "rad", made::white(50, 7)},
+                                              {"y", "N", made::white(50, 6)}}),
+                        {"u"}, "y");
+  const auto knot = [](const char* name, double at) { return constant(name, "rad", at); };
+  Columns columns;
+  const EffectKind& sut = effect_kind("free_form");
+  EXPECT_THROW(
+      sut.terms(
+          {"free_form", "force over a channel", {}, {knot("knot_1", 0.0), knot("knot_2", 1.0)}, {}},
+          signals, {}, columns),
+      std::out_of_range);
+  EXPECT_THROW(sut.terms({"free_form",
+                          "force over a channel",
+                          {"theta"},
+                          {knot("knot_1", 1.0), knot("knot_2", 1.0)},
+                          {}},
+                         signals, {}, columns),
+               std::out_of_range);
+  std::vector<double> gain(50, 1.0);
+  EXPECT_THROW(sut.gain({"free_form",
+                         "gain over the size of an input",
+                         {"u"},
+                         {constant("memory", "s", 0.0),
+                          knot("knot_1", 0.0),
+                          knot("knot_2", 1.0),
+                          {"change_1", "-", 0.1, -3.0, 3.0}},
+                         {}},
+                        signals, gain),
+               std::out_of_range);
 }
 
 // A form in words, with a height for each knot.
