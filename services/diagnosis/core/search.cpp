@@ -181,7 +181,8 @@ class Forward {
   // explains as much with fewer numbers is then added all the same.
   // @param from  after its round: `last_tried` holds the named ones as they were judged
   bool extended_freely(SearchResult from, const Signals& judged, SearchResult& result) const {
-    if (!from.additions.empty()) return false;  // next to a law it would take the law's numbers
+    // Next to a law it would take the law's numbers.
+    if (options_.most_effects == 0 || !from.additions.empty()) return false;
     const HeldOut current = held_out(from.model, judged, blocks_);
     std::vector<Trial> tried = trials_of(from.model, current, judged, Shapes::kAny);
     if (!confirmed(tried, current, options_.least_fall, RecordingsOut(judged, blocks_), options_,
