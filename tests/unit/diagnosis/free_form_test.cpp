@@ -22,12 +22,13 @@ struct Recorded {
   std::vector<double> y =
       made::answer(made::two_pole_body().numerators[0], made::two_pole_body().denominator, u);
 
-  [[nodiscard]] Diagnosis diagnosed(double noise_n) const {
+  [[nodiscard]] Diagnosis diagnosed(double noise_n, std::size_t most_effects = 4) const {
     std::vector<double> with_noise = y;
     for (std::size_t n = 0; n < kCount; ++n) with_noise[n] += noise_n * noise[n];
     DiagnoseOptions options;
     options.inputs = {"u"};
     options.output = "y";
+    options.search.most_effects = most_effects;
     return diagnose(
         made::measurement_of({{"u", "m/s^2", u}, {"theta", "rad", theta}, {"y", "N", with_noise}}),
         options);
@@ -90,6 +91,12 @@ TEST(FreeFormTest, AGainThatFollowsTheVibration) {
   const Curve curve(effect, 1.0);
   EXPECT_GT(curve.heights.front(), 1.1);
   EXPECT_LT(curve.heights.back(), 0.9);
+}
+
+TEST(FreeFormTest, NoneIsAddedWhereNoEffectMayBe) {
+  Recorded sut;
+  for (std::size_t n = 0; n < kCount; ++n) sut.y[n] += 0.5 * std::max(0.0, sut.theta[n] - 0.8);
+  EXPECT_TRUE(sut.diagnosed(0.05, 0).effects.empty());
 }
 
 // Two coefficients: -1 at the first knot, 2 at the last one, 0 at the centre.
