@@ -174,10 +174,9 @@ bool Truth::agrees_with(const Verdict& verdict) const {
   if (outside()) {
     const bool small = force_n < detectable_n(verdict, place == kDrive);
     const std::string conclusion = verdict.conclusion();
-    const auto& kinds = diagnosis::effect_kinds();
-    const auto found =
-        std::ranges::find(kinds, verdict.kind(), [](const auto* each) { return each->name(); });
-    const bool shape = found != kinds.end() && (*found)->any_shape();
+    const bool shape = std::ranges::any_of(diagnosis::effect_kinds(), [&](const auto* each) {
+      return each->any_shape() && each->name() == verdict.kind();
+    });
     return shape || conclusion == kUnexplained || (small && conclusion == kNothing);
   }
   if (verdict.kind() != kind) return false;

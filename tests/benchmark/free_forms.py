@@ -66,7 +66,8 @@ def damped_in_the_middle(ride, first, _):
 
 # Each with the channels that a free form of it is over; no form is over time.
 SHAPES = {"gain falls with vibration": (falls_with_vibration, ("a_y",)), "gain wanders": (wanders, ()),
-          "one-sided spring": (one_sided, ("theta",)), "damping by position": (damped_in_the_middle, ("omega", "theta"))}
+          "one-sided spring": (one_sided, ("theta",)),
+          "damping by position": (damped_in_the_middle, ("omega", "theta"))}
 
 
 def read(path):

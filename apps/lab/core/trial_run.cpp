@@ -187,8 +187,8 @@ bool TrialRun::await_afterwards(Seen& seen, std::int64_t now_ns) {
   return look_for_death(seen, now_ns);
 }
 
-// A process that ends opens the interlock first, and its end is seen later: leaving the bus can
-// take it more than a second on a busy machine.  Its own last line is the better reason.
+// A process that ends opens the interlock first, and its end is seen later: mostly 0.1 s, in one
+// test more than 1 s.  Its own last line is the better reason.
 bool TrialRun::look_for_death(Seen& seen, std::int64_t now_ns) {
   constexpr std::int64_t kLimit_ns = 3'000'000'000;
   if (!result_.aborted.empty() || !seen.has(EventKind::kInterlockOpened)) return end(seen);

@@ -100,13 +100,17 @@ TEST(FreeFormTest, NoneIsAddedWhereNoEffectMayBe) {
 }
 
 // Two coefficients: -1 at the first knot, 2 at the last one, 0 at the centre.
+Effect three_knots() {
+  return {"free_form",
+          "force over a channel",
+          {"theta"},
+          {constant("knot_1", "rad", -1.0), constant("knot_2", "rad", 0.0),
+           constant("knot_3", "rad", 2.0)},
+          {-1.0, 2.0}};
+}
+
 TEST(FreeFormTest, ACurveIsLevelBeyondItsOuterKnots) {
-  const Effect sut{"free_form",
-                   "force over a channel",
-                   {"theta"},
-                   {constant("knot_1", "rad", -1.0), constant("knot_2", "rad", 0.0),
-                    constant("knot_3", "rad", 2.0)},
-                   {-1.0, 2.0}};
+  const Effect sut = three_knots();
   const std::vector<double> theta{-1e6, -1.0, -0.25, 0.0, 0.5, 2.0, 1e6};
   const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(theta.size(), 5)},
                                               {"theta", "rad", theta},
@@ -158,12 +162,7 @@ TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
 
 // A form in words, with a height for each knot.
 TEST(FreeFormTest, TheEvidenceGivesTheCurve) {
-  const Effect sut{"free_form",
-                   "force over a channel",
-                   {"theta"},
-                   {constant("knot_1", "rad", -1.0), constant("knot_2", "rad", 0.0),
-                    constant("knot_3", "rad", 2.0)},
-                   {-1.0, 2.0}};
+  const Effect sut = three_knots();
   EXPECT_EQ(effect_kind("free_form").evidence(sut),
             "no named kind has this shape; the force over theta is -1 at -1 rad, 0 at 0 rad, 2 at "
             "2 rad");

@@ -52,7 +52,7 @@ class EffectKind {
   [[nodiscard]] virtual std::string evidence(const Effect& effect) const = 0;
   /// True when the inputs do not determine it: predict() leaves it out.
   [[nodiscard]] virtual bool time_only(const Effect& /*effect*/) const { return false; }
-  /// True when it takes any shape: tried only where no kind with a law is worth adding.
+  /// True when it takes any shape and has no law: tried apart from the others, Eq. DG-64.
   [[nodiscard]] virtual bool any_shape() const { return false; }
 
   /// What a canceller does about it when it is found in the hand's response; by default what the
