@@ -122,4 +122,10 @@ ReferenceSignal::ReferenceSignal(const ReferenceDesign& design, Tick duration_ti
   }
 }
 
+double ReferenceSignal::peak_m() const noexcept {
+  double highest_m = 0.0;
+  for (const double x_m : table_m_) highest_m = std::max(highest_m, std::abs(x_m));
+  return highest_m;
+}
+
 }  // namespace stillhand::signal

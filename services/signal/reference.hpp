@@ -60,6 +60,8 @@ class ReferenceSignal {
     if (n < 0) n += period;
     return table_m_[static_cast<std::size_t>(n)];
   }
+  /// Largest |x_r(n)| [m].
+  [[nodiscard]] double peak_m() const noexcept;
   [[nodiscard]] const std::array<double, kReferenceLines>& phases_rad() const noexcept {
     return phases_rad_;
   }

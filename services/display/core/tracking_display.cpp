@@ -32,12 +32,6 @@ void check(const Trial& trial) {
                     "start, length and ramps of 0 to 2^60 ticks");
 }
 
-double peak(const signal::ReferenceSignal& reference, Tick count) noexcept {
-  double highest_m = 0.0;
-  for (Tick n = 0; n < count; ++n) highest_m = std::max(highest_m, std::abs(reference.at(n)));
-  return highest_m;
-}
-
 }  // namespace
 
 signal::ReferenceSignal reference_on_screen(const TrackingDisplay::Config& config,
@@ -54,9 +48,9 @@ signal::ReferenceSignal reference_on_screen(const TrackingDisplay::Config& confi
   for (int draw = 0; draw < kMostDraws; ++draw, seed += kNextSeed) {
     const double scale_m = config.reference_scale_m;
     const signal::ReferenceSignal coarse(design, coarse_ticks, seed, scale_m);
-    if (peak(coarse, coarse_ticks) > limit_m) continue;
+    if (coarse.peak_m() > limit_m) continue;
     signal::ReferenceSignal reference(design, duration_ticks, seed, scale_m);
-    if (peak(reference, duration_ticks) <= limit_m) return reference;
+    if (reference.peak_m() <= limit_m) return reference;
   }
   throw ConfigError(
       "display.reference_scale_m", std::to_string(config.reference_scale_m),

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/FFT>
 
 #include "services/contract/expects.hpp"
+#include "services/motion/core/transform.hpp"
 
 namespace stillhand::motion {
 namespace {
 
 using Complex = std::complex<double>;
-using Transform = Eigen::FFT<double>;  // kissfft, Eigen's own backend (BSD)
 
 constexpr double kPointsPerCycle = 25.0;
 
@@ -32,10 +31,8 @@ std::vector<Complex> pair_on_grid(const std::vector<Complex>& p, const std::vect
     spectrum[k] = 0.5 * (p[i] + j * q[i]);
     spectrum[size - k] = 0.5 * (std::conj(p[i]) + j * std::conj(q[i]));
   }
-  Transform transform;
-  transform.SetFlag(Transform::Unscaled);
   std::vector<Complex> grid;
-  transform.inv(grid, spectrum);
+  transform().inv(grid, spectrum);
   return grid;
 }
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
 #include "services/contract/config_error.hpp"
+#include "services/motion/core/transform.hpp"
 
 namespace stillhand::motion {
 namespace {
@@ -37,9 +37,8 @@ void take_phases(MotionSpectrum& spectrum, const MotionGrid& grid, const PeakBou
     changes[i] = {clip_change(grid.accel_m_s2[i], clip.accel_m_s2),
                   clip_change(grid.position_m[i], clip.position_m)};
   }
-  Eigen::FFT<double> transform;
   std::vector<Complex> lines;
-  transform.fwd(lines, changes);
+  transform().fwd(lines, changes);
   const double per_point = 2.0 / static_cast<double>(size);
   for (std::size_t i = 0; i < spectrum.accel_m_s2.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(spectrum.first) + i;
