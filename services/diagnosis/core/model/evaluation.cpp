@@ -2,7 +2,9 @@
 #include "services/diagnosis/core/model/evaluation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/interpolation.hpp"
@@ -59,24 +61,7 @@ void add_differences(Settled x, std::span<const double> coefficients,
   }
 }
 
-void run_body(const Model& model, const Signals& signals, ModelRun& run) {
-  std::vector<const Effect*> feedback;
-  for (const Effect& effect : model.effects) {
-    if (acts_at(effect, Stage::kFeedback)) feedback.push_back(&effect);
-  }
-  if (!feedback.empty()) {
-    for (std::size_t k = 0; k < model.inputs.size(); ++k) {
-      run.inputs.push_back(settled(shaped_input(model, signals, k), signals));
-    }
-    LoopRun loop;
-    run.free.finite = run_loop(model.body, feedback, run.inputs, signals, loop);
-    run.free.body = std::move(loop.output);
-    run.free.argument = std::move(loop.argument);
-    run.free.phi = std::move(loop.phi);
-    run.body_before = std::move(loop.output_before);
-    run.phi_before = std::move(loop.phi_before);
-    return;
-  }
+void run_linear_body(const Model& model, const Signals& signals, ModelRun& run) {
   Settled body = nothing(signals);
   for (std::size_t k = 0; k < model.inputs.size(); ++k) {
     run.filtered_inputs.push_back(through_poles(settled(shaped_input(model, signals, k), signals),
@@ -86,6 +71,31 @@ void run_body(const Model& model, const Signals& signals, ModelRun& run) {
   }
   run.free.body = std::move(body.values);
   run.body_before = std::move(body.before);
+}
+
+void run_bodies(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs) {
+  std::vector<LoopCase> cases;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    LoopCase each{&models[i].body, feedback_of(models[i]), &runs[i].inputs};
+    if (each.feedback.empty()) {
+      run_linear_body(models[i], signals, runs[i]);
+      continue;
+    }
+    for (std::size_t k = 0; k < models[i].inputs.size(); ++k) {
+      runs[i].inputs.push_back(settled(shaped_input(models[i], signals, k), signals));
+    }
+    cases.push_back(std::move(each));
+  }
+  std::vector<LoopRun> loops(cases.size());
+  run_loops(cases, signals, loops);
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    runs[i].free.finite = loops[i].finite;
+    runs[i].free.body = std::move(loops[i].output);
+    runs[i].free.argument = std::move(loops[i].argument);
+    runs[i].free.phi = std::move(loops[i].phi);
+    runs[i].body_before = std::move(loops[i].output_before);
+    runs[i].phi_before = std::move(loops[i].phi_before);
+  }
 }
 
 // The columns of a term as they are weighed: through A where the form says so.
@@ -175,15 +185,30 @@ bool acts_at(const Effect& effect, Stage stage) {
   return effect_kind(effect.kind).stage(effect) == stage;
 }
 
+std::vector<const Effect*> feedback_of(const Model& model) {
+  std::vector<const Effect*> feedback;
+  for (const Effect& effect : model.effects) {
+    if (acts_at(effect, Stage::kFeedback)) feedback.push_back(&effect);
+  }
+  return feedback;
+}
+
 void run_all(const Model& model, const Signals& signals, ModelRun& run) {
-  run_body(model, signals, run);
-  apply_gain(model, signals, run);
-  add_terms(model, signals, run);
-  apply_output_maps(model, signals, run);
+  run_all(std::span(&model, 1), signals, std::span(&run, 1));
+}
+
+void run_all(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs) {
+  run_bodies(models, signals, runs);
   const double bound = runaway_bound(signals.output());
-  run.free.finite =
-      run.free.finite && is_stable(model.body) &&
-      std::ranges::all_of(run.free.prediction, [&](double y) { return std::abs(y) < bound; });
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    ModelRun& run = runs[i];
+    apply_gain(models[i], signals, run);
+    add_terms(models[i], signals, run);
+    apply_output_maps(models[i], signals, run);
+    run.free.finite =
+        run.free.finite && is_stable(models[i].body) &&
+        std::ranges::all_of(run.free.prediction, [&](double y) { return std::abs(y) < bound; });
+  }
 }
 
 Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals) {
@@ -195,18 +220,58 @@ Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals) {
   return residual;
 }
 
+namespace {
+
+// The newest sample comes last in the sum: the next one waits for that product alone.
+template <std::size_t P>
+void filter(std::span<const double> x, const double* denominator, double* y) {
+  std::array<double, P> past{};
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    double sum = x[n];
+#pragma GCC unroll 8
+    for (std::size_t j = P; j >= 1; --j) sum -= denominator[j] * past[j - 1];
+#pragma GCC unroll 8
+    for (std::size_t j = P; j >= 2; --j) past[j - 1] = past[j - 2];
+    y[n] = past[0] = sum;
+  }
+}
+
+void filter_of_any_order(std::span<const double> x, const std::vector<double>& denominator,
+                         double* y) {
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    double sum = x[n];
+    for (std::size_t j = std::min(denominator.size() - 1, n); j >= 1; --j) {
+      sum -= denominator[j] * y[n - j];
+    }
+    y[n] = sum;
+  }
+}
+
+}  // namespace
+
 std::vector<double> through_poles(const std::vector<double>& x,
                                   const std::vector<double>& denominator,
                                   const std::vector<Stretch>& stretches) {
-  const std::size_t order = denominator.size() - 1;
-  if (order == 0) return x;
+  if (denominator.size() == 1) return x;
   std::vector<double> y(x.size());
   for (const Stretch& stretch : stretches) {
-    for (std::size_t n = stretch.first; n < stretch.end; ++n) {
-      double sum = x[n];
-      const std::size_t past = std::min(order, n - stretch.first);
-      for (std::size_t j = 1; j <= past; ++j) sum -= denominator[j] * y[n - j];
-      y[n] = sum;
+    const std::span in(&x[stretch.first], stretch.end - stretch.first);
+    double* out = &y[stretch.first];
+    switch (denominator.size() - 1) {
+      case 2:
+        filter<2>(in, denominator.data(), out);
+        break;
+      case 3:
+        filter<3>(in, denominator.data(), out);
+        break;
+      case 4:
+        filter<4>(in, denominator.data(), out);
+        break;
+      case 6:
+        filter<6>(in, denominator.data(), out);
+        break;
+      default:
+        filter_of_any_order(in, denominator, out);
     }
   }
   return y;

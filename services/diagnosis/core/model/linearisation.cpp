@@ -138,38 +138,62 @@ void write_exact_columns(const Model& model, const Signals& signals, const Model
   }
 }
 
-// Forward differences; the step is a millionth of the number, or of its neighbours' size.
+// A model with one number moved, for a forward difference.
+struct Moved {
+  Eigen::Index column = 0;
+  double change = 0.0;
+};
+
+// The step is a millionth of the number, or of its neighbours' size.  Without a change: pinned.
+Moved move(const Eigen::VectorXd& numbers, Eigen::Index i, Model& model) {
+  double size = std::abs(numbers[i]);
+  for (Eigen::Index j = std::max<Eigen::Index>(i - 1, 0); j <= std::min(i + 1, numbers.size() - 1);
+       ++j) {
+    size = std::max(size, 1e-3 * std::abs(numbers[j]));
+  }
+  const double step = 1e-6 * (size > 0.0 ? size : 1.0);
+  Moved moved{i, 0.0};
+  // A parameter at its upper bound can only go down.
+  for (const double direction : {step, -step}) {
+    Eigen::VectorXd changed = numbers;
+    changed[i] += direction;
+    unpack(changed, model);
+    moved.change = packed(model)[i] - numbers[i];
+    if (std::abs(moved.change) > 0.5 * step) break;
+  }
+  return moved;
+}
+
+// Forward differences, as many models at a time as run side by side.
 void write_difference_columns(const Model& model, const Signals& signals, const ModelRun& run,
                               const std::vector<bool>& which, Eigen::MatrixXd& jacobian) {
   const Eigen::VectorXd numbers = packed(model);
+  std::vector<Model> models;
+  std::vector<Moved> columns;
+  const auto write = [&] {
+    std::vector<ModelRun> others(models.size());
+    run_all(models, signals, others);
+    for (std::size_t each = 0; each < models.size(); ++each) {
+      const std::vector<double>& prediction = others[each].free.prediction;
+      const double inverse = 1.0 / columns[each].change;
+      double* column = jacobian.col(columns[each].column).data();
+      for (std::size_t n = 0; n < signals.size(); ++n) {
+        column[n] = run.free.weight[n] * (prediction[n] - run.free.prediction[n]) * inverse;
+      }
+    }
+    models.clear();
+    columns.clear();
+  };
   for (Eigen::Index i = 0; i < numbers.size(); ++i) {
     if (!which[static_cast<std::size_t>(i)]) continue;
-    double size = std::abs(numbers[i]);
-    for (Eigen::Index j = std::max<Eigen::Index>(i - 1, 0);
-         j <= std::min(i + 1, numbers.size() - 1); ++j) {
-      size = std::max(size, 1e-3 * std::abs(numbers[j]));
-    }
-    const double step = 1e-6 * (size > 0.0 ? size : 1.0);
-    Model moved = model;
-    double change = 0.0;
-    // A parameter at its upper bound can only go down.
-    for (const double direction : {step, -step}) {
-      Eigen::VectorXd changed = numbers;
-      changed[i] += direction;
-      unpack(changed, moved);
-      change = packed(moved)[i] - numbers[i];
-      if (std::abs(change) > 0.5 * step) break;
-    }
-    if (change == 0.0) continue;  // pinned: the column stays 0
-    ModelRun other;
-    run_all(moved, signals, other);
-    const double inverse = 1.0 / change;
-    double* column = jacobian.col(i).data();
-    for (std::size_t n = 0; n < signals.size(); ++n) {
-      column[n] =
-          run.free.weight[n] * (other.free.prediction[n] - run.free.prediction[n]) * inverse;
-    }
+    Model other = model;
+    const Moved moved = move(numbers, i, other);
+    if (moved.change == 0.0) continue;  // pinned: the column stays 0
+    models.push_back(std::move(other));
+    columns.push_back(moved);
+    if (models.size() == kLoopLanes) write();
   }
+  write();
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "services/diagnosis/core/model/effect.hpp"
@@ -27,8 +29,16 @@ struct LoopPath {
   [[nodiscard]] bool of_output() const noexcept { return n.empty(); }
 };
 
+/// A body, the effects that feed back in it, and what reaches it, by input.
+struct LoopCase {
+  const Body* body = nullptr;
+  std::vector<const Effect*> feedback;
+  const std::vector<Settled>* inputs = nullptr;
+};
+
 /// Signals in the loop, each as long as the measurement.
 struct LoopRun {
+  bool finite = true;                 ///< false: it ran away
   std::vector<double> output;         ///< y_b
   std::vector<double> argument;       ///< z of the first nonlinearity
   std::vector<double> phi;            ///< its phi(z)
@@ -40,11 +50,13 @@ struct LoopRun {
 std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
 LoopPath loop_path(const Effect& effect, std::size_t order);
 
-/// Runs the body with its nonlinearities, every stretch from the steady state of its inputs'
+/// As many cases take hardly longer than one.
+inline constexpr std::size_t kLoopLanes = 4;
+
+/// Runs bodies with their nonlinearities, every stretch from the steady state of its inputs'
 /// levels, Eq. DG-54.  An effect with a range holds phi at its edges, Eq. DG-56.
-/// @param inputs  what reaches the body, by input
-/// @return false when it ran away
-bool run_loop(const Body& body, const std::vector<const Effect*>& feedback,
-              const std::vector<Settled>& inputs, const Signals& signals, LoopRun& run);
+/// @param cases  one structure (orders, effects) with different numbers; none is without feedback
+/// @param runs  as many
+void run_loops(std::span<const LoopCase> cases, const Signals& signals, std::span<LoopRun> runs);
 
 }  // namespace stillhand::diagnosis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "services/diagnosis/core/model/effect_kind.hpp"
@@ -24,10 +25,14 @@ struct ModelRun {
 
 /// Runs a model over its signals, README "The model".
 void run_all(const Model& model, const Signals& signals, ModelRun& run);
+/// The same for models that differ in their numbers alone.
+void run_all(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs);
 
 /// Weighted output - prediction.
 Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals);
 
 bool acts_at(const Effect& effect, Stage stage);
+/// Those that act inside the body.
+std::vector<const Effect*> feedback_of(const Model& model);
 
 }  // namespace stillhand::diagnosis

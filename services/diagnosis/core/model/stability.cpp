@@ -169,9 +169,10 @@ class TriedLoop {
       inputs.push_back(settled(std::move(u), signals_));
       for (double& level : inputs.back().before) level += past * signals_.inputs()[k].deviation;
     }
+    const LoopCase loop{&model_.body, feedback_, &inputs};
     LoopRun run;
-    if (!run_loop(model_.body, feedback_, inputs, signals_, run)) return {};
-    return std::move(run.output);
+    run_loops(std::span(&loop, 1), signals_, std::span(&run, 1));
+    return run.finite ? std::move(run.output) : std::vector<double>();
   }
 
   const Model& model_;
@@ -195,10 +196,7 @@ bool is_proved(const Body& body, const Effect& effect) {
 
 Stability stability_of(const Model& model, const Signals& signals) {
   if (!is_stable(model.body)) return Stability::kRefused;
-  std::vector<const Effect*> feedback;
-  for (const Effect& effect : model.effects) {
-    if (acts_at(effect, Stage::kFeedback)) feedback.push_back(&effect);
-  }
+  const std::vector<const Effect*> feedback = feedback_of(model);
   if (feedback.empty()) return Stability::kProved;
   const bool held =
       std::ranges::none_of(feedback, [](const Effect* effect) { return effect->seen.empty(); });
