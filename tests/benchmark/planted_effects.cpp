@@ -11,15 +11,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <map>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "services/diagnosis/core/diagnose.hpp"
+#include "tests/benchmark/on_all_cores.hpp"
 #include "tests/planted/series.hpp"
 #include "tests/planted/to_measurement.hpp"
 
@@ -74,22 +73,14 @@ void ask(Case& each) {
 }
 
 void ask_all(std::vector<Case>& cases, const char* what) {
-  std::atomic<std::size_t> next{0};
   std::mutex printing;
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const auto work = [&] {
-    for (std::size_t i = 0; (i = next++) < cases.size();) {
-      ask(cases[i]);
-      if (!terminal) continue;
-      const std::lock_guard lock(printing);
-      std::fprintf(stderr, "\r%s %zu of %zu   ", what, i + 1, cases.size());
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
-    work();
-  }
+  benchmark::on_all_cores(cases.size(), [&](std::size_t i) {
+    ask(cases[i]);
+    if (!terminal) return;
+    const std::lock_guard lock(printing);
+    std::fprintf(stderr, "\r%s %zu of %zu   ", what, i + 1, cases.size());
+  });
   if (terminal) std::fputc('\n', stderr);
 }
 

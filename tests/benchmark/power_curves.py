@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""How large an effect has to be for the residual engine to find it, by kind and by noise.
+
+build/tests/power_curves plants effects of any size under five noises and asks the engine; none is drawn again because
+it is weak. The size of an effect is what a linear model of fourth order leaves of it (RMS), over the noise (RMS). Two
+logistic curves are fitted to the answers, "something was found" and "the right kind and channel, and nothing else":
+
+    ln(P / (1 - P)) = a_kind + c_noise + b_noise ln(size)
+
+Printed are the false alarms by noise, the size at which each kind is found in half and in nine of ten recordings of
+white noise, and how much larger it has to be under the other noises. --picture draws the curves with the shares of the
+recordings, pooled over the kinds.
+
+    STILLHAND_BUILD=build python3 tests/benchmark/power_curves.py                # 720 and 2,000: two hours on two cores
+    STILLHAND_BUILD=build python3 tests/benchmark/power_curves.py --rows FILE    # of an earlier run
+"""
+import argparse
+import csv
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+RIDGE = 0.05  # a kind that is always found has no curve of its own: pulled to the common one
+BINS = numpy.geomspace(0.01, 10.0, 13)
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        for name in ("strength", "noise_over_force", "size_over_noise", "limit_over_noise", "seconds"):
+            row[name] = float(row[name])
+        row["found"] = row["found"].split("+") if row["found"] else []
+        row["right"] = row["right"] == "1"
+    return rows
+
+
+class Curves:
+    """The logistic model, by penalised maximum likelihood (Newton's steps)."""
+
+    def __init__(self, rows, answer):
+        self.kinds = sorted({row["kind"] for row in rows})
+        self.noises = sorted({row["noise"] for row in rows}, key=lambda noise: (noise != "white", noise))
+        x = numpy.array([self.columns(row["kind"], row["noise"], row["size_over_noise"]) for row in rows])
+        y = numpy.array([float(answer(row)) for row in rows])
+        # Free: the common level and slope, the first two columns.
+        penalty = RIDGE * numpy.eye(x.shape[1])
+        penalty[0, 0] = penalty[1, 1] = 1e-6
+        self.numbers = numpy.zeros(x.shape[1])
+        for _ in range(100):
+            p = 1.0 / (1.0 + numpy.exp(-x @ self.numbers))
+            slope = x.T @ (y - p) - penalty @ self.numbers
+            curvature = (x.T * (p * (1.0 - p))) @ x + penalty
+            step = numpy.linalg.solve(curvature, slope)
+            self.numbers += step * min(1.0, 2.0 / max(abs(step)))
+            if max(abs(step)) < 1e-9:
+                break
+
+    def columns(self, kind, noise, size):
+        log = math.log(max(size, 1e-4))
+        of_noise = [float(noise == each) for each in self.noises]
+        return [1.0, log, *(float(kind == each) for each in self.kinds), *of_noise, *(log * each for each in of_noise)]
+
+    def probability(self, kind, noise, size):
+        return 1.0 / (1.0 + math.exp(-float(numpy.dot(self.columns(kind, noise, size), self.numbers))))
+
+    def size_at(self, share, kind, noise):
+        level = float(numpy.dot(self.columns(kind, noise, 1.0), self.numbers))
+        slope = float(numpy.dot(self.columns(kind, noise, math.e), self.numbers)) - level
+        return math.exp((math.log(share / (1.0 - share)) - level) / slope)
+
+    def pooled(self, noise, size):
+        return sum(self.probability(kind, noise, size) for kind in self.kinds) / len(self.kinds)
+
+
+def wilson(count, of):
+    """95 % of a share."""
+    z, p = 1.96, count / of
+    middle = (p + z * z / (2 * of)) / (1 + z * z / of)
+    half = z * math.sqrt(p * (1 - p) / of + z * z / (4 * of * of)) / (1 + z * z / of)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def share(count, of):
+    low, high = wilson(count, of)
+    return f"{count} of {of}, {100 * count / of:.2f} % ({100 * low:.2f} to {100 * high:.2f})"
+
+
+def print_alarms(rows):
+    noises = sorted({row["noise"] for row in rows}, key=lambda noise: (noise != "white", noise))
+    print("| noise, no effect planted | something found | which |\n| --- | --- | --- |")
+    for noise in [*noises, "all"]:
+        own = [row for row in rows if noise in (row["noise"], "all")]
+        alarms = [row for row in own if row["found"]]
+        kinds = sorted(row["found"][0] for row in alarms)
+        named = ", ".join(f"{kind} {kinds.count(kind)}" for kind in dict.fromkeys(kinds))
+        print(f"| {noise} | {share(len(alarms), len(own))} | {named if noise == 'all' else ''} |")
+
+
+def print_sizes(rows, found, right):
+    print("\n| kind | recordings | found | right | size found in 50, 90 % | named right in 50, 90 % |\n"
+          "| --- | --- | --- | --- | --- | --- |")
+    for kind in found.kinds:
+        own = [row for row in rows if row["kind"] == kind]
+        sizes = [curves.size_at(at, kind, "white") for curves in (found, right) for at in (0.5, 0.9)]
+        print(f"| {kind} | {len(own)} | {sum(bool(row['found']) for row in own)} | {sum(row['right'] for row in own)} | "
+              f"{sizes[0]:.2f}, {sizes[1]:.2f} | {sizes[2]:.2f}, {sizes[3]:.2f} |")
+    print("\n| noise | found | right | size over that of white noise, found in 50 % | limit quoted over noise, median |\n"
+          "| --- | --- | --- | --- | --- |")
+    for noise in found.noises:
+        own = [row for row in rows if row["noise"] == noise]
+        ratio = numpy.median([found.size_at(0.5, kind, noise) / found.size_at(0.5, kind, "white")
+                              for kind in found.kinds])
+        limits = [row["limit_over_noise"] for row in own if not row["found"]]
+        print(f"| {noise} | {sum(bool(row['found']) for row in own)} of {len(own)} | {sum(row['right'] for row in own)} | "
+              f"{ratio:.2f} | {numpy.median(limits) if limits else float('nan'):.3f} |")
+
+
+def draw(path, rows, found, right):
+    """Left: something is found. Right: and it is right."""
+    colours = ("#1b6ca8", "#d1495b", "#66a182", "#edae49", "#6a4c93")
+    with tempfile.TemporaryDirectory() as holder:
+        folder = pathlib.Path(holder)
+        plots = {"found": [], "right": []}
+        for name, curves in (("found", found), ("right", right)):
+            for index, noise in enumerate(curves.noises):
+                sizes = numpy.geomspace(BINS[0], BINS[-1], 200)
+                line, points = folder / f"{name}-{noise}.line", folder / f"{name}-{noise}.points"
+                numpy.savetxt(line, [(size, 100 * curves.pooled(noise, size)) for size in sizes])
+                table = []
+                for low, high in zip(BINS[:-1], BINS[1:]):
+                    own = [row for row in rows if row["noise"] == noise and low <= row["size_over_noise"] < high]
+                    if len(own) >= 5:
+                        count = sum(bool(row["found"]) if name == "found" else row["right"] for row in own)
+                        table.append((math.sqrt(low * high), 100 * count / len(own),
+                                      *(100 * each for each in wilson(count, len(own)))))
+                look = f"lc rgb '{colours[index]}'"
+                plots[name].append(f"'{line}' with lines lw 2 {look} title '{noise.replace('_', '-')}'")
+                if table:
+                    numpy.savetxt(points, table)
+                    plots[name].append(f"'{points}' with yerrorbars pt 7 ps 0.6 {look} notitle")
+        script = folder / "power.gnuplot"
+        script.write_text("\n".join((
+            "set terminal pngcairo size 1500,640 font 'sans,13'", f"set output '{path}'", "set multiplot layout 1,2",
+            "set logscale x", f"set xrange [{BINS[0]}:{BINS[-1]}]", "set yrange [0:100]", "set grid lc rgb '#dddddd'",
+            "set xlabel 'what a linear model leaves of the effect, over the noise'", "set ylabel 'recordings [%]'",
+            "set key top left", "set title 'Something is found'", "plot " + ", ".join(plots["found"]),
+            "set title 'The right kind and channel, and nothing else'", "plot " + ", ".join(plots["right"]),
+            "unset multiplot", "")))
+        subprocess.run(["gnuplot", str(script)], check=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=8, help="recordings of each kind under each noise")
+    parser.add_argument("--none", type=int, default=400, help="recordings without an effect under each noise")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rows", type=pathlib.Path, help="rows of an earlier run, instead of a new one")
+    parser.add_argument("--keep", type=pathlib.Path, help="keeps the rows there")
+    parser.add_argument("--picture", type=pathlib.Path, help="PNG file of the curves")
+    words = parser.parse_args()
+    with tempfile.TemporaryDirectory() as holder:
+        path = words.rows or words.keep or pathlib.Path(holder) / "rows.csv"
+        if not words.rows:
+            done = subprocess.run([str(BUILD / "tests" / "power_curves"), "--out", str(path), "--count",
+                                   str(words.count), "--none", str(words.none), "--seed", str(words.seed)])
+            if done.returncode:
+                return done.returncode
+        rows = rows_of(path)
+    without = [row for row in rows if row["kind"] == "none"]
+    planted = [row for row in rows if row["kind"] != "none"]
+    seconds = [row["seconds"] for row in rows]
+    print(f"{len(rows)} recordings; a diagnosis took {numpy.median(seconds):.2f} s of one core in the median, "
+          f"{max(seconds):.1f} s at most\n")
+    if without:
+        print_alarms(without)
+    if planted:
+        found, right = Curves(planted, lambda row: bool(row["found"])), Curves(planted, lambda row: row["right"])
+        print_sizes(planted, found, right)
+        if words.picture:
+            draw(words.picture, planted, found, right)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
