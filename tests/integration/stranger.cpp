@@ -17,7 +17,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <string_view>
-#include <thread>
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
@@ -26,6 +25,7 @@
 #include "services/runtime/bus/participant.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 #include "services/runtime/process/stop.hpp"
+#include "tests/support/wait.hpp"
 
 namespace {
 
@@ -122,7 +122,8 @@ int main(int argc, char** argv) {
       push.tick(push.tick() + 1);
       if (motor != nullptr) motor->write(&push);
       if (control != nullptr) control->write(&end);
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      stillhand::support::eventually([&] { return stop.requested(); },
+                                     std::chrono::milliseconds(10));
     }
   }
   std::printf("received %ld, heard by %ld\n", received.load(), readers.load());

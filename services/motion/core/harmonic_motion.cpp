@@ -32,7 +32,7 @@ std::vector<Complex> pair_on_grid(const std::vector<Complex>& p, const std::vect
     spectrum[size - k] = 0.5 * (std::conj(p[i]) + j * std::conj(q[i]));
   }
   std::vector<Complex> grid;
-  transform().inv(grid, spectrum);
+  transform(size).inv(grid, spectrum);
   return grid;
 }
 

@@ -38,7 +38,7 @@ void take_phases(MotionSpectrum& spectrum, const MotionGrid& grid, const PeakBou
                   clip_change(grid.position_m[i], clip.position_m)};
   }
   std::vector<Complex> lines;
-  transform().fwd(lines, changes);
+  transform(size).fwd(lines, changes);
   const double per_point = 2.0 / static_cast<double>(size);
   for (std::size_t i = 0; i < spectrum.accel_m_s2.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(spectrum.first) + i;

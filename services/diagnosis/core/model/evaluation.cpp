@@ -222,9 +222,12 @@ Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals) {
 
 namespace {
 
+using Filter = void (*)(std::span<const double> x, const std::vector<double>& denominator,
+                        double* y);
+
 // The newest sample comes last in the sum: the next one waits for that product alone.
 template <std::size_t P>
-void filter(std::span<const double> x, const double* denominator, double* y) {
+void filter(std::span<const double> x, const std::vector<double>& denominator, double* y) {
   std::array<double, P> past{};
   for (std::size_t n = 0; n < x.size(); ++n) {
     double sum = x[n];
@@ -247,32 +250,24 @@ void filter_of_any_order(std::span<const double> x, const std::vector<double>& d
   }
 }
 
+Filter filter_of(std::size_t order) {
+  constexpr std::array<Filter, 7> kOfOrder{nullptr,   nullptr, filter<2>, filter<3>,
+                                           filter<4>, nullptr, filter<6>};
+  const Filter own = order < kOfOrder.size() ? kOfOrder[order] : nullptr;
+  return own != nullptr ? own : filter_of_any_order;
+}
+
 }  // namespace
 
 std::vector<double> through_poles(const std::vector<double>& x,
                                   const std::vector<double>& denominator,
                                   const std::vector<Stretch>& stretches) {
-  if (denominator.size() == 1) return x;
+  const std::size_t order = denominator.size() - 1;
+  if (order == 0) return x;
   std::vector<double> y(x.size());
   for (const Stretch& stretch : stretches) {
-    const std::span in(&x[stretch.first], stretch.end - stretch.first);
-    double* out = &y[stretch.first];
-    switch (denominator.size() - 1) {
-      case 2:
-        filter<2>(in, denominator.data(), out);
-        break;
-      case 3:
-        filter<3>(in, denominator.data(), out);
-        break;
-      case 4:
-        filter<4>(in, denominator.data(), out);
-        break;
-      case 6:
-        filter<6>(in, denominator.data(), out);
-        break;
-      default:
-        filter_of_any_order(in, denominator, out);
-    }
+    filter_of(order)(std::span(x).subspan(stretch.first, stretch.end - stretch.first), denominator,
+                     y.data() + stretch.first);
   }
   return y;
 }

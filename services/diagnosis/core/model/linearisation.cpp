@@ -145,7 +145,7 @@ struct Moved {
 };
 
 // The step is a millionth of the number, or of its neighbours' size.  Without a change: pinned.
-Moved move(const Eigen::VectorXd& numbers, Eigen::Index i, Model& model) {
+Moved with_one_moved(const Eigen::VectorXd& numbers, Eigen::Index i, Model& model) {
   double size = std::abs(numbers[i]);
   for (Eigen::Index j = std::max<Eigen::Index>(i - 1, 0); j <= std::min(i + 1, numbers.size() - 1);
        ++j) {
@@ -187,7 +187,7 @@ void write_difference_columns(const Model& model, const Signals& signals, const 
   for (Eigen::Index i = 0; i < numbers.size(); ++i) {
     if (!which[static_cast<std::size_t>(i)]) continue;
     Model other = model;
-    const Moved moved = move(numbers, i, other);
+    const Moved moved = with_one_moved(numbers, i, other);
     if (moved.change == 0.0) continue;  // pinned: the column stays 0
     models.push_back(std::move(other));
     columns.push_back(moved);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies with a nonlinearity that run side by side.
+#include "services/diagnosis/core/model/loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include "services/diagnosis/core/model/model_run.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr std::size_t kCount = 3000;
+
+// A y = B u + q^-1 e_0 phi(y / threshold)
+Model looped(const char* kind, const char* form, double threshold, double e0) {
+  return made::model_of(made::two_pole_body(),
+                        {{kind, form, {}, {{"threshold", "N", threshold, 1e-3, 1e3}}, {e0, 0.0}}});
+}
+
+// Bit for bit.
+void expect_each_as_alone(const std::vector<Model>& models) {
+  const Signals signals(
+      made::measurement_of({{"u", "V", made::ride(kCount, 1)}, {"y", "N", made::white(kCount, 2)}}),
+      {"u"}, "y");
+  std::vector<ModelRun> together(models.size());
+  run_all(models, signals, together);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    ModelRun alone;
+    run_all(models[i], signals, alone);
+    EXPECT_EQ(together[i].free.finite, alone.free.finite) << i;
+    EXPECT_EQ(together[i].free.body, alone.free.body) << i;
+    EXPECT_EQ(together[i].body_before, alone.body_before) << i;
+  }
+}
+
+// The fifth runs alone.
+TEST(LoopTest, FourSideBySideAreAsEachAlone) {
+  static_assert(kLoopLanes == 4);
+  std::vector<Model> models;
+  for (const double threshold : {0.5, 1.0, 1.5, 2.0, 2.5}) {
+    models.push_back(looped("hysteresis", "elastic-plastic of the output", threshold, 0.005));
+  }
+  expect_each_as_alone(models);
+}
+
+// What one leaves behind does not reach the others.
+TEST(LoopTest, OneThatRunsAwayLeavesTheOthersAlone) {
+  std::vector<Model> models;
+  for (const double e0 : {-1e-6, 5.0, 1e-6}) {
+    models.push_back(looped("nonlinear_stiffness", "cubic of the output", 0.7, e0));
+  }
+  const Signals signals(
+      made::measurement_of({{"u", "V", made::ride(kCount, 1)}, {"y", "N", made::white(kCount, 2)}}),
+      {"u"}, "y");
+  ASSERT_TRUE(free_run(models[0], signals).finite);
+  ASSERT_FALSE(free_run(models[1], signals).finite);
+  expect_each_as_alone(models);
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
