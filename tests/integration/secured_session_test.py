@@ -4,6 +4,7 @@
 The stranger receives nothing and nobody hears it. Keys with a fault are refused before anything starts. With
 `--campaign` the results are compared with those of a session without keys, on one machine and over three (network.py).
 """
+import math
 import os
 import re
 import shutil
@@ -17,16 +18,16 @@ MAKE = SOURCE / "deploy" / "security" / "make.sh"
 STRANGER = BUILD / "tests" / "stranger"
 SESSION_LIMIT_S = 150
 WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "--seed", 2]
-MOST_LOST_TICKS = 400  # of 175,000; with many more, less is cancelled, with keys or without
 # A secured session takes nearly all of two cores. One that falls behind ends by the interlock, as it should, and is
-# tried again, once. Alone on two cores seven of seven sessions were completed (deploy/security/README.md), so that a
-# single session fails in less than 35 % of the cases (at 95 % confidence): the second try hides a failure rate up to
-# that.
+# tried again. Alone on two cores seven of seven sessions were completed (deploy/security/README.md), so that a single
+# session fails in less than 35 % of the cases (at 95 % confidence): the second try hides a failure rate up to that.
 TRIES = 2
 LATE = "a process is missing|ticks of the pegged trial were lost"
-# In one process 0.664 to 0.742 with eight lengths of the ramps: the involuntary force goes on over the trials, and 10 s
-# identify the hand less well than 40 s.
-CANCELLED_SHARE, CANCELLED_TOLERANCE = 0.70, 0.06
+# Lost ticks cost cancellation, with keys or without. Nine completed sessions on two cores, idle and next to busy
+# processes: a share of 0.69 to 0.71 with 180 to 500 ticks lost, 0.60 with 960, 0.57 with 2,280. So a slow machine passes,
+# a motor that does nothing (a share of 0) fails; lab_session_test.py asks for the share itself.
+LEAST_CANCELLED_SHARE = 0.5
+MOST_LOST_TICKS = 400  # of 175,000, in a session that is compared with another one
 
 
 def make_keys(folder, *options):
@@ -40,22 +41,22 @@ class SecuredSessionTest(LabTestCase):
         super().setUp()
         self.keys = make_keys(self.folder / "keys")
 
-    def why_late(self, lab):
+    def why_late(self, lab, most_lost_ticks):
         """Why an ended session is tried again, or "" for one that was completed in time; fails for any other end."""
         if lab.end_status() == 0:
             lost = sum(lab.summary()["lost_ticks"].values())
-            return f"{lost} ticks lost, at most {MOST_LOST_TICKS} are allowed" if lost > MOST_LOST_TICKS else ""
+            return f"{lost} ticks lost, at most {most_lost_ticks} are allowed" if lost > most_lost_ticks else ""
         # The sample clock starts when every endpoint has matched. With ticks in the recording, the session was late;
         # without, its processes did not authenticate each other.
         self.assertNotEqual(lab.recording(1)["rig"]["tick"], [], lab.errors())
         self.assertRegex(" ".join(lab.errors()), LATE)
         return " ".join(lab.errors())
 
-    def completed(self, name, one_session):
+    def completed(self, name, one_session, most_lost_ticks=MOST_LOST_TICKS):
         """Results of the first session that is completed in time, and what else one_session(name of it) returns."""
         for attempt in range(1, TRIES + 1):
             lab, more = one_session(f"{name}{attempt}")
-            late = self.why_late(lab)
+            late = self.why_late(lab, most_lost_ticks)
             if not late:
                 break
             print(f"{name}, try {attempt} of {TRIES}: {late}", flush=True)
@@ -67,8 +68,11 @@ class SecuredSessionTest(LabTestCase):
               lab.summary()["lost_ticks"], flush=True)
         return found, more
 
-    def next_to_a_stranger(self, name, stranger_does, *words):
-        """A whole session's results; how much a stranger next to it received, and how many readers it had."""
+    def next_to_a_stranger(self, name, stranger_does, *words, **limit):
+        """A whole session's results; how much a stranger next to it received, and how many readers it had.
+
+        With keys, a stranger next to a session that is late receives nothing and has no reader either.
+        """
         def one_session(each):
             domain = next_domain()
             stranger = subprocess.Popen([str(STRANGER), str(domain), stranger_does], stdout=subprocess.PIPE, text=True)
@@ -78,8 +82,11 @@ class SecuredSessionTest(LabTestCase):
             lab = self.lab(*WORDS, *words, domain=domain, out=self.folder / each)
             lab.end_status(SESSION_LIMIT_S)
             stranger.terminate()
-            return lab, [int(number) for number in re.findall(r"\d+", stranger.stdout.read())]
-        return self.completed(name, one_session)
+            received, heard_by = (int(number) for number in re.findall(r"\d+", stranger.stdout.read()))
+            if "--security" in words:
+                self.assertEqual((received, heard_by), (0, 0), each)
+            return lab, received
+        return self.completed(name, one_session, **limit)
 
     def over_three_machines(self, lab_network, out):
         domain = next_domain()
@@ -94,17 +101,15 @@ class SecuredSessionTest(LabTestCase):
         self.assertAlmostEqual(found[1], plain[1], delta=0.08)
 
     def test_a_stranger_hears_and_moves_nothing(self):
-        (_, share), (received, heard_by) = self.next_to_a_stranger("secured", "writes", "--security", self.keys)
-        self.assertEqual((received, heard_by), (0, 0))
-        self.assertAlmostEqual(share, CANCELLED_SHARE, delta=CANCELLED_TOLERANCE)
+        (_, share), _ = self.next_to_a_stranger("secured", "writes", "--security", self.keys, most_lost_ticks=math.inf)
+        self.assertGreater(share, LEAST_CANCELLED_SHARE)
 
     @campaign
     def test_the_results_are_those_without_keys(self):
         # Without keys the same program receives: the keys are the reason that it receives nothing with them.
-        plain, (received, _) = self.next_to_a_stranger("plain", "reads")
+        plain, received = self.next_to_a_stranger("plain", "reads")
         self.assertGreater(received, 20_000)
-        secured, (received, heard_by) = self.next_to_a_stranger("secured", "writes", "--security", self.keys)
-        self.assertEqual((received, heard_by), (0, 0))
+        secured, _ = self.next_to_a_stranger("secured", "writes", "--security", self.keys)
         self.assert_same(secured, plain)
         with self.subTest("over three machines, each with the keys of its own services"):
             if reason := network.why_not():
