@@ -24,7 +24,7 @@ deploy/build.sh tests
 tests() {
   local tree=$1
   shift
-  ctest --test-dir "$tree" --output-on-failure --timeout 900 -j 3 "$@"
+  ctest --test-dir "$tree" --output-on-failure --timeout 1200 -j 3 "$@"
 }
 
 if [ -z "$all" ]; then

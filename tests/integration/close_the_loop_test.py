@@ -23,7 +23,7 @@ METRICS = ("rms_error", "dwell_ratio", "crossover")
 
 def close_the_loop(*arguments, **options):
     return subprocess.run([STILLHAND, "close-the-loop", *map(str, arguments)], capture_output=True, text=True,
-                          timeout=240, **options)
+                          timeout=600, **options)
 
 
 class CloseTheLoopTest(unittest.TestCase):

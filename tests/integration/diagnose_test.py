@@ -18,7 +18,7 @@ PLANTED = lab_process.BUILD / "tests" / "planted_recordings"
 
 
 def stillhand(*arguments):
-    return subprocess.run([STILLHAND, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run([STILLHAND, *map(str, arguments)], capture_output=True, text=True, timeout=600)
 
 
 def columns(path):

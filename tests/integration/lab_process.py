@@ -251,6 +251,23 @@ def run_cases():
     sys.exit(1 if not result.wasSuccessful() else CTEST_SKIPPED if result.skipped else 0)
 
 
+class ProcessorTime:
+    """How busy all processors are from now on: 1 is no rest. Another virtual machine's share counts as busy."""
+
+    def __init__(self):
+        self._idle, self._all = self._ticks()
+
+    def busy_share(self):
+        idle, total = self._ticks()
+        return 1.0 - (idle - self._idle) / max(total - self._all, 1)
+
+    @staticmethod
+    def _ticks():
+        # proc(5), /proc/stat, first line: user nice system idle iowait irq softirq steal, and guests, who count as users.
+        ticks = [int(word) for word in pathlib.Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9]]
+        return ticks[3] + ticks[4], sum(ticks)
+
+
 def skip(reason):
     """Ends the program: ctest reports it as skipped."""
     print("skipped:", reason)

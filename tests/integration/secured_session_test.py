@@ -23,6 +23,9 @@ WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "
 # session fails in less than 35 % of the cases (at 95 % confidence): the second try hides a failure rate up to that.
 TRIES = 2
 LATE = "a process is missing|ticks of the pegged trial were lost"
+# A machine whose processors have no rest during the last try is too slow for the session: skipped. One that is late with
+# processors at rest fails.
+NO_REST = 0.9
 # Lost ticks cost cancellation, with keys or without. Nine completed sessions on two cores, idle and next to busy
 # processes: a share of 0.69 to 0.71 with 180 to 500 ticks lost, 0.60 with 960, 0.57 with 2,280. So a slow machine passes,
 # a motor that does nothing (a share of 0) fails; lab_session_test.py asks for the share itself.
@@ -55,11 +58,15 @@ class SecuredSessionTest(LabTestCase):
     def completed(self, name, one_session, most_lost_ticks=MOST_LOST_TICKS):
         """Results of the first session that is completed in time, and what else one_session(name of it) returns."""
         for attempt in range(1, TRIES + 1):
+            processors = lab_process.ProcessorTime()
             lab, more = one_session(f"{name}{attempt}")
+            busy = processors.busy_share()
             late = self.why_late(lab, most_lost_ticks)
+            print(f"{name}, try {attempt} of {TRIES}: processors busy {100 * busy:.0f} %; {late or 'in time'}", flush=True)
             if not late:
                 break
-            print(f"{name}, try {attempt} of {TRIES}: {late}", flush=True)
+        if late and busy > NO_REST:
+            self.skipTest(f"{name}: this machine is too slow for it: {late}; processors busy {100 * busy:.0f} %")
         self.assertEqual(late, "", f"{name}: none of {TRIES} sessions was in time")
         self.assertEqual(lab.recording(1)["damage"], [])
         result = lab.summary()["conditions"]["C"]

@@ -16,11 +16,12 @@ import lab_process
 from lab_process import wait_for
 
 STILLHAND = str(lab_process.STILLHAND)
+END_LIMIT_S = 1000  # a guard against a program that hangs
 SHORT = ["--subjects", "3", "--trial-seconds", "40", "--identify-seconds", "20", "--seed", "5"]
 
 
 def study(*arguments, **options):
-    return subprocess.run([STILLHAND, "study", *arguments], capture_output=True, text=True, timeout=120, **options)
+    return subprocess.run([STILLHAND, "study", *arguments], capture_output=True, text=True, timeout=END_LIMIT_S, **options)
 
 
 class Tags(html.parser.HTMLParser):
@@ -49,7 +50,7 @@ class StudyTest(unittest.TestCase):
     def test_explain_paper_ranks_every_cause_and_pair(self):
         out = self.folder / "why"
         run = subprocess.run([STILLHAND, "study", "--explain-paper", *self.BRIEF, "--out", str(out)],
-                             capture_output=True, text=True, timeout=280)
+                             capture_output=True, text=True, timeout=END_LIMIT_S)
         self.assertEqual(run.returncode, 0, run.stderr)
         found = json.loads((out / "explanation.json").read_text())
         names = [cause["name"] for cause in found["causes"]]
@@ -240,7 +241,7 @@ class StudyTest(unittest.TestCase):
     def test_an_output_that_cannot_be_written_is_told(self):
         with open("/dev/full", "w") as full:
             run = subprocess.run([STILLHAND, "study", *SHORT, "--out", str(self.folder / "study")], stdout=full,
-                                 stderr=subprocess.PIPE, text=True, timeout=120)
+                                 stderr=subprocess.PIPE, text=True, timeout=END_LIMIT_S)
         self.assertEqual(run.returncode, 1)
         self.assertIn("standard output", run.stderr)
 
