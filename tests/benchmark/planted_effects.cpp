@@ -152,6 +152,7 @@ double percent(std::size_t part, std::size_t whole) {
 void print_singles(const char* what, const std::vector<Case>& cases) {
   const Tally all = tally(cases);
   std::vector<double> left;
+  left.reserve(cases.size());
   for (const Case& each : cases) left.push_back(each.left_over_noise);
   const auto within = static_cast<std::size_t>(
       std::ranges::count_if(left, [](double ratio) { return ratio <= 1.2; }));
@@ -275,7 +276,7 @@ int run(const Selection& selection) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"Confusion matrix of the residual engine over recordings with planted effects"};
   bool tenth = false;
   bool few = false;
@@ -287,12 +288,10 @@ int main(int argc, char** argv) {
                  "each, 2 none, 3 two, 4 one at 5 %")
       ->expected(2);
   CLI11_PARSE(app, argc, argv);
-  try {
-    if (only.empty()) return run(few ? kShort : tenth ? kTenth : kWhole);
-    print_one(only[0], only[1]);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "planted_effects: %s\n", error.what());
-    return 2;
-  }
+  if (only.empty()) return run(few ? kShort : tenth ? kTenth : kWhole);
+  print_one(only[0], only[1]);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "planted_effects: %s\n", error.what());
+  return 2;
 }

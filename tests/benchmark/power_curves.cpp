@@ -107,7 +107,7 @@ void write_all(const std::vector<Case>& cases, std::FILE* file) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"Effects of any size under five noises, and what the residual engine says of them"};
   std::string out;
   std::size_t count = 8;
@@ -132,4 +132,7 @@ int main(int argc, char** argv) {
   write_all(cases_of(count, none, seed), file);
   std::fclose(file);
   return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "power_curves: %s\n", error.what());
+  return 2;
 }
