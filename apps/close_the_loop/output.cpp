@@ -157,7 +157,9 @@ Truth truth_of(const std::string& sealed_text) {
   truth.place = json.at("place");
   for (const auto& [name, value] : json.at("parameters").items()) {
     const std::string unit = value.at("unit");
+    // Of the drive, which is static, there is only the whole force.
     if (name == "force_rms") truth.force_n = value.at("value");
+    if (name == "force_beyond_linear") truth.beyond_linear_n = value.at("value");
     truth.numbers += (truth.numbers.empty() ? "" : ", ") + name + " " +
                      report::short_number(value.at("value")) + (unit == "-" ? "" : " " + unit);
   }
@@ -172,7 +174,7 @@ bool Truth::outside() const {
 
 bool Truth::agrees_with(const Verdict& verdict) const {
   if (outside()) {
-    const bool small = force_n < detectable_n(verdict, place == kDrive);
+    const bool small = beyond_linear_n.value_or(force_n) < detectable_n(verdict, place == kDrive);
     const std::string conclusion = verdict.conclusion();
     const bool shape = std::ranges::any_of(diagnosis::effect_kinds(), [&](const auto* each) {
       return each->any_shape() && each->name() == verdict.kind();
@@ -226,6 +228,8 @@ std::string summary_json(const LoopRecord& record) {
                         {"verdict_right", record.right()}};
     if (record.truth->outside()) {
       summary["truth"]["force_rms_n"] = record.truth->force_n;
+      summary["truth"]["force_beyond_linear_n"] =
+          record.truth->beyond_linear_n.value_or(record.truth->force_n);
       summary["truth"]["detectable_n"] =
           detectable_n(result.verdict(), record.truth->place == kDrive);
     }

@@ -20,13 +20,15 @@ struct Truth {
   std::string kind;
   std::string channel;
   std::string place;
-  std::string numbers;   ///< as one line for people
-  double force_n = 0.0;  ///< RMS force of an effect outside of the kinds
+  std::string numbers;                    ///< as one line for people
+  double force_n = 0.0;                   ///< RMS force of an effect outside of the kinds
+  std::optional<double> beyond_linear_n;  ///< RMS of what no linear model explains of it, Eq. RG-37
 
   /// Whether a kind of the diagnosis describes it.
   [[nodiscard]] bool outside() const;
   /// Kind, channel and place of the strongest finding; without an effect, no finding; outside of
-  /// the kinds, "unexplained residual", or "nothing missing" below detectable_n().
+  /// the kinds, "unexplained residual", or "nothing missing" if what no linear model explains is
+  /// below detectable_n().
   [[nodiscard]] bool agrees_with(const Verdict& verdict) const;
 };
 /// Reads undeclared_effect.json.

@@ -4,8 +4,8 @@
 
 Half a minute of processor time a seed:  tests/benchmark/close_the_loop.py build/bin/stillhand [--out DIR]
 A seed whose summary is in DIR already is not run again. Seeds without an effect are among them; a verdict that names
-one there is a false alarm. Further rows have effects that no kind of the diagnosis describes, with their RMS force and
-that from which on a verdict can name an effect.
+one there is a false alarm. Further rows have effects that no kind of the diagnosis describes, with their RMS force, what
+of it no linear model explains, and the RMS force from which on a verdict can name an effect.
 """
 import argparse
 import json
@@ -30,7 +30,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("stillhand", type=pathlib.Path)
     parser.add_argument("--seeds", type=seeds, default=seeds("201-240"), help="first-last of the undeclared effects")
-    parser.add_argument("--off-catalogue", type=seeds, default=seeds("1-10"), help="the same, outside of the kinds")
+    parser.add_argument("--off-catalogue", type=seeds, default=seeds("1-24"), help="the same, outside of the kinds")
     parser.add_argument("--seed-offset", type=int, default=1000, help="session's seed: this and the effect's")
     parser.add_argument("--out", type=pathlib.Path, help="keeps every run's folder there")
     parser.add_argument("arguments", nargs="*", help="further ones of the verb, behind --")
@@ -79,7 +79,8 @@ def row(seed, summary):
 
     def of_each(measure, decimals):
         return ", ".join(f"{mean(summary, c, measure):.{decimals}f}" for c in CANCELLING)
-    size = f"{truth['force_rms_n']:.3f} N of {truth['detectable_n']:.3f}" if "force_rms_n" in truth else ""
+    size = (f"{truth['force_rms_n']:.2f} N, {truth['force_beyond_linear_n']:.2f} not linear, of {truth['detectable_n']:.2f}"
+            if "force_rms_n" in truth else "")
     cells = [seed, named(truth["kind"], truth["channel"], truth["place"], size), found,
              "yes" if truth["verdict_right"] else "**no**",
              f"{mean(summary, 'A', 'rms_error_mm'):.1f}, {mean(summary, 'B', 'rms_error_mm'):.1f}"]

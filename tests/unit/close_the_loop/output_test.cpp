@@ -165,7 +165,7 @@ TEST(OutputTest, AVerdictIsRightWhenItNamesKindChannelAndPlace) {
   EXPECT_TRUE(summary_of(sut)["truth"].is_null());
   Finding& strongest = sut.result.rounds[0].verdict.findings[0];
   strongest.where = kDrive;
-  sut.truth = Truth{"tone", "omega", "drive", "", 0.0};
+  sut.truth = Truth{"tone", "omega", "drive", "", 0.0, {}};
   EXPECT_FALSE(sut.right()) << "another kind";
   sut.truth->kind = "coulomb_friction";
   EXPECT_TRUE(sut.right());
@@ -185,7 +185,7 @@ TEST(OutputTest, AVerdictIsRightWhenItNamesKindChannelAndPlace) {
 // A fall of the error by a fifth: sqrt(1/0.8^2 - 1) = 0.75 of the noise floor, here 0.5 N.
 TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
   LoopRecord sut = made();
-  sut.truth = Truth{"delayed_reflex", "", "shoulder", "", 1.0};
+  sut.truth = Truth{"delayed_reflex", "", "shoulder", "", 1.0, {}};
   EXPECT_FALSE(sut.right()) << "a kind of the catalogue is named";
   const std::string named = sut.result.rounds[0].verdict.findings[0].kind;
   sut.result.rounds[0].verdict.findings[0].kind = "free_form";
@@ -196,15 +196,20 @@ TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
   EXPECT_FALSE(sut.right()) << "large enough to be seen";
   sut.truth->force_n = 0.374;
   EXPECT_TRUE(sut.right());
+  sut.truth->beyond_linear_n = 0.376;
+  EXPECT_FALSE(sut.right());
+  sut.truth->force_n = 3.0;
+  sut.truth->beyond_linear_n = 0.3;
+  EXPECT_TRUE(sut.right()) << "a linear model contains the rest";
   sut.truth->place = "drive";
   EXPECT_FALSE(sut.right()) << "0.2 N are enough in the drive";
-  EXPECT_FALSE((Truth{"tone", "", "hand", "", 0.0}).outside());
-  EXPECT_FALSE((Truth{"none", "", "", "", 0.0}).outside());
+  EXPECT_FALSE((Truth{"tone", "", "hand", "", 0.0, {}}).outside());
+  EXPECT_FALSE((Truth{"none", "", "", "", 0.0, {}}).outside());
 }
 
 TEST(OutputTest, WithoutAnEffectEveryFindingIsAFalseAlarm) {
   LoopRecord sut = made();
-  sut.truth = Truth{"none", "", "", "", 0.0};
+  sut.truth = Truth{"none", "", "", "", 0.0, {}};
   EXPECT_FALSE(sut.right());
   sut.result.rounds[0].verdict.findings.clear();
   EXPECT_TRUE(sut.right());
@@ -216,13 +221,17 @@ TEST(OutputTest, TheSealedTextIsReadBack) {
   effect.kind = "dead_zone";
   effect.channel = "theta";
   effect.place = "stick";
-  effect.parameters = {{"half_width", "m", 0.25}, {"ratio", "-", 3.0}, {"force_rms", "N", 0.5}};
+  effect.parameters = {{"half_width", "m", 0.25},
+                       {"ratio", "-", 3.0},
+                       {"force_rms", "N", 0.5},
+                       {"force_beyond_linear", "N", 0.2}};
   const Truth sut = truth_of(rig::sealed_text(effect, "00ff"));
   EXPECT_EQ(sut.kind, "dead_zone");
   EXPECT_EQ(sut.channel, "theta");
   EXPECT_EQ(sut.place, "stick");
-  EXPECT_EQ(sut.numbers, "force_rms 0.5 N, half_width 0.25 m, ratio 3");
+  EXPECT_EQ(sut.numbers, "force_beyond_linear 0.2 N, force_rms 0.5 N, half_width 0.25 m, ratio 3");
   EXPECT_EQ(sut.force_n, 0.5);
+  EXPECT_EQ(sut.beyond_linear_n, 0.2);
   const Truth none = truth_of(rig::sealed_text({}, "00ff"));
   EXPECT_EQ(none.kind, "none");
   EXPECT_EQ(none.channel, "");

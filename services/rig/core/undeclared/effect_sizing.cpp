@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/rig/core/undeclared/effect_sizing.hpp"
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <complex>
 
@@ -14,6 +15,11 @@ namespace {
 
 constexpr std::size_t kSettle = 1000;
 constexpr std::size_t kTicks = 40000;
+// Eq. RG-37 [ticks]: an impulse response of 2 s, a sample every 40 ms; the force every 20 ms.
+constexpr std::size_t kResponse = 2000;
+constexpr std::size_t kBetweenTaps = 40;
+constexpr std::size_t kTaps = kResponse / kBetweenTaps;
+constexpr std::size_t kEvery = 20;
 // An arbitrary seed; the size of every effect refers to the same motion.
 constexpr std::uint64_t kMotionSeed = 1;
 constexpr std::uint64_t kMotionStream = 0x66610003;
@@ -54,6 +60,23 @@ double PeggedTrial::share(const std::vector<double>& with_n) const {
     sum += (with_n[n] - plain_n_[n]) * (with_n[n] - plain_n_[n]);
   }
   return std::sqrt(sum / static_cast<double>(with_n.size())) / plain_rms_n_;
+}
+
+double PeggedTrial::beyond_linear_n(const std::vector<double>& with_n) const {
+  const auto rows = static_cast<Eigen::Index>((with_n.size() - kResponse) / kEvery);
+  Eigen::MatrixXd motion(rows, static_cast<Eigen::Index>(kTaps));
+  Eigen::VectorXd force(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const std::size_t now = kResponse + static_cast<std::size_t>(row) * kEvery;
+    force[row] = with_n[now];
+    for (std::size_t tap = 0; tap < kTaps; ++tap) {
+      motion(row, static_cast<Eigen::Index>(tap)) =
+          motion_m_s2_[kSettle + now - tap * kBetweenTaps];
+    }
+  }
+  const Eigen::VectorXd response = motion.colPivHouseholderQr().solve(force);
+  const double free = static_cast<double>(rows) - static_cast<double>(kTaps);
+  return std::sqrt((force - motion * response).squaredNorm() / free);
 }
 
 double sized(double low, double high, double wanted, const std::function<double(double)>& share) {

@@ -26,6 +26,8 @@ class PeggedTrial {
   /// Eq. RG-12: RMS(f_with - f_without) / RMS(f_without).
   [[nodiscard]] double share(const std::vector<double>& with_n) const;
   [[nodiscard]] double share(const ChainEffect& effect) const { return share(force_n(effect)); }
+  /// Eq. RG-37: RMS [N] of what no linear model of the motion explains of a force.
+  [[nodiscard]] double beyond_linear_n(const std::vector<double>& with_n) const;
 
  private:
   BodyConfig body_;
