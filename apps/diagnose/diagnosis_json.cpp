@@ -107,6 +107,10 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const diagnosis::NoiseEstimate& each : diagnosis.noise_floor.estimates) {
     estimates[each.name] = each.rmse;
   }
+  ordered_json limits = ordered_json::object();
+  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
+    if (!kind->any_shape()) limits[std::string(kind->name())] = diagnosis.detection_limit_of(*kind);
+  }
   const ordered_json json{{"input", inputs_of(diagnosis)},
                           {"output", diagnosis.options.output},
                           {"output_unit", diagnosis.output_unit},
@@ -119,6 +123,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                             {"method", diagnosis.noise_floor.method},
                             {"estimates", estimates}}},
                           {"detection_limit", diagnosis.detection_limit},
+                          {"detection_limits", limits},
                           {"verdict", diagnosis.verdict()},
                           {"effects", effects},
                           {"final",

@@ -140,7 +140,8 @@ def draw(path, rows, found, right):
                     own = [row for row in rows if row["noise"] == noise and low <= row["size_over_noise"] < high]
                     if len(own) >= 5:
                         count = sum(bool(row["found"]) if name == "found" else row["right"] for row in own)
-                        table.append((math.sqrt(low * high), 100 * count / len(own),
+                        apart = 1.0 + 0.05 * (index - 2)  # the noises next to each other
+                        table.append((apart * math.sqrt(low * high), 100 * count / len(own),
                                       *(100 * each for each in wilson(count, len(own)))))
                 look = f"lc rgb '{colours[index]}'"
                 plots[name].append(f"'{line}' with lines lw 2 {look} title '{noise.replace('_', '-')}'")

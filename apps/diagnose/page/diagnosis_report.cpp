@@ -115,6 +115,7 @@ void add_remainder(Page& page, const Diagnosis& found,
     add_figure(page, drawings, name);
   }
   page.table(detection_table(found));
+  page.table(limit_table(found));
 }
 
 void add_search(Page& page, const Evidence& evidence) {

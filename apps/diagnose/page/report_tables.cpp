@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "apps/diagnose/page/effect_numbers.hpp"
@@ -198,6 +199,27 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         tried_table(found, {found.search.last_current, last, last.size(), {}}, caption));
   }
   return tables;
+}
+
+Table limit_table(const Diagnosis& found) {
+  Table table;
+  table.caption =
+      "What would not have been seen: an effect of that kind is found as often as not if it adds "
+      "this much to the output (RMS) that the linear part cannot imitate, all the time; a smaller "
+      "one may be there.";
+  table.header = {"found as often as not from", "kinds"};
+  table.align = {Align::kLeft, Align::kLeft};
+  std::map<double, std::vector<std::string>> kinds;
+  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
+    if (kind->any_shape()) continue;
+    std::string name(kind->name());
+    std::ranges::replace(name, '_', ' ');
+    kinds[found.detection_limit_of(*kind)].push_back(name);
+  }
+  for (const auto& [limit, names] : kinds) {
+    table.rows.push_back({Cell(shown(limit, found.output_unit), Emphasis::kStrong), listed(names)});
+  }
+  return table;
 }
 
 Table detection_table(const Diagnosis& found) {

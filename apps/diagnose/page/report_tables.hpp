@@ -18,6 +18,8 @@ report::Table parameter_table(const Evidence& evidence);
 std::vector<report::Table> tried_tables(const Evidence& evidence);
 /// The fifteen questions with the largest shares, before and after.
 report::Table detection_table(const diagnosis::Diagnosis& found);
+/// Sizes from which a further effect is found as often as not, the kinds in a row for each size.
+report::Table limit_table(const diagnosis::Diagnosis& found);
 
 /// Names of the kinds that were proposed in no step, separated by commas; empty: none.
 std::string never_proposed(const diagnosis::Diagnosis& found);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/report/text.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -45,6 +46,14 @@ std::string error_in_words(const Diagnosis& diagnosis) {
          " (95 %: " + interval(diagnosis.final_error.low, diagnosis.final_error.high) +
          "); the noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ")";
+}
+
+double largest_limit(const Diagnosis& diagnosis) {
+  double largest = 0.0;
+  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
+    largest = std::max(largest, diagnosis.detection_limit_of(*kind));
+  }
+  return largest;
 }
 
 }  // namespace
@@ -147,9 +156,10 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   return "Nothing missing: no effect reduces the error of " + model +
          " by more than chance does. How sure: an effect that adds " +
          shown(diagnosis.detection_limit, diagnosis.output_unit) +
-         " RMS that a linear model cannot imitate is found as often as not; a smaller one may be "
-         "there. What is left: " +
-         left + ", which depends on none of the quantities that were tested.";
+         " RMS that a linear model cannot imitate is found as often as not, some kinds from " +
+         shown(largest_limit(diagnosis), diagnosis.output_unit) +
+         " on; a smaller one may be there. What is left: " + left +
+         ", which depends on none of the quantities that were tested.";
 }
 
 }  // namespace stillhand::diagnose

@@ -10,6 +10,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/detection/detection_limit.hpp"
+#include "services/diagnosis/core/fitting/noise_model.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 
 namespace stillhand::diagnosis {
@@ -204,15 +205,36 @@ void note_left_out(Diagnosis& diagnosis) {
   }
 }
 
+// RMS behind the noise model over RMS before it, of what the model predicts about its mean: an
+// effect is taken to lie in the band of the response.
+double response_gain(const FreeRun& run, const Signals& whitened) {
+  Eigen::MatrixXd response =
+      Eigen::Map<const Eigen::VectorXd>(run.prediction.data(), std::ssize(run.prediction));
+  const Eigen::Map<const Eigen::VectorXd> weight(run.weight.data(), std::ssize(run.weight));
+  response.array() -= response.col(0).dot(weight) / std::max(weight.sum(), 1.0);
+  response.array() *= weight.array();
+  const double before = response.norm();
+  whitened.whiten(response, run.weight);
+  return before > 0.0 ? response.norm() / before : 1.0;
+}
+
 double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
   FreeRun run;
-  const Eigen::VectorXd residual = residual_of(diagnosis.model, signals, run);
+  Eigen::VectorXd residual = residual_of(diagnosis.model, signals, run);
+  double gain = 1.0;
+  const Signals whitened =
+      signals.whitened(run.finite ? whitening_taps(residual, signals) : std::vector<double>());
+  if (whitened.is_whitened()) {
+    gain = response_gain(run, whitened);
+    residual = residual_of(diagnosis.model, whitened, run);
+  }
   return detection_limit(
-      {.rmse = diagnosis.final_error.rmse,
-       .independent = sum_of(run.weight) / correlation_samples(residual, signals.rate_hz()),
-       .blocks = blocks.count,
-       .candidates = diagnosis.search.last_tried.size()},
-      diagnosis.options.search);
+             {.rmse = diagnosis.final_error.rmse,
+              .independent = sum_of(run.weight) / correlation_samples(residual, signals.rate_hz()),
+              .blocks = blocks.count,
+              .candidates = diagnosis.search.last_tried.size()},
+             diagnosis.options.search) /
+         gain;
 }
 
 }  // namespace
@@ -220,6 +242,10 @@ double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks
 std::string Diagnosis::verdict() const {
   if (!effects.empty()) return "effects found";
   return unexplained ? "unexplained residual" : "nothing missing";
+}
+
+double Diagnosis::detection_limit_of(const EffectKind& kind) const {
+  return detection_limit * kind.size_found();
 }
 
 Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& options) {

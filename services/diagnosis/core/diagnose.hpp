@@ -9,6 +9,7 @@
 #include "services/diagnosis/core/carried.hpp"
 #include "services/diagnosis/core/detection/detection.hpp"
 #include "services/diagnosis/core/detection/noise_floor.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/search.hpp"
 #include "services/diagnosis/core/unexplained.hpp"
 
@@ -74,6 +75,9 @@ struct Diagnosis {
   SearchResult search;           ///< the candidates of every step
 
   [[nodiscard]] std::string verdict() const;
+  /// [unit of the output] the size from which a further effect of that kind is found as often as
+  /// not.
+  [[nodiscard]] double detection_limit_of(const EffectKind& kind) const;
 };
 
 /// The residual engine, README: fits the baseline, finds the effects that it lacks, adds them, and

@@ -135,6 +135,7 @@ TEST_F(DiagnosisReportTest, NothingMissingIsAPageToo) {
   ASSERT_EQ(without_->found.verdict(), "nothing missing");
   EXPECT_THAT(without_->html, HasSubstr("Nothing missing:"));
   EXPECT_THAT(without_->html, HasSubstr("No effect was found."));
+  EXPECT_THAT(without_->html, HasSubstr("What would not have been seen"));
   EXPECT_THAT(without_->html, HasSubstr("No effect was worth adding"));
   EXPECT_FALSE(std::filesystem::exists(without_->folder.path() / "effect_1.svg"));
   EXPECT_TRUE(std::filesystem::exists(without_->folder.path() / "prediction.svg"));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "services/diagnosis/core/diagnose.hpp"
 #include "services/diagnosis/core/selection.hpp"
 #include "services/statistics/signed_rank.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
@@ -76,6 +77,35 @@ TEST(DetectionLimitTest, AnEffectOfThatSizePassesTheRuleAboutAsOftenAsNot) {
   EXPECT_LT(share_found(limit), 0.75);
   EXPECT_GT(share_found(1.5 * limit), 0.97);
   EXPECT_LT(share_found(0.6 * limit), 0.05);
+}
+
+// Noise of the same size, slow or white: what shows of an effect behind the noise model is larger
+// than what the slow noise's few independent samples would leave of it.
+TEST(DetectionLimitTest, SlowNoiseIsWhitenedBeforeTheLimitIsTaken) {
+  constexpr std::size_t kCount = 12000;
+  const std::vector<double> input = made::white(kCount, 3);
+  const std::vector<double> e = made::white(kCount, 4);
+  const auto limit_under = [&](double pole) {
+    std::vector<double> force(kCount, 0.0);
+    double noise = 0.0;
+    for (std::size_t n = 0; n < kCount; ++n) {
+      noise = pole * noise + std::sqrt(1.0 - pole * pole) * e[n];
+      force[n] = input[n] + 0.2 * noise;
+    }
+    const Measurement measurement =
+        made::measurement_of({{"a_y", "m/s^2", input}, {"f", "N", force}});
+    return diagnose(measurement, {}).detection_limit;
+  };
+  const double white = limit_under(0.0);
+  // e(n) of r(n) = 0.98 r(n-1) + e(n) is 0.199 of r, and 99 samples hold as much as one would.
+  EXPECT_LT(limit_under(0.98), white);
+}
+
+TEST(DetectionLimitTest, EachKindHasASizeOfItsOwn) {
+  Diagnosis diagnosis;
+  diagnosis.detection_limit = 0.1;
+  EXPECT_DOUBLE_EQ(diagnosis.detection_limit_of(effect_kind("tone")), 0.1);
+  EXPECT_DOUBLE_EQ(diagnosis.detection_limit_of(effect_kind("transients")), 0.6);
 }
 
 }  // namespace
