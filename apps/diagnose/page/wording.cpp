@@ -48,12 +48,9 @@ std::string error_in_words(const Diagnosis& diagnosis) {
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ")";
 }
 
-double largest_limit(const Diagnosis& diagnosis) {
-  double largest = 0.0;
-  for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
-    largest = std::max(largest, diagnosis.detection_limit_of(*kind));
-  }
-  return largest;
+const diagnosis::EffectKind& hardest_to_find() {
+  return **std::ranges::max_element(diagnosis::effect_kinds(), {},
+                                    [](const auto* kind) { return kind->size_found(); });
 }
 
 }  // namespace
@@ -156,9 +153,10 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   return "Nothing missing: no effect reduces the error of " + model +
          " by more than chance does. How sure: an effect that adds " +
          shown(diagnosis.detection_limit, diagnosis.output_unit) +
-         " RMS that a linear model cannot imitate is found as often as not, some kinds from " +
-         shown(largest_limit(diagnosis), diagnosis.output_unit) +
-         " on; a smaller one may be there. What is left: " + left +
+         " RMS that a linear model cannot imitate is found as often as not (" +
+         std::string(hardest_to_find().name()) + " only from " +
+         shown(diagnosis.detection_limit_of(hardest_to_find()), diagnosis.output_unit) +
+         " on); a smaller one may be there. What is left: " + left +
          ", which depends on none of the quantities that were tested.";
 }
 
