@@ -64,9 +64,10 @@ bool channel_is_right(const planted::PlantedEffect& effect, const diagnosis::Fou
   const auto holds = [&](const std::vector<std::string>& names) {
     return std::ranges::find(names, found.channel) != names.end();
   };
-  // A delay or a clock that drifts acts on the input itself; the verdict names no channel for them.
-  if (found.channel.empty() && std::ranges::count(effect.channels, "a_y") > 0) return true;
-  return effect.channels.empty() || holds(effect.channels) || holds(effect.also);
+  // These move all inputs together, and the verdict names no channel for them.
+  const bool in_time =
+      effect.kind == planted::Kind::kDelay || effect.kind == planted::Kind::kClockDrift;
+  return in_time || effect.channels.empty() || holds(effect.channels) || holds(effect.also);
 }
 
 std::string row_of(const Case& each) {

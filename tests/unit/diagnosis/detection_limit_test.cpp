@@ -79,8 +79,8 @@ TEST(DetectionLimitTest, AnEffectOfThatSizePassesTheRuleAboutAsOftenAsNot) {
   EXPECT_LT(share_found(0.6 * limit), 0.05);
 }
 
-// Noise of the same size, slow or white: what shows of an effect behind the noise model is larger
-// than what the slow noise's few independent samples would leave of it.
+// Slow noise has few independent samples. Behind the noise model it has as many as white noise and
+// is smaller than white noise of the same RMS.
 TEST(DetectionLimitTest, SlowNoiseIsWhitenedBeforeTheLimitIsTaken) {
   constexpr std::size_t kCount = 12000;
   const std::vector<double> input = made::white(kCount, 3);
