@@ -212,9 +212,7 @@ Table limit_table(const Diagnosis& found) {
   std::map<double, std::vector<std::string>> kinds;
   for (const diagnosis::EffectKind* kind : diagnosis::effect_kinds()) {
     if (kind->any_shape()) continue;
-    std::string name(kind->name());
-    std::ranges::replace(name, '_', ' ');
-    kinds[found.detection_limit_of(*kind)].push_back(name);
+    kinds[found.detection_limit_of(*kind)].push_back(spaced(kind->name()));
   }
   for (const auto& [limit, names] : kinds) {
     table.rows.push_back({Cell(shown(limit, found.output_unit), Emphasis::kStrong), listed(names)});

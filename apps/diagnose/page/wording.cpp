@@ -154,7 +154,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
          " by more than chance does. How sure: an effect that adds " +
          shown(diagnosis.detection_limit, diagnosis.output_unit) +
          " RMS that a linear model cannot imitate is found as often as not (" +
-         std::string(hardest_to_find().name()) + " only from " +
+         spaced(hardest_to_find().name()) + " only from " +
          shown(diagnosis.detection_limit_of(hardest_to_find()), diagnosis.output_unit) +
          " on); a smaller one may be there. What is left: " + left +
          ", which depends on none of the quantities that were tested.";
