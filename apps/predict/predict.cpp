@@ -79,6 +79,22 @@ void add_ranges(const std::vector<diagnosis::LeftRange>& left, Prediction& predi
   }
 }
 
+// Where the recording moves an input at frequencies at which the fitted one did not, Eq. DG-65.
+void add_bands(const std::vector<diagnosis::ExcitedBand>& bands, const diagnosis::Signals& signals,
+               Prediction& prediction) {
+  constexpr double kWorthANote = 0.05;  // of the power; 0.02 of the fitted recording's
+  for (const diagnosis::ExcitedBand& band : bands) {
+    const diagnosis::Signal& input = signals.at(band.of);
+    const double share =
+        diagnosis::power_outside(band, input.values, input.mean, signals.rate_hz());
+    if (share < kWorthANote) continue;
+    prediction.notes.push_back(digits_of(100.0 * share) + " % of the power of " + band.of +
+                               " lie outside " + digits_of(band.low_hz) + " to " +
+                               digits_of(band.high_hz) +
+                               " Hz, the band that was seen; there the model is not determined");
+  }
+}
+
 void add_notes(const diagnosis::CarriedModel& carried, Prediction& prediction) {
   for (const diagnosis::LeftOut& each : carried.left_out) {
     prediction.notes.push_back(each.kind + ": left out, because " + each.why);
@@ -179,6 +195,7 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
   prediction.notes = measurement.notes;
   add_notes(carried, prediction);
   add_ranges(diagnosis::left_ranges(model, carried.inputs, signals, run), prediction);
+  add_bands(carried.bands, signals, prediction);
   const auto values = spread_out(without_past(run.prediction, working), working, whole, factor);
   const std::vector<double> time_s = whole.time_s();
   recording::Column column{model.output + "_model", model.output_unit, {}};

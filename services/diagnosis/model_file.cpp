@@ -35,6 +35,14 @@ Json json_of(const std::vector<SeenRange>& ranges) {
   return all;
 }
 
+Json json_of(const std::vector<ExcitedBand>& bands) {
+  Json all = Json::array();
+  for (const ExcitedBand& band : bands) {
+    all.push_back({{"of", band.of}, {"low_hz", band.low_hz}, {"high_hz", band.high_hz}});
+  }
+  return all;
+}
+
 Json json_of(const Body& body) {
   return {
       {"numerators", body.numerators}, {"denominator", body.denominator}, {"offset", body.offset}};
@@ -74,6 +82,7 @@ Json json_of(const CarriedModel& carried) {
   return {{"body", json_of(carried.model.body)},
           {"effects", json_of(carried.model.effects)},
           {"inputs", json_of(carried.inputs)},
+          {"bands", json_of(carried.bands)},
           {"left_out", left_out},
           {"stability", name_of(carried.stability)}};
 }
@@ -94,6 +103,16 @@ std::vector<SeenRange> ranges_of(const Entry& entry, std::size_t most) {
     ranges.push_back(std::move(range));
   }
   return ranges;
+}
+
+std::vector<ExcitedBand> bands_of(const Entry& entry) {
+  std::vector<ExcitedBand> bands;
+  for (const Entry& each : entry.entries(0, kMostInputs)) {
+    ExcitedBand band{each.at("of").text(), each.at("low_hz").number(), each.at("high_hz").number()};
+    if (band.low_hz > band.high_hz) each.at("high_hz").refuse("a number from low_hz on");
+    bands.push_back(std::move(band));
+  }
+  return bands;
 }
 
 Parameter parameter_of(const Entry& entry) {
@@ -265,6 +284,7 @@ CarriedModel parse_carried_model(std::string_view json, const std::string& origi
   carried.model.effects.clear();
   read_parts(entry, carried.model);
   carried.inputs = ranges_of(entry.at("inputs"), kMostInputs);
+  if (entry.has("bands")) carried.bands = bands_of(entry.at("bands"));  // since 2026-11-24
   for (const Entry& each : entry.at("left_out").entries(0, kMostEffects)) {
     LeftOut left{each.at("kind").text(), each.at("form").text(), {}, each.at("why").text()};
     for (const Entry& channel : each.at("channels").entries(0, 2)) {

@@ -198,6 +198,9 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
                            const Blocks& blocks) {
   CarriedModel carried;
   carried.inputs = input_ranges(signals);
+  for (const Signal& input : signals.inputs()) {
+    carried.bands.push_back(excited_band(input.name, input.values, input.mean, signals.rate_hz()));
+  }
   carried.model = baseline;
   if (!found.effects.empty()) {
     const Signals masked = bursts_masked(found, signals);
@@ -216,7 +219,11 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
       errors = carrying.errors(carried.model);
     }
     keep_stable(carried, signals, baseline.body, carrying);
-    if (!(carrying.errors(carried.model).rmse < carrying.errors_of_baseline(baseline).rmse)) {
+    // A body that was fitted next to effects that stay behind is as right as the baseline's where
+    // the recording is excited.  Elsewhere neither is known, and the baseline is what it is
+    // compared with.
+    if (carried.model.effects.empty() ||
+        !(carrying.errors(carried.model).rmse < carrying.errors_of_baseline(baseline).rmse)) {
       for (const Effect& effect : carried.model.effects) {
         carried.left_out.push_back(left_out(
             effect, "parts of the recording are predicted as well without it from the others"));
@@ -229,6 +236,6 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
   return carried;
 }
 
-CarriedModel carried_as_it_is(Model model) { return {std::move(model), {}, {}, {}}; }
+CarriedModel carried_as_it_is(Model model) { return {std::move(model), {}, {}, {}, {}}; }
 
 }  // namespace stillhand::diagnosis

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "services/diagnosis/core/excited_band.hpp"
 #include "services/diagnosis/core/fitting/baseline.hpp"
 #include "services/diagnosis/core/model/seen_range.hpp"
 #include "services/diagnosis/core/model/stability.hpp"
@@ -26,7 +27,8 @@ struct LeftOut {
 struct CarriedModel {
   Model model;
   std::vector<LeftOut> left_out;
-  std::vector<SeenRange> inputs;  ///< ranges of the inputs
+  std::vector<SeenRange> inputs;   ///< ranges of the inputs
+  std::vector<ExcitedBand> bands;  ///< of the inputs, Eq. DG-65; empty: not known
   Stability stability = Stability::kProved;
 };
 

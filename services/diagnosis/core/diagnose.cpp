@@ -19,6 +19,7 @@ namespace {
 // A static model that is hardly worse is preferred to a dynamic one.
 constexpr double kStaticIsEnough = 1.02;
 constexpr double kSameChannel = 0.95;
+constexpr double kWorthSlowPoles = 0.98;  // of the held-out error
 
 HeldOutError held_out_error(const HeldOut& held_out, double variance) {
   HeldOutError error;
@@ -96,6 +97,21 @@ Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
   return arx;
 }
 
+// A body that rings or settles slowly, where its bounds hold back the one that was fitted, Eq.
+// DG-66.
+void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& blocks) {
+  const Body& body = diagnosis.baseline.model.body;
+  if (body.order() == 0 || !is_near_bound(body)) return;
+  const Signals slow = signals.with_slow_poles();
+  Baseline other = fit_baseline(slow, blocks, diagnosis.options.order);
+  const double before = held_out(diagnosis.baseline.model, signals, blocks).rmse();
+  if (!(held_out(other.model, slow, blocks).rmse() < kWorthSlowPoles * before)) return;
+  diagnosis.baseline = std::move(other);
+  signals = slow;
+  diagnosis.notes.emplace_back(
+      "the body rings or settles slowly: poles may decay within half of the recording");
+}
+
 std::string measured_channel(const Effect& effect, const Signals& signals,
                              const std::vector<std::string>& inputs) {
   // Of several channels, the one that is not an input.
@@ -107,6 +123,26 @@ std::string measured_channel(const Effect& effect, const Signals& signals,
     if (!is_input) break;
   }
   return channel;
+}
+
+// The search judges behind a noise model, which hardly counts what is slow, and the model of the
+// verdict is fitted without it: an effect that was added last and does not lower that error leaves.
+void drop_idle(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
+  Model& model = diagnosis.model;
+  while (!model.effects.empty()) {
+    Model bare = model;
+    bare.effects.pop_back();
+    if (bare.effects.empty()) {
+      bare = diagnosis.baseline.model;
+    } else {
+      fit(bare, signals, blocks);
+    }
+    const double without = held_out(bare, signals, blocks).rmse();
+    if (held_out(model, signals, blocks).rmse() < without) return;
+    model = std::move(bare);
+    diagnosis.search.additions.pop_back();
+    ++diagnosis.search.removed;
+  }
 }
 
 // Errors of the models with the first effect, the first two, and so on.
@@ -259,12 +295,13 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   const Measurement working = working_set(measurement, options.inputs);
   diagnosis.notes = working.notes;
   diagnosis.sample_rate_hz = working.rate_hz;
-  const Signals signals(working, options.inputs, options.output);
+  Signals signals(working, options.inputs, options.output);
   diagnosis.output_unit = signals.output().unit;
   check_excitation(signals, working.source);
   const Blocks blocks = make_blocks(signals);
   step("baseline");
   diagnosis.baseline = chosen_baseline(signals, blocks, options, diagnosis.model_class);
+  allow_slow_poles(diagnosis, signals, blocks);
   const ImpulseResponse impulse_response = fit_impulse_response(signals);
   const std::optional<PeriodicExcitation> excitation = periodic_excitation_of(signals);
   {
@@ -279,6 +316,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   step("judging");
   diagnosis.model = diagnosis.search.model;
   if (diagnosis.search.whitened) fit(diagnosis.model, signals, blocks, {});
+  drop_idle(diagnosis, signals, blocks);
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
   note_refuted(diagnosis);

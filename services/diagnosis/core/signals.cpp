@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <complex>
-#include <unsupported/Eigen/FFT>
 
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/excited_band.hpp"
 #include "services/signal/butterworth.hpp"
 
 namespace stillhand::diagnosis {
@@ -128,32 +126,11 @@ Signals::Signals(const Measurement& measurement, const std::vector<std::string>&
 }
 
 void Signals::find_excited_band() {
-  constexpr double kOutside = 0.01;
   lowest_excited_hz_ = 0.5 * rate_hz_;
   for (const Signal& input : inputs_) {
-    std::vector<double> x = input.values;
-    for (double& value : x) value -= input.mean;
-    x.resize(std::bit_ceil(std::max<std::size_t>(x.size(), 2)),
-             0.0);  // Eigen's transform wants two
-    std::vector<std::complex<double>> spectrum;
-    Eigen::FFT<double> transform;
-    transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-    transform.fwd(spectrum, x);
-    double total = 0.0;
-    for (const auto& line : spectrum) total += std::norm(line);
-    const double line_hz = rate_hz_ / static_cast<double>(x.size());
-    double sum = 0.0;
-    for (std::size_t k = 0; k < spectrum.size(); ++k) {
-      const double before = sum;
-      sum += std::norm(spectrum[k]);
-      const double at_hz = line_hz * static_cast<double>(k);
-      if (before < kOutside * total && sum >= kOutside * total) {
-        lowest_excited_hz_ = std::min(lowest_excited_hz_, at_hz);
-      }
-      if (before < (1.0 - kOutside) * total && sum >= (1.0 - kOutside) * total) {
-        highest_excited_hz_ = std::max(highest_excited_hz_, at_hz);
-      }
-    }
+    const ExcitedBand band = excited_band(input.name, input.values, input.mean, rate_hz_);
+    lowest_excited_hz_ = std::min(lowest_excited_hz_, band.low_hz);
+    highest_excited_hz_ = std::max(highest_excited_hz_, band.high_hz);
   }
 }
 
@@ -234,6 +211,12 @@ Signals Signals::weighed(std::vector<double> weight) const {
 Signals Signals::whitened(std::vector<double> taps) const {
   Signals other = *this;
   other.whitening_ = std::move(taps);
+  return other;
+}
+
+Signals Signals::with_slow_poles() const {
+  Signals other = *this;
+  other.slow_poles_ = true;
   return other;
 }
 

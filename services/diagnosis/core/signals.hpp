@@ -60,6 +60,9 @@ class Signals {
   /// is 0 stay 0.
   void whiten(Eigen::Ref<Eigen::MatrixXd> columns, const std::vector<double>& weight) const;
   [[nodiscard]] bool is_whitened() const noexcept { return !whitening_.empty(); }
+  /// The same signals for bodies that ring or settle slowly, Eq. DG-66.
+  [[nodiscard]] Signals with_slow_poles() const;
+  [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
   /// The same signals, one of them with other values.
   [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
   /// The same signals, each held within its range; the inputs as the body sees them stay.
@@ -95,6 +98,7 @@ class Signals {
   std::vector<Signal> all_;
   double lowest_excited_hz_ = 0.0;
   double highest_excited_hz_ = 0.0;
+  bool slow_poles_ = false;
 };
 
 /// Quantity of a unit: m, mm, cm, rad, deg are positions; with "/s" rates, with "/s^2"

@@ -18,6 +18,10 @@ constexpr double kTried_s[] = {-0.03, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0
 constexpr std::size_t kThorough = 4;
 constexpr double kFiner_s[] = {0.01, 0.005, 0.0025};
 constexpr double kMinimum_s = 0.015;
+// Of the squared error: bodies without the effects that the model already has leave so much more
+// that no step of a delay makes up for it.  A delay that is there gains at once, or loses some
+// hundredths (2026-11-24, white and low-pass noise).
+constexpr double kHopeless = -0.25;
 
 class Delay final : public EffectKind {
  public:
@@ -74,6 +78,7 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   }
   // The order among the first few depends on bodies that may be in a local minimum.
   proposals = best_of(std::move(proposals), kThorough);
+  if (proposals.front().gain < kHopeless) return {proposals.front()};
   for (Proposal& each : proposals) each = with_own_body(screening, each.effect.value(0), true);
   proposals = best_of(std::move(proposals), kThorough);
   Proposal best = proposals.front();

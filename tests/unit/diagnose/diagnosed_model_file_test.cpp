@@ -95,6 +95,7 @@ CarriedModel carried_path() {
   carried.model.effects[0].seen = {{"roll", "rad", -0.125, 0.1}};
   carried.model.body.offset = 1.0 / 3.0;
   carried.inputs = {{"a_y", "m/s^2", -4.0, 5.0}};
+  carried.bands = {{"a_y", 0.7, 2.0}};
   carried.left_out.push_back({"tone", "fixed", {}, "the inputs do not determine it"});
   carried.stability = Stability::kTested;
   return carried;
@@ -110,6 +111,9 @@ TEST(DiagnosedModelFileTest, WhatIsCarriedComesBackNextToWhatWasFound) {
   EXPECT_EQ(sut.model.effects[0].seen[0].of, "roll");
   EXPECT_EQ(sut.model.effects[0].seen[0].low, -0.125);
   EXPECT_EQ(sut.inputs.at(0).high, 5.0);
+  EXPECT_EQ(sut.bands.at(0).of, "a_y");
+  EXPECT_EQ(sut.bands.at(0).low_hz, 0.7);
+  EXPECT_EQ(sut.bands.at(0).high_hz, 2.0);
   EXPECT_EQ(sut.left_out.at(0).why, "the inputs do not determine it");
   EXPECT_EQ(sut.stability, Stability::kTested);
 }

@@ -84,6 +84,30 @@ TEST(CarriedTest, OfADriftAloneTheBaselineIsLeft) {
   EXPECT_EQ(sut.carried.left_out[0].kind, "drift");
 }
 
+// A body that was fitted next to a tone may have poles and zeros outside of the band that the
+// baseline's does not have; nothing is known of the two there.
+TEST(CarriedTest, WithoutAnEffectTheBodyIsTheBaselinesWhateverItsOrder) {
+  const made::Studied studied(
+      Made([](const Made&, std::size_t n) { return std::sin(9.7 * time_s(n)); }).measurement(), 0);
+  Model found = fit_baseline(studied.signals, studied.blocks, 2).model;
+  found.effects = {{"tone", "fixed", {}, {{"frequency", "Hz", 1.54, 1.5, 1.6}}, {0.0, 0.0}}};
+  fit(found, studied.signals, studied.blocks);
+  const CarriedModel sut =
+      carried_model(found, studied.baseline.model, studied.signals, studied.blocks);
+  EXPECT_EQ(packed(sut.model), packed(studied.baseline.model));
+}
+
+TEST(CarriedTest, TheBandOfTheInputIsKept) {
+  const Sut sut(Made([](const Made&, std::size_t) { return 0.0; }).measurement(), {});
+  ASSERT_THAT(sut.carried.bands, SizeIs(1));
+  EXPECT_EQ(sut.carried.bands[0].of, "u");
+  // made::ride(): 0.5 to 8 Hz, with the skirts of its filter.
+  EXPECT_GT(sut.carried.bands[0].low_hz, 0.2);
+  EXPECT_LT(sut.carried.bands[0].low_hz, 1.0);
+  EXPECT_GT(sut.carried.bands[0].high_hz, 3.0);
+  EXPECT_LT(sut.carried.bands[0].high_hz, 16.0);
+}
+
 TEST(CarriedTest, AnEffectThatTheInputsDetermineIsCarriedWithItsRange) {
   const Sut sut(Made([](const Made& m, std::size_t n) {
                   return 0.5 * m.v[n] + 3.0 * std::exp(-time_s(n) / 20.0);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "apps/predict/predict.hpp"
@@ -56,6 +58,22 @@ TEST(CarriedPredictionTest, WhatWasLeftOutAndWhatIsHeldIsNoted) {
                              HasSubstr("not proved"),
                              AllOf(StartsWith("coupled_input: v leaves"), HasSubstr("-1 to 1 V"),
                                    HasSubstr("-1.5"), HasSubstr("1.5"))));
+}
+
+// 3 Hz where 0.5 to 2 Hz were seen.
+TEST(CarriedPredictionTest, MotionAtFrequenciesThatWereNotSeenIsNoted) {
+  CarriedModel carried = diagnosis::carried_as_it_is(made::model_of(made::two_pole_body()));
+  carried.bands.push_back({"u", 0.5, 2.0});
+  const auto notes_at = [&](double frequency_hz) {
+    std::vector<double> u(2000);
+    for (std::size_t n = 0; n < u.size(); ++n) {
+      u[n] = std::sin(2.0 * std::numbers::pi * frequency_hz * 0.01 * static_cast<double>(n));
+    }
+    return predict(carried, made::measurement_of({{"u", "V", u}})).notes;
+  };
+  EXPECT_THAT(notes_at(1.0), testing::IsEmpty());
+  EXPECT_THAT(notes_at(3.0), testing::ElementsAre(
+                                 AllOf(HasSubstr("of the power of u"), HasSubstr("0.5 to 2 Hz"))));
 }
 
 }  // namespace

@@ -21,10 +21,12 @@ class Compressed {
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
 
-  Compressed(Model& model, const Signals& signals, const Blocks& blocks, int without_fold)
-      : model_(model), signals_(signals), blocks_(blocks), without_fold_(without_fold) {
+  Compressed(Model& model, const Signals& signals, const Blocks& blocks, const FitOptions& options)
+      : model_(model), signals_(signals), blocks_(blocks), without_fold_(options.without_fold) {
     start_ = packed(model);
-    Eigen::MatrixXd gram = gram_at(start_);
+    Eigen::MatrixXd gram = options.at_start != nullptr
+                               ? options.at_start->total(blocks, without_fold_)
+                               : gram_at(start_);
     if (const double step = offset_step(gram); step != 0.0) {
       start_[0] += step;
       gram = gram_at(start_);
@@ -171,7 +173,7 @@ Grams grams_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
 FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
               const FitOptions& options) {
   Model work = model;
-  Compressed problem(work, signals, blocks, options.without_fold);
+  Compressed problem(work, signals, blocks, options);
   FitResult result;
   const Eigen::VectorXd start = packed(model);
   const double before = problem.error_at(start);
@@ -189,10 +191,9 @@ FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
   } else {
     after = before;
   }
-  FreeRun run;
-  static_cast<void>(residual_of(model, signals, run));
-  result.rmse = std::sqrt(after / weight_outside(run.weight, blocks, options.without_fold));
-  result.finite = run.finite;
+  result.residual = residual_of(model, signals, result.run);
+  result.rmse = std::sqrt(after / weight_outside(result.run.weight, blocks, options.without_fold));
+  result.finite = result.run.finite;
   return result;
 }
 

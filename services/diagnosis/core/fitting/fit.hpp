@@ -27,12 +27,15 @@ struct FitResult {
   bool finite = false;
   double rmse = 0.0;  ///< [unit of the output] over the samples it was fitted to
   int iterations = 0;
+  Eigen::VectorXd residual;  ///< of the fitted model over all samples, as in Linearisation
+  FreeRun run;               ///< likewise
 };
 
 struct FitOptions {
   int max_iterations = 20;
   int without_fold = -1;             ///< fold that is left out; -1: none
   double relative_tolerance = 1e-7;  ///< of the sum of squares, between two steps
+  const Grams* at_start = nullptr;   ///< of the model as it is given, where they are known
 };
 
 /// Minimises the free-run error of all the fitted numbers of a model together (output error, joint

@@ -56,21 +56,26 @@ HeldOut held_out(const Model& model, const Signals& signals, const Blocks& block
   result.finite = true;
   result.squares.assign(blocks.count, 0.0);
   result.weights.assign(blocks.count, 0.0);
+  // Every fold's fit starts at the same numbers, as they are packed.
+  Model packed_model = model;
+  unpack(packed(model), packed_model);
+  const Linearisation start = linearised(packed_model, signals);
+  const Grams at_start =
+      start.finite ? grams_of(start.jacobian, start.residual, start.run.weight, blocks) : Grams{};
   for (std::size_t fold = 0; fold < blocks.folds; ++fold) {
     Model refitted = model;
     FitOptions options;
     options.max_iterations = kRefitIterations;
     options.without_fold = static_cast<int>(fold);
-    fit(refitted, signals, blocks, options);
-    FreeRun run;
-    const Eigen::VectorXd residual = residual_of(refitted, signals, run);
-    result.finite = result.finite && run.finite;
+    if (start.finite) options.at_start = &at_start;
+    const FitResult fitted = fit(refitted, signals, blocks, options);
+    result.finite = result.finite && fitted.finite;
     for (std::size_t n = 0; n < signals.size(); ++n) {
       const std::size_t block = n / blocks.length;
       if (blocks.fold_of(block) != fold) continue;
-      const double r = residual[static_cast<Eigen::Index>(n)];
+      const double r = fitted.residual[static_cast<Eigen::Index>(n)];
       result.squares[block] += r * r;
-      result.weights[block] += run.weight[n];
+      result.weights[block] += fitted.run.weight[n];
     }
   }
   return result;

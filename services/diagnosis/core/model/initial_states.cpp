@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "services/diagnosis/core/fitting/modes.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -13,9 +15,28 @@ namespace {
 constexpr double kDecayed = 1e-3;
 constexpr double kLongestStart_s = 10.0;
 constexpr double kLongestShare = 0.25;  // of the record
+// A pole that decays within more than this has no fitted free response: it would be a tone's or a
+// drift's.  Without slow poles (Eq. DG-66) no pole does.
+constexpr double kLongestDecay = 0.125;  // of the record
+
+// The poles of a body that decay soon enough.
+std::vector<double> quick_poles(const std::vector<double>& denominator, const Signals& signals) {
+  if (!signals.slow_poles()) return denominator;
+  const double largest =
+      std::exp(-1.0 / (kLongestDecay * signals.duration_s() * signals.rate_hz()));
+  std::vector<std::complex<double>> polynomial{1.0};
+  for (const std::complex<double>& pole : signal::poles({1.0, denominator, denominator})) {
+    if (std::abs(pole) > largest) continue;
+    polynomial.emplace_back(0.0);
+    for (std::size_t i = polynomial.size(); i-- > 1;) polynomial[i] -= pole * polynomial[i - 1];
+  }
+  std::vector<double> quick;
+  for (const std::complex<double>& c : polynomial) quick.push_back(c.real());
+  return quick;
+}
 
 std::vector<double> all_poles(const Model& model, const Signals& signals) {
-  std::vector<double> denominator = model.body.denominator;
+  std::vector<double> denominator = quick_poles(model.body.denominator, signals);
   for (const Effect& effect : model.effects) {
     const std::vector<double> own = effect_kind(effect.kind).own_poles(effect, signals);
     if (!own.empty()) denominator = product(denominator, own);
@@ -27,7 +48,7 @@ std::vector<double> all_poles(const Model& model, const Signals& signals) {
 
 InitialStates::InitialStates(const Body& body, const Signals& signals,
                              const std::vector<double>& weight)
-    : InitialStates(body.denominator, signals, weight) {}
+    : InitialStates(quick_poles(body.denominator, signals), signals, weight) {}
 
 InitialStates::InitialStates(const Model& model, const Signals& signals,
                              const std::vector<double>& weight)

@@ -52,6 +52,15 @@ bool is_stable(const Body& body) {
   });
 }
 
+bool is_near_bound(const Body& body) {
+  // A decay within half of the time: the radius squared.
+  const auto poles = signal::poles({1.0, body.denominator, body.denominator});
+  return std::ranges::any_of(poles, [&](const std::complex<double>& pole) {
+    const double bound = bound_on(pole, body);
+    return std::abs(pole) > bound * bound;
+  });
+}
+
 void stabilise(Body& body) {
   std::vector<std::complex<double>> polynomial{1.0};
   for (std::complex<double> pole : signal::poles({1.0, body.denominator, body.denominator})) {
