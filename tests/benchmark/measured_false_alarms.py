@@ -11,7 +11,7 @@ An alarm is a verdict "effects found". The noise is a real one and may hold a to
 own; alarms whose effects are all of time alone are counted apart. So is "unexplained residual", which is no effect.
 Exit status 1 where the alarms are more than `--rate` allows (exact binomial, 5 %), 77 without the recordings.
 
-    STILLHAND_BUILD=build python3 tests/benchmark/measured_false_alarms.py              # 72 problems, about 6 minutes
+    STILLHAND_BUILD=build python3 tests/benchmark/measured_false_alarms.py              # 90 problems, some ten minutes
     STILLHAND_BUILD=build python3 tests/benchmark/measured_false_alarms.py --draws 8 --seed 2 --verbose
 """
 import argparse
