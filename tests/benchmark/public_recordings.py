@@ -188,7 +188,7 @@ STUDIES = {
     "robot_arm": [dict(inputs="torque", output="acceleration", known="linear, two modes with little damping")],
     "cd_arm": [dict(inputs="force_1,force_2", output="deviation_1", known="linear, many modes, from a closed loop"),
                dict(inputs="force_1,force_2", output="deviation_2", known="the same")],
-    "ice_river": [dict(inputs="temperature,precipitation", output="glacier_river",
+    "ice_river": [dict(inputs="temperature,precipitation", output="glacier_river", kink="temperature",
                        known="ice melts above 0 degrees only; the season"),
                   dict(inputs="temperature,precipitation", output="lowland_river", known="no glacier: little of it")],
     "tanks": [dict(inputs="pump", output="level", known="limited at 10 V; outflow by the level's root; overflow",
@@ -276,6 +276,13 @@ class Study:
         self.wrong = {"effects": self.predicted("model.json"), "linear": self.predicted("linear.json"),
                       "by hand": self.reference.errors(columns_of(check, names), self.measured)}
 
+    def kinked(self, fit, names, channel):
+        """By hand, with the positive part of a channel as one more input: the error on the unseen record."""
+        inputs = [columns_of(path, names) + [numpy.maximum(columns_of(path, [channel])[0], 0.0)]
+                  for path in (fit, self.check)]
+        wrong = Reference(inputs[0], columns_of(fit, [self.output])[0]).errors(inputs[1], self.measured)
+        return rms(wrong[len(wrong) // 10:])
+
     def predicted(self, model):
         stillhand("predict", self.scratch / model, self.check, "--out", self.scratch / "prediction.csv")
         return columns_of(self.scratch / "prediction.csv", [f"{self.output}_model"])[0] - self.measured
@@ -320,6 +327,9 @@ def judged(name, options, scratch, out):
         study = Study(scratch, fit, check, asked["inputs"], asked["output"])
         for row in study.rows(f"{name}, {asked['output']}", asked["known"], asked.get("published", "")):
             print(f"| {' | '.join(row)} |", flush=True)
+        if "kink" in asked:
+            kinked = study.kinked(fit, asked["inputs"].split(","), asked["kink"])
+            print(f"| {name}, {asked['output']} | unseen, by hand, kink at 0 of {asked['kink']} | {kinked:.4g} | |")
         if study.settled("effects") > NO_HARM * study.settled("linear"):
             wrong.append(f"{name}, {asked['output']}: the effects harm on the unseen record")
     return wrong
