@@ -9,6 +9,7 @@
 #include "apps/report/plot/draw.hpp"
 #include "apps/study/figures.hpp"
 #include "apps/study/report_cells.hpp"
+#include "apps/study/shard.hpp"
 #include "apps/study/study_report.hpp"
 #include "services/rig/sealed_file.hpp"
 
@@ -17,9 +18,9 @@ namespace {
 
 // Names of all files that a study can write.
 std::vector<std::string> every_name() {
-  std::vector<std::string> names{"report.html",   "summary.json",   "metrics.csv",
-                                 "subjects.csv",  "models.csv",     "moving_averages.csv",
-                                 "open_loop.csv", rig::kSealedFile, rig::kCommitmentFile};
+  std::vector<std::string> names{
+      "report.html",         "summary.json",  "metrics.csv",    "subjects.csv",       "models.csv",
+      "moving_averages.csv", "open_loop.csv", rig::kSealedFile, rig::kCommitmentFile, kShardFile};
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
@@ -63,6 +64,11 @@ void write_study(const StudyRecord& record, report::StagedFolder& folder) {
     folder.write(rig::kCommitmentFile, rig::digest_line(record.sealed, rig::kSealedFile));
     folder.write(rig::kSealedFile, record.sealed);
   }
+  folder.publish(every_name());
+}
+
+void write_shard(const StudyRecord& record, const Shard& shard, report::StagedFolder& folder) {
+  folder.write(kShardFile, shard_file(record, shard));
   folder.publish(every_name());
 }
 

@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -17,10 +15,8 @@
 #include "apps/report/result_files.hpp"
 #include "apps/study/explain/calibrate.hpp"
 #include "apps/study/explain/explanation_output.hpp"
-#include "apps/study/output.hpp"
-#include "apps/study/study.hpp"
+#include "apps/study/study_runs.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "services/settings/check_name.hpp"
 #include "services/settings/check_number.hpp"
@@ -34,6 +30,8 @@ struct Words {
   std::string conditions = "A,B,C";
   std::filesystem::path population;
   std::filesystem::path out;
+  std::string shard;
+  std::vector<std::filesystem::path> merge;
   bool explain_paper = false;
   bool calibrate = false;
 };
@@ -86,36 +84,6 @@ int explain(const StudyRecord& record, const Words& words, bool subjects_given) 
   return 0;
 }
 
-int run(StudyRecord& record, const Words& words) {
-  runtime::Stop stop;
-  report::StagedFolder folder(words.out);
-  report::require_gnuplot();
-  if (record.options.undeclared_effect != 0) {
-    record.sealed = rig::sealed_text(sealed_effect(record.options).open(), rig::new_nonce());
-    fmt::print("undeclared effect sealed, sha256 {}\n", rig::sha256(record.sealed));
-  }
-  report::ProgressLine progress;
-  const auto start = std::chrono::steady_clock::now();
-  record.results = run_study(record.options, [&](std::int64_t done, std::int64_t all) {
-    progress.show("subjects", static_cast<double>(done) / static_cast<double>(all));
-    return !stop.requested();
-  });
-  progress.finish();
-  record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.analysis = analyse(record.results);
-  if (stop.requested()) throw Interrupted();
-  write_study(record, folder);
-  print_study(record);
-  if (record.options.subjects <= 2) {
-    fmt::print(stderr,
-               "stillhand study: got {} subject(s), want 3 or more for a meaningful t-test; the "
-               "default is the paper's 12\n",
-               record.options.subjects);
-  }
-  fmt::print("report and figures in {}\n", words.out.string());
-  return 0;
-}
-
 // Conditions, lengths and seed.
 void add_protocol_options(CLI::App& study, StudyOptions& options, Words& words) {
   study.add_option("--seed", options.seed, "seed of everything random")
@@ -162,6 +130,25 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
       ->check(session::check_seed);
 }
 
+// A study in parts.
+void add_parts_options(CLI::App& study, Words& words) {
+  study.add_option(
+      "--shard", words.shard,
+      "K/N: run the K-th of N equal parts of the subjects, and write what --merge needs");
+  CLI::Option* merge =
+      study.add_option("--merge", words.merge,
+                       "folders of all N shards of a study: the results of the whole study, the "
+                       "same as of one run; all other settings are in the shards");
+  for (const CLI::Option* option : study.get_options()) {
+    const std::string name = option->get_name();
+    if (name == "--explain-paper" || name == "--calibrate") {
+      study.get_option(name)->excludes("--shard")->excludes("--merge");
+    } else if (name != "--out" && name != "--threads" && name != "--merge" && name != "--help") {
+      merge->excludes(name);
+    }
+  }
+}
+
 }  // namespace
 
 void add_study_command(CLI::App& cli, int& status) {
@@ -199,6 +186,7 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--canceller")
       ->excludes("--wrong-models")
       ->excludes("--undeclared-effect");
+  add_parts_options(*study, *words);
   study->callback([record, words, &status, study] {
     record->options.protocol.conditions =
         session::parse_conditions(words->conditions, session::kStudyConditions);
@@ -211,9 +199,13 @@ void add_study_command(CLI::App& cli, int& status) {
     }
     record->command_line = report::command_line();
     const bool subjects_given = study->count("--subjects") > 0;
-    status = words->explain_paper ? explain(*record, *words, subjects_given)
-             : words->calibrate   ? run_calibration(*record, *words, subjects_given)
-                                  : run(*record, *words);
+    status =
+        words->explain_paper    ? explain(*record, *words, subjects_given)
+        : words->calibrate      ? run_calibration(*record, *words, subjects_given)
+        : !words->merge.empty() ? run_merge(*record, words->merge, words->out)
+        : !words->shard.empty()
+            ? run_shard(*record, parse_shard(words->shard, record->options.subjects), words->out)
+            : run_whole(*record, words->out);
   });
 }
 

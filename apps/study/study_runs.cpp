@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/study_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/progress.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "apps/study/study.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/rig/sealed_file.hpp"
+#include "services/runtime/process/stop.hpp"
+
+namespace stillhand::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+void seal(StudyRecord& record) {
+  if (record.options.undeclared_effect == 0) return;
+  record.sealed = rig::sealed_text(sealed_effect(record.options).open(), rig::new_nonce());
+  fmt::print("undeclared effect sealed, sha256 {}\n", rig::sha256(record.sealed));
+}
+
+// Runs `work(on_progress)` with a progress line and adds its time.
+void timed(StudyRecord& record, runtime::Stop& stop, const auto& work) {
+  report::ProgressLine progress;
+  const auto start = std::chrono::steady_clock::now();
+  work([&](std::int64_t done, std::int64_t all) {
+    progress.show("subjects", static_cast<double>(done) / static_cast<double>(all));
+    return !stop.requested();
+  });
+  progress.finish();
+  record.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Tables, figures and report of all subjects.
+void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::Stop& stop,
+              const fs::path& out) {
+  record.analysis = analyse(record.results);
+  if (stop.requested()) throw Interrupted();
+  write_study(record, folder);
+  print_study(record);
+  if (record.options.subjects <= 2) {
+    fmt::print(stderr,
+               "stillhand study: got {} subject(s), want 3 or more for a meaningful t-test; the "
+               "default is the paper's 12\n",
+               record.options.subjects);
+  }
+  fmt::print("report and figures in {}\n", out.string());
+}
+
+// The results of a merge must not replace a shard, from which they can be made again.
+void check_place(const std::vector<fs::path>& shards, const fs::path& out) {
+  for (const fs::path& shard : shards) {
+    std::error_code missing;
+    if (fs::equivalent(shard, out, missing)) {
+      throw ConfigError("--out", out.string() + ", the folder of a shard", "another folder");
+    }
+  }
+}
+
+}  // namespace
+
+int run_whole(StudyRecord& record, const fs::path& out) {
+  runtime::Stop stop;
+  report::StagedFolder folder(out);
+  report::require_gnuplot();
+  seal(record);
+  timed(record, stop, [&](const OnProgress& on_progress) {
+    record.results = run_study(record.options, on_progress);
+  });
+  conclude(record, folder, stop, out);
+  return 0;
+}
+
+int run_shard(StudyRecord& record, const Shard& shard, const fs::path& out) {
+  runtime::Stop stop;
+  report::StagedFolder folder(out);
+  seal(record);
+  const std::int64_t first = shard.first(record.options.subjects);
+  const std::int64_t end = shard.end(record.options.subjects);
+  timed(record, stop, [&](const OnProgress& on_progress) {
+    record.results = run_subjects(record.options, first, end, on_progress);
+  });
+  write_shard(record, shard, folder);
+  fmt::print("shard {}/{}: subjects {} to {} in {}\n", shard.number, shard.of, first + 1, end,
+             (out / kShardFile).string());
+  return 0;
+}
+
+int run_merge(StudyRecord& record, const std::vector<fs::path>& shards, const fs::path& out) {
+  check_place(shards, out);
+  runtime::Stop stop;
+  report::StagedFolder folder(out);
+  report::require_gnuplot();
+  StudyRecord whole = merged(shards);
+  whole.options.threads = record.options.threads;
+  whole.command_line = std::move(record.command_line);
+  record = std::move(whole);
+  timed(record, stop, [&](const OnProgress& on_progress) {
+    run_wrong_models(record.options, record.results, on_progress);
+  });
+  conclude(record, folder, stop, out);
+  return 0;
+}
+
+}  // namespace stillhand::study
