@@ -62,5 +62,7 @@ struct Inventory {
 
 /// @throws ConfigError "file:line:column: key: got ..., want ..." for the first error
 Inventory read_inventory(const std::filesystem::path& file);
+/// The same from text.  @param file  name of the text in messages, and Inventory::file
+Inventory parse_inventory(const std::string& yaml, const std::filesystem::path& file);
 
 }  // namespace stillhand::deploy

@@ -28,7 +28,7 @@ struct SeenHost {
 /// Reads one file; each member reads one kind of entry.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : top_(settings::parse_file(file)) {
+  Reader(Entry top, const std::filesystem::path& file) : top_(std::move(top)) {
     inventory_.file = file;
   }
 
@@ -211,6 +211,12 @@ class Reader {
 
 }  // namespace
 
-Inventory read_inventory(const std::filesystem::path& file) { return Reader(file).read(); }
+Inventory read_inventory(const std::filesystem::path& file) {
+  return Reader(settings::parse_file(file), file).read();
+}
+
+Inventory parse_inventory(const std::string& yaml, const std::filesystem::path& file) {
+  return Reader(settings::parse_text(yaml, file.string()), file).read();
+}
 
 }  // namespace stillhand::deploy

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings as YAML.
+#include <string>
+
+#include "services/cancellation/core/canceller.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/population/population.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/settings/load.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace stillhand;
+  if (size == 0) return 0;
+  const std::string yaml(reinterpret_cast<const char*>(bytes), size);
+  try {
+    // All three: a key that one does not know is its message.
+    settings::load_text<rig::RigConfig>(yaml, "rig");
+  } catch (const ConfigError&) {
+  }
+  try {
+    settings::load_text<cancellation::Config>(yaml, "cancellation");
+  } catch (const ConfigError&) {
+  }
+  try {
+    settings::load_text<population::Population>(yaml, "population");
+  } catch (const ConfigError&) {
+  }
+  return 0;
+}

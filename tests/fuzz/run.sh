@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds the fuzzers (preset fuzz: clang 14, address and undefined-behaviour sanitizers) and runs one after the other.
+# Usage: tests/fuzz/run.sh [seconds of each, default 60] [reader...]
+# Prints a table; exit status 1 if one of them found something. What was found is in build-fuzz/found/.
+# A run that takes more than 10 s or 1 GB of memory is found, too.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+seconds=${1:-60}
+shift || true
+readers=("$@")
+[ ${#readers[@]} -gt 0 ] || readers=(csv mcap yaml json http cdr idl inventory)
+
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz
+work=build-fuzz/corpus
+found=build-fuzz/found
+mkdir -p "$found"
+build-fuzz/bin/fuzz_seeds build-fuzz/seeds
+mkdir -p build-fuzz/seeds/{yaml,idl,inventory}
+cp deploy/config/*.yaml deploy/experiments/*.yaml build-fuzz/seeds/yaml/
+cp idl/*.idl build-fuzz/seeds/idl/
+cp deploy/inventory.example.yaml build-fuzz/seeds/inventory/
+
+bad=0
+printf '%-10s %12s %8s %8s\n' reader runs seconds found
+for reader in "${readers[@]}"; do
+  mkdir -p "$work/$reader"
+  log=$found/$reader.log
+  status=0
+  build-fuzz/bin/fuzz_"$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
+    -max_len=65536 -print_final_stats=1 -artifact_prefix="$found/$reader-" "$work/$reader" build-fuzz/seeds/"$reader" \
+    >"$log" 2>&1 || status=1
+  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  spent=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "$log")
+  printf '%-10s %12s %8s %8s\n' "$reader" "${runs:--}" "${spent:--}" "$status"
+  if [ "$status" != 0 ]; then
+    bad=1
+    grep -m1 -E 'ERROR|SUMMARY|runtime error' "$log" >&2 || true
+  fi
+done
+exit $bad
