@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the paper's fit takes, on the samples that identify_speed.py hands over: standard input
+// How long the paper's fit takes, on the samples that identify_speed.py and
+// identify_peers.py hand over: standard input
 // holds the acceleration, then the force, doubles at 100 Hz.  Prints medians in ms as JSON.
 #include <algorithm>
 #include <chrono>
@@ -32,6 +33,13 @@ double median_ms(int repetitions, const Work& work) {
   return times_ms[static_cast<std::size_t>(repetitions / 2)];
 }
 
+// c_0 .. c_p, d_1 .. d_p
+std::vector<double> parameters_of(const stillhand::signal::DifferenceModel& model) {
+  std::vector<double> parameters = model.numerator;
+  parameters.insert(parameters.end(), model.denominator.begin() + 1, model.denominator.end());
+  return parameters;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -56,10 +64,8 @@ int main(int count, char** words) {
   out["checked"] = median_ms(repetitions, [&] { whole(at_fit_rate); });
   out["low_pass_and_fit"] = median_ms(repetitions, [&] { fit(preprocessed(recorded)); });
   out["low_pass_and_checked"] = median_ms(repetitions, [&] { whole(preprocessed(recorded)); });
-  const auto model = least_squares(at_fit_rate, kOrder);
-  std::vector<double> parameters = model.numerator;
-  parameters.insert(parameters.end(), model.denominator.begin() + 1, model.denominator.end());
-  out["parameters"] = parameters;
+  out["parameters"] = parameters_of(least_squares(at_fit_rate, kOrder));
+  out["parameters_all_samples"] = parameters_of(least_squares(recorded, kOrder));
   out["finite"] = sum - sum == 0.0;
   std::cout << out.dump() << '\n';
 }

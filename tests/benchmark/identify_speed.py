@@ -92,6 +92,7 @@ def main():
                              input=numpy.concatenate([a, f]).tobytes(), capture_output=True, check=True)
         printed = json.loads(run.stdout)
         parameters = numpy.array(printed.pop("parameters"))
+        printed.pop("parameters_all_samples")
         assert printed.pop("finite")
         keep(ours, printed)
         keep(theirs, {"fit": median_ms(lambda: fit(slow_a, slow_f)), "fit_all_samples": median_ms(lambda: fit(a, f)),

@@ -150,6 +150,78 @@ void mcap_read(benchmark::State& state) {
 }
 BENCHMARK(mcap_read)->ArgName("compression")->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 
+// By number of topics, uncompressed and closed with an index: recorder_peers.py.
+void write_topics(ByteSink& sink, std::size_t topics, benchmark::State& state) {
+  McapWriter writer(sink, {256 * 1024, Compression::kNone});
+  std::vector<ChannelId> channels;
+  for (std::size_t i = 0; i < topics; ++i) {
+    channels.push_back(writer.add_channel("load/" + std::to_string(i), 0, "cdr"));
+  }
+  std::uint32_t sequence = 0;
+  for (const Message& message : messages()) {
+    const std::uint64_t time_ns = 1'000'000ull * sequence;
+    const ChannelId channel = channels[sequence % topics];
+    if (!writer.write(channel, sequence++, time_ns, time_ns, message).ok()) {
+      state.SkipWithError("write failed");
+    }
+  }
+  if (!writer.close().ok()) state.SkipWithError("write failed");
+}
+
+// In memory of the system's cache: the close() of a file waits for the disk.
+class CachedSink : public ByteSink {
+ public:
+  explicit CachedSink(const std::string& file) : sink_(file, Existing::kReplace) {}
+  Status write(std::span<const std::byte> bytes) override { return sink_.write(bytes); }
+  Status flush() override { return {}; }
+  [[nodiscard]] std::uint64_t size() const override { return sink_.size(); }
+
+ private:
+  FileSink sink_;
+};
+
+void mcap_write_topics(benchmark::State& state) {
+  const std::string file = path("stillhand_benchmark.mcap");
+  for (auto _ : state) {
+    CachedSink sink(file);
+    write_topics(sink, static_cast<std::size_t>(state.range(0)), state);
+  }
+  set_rates(state);
+  std::filesystem::remove(file);
+}
+BENCHMARK(mcap_write_topics)
+    ->ArgName("topics")
+    ->RangeMultiplier(10)
+    ->Range(1, 1000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void mcap_read_topics(benchmark::State& state) {
+  const std::string file = path("stillhand_benchmark.mcap");
+  {
+    CachedSink sink(file);
+    write_topics(sink, static_cast<std::size_t>(state.range(0)), state);
+  }
+  for (auto _ : state) {
+    FileSource source(file);
+    McapReader reader(source);
+    std::uint64_t bytes = 0;
+    const Status status = reader.for_each_message({}, [&](const MessageView& message) {
+      bytes += message.bytes.size();
+      return true;
+    });
+    if (!status.ok() || bytes != kBatch * kMessageBytes) state.SkipWithError("read failed");
+  }
+  set_rates(state);
+  std::filesystem::remove(file);
+}
+BENCHMARK(mcap_read_topics)
+    ->ArgName("topics")
+    ->RangeMultiplier(10)
+    ->Range(1, 1000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
 }  // namespace
 }  // namespace stillhand::recording
 
