@@ -132,12 +132,13 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
   input.motor_valid = true;
   input.motor_age_ticks = 1;
   input.motor_force_n = motor_force_n_;
+  input.motor_permitted = covered;
   input.operator_valid = true;
   input.operator_age_ticks = 1;
   input.operator_force_n = operator_force_n_;
   input.pegged = covered && planned.trial.phase == TrialPhase::kPegged;
-  input.motor_permitted = covered;
-  const rig::RigOutput rig_out = rig_.step(input);
+  const bool same_tick = configs_.rig.motor.answers_in_tick();
+  rig::RigOutput rig_out = same_tick ? rig_.sample(input) : rig_.step(input);
 
   const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
   const bool enabled = planned.cancellation && tracking;
@@ -149,6 +150,11 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
                        enabled,
                        covered});
   motor_force_n_ = cancelled.force_n;
+  if (same_tick) {
+    input.motor_age_ticks = 0;
+    input.motor_force_n = motor_force_n_;
+    rig_.drive(input, rig_out);
+  }
   const double command_rad =
       planned.command_filter ? command_filter_.step(sensed.theta_rad, cancelled.predicted_force_n)
                              : sensed.theta_rad;

@@ -52,9 +52,10 @@ double cancelled_share(const std::vector<double>& feedthrough_n,
 double counterforce_delay_s(const std::vector<double>& feedthrough_n, std::vector<double> motor_n,
                             double rate_hz);
 
-/// The closed loop of a session in one process: the same cores in catalogue order, one whole tick
-/// of delay on each of the two edges that close the loop (motor command and operator force to the
-/// rig), as fast as the machine goes.  Deterministic.  One thread.
+/// The closed loop of a session in one process: the same cores in catalogue order, as fast as the
+/// machine goes.  The motor command drives the motor after the sample that it answers, as live, or
+/// with motor.answer_wait_s 0 at the beginning of the next tick; the operator force reaches the rig
+/// one whole tick later.  Deterministic.  One thread.
 class InProcessLoop {
  public:
   /// @param seed        session seed, used as the processes use theirs

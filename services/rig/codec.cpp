@@ -49,19 +49,23 @@ RigInput make_input(Tick tick, const stillhand_msgs::PlatformCommand* command,
     input.command_velocity_m_s = command->velocity_m_s();
     input.command_acceleration_m_s2 = command->acceleration_m_s2();
   }
-  if (motor != nullptr) {
-    input.motor_valid = true;
-    input.motor_age_ticks = tick - motor->tick();
-    input.motor_force_n = motor->force_n();
-  }
+  put_motor(input, tick, motor, motor_permitted);
   if (volition != nullptr) {
     input.operator_valid = true;
     input.operator_age_ticks = tick - volition->tick();
     input.operator_force_n = volition->force_n();
   }
   input.pegged = pegged;
-  input.motor_permitted = motor_permitted;
   return input;
+}
+
+void put_motor(RigInput& input, Tick tick, const stillhand_msgs::MotorCommand* motor,
+               bool permitted) {
+  input.motor_valid = motor != nullptr;
+  input.motor_permitted = permitted;
+  if (motor == nullptr) return;
+  input.motor_age_ticks = tick - motor->tick();
+  input.motor_force_n = motor->force_n();
 }
 
 }  // namespace stillhand::rig

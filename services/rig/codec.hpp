@@ -23,4 +23,8 @@ RigInput make_input(Tick tick, const stillhand_msgs::PlatformCommand* command,
                     const stillhand_msgs::OperatorForce* volition, bool pegged,
                     bool motor_permitted);
 
+/// Puts the motor's part into an input; nullptr: no command.
+void put_motor(RigInput& input, Tick tick, const stillhand_msgs::MotorCommand* motor,
+               bool permitted);
+
 }  // namespace stillhand::rig

@@ -24,7 +24,8 @@ RigConfig seeded(RigConfig config, std::uint64_t seed) {
 
 Shell::Shell(runtime::Service& service, SealedEffect effect)
     : service_(service),
-      core_(seeded(service.config<RigConfig>(), service.options().seed), std::move(effect)),
+      config_(seeded(service.config<RigConfig>(), service.options().seed)),
+      core_(config_, std::move(effect)),
       raw_(service.bus().publisher<stillhand_msgs::RawSample>(topics::kRawSample)),
       truth_(service.bus().publisher<stillhand_msgs::RigTruth>(topics::kRigTruth)) {
   for (auto& command : commands_) command.tick(-1);
@@ -40,8 +41,12 @@ Shell::Shell(runtime::Service& service, SealedEffect effect)
   bus.subscribe<stillhand_msgs::PlatformCommand>(
       topics::kPlatformCommand,
       [this](const auto& message, const auto&) { arriving_commands_.push(message); });
-  bus.subscribe<stillhand_msgs::MotorCommand>(
-      topics::kMotorCommand, [this](const auto& message, const auto&) { motor_.store(message); });
+  bus.subscribe<stillhand_msgs::MotorCommand>(topics::kMotorCommand,
+                                              [this](const auto& message, const auto&) {
+                                                motor_.store(message);
+                                                if (config_.motor.answers_in_tick())
+                                                  motor_came_.post();
+                                              });
   bus.subscribe<stillhand_msgs::OperatorForce>(
       topics::kOperatorForce,
       [this](const auto& message, const auto&) { volition_.store(message); });
@@ -83,27 +88,34 @@ void Shell::run() {
         service_.note_event(stillhand_msgs::EVENT_CYCLE_MISSED, "sample clock late",
                             static_cast<double>(late_ns) / 1000.0);
       }
-      tick_once(tick++);
+      tick_once(tick++, due_ns);
     }
   });
 }
 
-void Shell::tick_once(Tick tick) {
+void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   const Trial trial = announced_.load().trial;
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
-  const bool permitted = interlock_.step(trial, tick, service_.bus().peers_alive());
   const auto* command = command_for(tick);
   if (interlock_.stopped()) command = nullptr;  // the platform brakes and holds
-  const auto* motor = motor_now();
   const auto& newest_force = volition_.load();
   const auto* volition = newest_force.tick() >= 0 ? &newest_force : nullptr;
   const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
-  const RigInput input = make_input(tick, command, motor, volition, pegged, permitted);
-  const RigOutput output = core_.step(input);
-  report_interlock(trial, tick, output.truth.motor_force_n);
+  RigInput input = make_input(tick, command, nullptr, volition, pegged, false);
 
+  // The sample goes out before the motor is driven, so that its answer can drive it.
+  const bool waits = config_.motor.answers_in_tick();
+  const auto* motor = waits ? nullptr : take_motor(trial, tick, input);
+  RigOutput output = waits ? core_.sample(input) : core_.step(input);
   auto raw = to_idl(output, tick);
   raw_.write(raw);
+  if (waits) {
+    await_answer(tick, due_ns);
+    motor = take_motor(trial, tick, input);
+    core_.drive(input, output);
+  }
+  report_interlock(trial, tick, output.truth.motor_force_n);
+
   UsedTicks used;
   if (command != nullptr) used.command = command->tick();
   if (motor != nullptr) used.motor = motor->tick();
@@ -111,6 +123,25 @@ void Shell::tick_once(Tick tick) {
   auto truth = to_idl(output, tick, input, used);
   truth_.write(truth);
   service_.note_tick(tick);
+}
+
+void Shell::await_answer(Tick tick, std::int64_t due_ns) {
+  // A tick that is late itself waits less: the next one begins in time.
+  constexpr std::int64_t kReserve_ns = 200'000;
+  const auto wait_ns = static_cast<std::int64_t>(config_.motor.answer_wait_s * 1e9);
+  const std::int64_t until_ns =
+      std::min(runtime::monotonic_ns() + wait_ns, due_ns + kPeriod_ns - kReserve_ns);
+  motor_came_.wait_until_ns(until_ns, [&] { return motor_.load().tick() >= tick; });
+}
+
+const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick tick,
+                                                      RigInput& input) {
+  // A stop that came during the wait counts.
+  if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
+  const bool permitted = interlock_.step(trial, tick, service_.bus().peers_alive());
+  const auto* motor = motor_now();
+  put_motor(input, tick, motor, permitted);
+  return motor;
 }
 
 void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n) {

@@ -11,6 +11,7 @@
 #include "services/rig/interlock_report.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/process/latest_value.hpp"
+#include "services/runtime/process/wake_up.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::rig {
@@ -31,12 +32,17 @@ class Shell {
   /// Platform commands arrive before their tick; the shell keeps this many.
   static constexpr std::size_t kCommandsAhead = 64;
 
-  void tick_once(Tick tick);
+  void tick_once(Tick tick, std::int64_t due_ns);
+  /// Waits, with the limit of the settings, for the motor command that answers this tick.
+  void await_answer(Tick tick, std::int64_t due_ns);
+  /// The motor's part of the input, as it is now: newest command and interlock.
+  const stillhand_msgs::MotorCommand* take_motor(const Trial& trial, Tick tick, RigInput& input);
   void report_interlock(const Trial& trial, Tick tick, double motor_force_n);
   const stillhand_msgs::PlatformCommand* command_for(Tick tick);
   const stillhand_msgs::MotorCommand* motor_now();
 
   runtime::Service& service_;
+  RigConfig config_;
   Rig core_;
   runtime::Interlock interlock_;
   InterlockReport interlock_report_;
@@ -48,6 +54,7 @@ class Shell {
   boost::lockfree::spsc_queue<stillhand_msgs::PlatformCommand, boost::lockfree::capacity<128>>
       arriving_commands_;
   runtime::LatestValue<stillhand_msgs::MotorCommand> motor_;
+  runtime::WakeUp motor_came_;
   runtime::LatestValue<stillhand_msgs::OperatorForce> volition_;
   runtime::LatestValue<Announced> announced_;
   std::atomic<bool> motor_deadline_missed_{false};

@@ -158,8 +158,10 @@ Replay replay_rig(const SessionRecording& session, const SessionSettings& settin
     const auto input =
         rig::make_input(tick, commands.used(like.command_tick()), motors.used(like.motor_tick()),
                         forces.used(like.operator_tick()), like.pegged(), like.motor_permitted());
-    const auto output = core.step(input);
+    const bool same_tick = config.motor.answers_in_tick();
+    auto output = same_tick ? core.sample(input) : core.step(input);
     raws.push_back(rig::to_idl(output, tick));
+    if (same_tick) core.drive(input, output);
     return rig::to_idl(output, tick, input,
                        {like.command_tick(), like.motor_tick(), like.operator_tick()});
   };

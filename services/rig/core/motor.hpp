@@ -20,6 +20,7 @@ struct MotorConfig {
   double delay_s = 0.0;
   double gain = 1.0;
   std::int64_t max_motor_age_ticks = 10;
+  double answer_wait_s = 0.0004;
   signal::ForceLimits limits;
 
   template <typename Visitor, typename Self>
@@ -39,8 +40,14 @@ struct MotorConfig {
           "[-] force at the hand over the commanded one; 1: k_T and capstan as in the settings");
     visit("max_motor_age_ticks", self.max_motor_age_ticks, Range{1.0, 100.0},
           "[ticks] largest age of the sample that a motor command answers");
+    visit("answer_wait_s", self.answer_wait_s, Range{0.0, 0.0007},
+          "[s] longest wait after a raw sample for the motor command that answers it, to use it in "
+          "the same tick; 0: no wait, a tick uses the command that was there at its beginning");
     visit.group("limits", self.limits);
   }
+
+  /// The motor is driven after the sample of a tick, by the command that answers it; Eq. RG-38.
+  [[nodiscard]] bool answers_in_tick() const noexcept { return answer_wait_s > 0.0; }
 };
 
 /// Motor command as the drive sees it.

@@ -68,11 +68,22 @@ signal::ForceEnvelope::Output Rig::volitional(const RigInput& input) noexcept {
 }
 
 RigOutput Rig::step(const RigInput& input) noexcept {
+  driven_ = motor(input);
+  return sample(input);
+}
+
+void Rig::drive(const RigInput& input, RigOutput& output) noexcept {
+  STILLHAND_EXPECTS(!opened_);
+  driven_ = motor(input);
+  output.truth.motor_force_n = driven_.force_n;
+  output.flags = flags_of_sample_ | driven_.flags;
+}
+
+RigOutput Rig::sample(const RigInput& input) noexcept {
   STILLHAND_EXPECTS(!opened_);
   const auto platform =
       platform_.step({input.command_valid, input.command_position_m, input.command_velocity_m_s,
                       input.command_acceleration_m_s2});
-  const auto driven = motor(input);
   const auto person = volitional(input);
   UndeclaredEffect* const effect = sealed_.effect_.get();
   UndeclaredEffect::Shaken shaken{};
@@ -87,8 +98,8 @@ RigOutput Rig::step(const RigInput& input) noexcept {
     accel_y_m_s2 = along_m_s2 * cosine - kGravity_m_s2 * sine;
     accel_z_m_s2 = along_m_s2 * sine + kGravity_m_s2 * cosine;
   }
-  const auto added = neuromuscular_.step({accel_y_m_s2, driven.force_n, input.pegged});
-  const auto body = body_.step({accel_y_m_s2, driven.force_n, person.force_n + added.resisting_n,
+  const auto added = neuromuscular_.step({accel_y_m_s2, driven_.force_n, input.pegged});
+  const auto body = body_.step({accel_y_m_s2, driven_.force_n, person.force_n + added.resisting_n,
                                 input.pegged, shaken.hand_n + added.hand_n, added.stiffness_level});
   const double cell_n =
       effect != nullptr ? effect->cell_force(body.hand_force_n) : body.hand_force_n;
@@ -98,6 +109,7 @@ RigOutput Rig::step(const RigInput& input) noexcept {
                                      .force_n = cell_n,
                                      .theta_rad = body.theta_rad,
                                      .roll_rad = shaken.roll_rad});
+  flags_of_sample_ = platform.flags | person.flags | body.flags | sensed.flags;
   return {.raw = sensed.raw,
           .truth = {.platform_position_m = platform.state.position_m,
                     .platform_velocity_m_s = platform.state.velocity_m_s,
@@ -105,10 +117,10 @@ RigOutput Rig::step(const RigInput& input) noexcept {
                     .theta_rad = body.theta_rad,
                     .omega_rad_s = body.omega_rad_s,
                     .feedthrough_force_n = body.feedthrough_force_n,
-                    .motor_force_n = driven.force_n,
+                    .motor_force_n = driven_.force_n,
                     .volitional_force_n = person.force_n,
                     .hand_force_n = body.hand_force_n},
-          .flags = platform.flags | driven.flags | person.flags | body.flags | sensed.flags};
+          .flags = flags_of_sample_ | driven_.flags};
 }
 
 }  // namespace stillhand::rig

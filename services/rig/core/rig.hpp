@@ -78,7 +78,7 @@ struct RigOutput {
 ///   command -> Platform -> a_y -> Body (+ Motor, volitional force) -> Sensors -> RawSample
 /// A volitional force that is stale or not finite fades to zero within 50 ticks.  Without one
 /// (operator_valid false) the force is 0.
-/// Source: README Eq. RG-1 to RG-11; paper section III-C.
+/// Source: README Eq. RG-1 to RG-11, RG-38; paper section III-C.
 /// Pure: the same config and inputs give the same bits; step() never allocates, locks or throws.
 /// The output is finite and bounded for every input.
 class Rig {
@@ -90,7 +90,17 @@ class Rig {
   Rig(Rig&&) noexcept;
   Rig& operator=(Rig&&) noexcept;
 
+  /// One tick, the motor before the sample: drive(), then sample().  The recording of such a tick
+  /// states the force that acted until its sample.
   RigOutput step(const RigInput& input) noexcept;
+
+  /// The two halves of a tick, for a motor command that answers this tick's own sample, Eq. RG-38:
+  /// first sample(), then drive().  Platform, body and sensors at this tick; the force of the last
+  /// drive() acted since the sample before.  The motor's fields of the input are not used.
+  RigOutput sample(const RigInput& input) noexcept;
+  /// The motor's force from here to the next sample; `output`, of this tick's sample(), then states
+  /// it.  Uses the motor's fields of the input alone.
+  void drive(const RigInput& input, RigOutput& output) noexcept;
 
   /// Opens the sealed effect.  A later step or a second opening is a bug of the caller and aborts.
   [[nodiscard]] OpenedEffect open_effect();
@@ -105,6 +115,8 @@ class Rig {
   std::int64_t max_operator_age_ticks_;
   Platform platform_;
   Motor motor_;
+  Motor::Output driven_{};     ///< of the last drive()
+  Flags flags_of_sample_ = 0;  ///< of the last sample(), without the motor's
   signal::ForceEnvelope operator_envelope_;
   Neuromuscular neuromuscular_;
   Body body_;

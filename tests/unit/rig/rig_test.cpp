@@ -56,6 +56,58 @@ TEST(RigTest, TheSameInputsGiveTheSameBits) {
   }
 }
 
+// A command that answers n drives the stick from sample n to sample n + 1 in both orders: after the
+// sample of tick n, or before that of tick n + 1, where it is one tick old (Eq. RG-38).
+TEST(RigTest, TheAnswerToASampleMovesTheStickAlikeInBothOrders) {
+  Rig before{RigConfig{}};
+  Rig after{RigConfig{}};
+  double answer_n = 0.0;
+  for (int n = 0; n < 5000; ++n) {
+    auto input = tracking(n);
+    input.motor_force_n = answer_n;
+    const RigOutput late = before.step(input);
+
+    RigOutput soon = after.sample(tracking(n));
+    ASSERT_EQ(late.truth.motor_force_n, soon.truth.motor_force_n) << "n = " << n;
+    if (n > 0) expect_same(late, soon);
+    answer_n = -2.0 * soon.raw.accel_y_v;
+    input.motor_age_ticks = 0;
+    input.motor_force_n = answer_n;
+    after.drive(input, soon);
+  }
+}
+
+// The sample is older than the force that answers it; the truth of the tick states the force.
+TEST(RigTest, AForceDoesNotReachTheSampleThatItAnswers) {
+  Rig pushed{RigConfig{}};
+  Rig still{RigConfig{}};
+  auto input = tracking(0);
+  input.motor_force_n = 20.0;
+  RigOutput first = pushed.sample(input);
+  RigOutput other = still.sample(input);
+  pushed.drive(input, first);
+  input.motor_force_n = 0.0;
+  still.drive(input, other);
+  EXPECT_EQ(first.truth.hand_force_n, other.truth.hand_force_n);
+  EXPECT_GT(first.truth.motor_force_n, 0.0);
+  EXPECT_NE(pushed.sample(tracking(1)).truth.hand_force_n,
+            still.sample(tracking(1)).truth.hand_force_n);
+}
+
+// Without permission a tick's force falls, whatever the order, and the flags of the tick say why.
+TEST(RigTest, TheMotorsFlagsAreThoseOfTheForceThatIsStated) {
+  Rig sut{RigConfig{}};
+  auto input = tracking(0);
+  RigOutput output = sut.sample(input);
+  input.motor_permitted = false;
+  sut.drive(input, output);
+  EXPECT_NE(output.flags & kInhibited, 0u);
+  output = sut.sample(tracking(1));
+  EXPECT_NE(output.flags & kInhibited, 0u) << "the force that acted until this sample";
+  sut.drive(tracking(1), output);
+  EXPECT_EQ(output.flags & kInhibited, 0u);
+}
+
 // The command starts with a jump of speed, which saturates the platform; it has caught up, 1 s
 // later.
 TEST(RigTest, AGoodTrialRaisesNoFlag) {
