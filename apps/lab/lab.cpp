@@ -52,7 +52,8 @@ runtime::ServiceOptions service_options(const LabOptions& options, const Hosts& 
   own.config = options.config;
   own.security = place.security;
   // The interlock stays closed only while this process, too, shows its life sign.
-  own.real_time = options.real_time && runtime::become_real_time(!own.security.empty());
+  own.real_time = options.real_time && runtime::become_real_time(!own.security.empty(),
+                                                                 runtime::priority_of(own.service));
   return own;
 }
 

@@ -51,7 +51,9 @@ int run(Words words) {
   if (!words.remote.empty()) return run_remote(words.remote, options, stop);
   // Before the participant exists, since Fast DDS's threads inherit the priority.  If the system
   // refuses it, the verb runs without.
-  if (!words.ordinary) runtime::become_real_time(!options.security.empty());
+  if (!words.ordinary) {
+    runtime::become_real_time(!options.security.empty(), runtime::kListenerPriority);
+  }
   return run_record(options, stop);
 }
 

@@ -189,7 +189,7 @@ int run_service(const std::string& name, int argc, char** argv,
     if (with_parent) end_with_parent();
     Stop stop;
     if (options.real_time) {
-      options.real_time = become_real_time(!options.security.empty());
+      options.real_time = become_real_time(!options.security.empty(), priority_of(name));
       lock_memory();  // host_status tells whether it is
     }
     Service service(options, stop);

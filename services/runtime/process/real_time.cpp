@@ -21,8 +21,13 @@ bool take_priority(int policy, int priority) noexcept {
 
 }  // namespace
 
-bool become_real_time(bool secured) noexcept {
-  return take_priority(secured ? SCHED_RR : SCHED_FIFO, kControlPriority);
+int priority_of(std::string_view service) noexcept {
+  const bool in_loop = service == "rig" || service == "sensing" || service == "cancellation";
+  return in_loop ? kControlPriority : kListenerPriority;
+}
+
+bool become_real_time(bool secured, int priority) noexcept {
+  return take_priority(secured ? SCHED_RR : SCHED_FIFO, priority);
 }
 
 bool lock_memory() noexcept {

@@ -2,11 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace stillhand::runtime {
 
 /// Real-time priority of the control path: below the kernel's threaded interrupts at 50.
 inline constexpr int kControlPriority = 40;
+/// Of the processes that listen to the loop: where cores are fewer than processes, the answer to a
+/// sample goes first (measured: tests/benchmark/README.md, "The loop").
+inline constexpr int kListenerPriority = 35;
+/// kControlPriority for the processes between a sample and the motor command that answers it (rig,
+/// sensing, cancellation), kListenerPriority for all others.
+int priority_of(std::string_view service) noexcept;
 /// [B] The RLIMIT_MEMLOCK that lock_memory() needs: several times the memory of a process.
 inline constexpr std::uint64_t kMemoryToLock = std::uint64_t{1} << 30;
 
@@ -18,7 +25,7 @@ inline constexpr std::uint64_t kMemoryToLock = std::uint64_t{1} << 30;
 ///                 2026-11: for minutes).  Turns of 100 ms end that; no thread of the loop runs for
 ///                 so long.
 /// @return false when the system does not grant it.
-bool become_real_time(bool secured = false) noexcept;
+bool become_real_time(bool secured = false, int priority = kControlPriority) noexcept;
 
 /// Keeps every page of this process that is or will be in use from being swapped out, where the
 /// limit (RLIMIT_MEMLOCK) has room for a process: with less, later allocations would fail.

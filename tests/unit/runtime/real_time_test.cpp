@@ -40,6 +40,18 @@ TEST(BecomeRealTimeTest, ThePolicyIsFifoOrWithKeysRoundRobin) {
   }
 }
 
+// Whatever listens to the loop goes below it and above what reports.
+TEST(BecomeRealTimeTest, AListenerGoesBelowTheLoopAndAboveTheBackground) {
+  in_a_thread([] {
+    EXPECT_EQ(priority_of("cancellation"), kControlPriority);
+    if (!become_real_time(false, priority_of("recorder"))) return;  // not granted here
+    const int listener = now().priority;
+    EXPECT_LT(listener, kControlPriority);
+    become_background();
+    EXPECT_LT(now().priority, listener);
+  });
+}
+
 // Under keys a thread that shares Fast DDS's locks stays where it is.
 TEST(BecomeBackgroundTest, AThreadGoesBelowTheControlPathAndStaysRealTime) {
   for (const bool secured : {false, true}) {
