@@ -27,12 +27,16 @@ ordered_json condition_json(const session::TrialResult& trial) {
   if (trial.counterforce_delay_s) {
     condition["counterforce_delay_ms"] = or_null(1e3 * *trial.counterforce_delay_s);
   }
-  if (const auto& latency = trial.sensor_to_command) {
-    condition["sensor_to_command_us"] = {{"p50", latency->p50_us},
-                                         {"p99", latency->p99_us},
-                                         {"max", latency->max_us},
-                                         {"uncertainty", latency->uncertainty_us}};
-  }
+  const auto put_latency = [&condition](const char* key, const auto& latency) {
+    if (!latency) return;
+    condition[key] = {{"p50", latency->p50_us},
+                      {"p99", latency->p99_us},
+                      {"max", latency->max_us},
+                      {"uncertainty", latency->uncertainty_us}};
+  };
+  put_latency("sensor_to_command_us", trial.sensor_to_command);
+  put_latency("sensor_to_force_us", trial.sensor_to_force);
+  if (trial.same_tick_share) condition["same_tick_share"] = *trial.same_tick_share;
   return condition;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "apps/session/clock_line.hpp"
 #include "apps/session/in_process.hpp"
@@ -37,6 +39,15 @@ std::vector<double> measured(const std::vector<Message>& stream, const Trial& tr
   return samples;
 }
 
+std::optional<TrialResult::Latency> latency_of(std::vector<double> late_us, double uncertainty_us) {
+  if (late_us.empty()) return std::nullopt;
+  std::ranges::sort(late_us);
+  const auto quantile = [&](double share) {
+    return late_us[static_cast<std::size_t>(share * static_cast<double>(late_us.size() - 1))];
+  };
+  return TrialResult::Latency{quantile(0.5), quantile(0.99), late_us.back(), uncertainty_us};
+}
+
 std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& session,
                                                       const Trial& trial) {
   const ClockLine commanding(session.clock_offsets, "cancellation");
@@ -48,13 +59,30 @@ std::optional<TrialResult::Latency> sensor_to_command(const SessionRecording& se
                       static_cast<double>(commanding.on_experiments_clock(command.stamp_ns()) -
                                           acquiring.on_experiments_clock(command.acquired_ns())));
   }
-  if (late_us.empty()) return std::nullopt;
-  std::ranges::sort(late_us);
-  const auto quantile = [&](double share) {
-    return late_us[static_cast<std::size_t>(share * static_cast<double>(late_us.size() - 1))];
-  };
-  return TrialResult::Latency{quantile(0.5), quantile(0.99), late_us.back(),
-                              1e-3 * (commanding.uncertainty_ns() + acquiring.uncertainty_ns())};
+  return latency_of(std::move(late_us),
+                    1e-3 * (commanding.uncertainty_ns() + acquiring.uncertainty_ns()));
+}
+
+// Both stamps are the rig's own.
+void judge_use(const SessionRecording& session, const Trial& trial, TrialResult& result) {
+  std::map<Tick, std::int64_t> acquired_ns;
+  for (const stillhand_msgs::RawSample& raw : session.raw_samples) {
+    if (trial.measures(raw.tick())) acquired_ns[raw.tick()] = raw.stamp_ns();
+  }
+  std::vector<double> late_us;
+  std::int64_t ticks = 0;
+  std::int64_t same = 0;
+  for (const stillhand_msgs::RigTruth& truth : session.rig_truths) {
+    if (!trial.measures(truth.tick())) continue;
+    ++ticks;
+    if (truth.motor_tick() == truth.tick()) ++same;
+    const auto answered = acquired_ns.extract(truth.motor_tick());  // the first use alone
+    if (answered.empty()) continue;
+    late_us.push_back(1e-3 * static_cast<double>(truth.stamp_ns() - answered.mapped()));
+  }
+  if (ticks == 0) return;
+  result.same_tick_share = static_cast<double>(same) / static_cast<double>(ticks);
+  result.sensor_to_force = latency_of(std::move(late_us), 0.0);
 }
 
 Excerpt excerpt_of(const std::vector<double>& feedthrough_n, const std::vector<double>& motor_n,
@@ -96,10 +124,13 @@ void judge_cancellation(const SessionRecording& session, const PlannedTrial& pla
   result.counterforce_delay_s =
       counterforce_delay_s(forces.feedthrough_n, forces.motor_n, kControlRateHz);
   result.sensor_to_command = sensor_to_command(session, trial);
+  judge_use(session, trial, result);
 }
 
 TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
-  TrialResult result{planned.trial.number, planned.label, {}, 0, {}, {}, {}, {}, {}};
+  TrialResult result{};
+  result.number = planned.trial.number;
+  result.label = planned.label;
   identification::TrackingRecord record;
   record.rate_hz = kControlRateHz;
   record.target_m = measured(

@@ -43,6 +43,10 @@ struct TrialResult {
     double uncertainty_us = 0.0;  ///< of the offset between the two clocks; 0: one clock
   };
   std::optional<Latency> sensor_to_command;
+  /// From a sample's acquisition to the rig's step that first used the command that answers it.
+  std::optional<Latency> sensor_to_force;
+  /// Share of the measured ticks that used the command that answers their own sample; the same.
+  std::optional<double> same_tick_share;
   Excerpt excerpt;  ///< only where the platform moves
 };
 

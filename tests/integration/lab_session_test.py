@@ -99,6 +99,11 @@ class LabSessionTest(unittest.TestCase):
         model = json.loads((self.lab.out / "model.json").read_text())
         self.assertTrue(model)
 
+    # How many, a busy machine decides; a rig that does not wait, or never sees its answer, uses none.
+    def test_ticks_use_the_command_that_answers_their_own_sample(self):
+        self.assertGreater(self.summary["conditions"]["C"]["same_tick_share"], 0.0)
+        self.assertLess(self.summary["conditions"]["C"]["sensor_to_force_us"]["p50"], 1000.0)
+
     def test_lost_ticks_are_those_of_the_recording(self):
         recording = self.lab.recording(1)
         self.assertEqual(recording["damage"], [])

@@ -104,6 +104,8 @@ TEST(SummaryJsonTest, DelaysAreInTheUnitsOfTheirKeys) {
   result.trials[2].cancelled_share = 0.87;
   result.trials[2].counterforce_delay_s = 0.0065;
   result.trials[2].sensor_to_command = {120.0, 340.0, 900.0, 15.0};
+  result.trials[2].sensor_to_force = {170.0, 390.0, 950.0, 0.0};
+  result.trials[2].same_tick_share = 0.998;
   const auto json = json_of(result)["conditions"]["C"];
   EXPECT_DOUBLE_EQ(json["cancelled_share"], 0.87);
   EXPECT_DOUBLE_EQ(json["counterforce_delay_ms"], 6.5);
@@ -111,6 +113,8 @@ TEST(SummaryJsonTest, DelaysAreInTheUnitsOfTheirKeys) {
   EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["p99"], 340.0);
   EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["max"], 900.0);
   EXPECT_DOUBLE_EQ(json["sensor_to_command_us"]["uncertainty"], 15.0);
+  EXPECT_DOUBLE_EQ(json["sensor_to_force_us"]["p99"], 390.0);
+  EXPECT_DOUBLE_EQ(json["same_tick_share"], 0.998);
 }
 
 TEST(SummaryJsonTest, ANumberThatCouldNotBeComputedIsNull) {

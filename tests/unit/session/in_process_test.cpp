@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -111,6 +112,32 @@ TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
   const double cancelled = cancelled_share(signals.feedthrough_n, signals.motor_n);
   EXPECT_GT(cancelled, 0.55);
   EXPECT_LT(cancelled, 0.80);
+}
+
+// The force that answers a sample acts until the next one in both orders (rig RG-38); where the rig
+// does not wait, its truth states that force one tick later.
+TEST(InProcessLoopTest, TheMotionDoesNotDependOnTheWaitForTheAnswer) {
+  ProtocolOptions options;
+  options.conditions = parse_conditions("C");
+  options.trial_s = 10.0;
+  std::map<double, TrialSignals> signals;
+  for (const double wait_s : {0.0, 0.0004}) {
+    CoreConfigs configs;
+    configs.rig.motor.answer_wait_s = wait_s;
+    InProcessLoop loop(configs, options.seed);
+    for (const PlannedTrial& planned : plan(options)) {
+      signals[wait_s] = loop.run(planned);
+      if (planned.trial.phase != TrialPhase::kPegged) continue;
+      EXPECT_EQ(loop.use_model(identification::identify(signals[wait_s].pegged)),
+                cancellation::Refusal::kNone);
+    }
+  }
+  const TrialSignals& later = signals.at(0.0);
+  const TrialSignals& same = signals.at(0.0004);
+  EXPECT_EQ(later.tracking.cursor_m, same.tracking.cursor_m);
+  EXPECT_EQ(later.feedthrough_n, same.feedthrough_n);
+  ASSERT_GT(rms(same.motor_n), 1.0);
+  EXPECT_TRUE(std::equal(same.motor_n.begin(), same.motor_n.end() - 1, later.motor_n.begin() + 1));
 }
 
 }  // namespace

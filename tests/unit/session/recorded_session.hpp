@@ -65,6 +65,19 @@ class Tape {
     message.motor_force_n(motor_n);
     file.add(topics::kRigTruth, message);
   }
+  /// The rig's sample of a tick, and the step that then used the command answering `motor_tick`.
+  void used(Tick tick, std::int64_t raw_ns, Tick motor_tick, std::int64_t truth_ns) {
+    stillhand_msgs::RawSample raw;
+    raw.tick(tick);
+    raw.stamp_ns(raw_ns);
+    file.add(topics::kRawSample, raw);
+    stillhand_msgs::RigTruth message;
+    message.tick(tick);
+    message.stamp_ns(truth_ns);
+    message.motor_tick(motor_tick);
+    message.feedthrough_force_n(1.0);
+    file.add(topics::kRigTruth, message);
+  }
   void sensed(Tick tick, double accel_y_m_s2) {
     stillhand_msgs::Sensed message;
     message.tick(tick);

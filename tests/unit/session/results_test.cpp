@@ -159,6 +159,23 @@ TEST(EvaluateTest, LatenciesAreQuantilesOverTheTrialsCommands) {
   EXPECT_EQ(latency.uncertainty_us, 0.0);
 }
 
+// Three of four ticks use the answer to their own sample, 200 us after it; the fourth the one
+// before again, and so never its own: the command that came too late is not counted as used.
+TEST(EvaluateTest, TheUseOfACommandIsTheFirstStepThatNamesIt) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  for (Tick tick = kStart; tick < kEnd; ++tick) {
+    const std::int64_t at_ns = 1'000'000'000 + 1'000'000 * tick;
+    const bool missed = tick % 4 == 3;
+    tape.used(tick, at_ns, missed ? tick - 1 : tick, at_ns + 200'000);
+  }
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart), outcome_of(1, 'B', kStart)});
+  EXPECT_DOUBLE_EQ(sut.trials.at(0).same_tick_share.value(), 0.75);
+  EXPECT_DOUBLE_EQ(sut.trials[0].sensor_to_force.value().p50_us, 200.0);
+  EXPECT_DOUBLE_EQ(sut.trials[0].sensor_to_force.value().max_us, 200.0);
+  EXPECT_FALSE(sut.trials.at(1).same_tick_share.has_value());
+}
+
 // The rig's clock is 5 ms ahead, the cancellation's 2 ms behind: 300 us stay 300 us.
 TEST(EvaluateTest, StampsOfOtherHostsAreTakenOverToOneClock) {
   Tape tape;
