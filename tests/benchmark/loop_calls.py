@@ -6,7 +6,7 @@
 
 Runs a session (condition C) with a library preloaded that counts allocations and locks by who asks for them: the
 program's own code or a library (tests/support/count_calls.cpp). During the trial it reads the counts twice, SECONDS
-apart, and meanwhile counts system calls with `perf trace` (package linux-perf, as root; without it, that column is
+apart, and meanwhile counts system calls with `perf stat` (package linux-perf, as root; without it, that column is
 empty). Prints one row for each process. The counts hold all threads: also the ten reports a second.
 """
 import argparse
@@ -27,6 +27,8 @@ sys.path.insert(0, str(SOURCE / "tests" / "integration"))
 from lab_process import LabProcess, TRIAL_LIMIT_S, quick_session  # noqa: E402
 
 PROCESSES = ("rig", "sensing", "cancellation")
+NAMES = ("futex", "sendto", "recvfrom", "setsockopt", "gettid", "clock_nanosleep")
+EVENTS = ",".join(["raw_syscalls:sys_enter", *(f"syscalls:sys_enter_{name}" for name in NAMES)])
 TICKS_PER_S = 1000.0
 
 
@@ -35,10 +37,12 @@ def counts(folder, process):
 
 
 def system_calls(text):
-    """{name: calls} of `perf trace -s`."""
+    """{name: calls} of `perf stat -x,`."""
     found = {}
-    for name, calls in re.findall(r"^\s+([a-z_0-9]+)\s+(\d+)\s+\d+\s+[\d.]+", text, re.MULTILINE):
-        found[name] = found.get(name, 0) + int(calls)
+    for line in text.splitlines():
+        fields = line.split(",")
+        if len(fields) > 2 and "sys_enter" in fields[2] and fields[0].isdigit():
+            found[fields[2].split(":")[1].removeprefix("sys_enter").lstrip("_") or "all"] = int(fields[0])
     return found
 
 
@@ -60,7 +64,8 @@ def main():
             if perf:
                 for process in PROCESSES:
                     traces[process] = subprocess.Popen(
-                        [perf, "trace", "-s", "-p", str(pids[process]), "--", "sleep", str(options.seconds)],
+                        [perf, "stat", "-x,", "-e", EVENTS, "-p", str(pids[process]), "--", "sleep",
+                         str(options.seconds)],
                         stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
             first, begin = {name: counts(folder, name) for name in PROCESSES}, time.monotonic()
             texts = {process: trace.communicate()[1] for process, trace in traces.items()}
@@ -77,9 +82,9 @@ def main():
         a_sample = [(after - before) / samples for before, after in zip(first[name], last[name])]
         calls = system_calls(texts.get(name, ""))
         per = TICKS_PER_S * options.seconds
-        most = sorted(calls.items(), key=lambda item: -item[1])[:5]
+        most = ", ".join(f"{call} {calls[call] / per:.2f}" for call in NAMES if calls.get(call, 0) > 0.005 * per)
         print(f"{name:14} " + " ".join(f"{value:11.3f}" for value in a_sample)
-              + f" {sum(calls.values()) / per:13.2f}   " + ", ".join(f"{n} {c / per:.2f}" for n, c in most))
+              + f" {calls.get('all', 0) / per:13.2f}   {most}")
 
 
 if __name__ == "__main__":
