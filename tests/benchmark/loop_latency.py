@@ -29,6 +29,10 @@ import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
+sys.path.insert(0, str(SOURCE / "tests" / "integration"))
+
+from lab_process import next_domain  # noqa: E402
+
 QUANTILES = ("p50", "p99", "p999", "worst")
 LOOPBACK = ('<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1" multicast="true"/>'
             '</Interfaces></General></Domain></CycloneDDS>')
@@ -142,9 +146,9 @@ def print_ratios(results):
     for name in results:
         if not name.startswith("lab") or "bare" not in results:
             continue
-        for row in ("command", "used"):
-            ratios = {key: [mine[row][key] / peer[row][key] for mine, peer in zip(results[name], results["bare"]) if mine and peer]
-                      for key in QUANTILES[:3]}
+        pairs = [(mine, peer) for mine, peer in zip(results[name], results["bare"]) if mine and peer]
+        for row in ("command", "used") if pairs else ():
+            ratios = {key: [mine[row][key] / peer[row][key] for mine, peer in pairs] for key in QUANTILES[:3]}
             print(f"{name} / bare, {row}: " + ", ".join(f"{key} {statistics.median(values):.2f}"
                                                       for key, values in ratios.items()))
 
@@ -157,7 +161,7 @@ def main():
     words.add_argument("--lab", action="append", default=[], metavar="NAME=PROGRAMS[,CONFIG]")
     options = words.parse_args()
     first = real_time_words()
-    domain = 215 + os.getpid() % 16
+    domain = next_domain()
     calls = {}
     chosen = options.only.split(",")
     config = SOURCE / "deploy" / "config"
