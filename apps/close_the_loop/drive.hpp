@@ -15,7 +15,8 @@ namespace stillhand::close_the_loop {
 /// The lab's stick and motor by their data sheets and the rig's settings.
 struct DeclaredDrive {
   rig::StickConfig stick;
-  double motor_delay_s = 0.0025;  ///< [s] from the answered sample to the next, and the current loop's lag
+  /// [s] From the answered sample to the next one, and the current loop's lag.
+  double motor_delay_s = 0.0025;
 };
 
 /// Delay between the commanded and the felt force, README Eq. CL-5:

@@ -125,6 +125,18 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
       ->check(settings::number_between(0.0, 49.0))
       ->capture_default_str();
   study
+      .add_option("--motor-delay", options.motor.delay_s,
+                  "motor.delay_s of every rig [s]: from a command to its current")
+      ->check(settings::number_between(0.0, 0.2))
+      ->capture_default_str();
+  study
+      .add_option(
+          "--answer-wait", options.motor.answer_wait_s,
+          "motor.answer_wait_s of every rig [s]; 0: a motor command is used at the beginning "
+          "of the next tick")
+      ->check(settings::number_between(0.0, 0.0007))
+      ->capture_default_str();
+  study
       .add_option("--undeclared-effect", options.undeclared_effect,
                   "seed of an effect that only the rigs hold, revealed with the results; 0: none")
       ->check(session::check_seed);
@@ -176,6 +188,8 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--conditions")
       ->excludes("--canceller")
       ->excludes("--wrong-models")
+      ->excludes("--motor-delay")
+      ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
   study
       ->add_flag("--calibrate", words->calibrate,
@@ -185,6 +199,8 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--conditions")
       ->excludes("--canceller")
       ->excludes("--wrong-models")
+      ->excludes("--motor-delay")
+      ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
   add_parts_options(*study, *words);
   study->callback([record, words, &status, study] {
