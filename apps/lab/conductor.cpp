@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -21,11 +22,12 @@ constexpr std::chrono::milliseconds kPollPeriod{50};
 // A session of hours has fewer; made-up events must not fill the memory.
 constexpr std::size_t kMostEvents = 100'000;
 
+// In the order of the launches, which is that of the data flow.
 Roster roster() {
   Roster members;
-  for (const topics::Process& process : topics::kProcesses) {
-    if (process.launch == 0) continue;  // this one
-    members.push_back({std::string(process.name), process.prepares, process.ticks});
+  for (const std::string_view name : topics::kLaunchOrder) {
+    const auto& process = *std::ranges::find(topics::kProcesses, name, &topics::Process::name);
+    members.push_back({std::string(name), process.prepares, process.ticks});
   }
   return members;
 }

@@ -14,7 +14,7 @@
 namespace stillhand::lab {
 namespace {
 
-void write(const std::filesystem::path& file, const std::string& text) {
+void write_file(const std::filesystem::path& file, const std::string& text) {
   const auto status = recording::write_file_atomically(file.string(), text);
   if (!status.ok()) throw std::runtime_error(status.text);
 }
@@ -34,10 +34,10 @@ void write_subject_settings(const std::filesystem::path& config, const std::file
   std::filesystem::create_directories(to);
   for (const auto& entry : std::filesystem::directory_iterator(config)) {
     if (entry.path().extension() != ".yaml") continue;
-    write(to / entry.path().filename(), recording::read_file(entry.path().string()));
+    write_file(to / entry.path().filename(), recording::read_file(entry.path().string()));
   }
-  write(to / "rig.yaml", settings::yaml_text(rig));
-  write(to / "human_operator.yaml", settings::yaml_text(person));
+  write_file(to / "rig.yaml", settings::yaml_text(rig));
+  write_file(to / "human_operator.yaml", settings::yaml_text(person));
 }
 
 }  // namespace stillhand::lab

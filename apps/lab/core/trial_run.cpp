@@ -148,12 +148,14 @@ bool TrialRun::follow(Seen& seen, std::int64_t now_ns, Actions& actions) {
     actions.progress = progress(now);
     stopped = !seen.requests.trial_stopped().empty() && now < last_tick();
     over = stopped || now >= last_tick() || seen.has(EventKind::kInterlockOpened);
+    if (!over) result_.aborted = standstill_.look(seen, roster_, now_ns);
+    over = over || !result_.aborted.empty();
     // A stop that is asked for from now on comes too late.
     seen.trial_runs = !over;
   }
   const Wait wait = trouble_.wait(over, seen, limit_ns_, now_ns);
   if (wait == Wait::kGoesOn) return false;
-  result_.completed = wait == Wait::kOver && !stopped;
+  result_.completed = wait == Wait::kOver && !stopped && result_.aborted.empty();
   if (wait != Wait::kOver) {
     result_.aborted = trouble_.why_stopped(seen, "the trial did not end in time");
   }
@@ -167,7 +169,7 @@ bool TrialRun::end_motion(Seen& seen, std::int64_t now_ns, Actions& actions) {
   const bool opened = seen.has(EventKind::kInterlockOpened);
   stopped_ = !result_.completed &&
              (!seen.requests.trial_stopped().empty() || (trouble_.silent() && !opened) ||
-              (trouble_.why().empty() && seen.interrupted));
+              (trouble_.why().empty() && (seen.interrupted || !opened)));
   if (stopped_ || !seen.requests.emergency().empty()) {
     actions.announce = {SessionState::kRunning, std::nullopt};
   }

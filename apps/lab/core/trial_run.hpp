@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/lab/core/stage.hpp"
+#include "apps/lab/core/standstill.hpp"
 #include "apps/lab/core/trouble.hpp"
 
 namespace stillhand::lab {
@@ -61,6 +62,7 @@ class TrialRun final : public Stage {
   At at_ = At::kPaused;
   std::int64_t limit_ns_;
   bool announced_pause_ = false;
+  Standstill standstill_;
   bool stopped_ = false;  // the force goes to zero by request: no event reports it
   Tick afterwards_ = 0;   // tick at which the recorder has seen the force's end
   Misses before_;

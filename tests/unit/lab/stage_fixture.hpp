@@ -48,7 +48,10 @@ class StageTest : public testing::Test {
   std::string ask(Action action) {
     return seen_.requests.take({action, ++request_, "desk", ""}, seen_.trial_runs);
   }
-  void rig_at(Tick tick) { seen_.processes["rig"].tick = tick; }
+  /// The sample clock, which every process follows.
+  void rig_at(Tick tick) {
+    for (auto& [name, process] : seen_.processes) process.tick = tick;
+  }
 
   const Roster roster_{{"rig", true, true},
                        {"cancellation", true, true},

@@ -74,6 +74,37 @@ TEST_F(TrialRunTest, IsAssignedAndAnnouncedASecondAheadAndCompletedAtItsLastTick
   EXPECT_FALSE(seen_.trial_runs);
 }
 
+// Its life sign comes from another thread than its work.
+TEST_F(TrialRunTest, AProcessThatStandsStillEndsTheTrialAndIsNamed) {
+  follow();
+  rig_at(7000);
+  seen_.processes["cancellation"].tick = 6000;
+  step();
+  EXPECT_FALSE(sut_->over());
+  rig_at(7001);
+  // The operator has no input any more, and stands as well.
+  seen_.processes["cancellation"].tick = seen_.processes["human_operator"].tick = 6000;
+  const Actions actions = step();
+  ASSERT_TRUE(actions.announce);
+  EXPECT_FALSE(actions.announce->trial);  // command and motion end at their sources
+  pass_afterwards();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_FALSE(result().stopped);
+  EXPECT_EQ(result().aborted, "cancellation stands still: its newest tick is 6000, the rig's 7001");
+}
+
+TEST_F(TrialRunTest, ASampleClockThatStandsStillEndsTheTrial) {
+  follow();
+  step(4 * kSecond);
+  EXPECT_FALSE(sut_->over());
+  step();
+  pass_afterwards();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(result().aborted, "rig stands still: no tick for 4 s");
+}
+
 TEST_F(TrialRunTest, APeggedTrialIsCalledIdentification) {
   planned_.phase = TrialPhase::kPegged;
   sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_);
@@ -318,11 +349,14 @@ TEST_F(TrialRunTest, AProcessThatEndsIsTheReasonAndTheRigOpensItsInterlock) {
 }
 
 // Twice what is left, 2 * 10 s, and 10 s.
-TEST_F(TrialRunTest, ATrialWhoseTicksStandStillEnds) {
+TEST_F(TrialRunTest, ATrialOnASlowSampleClockEnds) {
   step();
   arm(2);
   step();
-  step(30 * kSecond);
+  for (Tick tick = 101; tick <= 130; ++tick) {
+    rig_at(tick);
+    step(kSecond);
+  }
   EXPECT_FALSE(sut_->over());
   step();
   step(1500 * kMs);
