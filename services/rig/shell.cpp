@@ -2,6 +2,7 @@
 #include "services/rig/shell.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "idl/session_state.hpp"
@@ -13,6 +14,10 @@ constexpr std::int64_t kPeriod_ns = 1'000'000;
 // If the loop is later than this, its schedule restarts from now. Catching up would make a burst of
 // ticks, in which the newest motor command would appear too old.
 constexpr std::int64_t kMaxCatchUp_ns = 5 * kPeriod_ns;
+// From the request to end to zero force and a platform that stands: the platform's highest speed at
+// its deceleration takes 300 ticks with the default settings.
+constexpr Tick kMostEnd_ticks = 1000;
+constexpr double kRest_m_s = 0.001;
 
 RigConfig seeded(RigConfig config, std::uint64_t seed) {
   constexpr std::uint64_t kSeedMask = 0xffffffffu;  // RigConfig::seed is a 32-bit number
@@ -76,7 +81,7 @@ void Shell::run() {
   service_.run([this] {
     std::int64_t due_ns = runtime::monotonic_ns();
     Tick tick = 0;
-    while (!service_.stop().requested()) {
+    while (goes_on(tick)) {
       due_ns += kPeriod_ns;
       runtime::sleep_until_ns(due_ns);
       // A latched end of the previous session does not start the clock; the end of this session
@@ -93,11 +98,18 @@ void Shell::run() {
   });
 }
 
+bool Shell::goes_on(Tick tick) {
+  if (!service_.stop().requested()) return true;
+  if (stop_tick_ < 0) stop_tick_ = tick;
+  return !at_rest_ && tick - stop_tick_ < kMostEnd_ticks;
+}
+
 void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   const Trial trial = announced_.load().trial;
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
   const auto* command = command_for(tick);
-  if (interlock_.stopped()) command = nullptr;  // the platform brakes and holds
+  // Without a command the platform brakes and holds.
+  if (interlock_.stopped() || stop_tick_ >= 0) command = nullptr;
   const auto& newest_force = volition_.load();
   const auto* volition = newest_force.tick() >= 0 ? &newest_force : nullptr;
   const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
@@ -114,6 +126,8 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
     motor = take_motor(trial, tick, input);
     core_.drive(input, output);
   }
+  at_rest_ =
+      output.truth.motor_force_n == 0.0 && std::abs(output.truth.platform_velocity_m_s) < kRest_m_s;
   report_interlock(trial, tick, output.truth.motor_force_n);
 
   UsedTicks used;
@@ -138,7 +152,8 @@ const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick t
                                                       RigInput& input) {
   // A stop that came during the wait counts.
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
-  const bool permitted = interlock_.step(trial, tick, service_.bus().peers_alive());
+  const bool closed = interlock_.step(trial, tick, service_.bus().peers_alive());
+  const bool permitted = closed && stop_tick_ < 0;
   const auto* motor = motor_now();
   put_motor(input, tick, motor, permitted);
   return motor;

@@ -32,6 +32,8 @@ class Shell {
   /// Platform commands arrive before their tick; the shell keeps this many.
   static constexpr std::size_t kCommandsAhead = 64;
 
+  /// False once the process may end: at a stop the motor goes to zero and the platform to rest.
+  bool goes_on(Tick tick);
   void tick_once(Tick tick, std::int64_t due_ns);
   /// Waits, with the limit of the settings, for the motor command that answers this tick.
   void await_answer(Tick tick, std::int64_t due_ns);
@@ -63,6 +65,8 @@ class Shell {
   // Of the loop.
   std::array<stillhand_msgs::PlatformCommand, kCommandsAhead> commands_;
   Tick motor_void_tick_ = -1;
+  Tick stop_tick_ = -1;  ///< of the request to end; -1: none
+  bool at_rest_ = true;  ///< no motor force, and the platform stands
 };
 
 }  // namespace stillhand::rig
