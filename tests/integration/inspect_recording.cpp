@@ -93,12 +93,24 @@ json clock_events_of(const stillhand::session::SessionRecording& session) {
   return events;
 }
 
+json newest_motor_command(const stillhand::session::SessionRecording& session) {
+  if (session.motor_commands.empty()) return {{"stamp_ns", -1}};
+  const auto& newest = session.motor_commands.back();
+  return {{"stamp_ns", newest.stamp_ns()},
+          {"force_n", newest.force_n()},
+          {"permitted", newest.permitted()}};
+}
+
 json rig_of(const stillhand::session::SessionRecording& session, std::size_t last_ticks) {
   json rig{{"tick", json::array()},
            {"stamp_ns", json::array()},
            {"motor_force_n", json::array()},
            {"motor_tick", json::array()},
-           {"motor_permitted", json::array()}};
+           {"motor_permitted", json::array()},
+           {"command_tick", json::array()},
+           {"position_m", json::array()},
+           {"velocity_m_s", json::array()},
+           {"acceleration_m_s2", json::array()}};
   const auto& truths = session.rig_truths;
   for (std::size_t i = truths.size() - std::min(truths.size(), last_ticks); i < truths.size();
        ++i) {
@@ -107,6 +119,10 @@ json rig_of(const stillhand::session::SessionRecording& session, std::size_t las
     rig["motor_force_n"].push_back(truths[i].motor_force_n());
     rig["motor_tick"].push_back(truths[i].motor_tick());
     rig["motor_permitted"].push_back(truths[i].motor_permitted());
+    rig["command_tick"].push_back(truths[i].command_tick());
+    rig["position_m"].push_back(truths[i].platform_position_m());
+    rig["velocity_m_s"].push_back(truths[i].platform_velocity_m_s());
+    rig["acceleration_m_s2"].push_back(truths[i].platform_acceleration_m_s2());
   }
   return rig;
 }
@@ -130,9 +146,7 @@ int main(int argc, char** argv) {
                {"notes", notes_of(session)},
                {"clock_events", clock_events_of(session)},
                {"commands", commands_of(session)},
-               {"newest_motor_command_ns", session.motor_commands.empty()
-                                               ? std::int64_t{-1}
-                                               : session.motor_commands.back().stamp_ns()}};
+               {"newest_motor_command", newest_motor_command(session)}};
     if (signals) found["signals"] = signals_of(session, last_ticks);
     std::cout << found << '\n';
     return 0;

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Takes each stage of the safety chain away, alone, and sees a test fail.
+
+Usage: STILLHAND_BUILD=build /usr/bin/python3 tests/faults/stages.py [--stage NAME] [--list]
+
+For each stage: runs the test, which must pass; edits one place of the sources, builds the targets, runs the test again,
+which must fail, and puts the place back. Prints the line of the failure. Ends with a build of the sources as they were.
+Exit status 1 if a test passed without its stage. The build tree is that of the sources; no other program may build in
+it meanwhile.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import typing
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build")).resolve()
+DEATH = ("/usr/bin/python3", "tests/integration/process_death_test.py", "ProcessDeathTest.test_death_of_display")
+
+
+class Stage(typing.NamedTuple):
+    name: str
+    file: str
+    text: str      # the stage, once in the file
+    without: str
+    targets: tuple
+    test: tuple    # program of the build tree and its filter, or a command
+
+
+def unit(folder, cases):
+    return (f"unit_{folder}",), (f"tests/unit_{folder}", f"--gtest_filter={cases}")
+
+
+def rig(cases):
+    return ("stillhand-rig", "interface_rig"), ("tests/interface_rig", f"--gtest_filter=RigProcessTest.{cases}")
+
+
+STAGES = [
+    Stage("model check", "services/cancellation/core/prepared_model.cpp",
+          "  if (check.refusal != Refusal::kNone) return {check.refusal, {}};\n", "",
+          *unit("cancellation", "CancellerTest.RefusesEveryBadModelWithItsReason")),
+    Stage("sound input: an unsound sample is not used", "services/cancellation/core/canceller.cpp",
+          "if (in_range && (input.sensed_flags & kUnsound) == 0) {", "if (true) {",
+          *unit("cancellation", "CancellerTest.UnsoundSamplesCountAsAbsent:CancellerTest.ForceIsBoundedWhateverComes")),
+    Stage("sound input: the force ramps down", "services/cancellation/core/canceller.cpp",
+          "const bool sound = new_sample && (flags & (kInputInvalid | kInputStale | kFault)) == 0;",
+          "const bool sound = true;",
+          *unit("cancellation", "CancellerTest.UnsoundSamplesCountAsAbsent:CancellerTest.ASampleThatIsNotNew*")),
+    Stage("force envelope", "services/cancellation/core/canceller.cpp",
+          "return {limited.force_n, predicted.force_n,",
+          "return {-config_.gain * share * predicted.against_n, predicted.force_n,",
+          *unit("cancellation", "CancellerTest.ForceIsBoundedWhateverComes")),
+    Stage("age", "services/rig/core/motor.hpp",
+          "return demand.age_ticks >= 0 && demand.age_ticks <= max_age_ticks_;", "return demand.age_ticks >= 0;",
+          *unit("rig", "*MotorLossTest*")),
+    Stage("DDS deadline", "services/rig/shell.cpp", "    motor_void_tick_ = newest.tick();\n", "",
+          *rig("AMissedDeadline*")),
+    Stage("drive: envelope", "services/rig/core/motor.cpp",
+          "return {out.force_n, flags | out.flags};", "return {lagged_n_, flags | out.flags};",
+          *unit("rig", "MotorTest.NoCommandRaisesTheForceAboveTheLimits:*MotorLossTest*")),
+    Stage("drive: current limit", "services/rig/core/motor.cpp",
+          "std::clamp(wanted_n, -current_limit_n_, current_limit_n_)", "wanted_n",
+          *unit("rig", "MotorTest.CurrentLimitBoundsTheForce")),
+    Stage("interlock of the rig", "services/rig/shell.cpp",
+          "interlock_.step(trial, tick, service_.bus().peers_alive()) && !ends;",
+          "(interlock_.step(trial, tick, service_.bus().peers_alive()), true);",
+          ("stillhand-rig",), DEATH),
+    Stage("interlock of cancellation", "services/cancellation/shell.cpp",
+          "const bool permitted = interlock_.step(", "const bool permitted = true || interlock_.step(",
+          ("stillhand-cancellation",), DEATH),
+    Stage("interlock stays open for the trial", "services/runtime/process/interlock.hpp",
+          "    latched_trial_ = trial.number;\n", "", *unit("runtime", "InterlockTest.*")),
+    Stage("emergency stop: force", "services/runtime/process/interlock.hpp",
+          " && !stopped_;", ";", *unit("runtime", "InterlockTest.*")),
+    Stage("emergency stop: platform", "services/rig/shell.cpp",
+          "if (interlock_.stopped() || ends) command", "if (ends) command", *rig("AfterAnEmergencyStop*")),
+    Stage("a rig that ends", "services/rig/shell.cpp",
+          "return !at_rest_ && tick", "return false && tick", *rig("ARigThatIsAskedToEnd*")),
+    Stage("replays", "services/runtime/bus/peers.hpp",
+          "return all_alive_.load(std::memory_order_acquire) && !replay_present();",
+          "return all_alive_.load(std::memory_order_acquire);", *unit("runtime", "PeersTest.*")),
+    Stage("platform: motion's guard", "services/motion/core/platform_guard.cpp",
+          "if (reachable(input.command)) {", "if (true) {", *unit("motion", "PlatformGuardTest.*")),
+    Stage("platform: the rig's limits", "services/rig/core/platform.cpp",
+          "std::max(left_m_s2, std::min(right_m_s2, within_top_m_s2))",
+          "std::max(left_m_s2 - 1e9, std::min(right_m_s2 + 1e9, within_top_m_s2))",
+          *unit("rig", "PlatformTest.StaysInsideItsLimits*")),
+    Stage("platform: brakes without a command", "services/rig/core/platform.cpp",
+          "return std::clamp(-rate_gain_s_ * state_.velocity_m_s,", "return 0.0 * std::clamp(-rate_gain_s_,",
+          *unit("rig", "PlatformTest.ComesToRest*")),
+    Stage("limits from start-up settings only", "services/cancellation/control_model_file.cpp",
+          "  top.allow_only(", "  if (false) top.allow_only(",
+          *unit("cancellation", "ControlModelFileTest.AnotherRigANewerVersionAndAForgedLimit*")),
+    Stage("supervision: a process that stands still", "apps/lab/core/trial_run.cpp",
+          "    if (!over) result_.aborted = standstill_.look(seen, roster_, now_ns);\n", "",
+          *unit("lab", "TrialRunTest.*StandsStill*")),
+]
+
+
+def build(targets):
+    ran = subprocess.run(["cmake", "--build", str(BUILD), "-j", "2", "--target", *targets], capture_output=True,
+                         text=True, check=False)
+    if ran.returncode != 0:
+        raise RuntimeError(f"the build fails:\n{ran.stdout[-2000:]}{ran.stderr[-2000:]}")
+
+
+def failure(stage):
+    """The line with which the stage's test fails; nothing if it passes."""
+    program = BUILD / stage.test[0]
+    command = [str(program), *stage.test[1:]] if program.is_file() else list(stage.test)
+    ran = subprocess.run(command, cwd=SOURCE, capture_output=True, text=True, check=False,
+                         env=dict(os.environ, STILLHAND_BUILD=str(BUILD)))
+    if "[==========] 0 tests" in ran.stdout or "no such test" in ran.stderr:
+        raise RuntimeError(f"no test of this name: {' '.join(command)}")
+    if ran.returncode in (0, 77):
+        return ""
+    said = (ran.stdout + ran.stderr).splitlines()
+    return next((line for line in said if "Failure" in line or "AssertionError" in line), f"status {ran.returncode}")
+
+
+def without(stage):
+    file = SOURCE / stage.file
+    before = file.read_text(encoding="utf-8")
+    if before.count(stage.text) != 1:
+        raise RuntimeError(f"{stage.file} does not hold the text of the stage once: {stage.text!r}")
+    try:
+        file.write_text(before.replace(stage.text, stage.without), encoding="utf-8")
+        build(stage.targets)
+        return failure(stage)
+    finally:
+        file.write_text(before, encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--stage", default="", help="stages whose name begins so [all]")
+    parser.add_argument("--list", action="store_true", help="print stages and tests, and end")
+    options = parser.parse_args()
+    stages = [stage for stage in STAGES if stage.name.startswith(options.stage)]
+    if options.list:
+        for stage in stages:
+            print(f"{stage.name:45s} {' '.join(stage.test)}")
+        return 0
+    hidden = 0
+    build({target for stage in stages for target in stage.targets})
+    for stage in stages:
+        if before := failure(stage):
+            raise RuntimeError(f"{stage.name}: the test fails with the stage, too: {before}")
+        noticed = without(stage)
+        hidden += not noticed
+        print(f"{'noticed' if noticed else 'HIDDEN'} {stage.name}: {' '.join(stage.test)}: {noticed}", flush=True)
+        build(stage.targets)
+    return 1 if hidden else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

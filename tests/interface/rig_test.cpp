@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rig's process on the real bus, with the test in place of all others: what the rig does by
+// itself when a motor command stays away, at an emergency stop, and when it is asked to end.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+#include "idl/control_loop.h"
+#include "idl/session.h"
+#include "places.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
+
+namespace stillhand {
+namespace {
+
+using support::eventually;
+
+constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
+constexpr Tick kLead = 20;  // of motion, services/motion/shell.cpp
+// 0.1 m at 0.5 Hz: 0.31 m/s at the middle of the travel.
+constexpr double kTravel_m = 0.1;
+constexpr double kOmega_rad_s = std::numbers::pi;
+constexpr double kMoves_m_s = 0.2;
+constexpr double kRest_m_s = 0.001;  // services/rig/shell.cpp
+
+runtime::Bus::Options options_of(const std::string& service) {
+  runtime::Bus::Options options;
+  options.service = service;
+  options.domain = support::own_domain();
+  options.profiles = kProfiles;
+  return options;
+}
+
+/// A rig, and a test that drives it with one command for each sample.
+class RigProcessTest : public testing::Test {
+ protected:
+  RigProcessTest() {
+    sensing_.subscribe<stillhand_msgs::RawSample>(
+        topics::kRawSample, [this](const auto& raw, const auto&) { answer(raw.tick()); });
+    recorder_.subscribe<stillhand_msgs::RigTruth>(
+        topics::kRigTruth, [this](const auto& truth, const auto&) { note(truth); });
+    for (runtime::Bus* bus : {&experiment_, &motion_, &cancellation_, &sensing_, &recorder_}) {
+      bus->start();
+    }
+    stillhand_msgs::TrialControl running;
+    running.session(stillhand_msgs::SESSION_RUNNING);
+    running.trial(-1);
+    control_.write(running);
+  }
+  ~RigProcessTest() override {
+    rig_.finish();
+    sensing_.stop_receiving();
+    recorder_.stop_receiving();
+  }
+
+  void answer(Tick tick) {
+    stillhand_msgs::MotorCommand force;
+    force.tick(tick);
+    if (commands_force_) motor_.write(force);
+    if (!commands_motion_) return;
+    const double phase_rad = kOmega_rad_s * 1e-3 * static_cast<double>(tick + kLead);
+    stillhand_msgs::PlatformCommand command;
+    command.tick(tick + kLead);
+    command.position_m(kTravel_m * std::sin(phase_rad));
+    command.velocity_m_s(kTravel_m * kOmega_rad_s * std::cos(phase_rad));
+    platform_.write(command);
+  }
+  void note(const stillhand_msgs::RigTruth& truth) {
+    tick_ = truth.tick();
+    motor_tick_ = truth.motor_tick();
+    command_tick_ = truth.command_tick();
+    speed_m_s_ = std::abs(truth.platform_velocity_m_s());
+  }
+  void expect_motion() {
+    commands_motion_ = true;
+    ASSERT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
+  }
+
+  std::atomic<bool> commands_force_{false}, commands_motion_{false};
+  // The newest sample of the rig's truth.
+  std::atomic<Tick> tick_{-1}, motor_tick_{-1}, command_tick_{-1};
+  std::atomic<double> speed_m_s_{0.0};
+
+  runtime::Bus experiment_{options_of("experiment")}, motion_{options_of("motion")};
+  runtime::Bus cancellation_{options_of("cancellation")}, sensing_{options_of("sensing")};
+  runtime::Bus recorder_{options_of("recorder")};
+  runtime::Publisher<stillhand_msgs::TrialControl> control_ =
+      experiment_.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+  runtime::Publisher<stillhand_msgs::SessionCommand> request_ =
+      experiment_.publisher<stillhand_msgs::SessionCommand>(topics::kSessionCommand);
+  runtime::Publisher<stillhand_msgs::PlatformCommand> platform_ =
+      motion_.publisher<stillhand_msgs::PlatformCommand>(topics::kPlatformCommand);
+  runtime::Publisher<stillhand_msgs::MotorCommand> motor_ =
+      cancellation_.publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand);
+  support::Child rig_{
+      {STILLHAND_BUILD "/bin/stillhand-rig", "--domain", std::to_string(support::own_domain()),
+       "--profiles", kProfiles, "--config", STILLHAND_SOURCE "/deploy/config"},
+      std::filesystem::temp_directory_path() / ("stillhand-rig-" + std::to_string(getpid()))};
+};
+
+// The age limit would hide it in the force: motor_tick is -1 as soon as the command counts as none,
+// whatever its age.
+TEST_F(RigProcessTest, AMissedDeadlineVoidsTheMotorCommandUntilTheNextOne) {
+  commands_force_ = true;
+  ASSERT_TRUE(eventually([this] { return motor_tick_ >= 100; }));
+  commands_force_ = false;
+  EXPECT_TRUE(eventually([this] { return motor_tick_ == -1; }));
+  commands_force_ = true;
+  const Tick void_tick = tick_;
+  EXPECT_TRUE(eventually([this, void_tick] { return motor_tick_ >= void_tick; }));
+}
+
+TEST_F(RigProcessTest, AfterAnEmergencyStopThePlatformBrakesWhateverMotionCommands) {
+  expect_motion();
+  stillhand_msgs::SessionCommand stop;
+  stop.action(stillhand_msgs::SESSION_EMERGENCY_STOP);
+  stop.request(1);
+  stop.asker("test");
+  request_.write(stop);
+  ASSERT_TRUE(eventually([this] { return command_tick_ == -1; }));
+  // From any speed in 300 ticks (services/rig/shell.cpp); commands go on to ask for motion.
+  const Tick stopped_tick = tick_;
+  ASSERT_TRUE(eventually([this, stopped_tick] { return tick_ > stopped_tick + 400; }));
+  EXPECT_LT(speed_m_s_, kRest_m_s);
+  EXPECT_EQ(command_tick_, -1);
+}
+
+TEST_F(RigProcessTest, ARigThatIsAskedToEndBrakesThePlatformFirst) {
+  expect_motion();
+  EXPECT_EQ(rig_.finish(), 0);
+  // The newest sample may still be on its way.
+  EXPECT_TRUE(eventually([this] { return speed_m_s_ < kRest_m_s; }));
+}
+
+}  // namespace
+}  // namespace stillhand
