@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "idl/cdr.hpp"
@@ -22,6 +24,7 @@
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/tap.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
 #include "services/runtime/remote_control.hpp"
 
 namespace {
@@ -115,6 +118,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
+    runtime::become_real_time();  // as the session, if it may
     const auto domain = static_cast<std::uint32_t>(std::stoul(argv[1]));
     const Witness witness(domain, argv[2]);
     follow_requests(domain);

@@ -43,7 +43,7 @@ def look(domain, series, began_s):
             values = (time.monotonic() - began_s, resident_kb(pid), len(os.listdir(f"/proc/{pid}/fd")))
         except OSError:  # it ended meanwhile
             continue
-        series.setdefault(f"{name.removeprefix('stillhand-')}", []).append(values)
+        series.setdefault("experiment" if name == "stillhand" else name.removeprefix("stillhand-"), []).append(values)
 
 
 def slope_per_min(rows, column):
@@ -57,7 +57,7 @@ def slope_per_min(rows, column):
 
 def soak(options):
     """Runs the session. Returns the lab's end status, its summary, the recording, and the series of each process."""
-    words = ["--conditions", "C", "--identify-seconds", 40, "--trial-seconds", round(options.minutes * 60), "--seed", 2,
+    words = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", round(options.minutes * 60), "--seed", 2,
              "--config", loose_settings(options.out / "config")]
     lab = LabProcess(options.out / "run", *words, *(["--no-real-time"] if options.no_real_time else []))
     began_s = time.monotonic()
@@ -69,6 +69,8 @@ def soak(options):
                 look(lab.domain, series, began_s)
             return lab.process.poll() is not None
         wait_for("end of the session", ended, options.minutes * 60 + AROUND_S + 60 * options.minutes, poll_s=PERIOD_S)
+        if not (options.out / "run" / "summary.json").is_file():
+            raise RuntimeError(f"the session has no results: {lab.errors()}")
         summary = json.loads((options.out / "run" / "summary.json").read_text())
         recording = lab.recording(1)
         return lab.process.returncode, summary, recording, series, lab.errors()
@@ -80,7 +82,8 @@ def findings(status, summary, recording, series):
     found = [] if status == 0 else [f"exit status {status}: {summary['trials'][-1].get('aborted')}"]
     found += [f"recording: {line}" for line in recording["damage"]]
     found += [f"{topic}: {count} ticks are missing" for topic, count in recording["lost_ticks"].items() if count]
-    for name, rows in series.items():
+    # The growth of a session that ended early is that of its start.
+    for name, rows in series.items() if status == 0 else ():
         memory, files = slope_per_min(rows, 1), slope_per_min(rows, 2)
         if memory > MOST_KB_MIN:
             found.append(f"{name}: its memory grows by {memory:.0f} kB a minute")
@@ -116,7 +119,11 @@ def main():
         print(f"--out {options.out}: it is there already; name a new folder", file=sys.stderr)
         return 2
     options.out.mkdir(parents=True)
-    status, summary, recording, series, errors = soak(options)
+    try:
+        status, summary, recording, series, errors = soak(options)
+    except RuntimeError as error:
+        print(error, file=sys.stderr)
+        return 1
     found = findings(status, summary, recording, series)
     trial = summary["trials"][-1]
     misses = {name: trial[name] for name in ("deadline_misses", "cycle_misses", "lost_ticks")}

@@ -18,6 +18,7 @@ import typing
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build")).resolve()
+TRIES = 4  # of a test with a live session
 DEATH = ("/usr/bin/python3", "tests/integration/process_death_test.py", "ProcessDeathTest.test_death_of_display")
 
 
@@ -28,6 +29,7 @@ class Stage(typing.NamedTuple):
     without: str
     targets: tuple
     test: tuple    # program of the build tree and its filter, or a command
+    says: tuple = ("",)  # one of them is in the failure: a busy machine breaks a live session for reasons of its own
 
 
 def unit(folder, cases):
@@ -67,10 +69,10 @@ STAGES = [
     Stage("interlock of the rig", "services/rig/shell.cpp",
           "interlock_.step(trial, tick, service_.bus().peers_alive()) && !ends;",
           "(interlock_.step(trial, tick, service_.bus().peers_alive()), true);",
-          ("stillhand-rig",), DEATH),
+          ("stillhand-rig",), DEATH, ("the rig's interlock is closed", "did not notice the death")),
     Stage("interlock of cancellation", "services/cancellation/shell.cpp",
           "const bool permitted = interlock_.step(", "const bool permitted = true || interlock_.step(",
-          ("stillhand-cancellation",), DEATH),
+          ("stillhand-cancellation",), DEATH, ("!= (False, 0.0)",)),
     Stage("interlock stays open for the trial", "services/runtime/process/interlock.hpp",
           "    latched_trial_ = trial.number;\n", "", *unit("runtime", "InterlockTest.*")),
     Stage("emergency stop: force", "services/runtime/process/interlock.hpp",
@@ -107,8 +109,18 @@ def build(targets):
         raise RuntimeError(f"the build fails:\n{ran.stdout[-2000:]}{ran.stderr[-2000:]}")
 
 
+def verdict(stage, wanted):
+    """The line with which the stage's test fails; nothing if it passes. A live session is repeated for the `wanted`."""
+    for _ in range(TRIES if any(stage.says) else 1):
+        said = failure(stage)
+        noticed = any(each in said for each in stage.says) and said != ""
+        if noticed if wanted else not said:
+            break
+        print(f"  {said or 'passes'}", flush=True)
+    return said if noticed or not wanted else ""
+
+
 def failure(stage):
-    """The line with which the stage's test fails; nothing if it passes."""
     program = BUILD / stage.test[0]
     command = [str(program), *stage.test[1:]] if program.is_file() else list(stage.test)
     ran = subprocess.run(command, cwd=SOURCE, capture_output=True, text=True, check=False,
@@ -129,7 +141,7 @@ def without(stage):
     try:
         file.write_text(before.replace(stage.text, stage.without), encoding="utf-8")
         build(stage.targets)
-        return failure(stage)
+        return verdict(stage, True)
     finally:
         file.write_text(before, encoding="utf-8")
 
@@ -147,7 +159,7 @@ def main():
     hidden = 0
     build({target for stage in stages for target in stage.targets})
     for stage in stages:
-        if before := failure(stage):
+        if before := verdict(stage, False):
             raise RuntimeError(f"{stage.name}: the test fails with the stage, too: {before}")
         noticed = without(stage)
         hidden += not noticed

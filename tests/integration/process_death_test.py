@@ -91,8 +91,9 @@ class ProcessDeathTest(LabTestCase):
               f"{len(force) - zero} ticks of it recorded", flush=True)
         self.assertLessEqual(ticks, FORCE_LIMIT_TICKS)
         self.assertEqual([f for f in force[zero:] if f != 0.0], [])
-        # The canceller has an interlock of its own, which the rig's would hide.
-        if service not in ("cancellation", "sensing"):  # without samples it has nothing to answer
+        # Rig and canceller have an interlock each, and one would hide the other.
+        if service not in ("cancellation", "sensing"):  # without samples there is nothing to answer
+            self.assertFalse(rig["motor_permitted"][zero], "the rig's interlock is closed")
             command = recording["newest_motor_command"]
             self.assertEqual((command["permitted"], command["force_n"]), (False, 0.0))
         self.assertLessEqual(noticed_ns, DETECTION_LIMIT_NS)
