@@ -77,7 +77,8 @@ inline constexpr std::string_view kOperatorAndRecorder[]{"human_operator", "reco
 inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};
 inline constexpr std::string_view kModelReaders[]{"cancellation", "experiment", "recorder"};
 inline constexpr std::string_view kAugmentedModelReaders[]{"cancellation", "recorder"};
-inline constexpr std::string_view kDashboards[]{kDashboard};
+// A person at the page, at the tracking screen, or with a stop key on the experiment's machine.
+inline constexpr std::string_view kCommandWriters[]{kDashboard, "display", "experiment"};
 inline constexpr std::string_view kCommandReaders[]{"rig", "experiment", "recorder"};
 inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
 inline constexpr std::string_view kStatusReaders[]{"rig", "cancellation", "display", "recorder",
@@ -126,6 +127,12 @@ inline constexpr Topic kTrialAssignment{"stillhand/trial_assignment",
                                         0.0,
                                         who::kExperiment,
                                         who::kAssignmentReaders};
+inline constexpr Topic kSessionSources{"stillhand/session_sources",
+                                       "stillhand_msgs::SessionSources",
+                                       Pattern::kStateLatched,
+                                       0.0,
+                                       who::kExperiment,
+                                       kLaunched};
 inline constexpr Topic kFeedthroughModel{
     "stillhand/feedthrough_model", "stillhand_msgs::FeedthroughModel",
     Pattern::kStateLatched,        0.0,
@@ -159,19 +166,17 @@ inline constexpr Topic kClockOffset{"stillhand/clock_offset", "stillhand_msgs::C
 inline constexpr Topic kHostStatus{
     "stillhand/host_status", "stillhand_msgs::HostStatus", Pattern::kExchange, 1.0, kServices,
     who::kRecorder};
-inline constexpr Topic kSessionCommand{"stillhand/session_command",
-                                       "stillhand_msgs::SessionCommand",
-                                       Pattern::kCommand,
-                                       0.0,
-                                       who::kDashboards,
-                                       who::kCommandReaders};
+inline constexpr Topic kSessionCommand{
+    "stillhand/session_command", "stillhand_msgs::SessionCommand",
+    Pattern::kCommand,           0.0,
+    who::kCommandWriters,        who::kCommandReaders};
 
 /// The whole catalogue; idl/README.md holds the same rows (tests/interface compares them).
-inline constexpr std::array<const Topic*, 19> kCatalogue{
-    &kPlatformCommand,  &kRawSample,      &kRigTruth,   &kSensed,        &kMotorCommand,
-    &kTrackingSample,   &kOperatorForce,  &kPointer,    &kTrialControl,  &kTrialAssignment,
-    &kFeedthroughModel, &kAugmentedModel, &kEvent,      &kServiceStatus, &kClockQuestion,
-    &kClockAnswer,      &kClockOffset,    &kHostStatus, &kSessionCommand};
+inline constexpr std::array<const Topic*, 20> kCatalogue{
+    &kPlatformCommand,  &kRawSample,      &kRigTruth,   &kSensed,         &kMotorCommand,
+    &kTrackingSample,   &kOperatorForce,  &kPointer,    &kTrialControl,   &kTrialAssignment,
+    &kFeedthroughModel, &kAugmentedModel, &kEvent,      &kServiceStatus,  &kClockQuestion,
+    &kClockAnswer,      &kClockOffset,    &kHostStatus, &kSessionCommand, &kSessionSources};
 
 /// Remote control of `stillhand record` and `stillhand replay`, outside of every session; no
 /// process waits for these topics.

@@ -14,6 +14,7 @@
 #include "apps/lab/core/trial_run.hpp"
 #include "services/cancellation/codec.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "services/runtime/sources_codec.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -48,7 +49,9 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Show show)
       assignment_(
           service.bus().publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment)),
       control_model_(
-          service.bus().publisher<stillhand_msgs::AugmentedModel>(topics::kAugmentedModel)) {
+          service.bus().publisher<stillhand_msgs::AugmentedModel>(topics::kAugmentedModel)),
+      sources_(service.bus().publisher<stillhand_msgs::SessionSources>(topics::kSessionSources)),
+      emergency_stop_(service.bus(), "the stop key") {
   subscribe();
 }
 
@@ -102,6 +105,7 @@ void Conductor::look(bool with_peers) {
   if (with_peers) {
     missing = service_.bus().missing_peers();
     duplicate = service_.bus().duplicate_peers();
+    if (missing.empty() && duplicate.empty()) name_sources();
   }
   // One end at a time: the core takes it a little later.
   std::optional<Ended> ended;
@@ -111,6 +115,18 @@ void Conductor::look(bool with_peers) {
   seen_.duplicate_peers = std::move(duplicate);
   if (ended) seen_.ended = death_of(*ended);
   seen_.interrupted = interrupted();
+}
+
+// Every process is there, once.  It reports that it is ready when it knows the sources, so the
+// sample clock starts after that.
+void Conductor::name_sources() {
+  if (sources_named_) return;
+  runtime::Bus& bus = service_.bus();
+  const std::vector<runtime::Source> sources = bus.sources_found();
+  if (!bus.take_sources(bus.participant(), sources)) return;
+  auto message = runtime::to_idl(sources);
+  sources_.write(message);
+  sources_named_ = true;
 }
 
 void Conductor::drive(Stage& stage, bool with_peers) {

@@ -18,6 +18,7 @@
 #include "idl/model.h"
 #include "idl/session.h"
 #include "services/cancellation/core/control_model.hpp"
+#include "services/runtime/emergency_stop.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::lab {
@@ -66,6 +67,8 @@ class Conductor {
   [[nodiscard]] std::string recording();
   /// Misses no longer count; processes may leave.
   void end_session();
+  /// Asks the rig for an emergency stop; from one thread, which may be another.
+  void stop_at_once() { emergency_stop_.ask(); }
   /// True once the user asked to stop.
   [[nodiscard]] bool interrupted() const noexcept { return service_.stop().requested(); }
 
@@ -74,6 +77,8 @@ class Conductor {
   /// Steps the stage until it is over.
   void drive(Stage& stage, bool with_peers = false);
   void look(bool with_peers);
+  /// Announces who writes for each process, once.
+  void name_sources();
   void perform(const Actions& actions);
   void announce(const Announcement& announcement);
   /// @throws RefusedByProcess or std::runtime_error when there is trouble.
@@ -86,6 +91,9 @@ class Conductor {
   runtime::Publisher<stillhand_msgs::TrialControl> control_;
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
   runtime::Publisher<stillhand_msgs::AugmentedModel> control_model_;
+  runtime::Publisher<stillhand_msgs::SessionSources> sources_;
+  bool sources_named_ = false;
+  runtime::EmergencyStop emergency_stop_;
   std::optional<session::PlannedTrial> planned_;  ///< the trial that runs
   stillhand_msgs::AugmentedModel given_;          ///< the model that the canceller gets
   std::int32_t models_ = 0;                       ///< control models given so far

@@ -66,7 +66,8 @@ void run_processes(const LabOptions& options, const AskedMotions& asked, const H
   Processes processes;
   ConductedTrials trials(options, asked, service, processes, live.outcomes);
   if (!options.attach) {
-    for (const Launch& launch : launches(options, hosts, live.sealed)) processes.start(launch);
+    const std::string own = runtime::text_of(service.bus().participant());
+    for (const Launch& launch : launches(options, hosts, own, live.sealed)) processes.start(launch);
   }
   service.run([&] {
     // The end is announced whatever the reason is, and the recorder closes its file.

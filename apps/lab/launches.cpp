@@ -76,7 +76,7 @@ Arguments own_words(std::string_view service, const LabOptions& options, const P
 }  // namespace
 
 std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
-                             const std::string& sealed) {
+                             const std::string& experiment, const std::string& sealed) {
   std::vector<Launch> list;
   for (const std::string_view service : topics::kLaunchOrder) {
     const Place place = hosts.of(service);
@@ -85,6 +85,7 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
     launch.executable = options.programs / ("stillhand-" + launch.name);
     launch.log = options.out / "logs" / (launch.name + ".log");
     launch.arguments = shared_words(options, hosts, place);
+    launch.arguments.insert(launch.arguments.end(), {"--experiment", experiment});
     const Arguments own = own_words(service, options, place);
     launch.arguments.insert(launch.arguments.end(), own.begin(), own.end());
     if (service == "rig" && !sealed.empty()) {

@@ -12,8 +12,9 @@ namespace stillhand::lab {
 
 /// Every process of the session in the order of its start (idl/processes.hpp), with its arguments,
 /// on its host.
+/// @param experiment  participant of this verb, from which alone they accept a session's sources
 /// @param sealed  what the rig reads of its undeclared effect; empty: it has none
 std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
-                             const std::string& sealed);
+                             const std::string& experiment, const std::string& sealed);
 
 }  // namespace stillhand::lab

@@ -36,6 +36,8 @@ const char* name_of(stillhand_msgs::EventKind kind) {
       return "clock drifts";
     case stillhand_msgs::EVENT_COMMAND:
       return "asked from outside";
+    case stillhand_msgs::EVENT_SECOND_WRITER:
+      return "second writer";
     case stillhand_msgs::EVENT_NOTE:
       return "note";
   }

@@ -72,7 +72,8 @@ SessionRecording read_session(const std::string& path) {
       {topics::kClockAnswer.name, counted<stillhand_msgs::ClockAnswer>()},
       {topics::kClockOffset.name, into(session.clock_offsets)},
       {topics::kHostStatus.name, counted<stillhand_msgs::HostStatus>()},
-      {topics::kSessionCommand.name, counted<stillhand_msgs::SessionCommand>()}};
+      {topics::kSessionCommand.name, counted<stillhand_msgs::SessionCommand>()},
+      {topics::kSessionSources.name, counted<stillhand_msgs::SessionSources>()}};
   const recording::Status status =
       reader.for_each_message({}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);

@@ -9,7 +9,8 @@ Shell::Shell(runtime::Service& service)
     : service_(service),
       config_(service.config<TrackingDisplay::Config>()),
       core_(config_),
-      tracking_(service.bus().publisher<stillhand_msgs::TrackingSample>(topics::kTrackingSample)) {
+      tracking_(service.bus().publisher<stillhand_msgs::TrackingSample>(topics::kTrackingSample)),
+      emergency_stop_(service.bus(), "Escape on the tracking screen") {
   service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
     if (trial.number >= 0) prepare(trial, message.reference_seed());
   });
@@ -19,6 +20,8 @@ Shell::Shell(runtime::Service& service)
   service.bus().subscribe<stillhand_msgs::Sensed>(
       topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message); });
 }
+
+void Shell::stop_at_once() { emergency_stop_.ask(); }
 
 void Shell::prepare(const Trial& trial, std::uint64_t reference_seed) {
   handover_.prepare([this, trial, reference_seed]() -> std::unique_ptr<Prepared> {

@@ -3,6 +3,7 @@
 
 #include "services/display/codec.hpp"
 #include "services/display/core/tracking_display.hpp"
+#include "services/runtime/emergency_stop.hpp"
 #include "services/runtime/process/handover.hpp"
 #include "services/runtime/process/latest_value.hpp"
 #include "services/runtime/service.hpp"
@@ -26,6 +27,8 @@ class Shell {
   const Shown& shown() noexcept { return shown_.load(); }
   [[nodiscard]] runtime::Service& service() noexcept { return service_; }
   [[nodiscard]] const TrackingDisplay::Config& config() const noexcept { return config_; }
+  /// A person at the screen asks for an emergency stop.
+  void stop_at_once();
 
  private:
   struct Prepared {
@@ -42,6 +45,7 @@ class Shell {
   const Prepared* armed_ = nullptr;
   runtime::LatestValue<Shown> shown_;
   runtime::Publisher<stillhand_msgs::TrackingSample> tracking_;
+  runtime::EmergencyStop emergency_stop_;
 };
 
 }  // namespace stillhand::display

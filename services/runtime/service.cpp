@@ -12,6 +12,7 @@
 #include "services/runtime/clock_answer.hpp"
 #include "services/runtime/process/real_time.hpp"
 #include "services/runtime/reporting.hpp"
+#include "services/runtime/sources_codec.hpp"
 #include "services/runtime/trial_codec.hpp"
 #include "services/settings/check_name.hpp"
 
@@ -32,6 +33,8 @@ stillhand_msgs::EventKind event_kind(BusIncident::Kind kind) {
       return stillhand_msgs::EVENT_LIVELINESS_RECOVERED;
     case BusIncident::Kind::kIncompatibleQos:
       return stillhand_msgs::EVENT_INCOMPATIBLE_QOS;
+    case BusIncident::Kind::kSecondWriter:
+      return stillhand_msgs::EVENT_SECOND_WRITER;
   }
   return stillhand_msgs::EVENT_NOTE;
 }
@@ -69,6 +72,10 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   bus_options.serialized = options_.serialized;
   bus_options.answers_replay = options_.answers_replay;
   bus_options.security = options_.security;
+  bus_options.one_source = true;
+  if (!options_.experiment.empty()) {
+    bus_options.experiment = participant_of(options_.experiment, "--experiment");
+  }
   bus_options.on_incident = [this](const BusIncident& incident) {
     Note note{event_kind(incident.kind),
               incident.topic,
@@ -90,6 +97,13 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
         follow_session(message.session());
         trial_ = from_idl(message);
         if (on_trial_) on_trial_(trial_, message);
+      });
+  bus_->subscribe<stillhand_msgs::SessionSources>(
+      topics::kSessionSources,
+      [this](const stillhand_msgs::SessionSources& message, const Arrival& arrival) {
+        if (const auto sources = from_idl(message)) {
+          bus_->take_sources(arrival.participant, *sources);
+        }
       });
 }
 
@@ -178,6 +192,9 @@ int run_service(const std::string& name, int argc, char** argv,
   cli.add_flag(
       "--one-session", options.one_session,
       "end together with the session, so that a service manager starts it for the next one");
+  cli.add_option("--experiment", options.experiment,
+                 "participant of the experiment that starts this process: no other one names the "
+                 "session's sources or announces a trial [any, the first one]");
   cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
   if (more_options) more_options(cli, options);
   try {

@@ -32,6 +32,7 @@ struct ServiceOptions {
   bool real_time = false;          ///< request a real-time scheduling policy
   bool serialized = false;         ///< see Bus::Options
   bool answers_replay = false;     ///< see Bus::Options
+  std::string experiment;          ///< its participant, see Bus::Options; empty: any
   bool one_session = false;        ///< end with the session this process took part in
   std::filesystem::path out;       ///< where this process may write files
 };

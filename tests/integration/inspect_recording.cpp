@@ -82,6 +82,26 @@ json commands_of(const stillhand::session::SessionRecording& session) {
   return commands;
 }
 
+// Topic and name of each writer that its session did not name.
+json second_writers_of(const stillhand::session::SessionRecording& session) {
+  json writers = json::array();
+  for (const auto& event : session.events) {
+    if (event.kind() == stillhand_msgs::EVENT_SECOND_WRITER) {
+      writers.push_back({event.topic().c_str(), event.peer().c_str()});
+    }
+  }
+  return writers;
+}
+
+// Ticks at which the rig's force was zero after the interlock opened.
+json force_zero_ticks_of(const stillhand::session::SessionRecording& session) {
+  json ticks = json::array();
+  for (const auto& event : session.events) {
+    if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO) ticks.push_back(event.tick());
+  }
+  return ticks;
+}
+
 json clock_events_of(const stillhand::session::SessionRecording& session) {
   json events = json::array();
   for (const auto& event : session.events) {
@@ -146,6 +166,8 @@ int main(int argc, char** argv) {
                {"notes", notes_of(session)},
                {"clock_events", clock_events_of(session)},
                {"commands", commands_of(session)},
+               {"force_zero_ticks", force_zero_ticks_of(session)},
+               {"second_writers", second_writers_of(session)},
                {"newest_motor_command", newest_motor_command(session)}};
     if (signals) found["signals"] = signals_of(session, last_ticks);
     std::cout << found << '\n';

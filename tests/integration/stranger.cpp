@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// stranger DOMAIN reads|writes
+// stranger DOMAIN reads|writes|pushes [NAME]
 // A program that belongs to no lab, next to a session: plain Fast DDS, without a certificate.  It
 // reads every topic of the catalogue.  With "writes" it writes two of them instead: it asks the
-// motor for 40 N and announces the end of the session, a hundred times a second.  After SIGTERM it
-// prints how many messages it received, and how many readers its writers have had.
+// motor for 40 N and announces the end of the session, a hundred times a second.  With "pushes" it
+// asks for 25 N, the motor's limit, a thousand times a second, each time in answer to the newest
+// sample.  NAME is that of its participant [stranger].  After SIGTERM it prints how many messages
+// it received, and how many readers its writers have had.
 #include <atomic>
 #include <cstdio>
 #include <deque>
@@ -24,6 +26,7 @@
 #include "places.hpp"
 #include "services/runtime/bus/participant.hpp"
 #include "services/runtime/bus/type_tag.hpp"
+#include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "tests/support/wait.hpp"
 
@@ -36,6 +39,7 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 std::atomic<long> received{0};
 std::atomic<long> readers{0};
+std::atomic<std::int64_t> newest_tick{-1};
 
 struct Reading final : edds::DataReaderListener {
   explicit Reading(edds::TypeSupport type_) : type(std::move(type_)), data(type.create_data()) {}
@@ -45,7 +49,11 @@ struct Reading final : edds::DataReaderListener {
   void on_data_available(edds::DataReader* reader) override {
     edds::SampleInfo info;
     while (reader->take_next_sample(data, &info) == ReturnCode_t::RETCODE_OK) {
-      if (info.valid_data) ++received;
+      if (!info.valid_data) continue;
+      ++received;
+      if (type.get_type_name() == topics::kRawSample.type) {
+        newest_tick = static_cast<stillhand_msgs::RawSample*>(data)->tick();
+      }
     }
   }
   edds::TypeSupport type;
@@ -60,9 +68,9 @@ struct Writing final : edds::DataWriterListener {
 };
 
 struct Stranger {
-  explicit Stranger(std::uint32_t domain)
-      : participant(runtime::create_participant(STILLHAND_SOURCE "/qos/profiles.xml", domain,
-                                                "stranger", false, {}, nullptr)),
+  Stranger(std::uint32_t domain, const std::string& name)
+      : participant(runtime::create_participant(STILLHAND_SOURCE "/qos/profiles.xml", domain, name,
+                                                false, {}, nullptr)),
         subscriber(participant->create_subscriber(edds::SUBSCRIBER_QOS_DEFAULT)),
         publisher(participant->create_publisher(edds::PUBLISHER_QOS_DEFAULT)) {}
   ~Stranger() {
@@ -98,32 +106,58 @@ struct Stranger {
   edds::Publisher* publisher;
 };
 
+void write_two_topics(Stranger& stranger, const runtime::Stop& stop) {
+  edds::DataWriter* motor = stranger.writer(topics::kMotorCommand);
+  edds::DataWriter* control = stranger.writer(topics::kTrialControl);
+  stillhand_msgs::MotorCommand push;
+  push.rig(1);
+  push.force_n(40.0);
+  stillhand_msgs::TrialControl end;
+  end.rig(1);
+  end.session(stillhand_msgs::SESSION_ENDING);
+  while (!stop.requested()) {
+    push.tick(push.tick() + 1);
+    motor->write(&push);
+    control->write(&end);
+    stillhand::support::eventually([&] { return stop.requested(); }, std::chrono::milliseconds(10));
+  }
+}
+
+void push_the_motor(Stranger& stranger, const runtime::Stop& stop) {
+  constexpr std::int64_t kPeriod_ns = 1'000'000;
+  edds::DataWriter* motor = stranger.writer(topics::kMotorCommand);
+  stillhand_msgs::MotorCommand push;
+  push.rig(1);
+  push.force_n(25.0);
+  for (std::int64_t due_ns = runtime::monotonic_ns(); !stop.requested(); due_ns += kPeriod_ns) {
+    runtime::sleep_until_ns(due_ns);
+    push.tick(newest_tick);
+    push.stamp_ns(runtime::monotonic_ns());
+    motor->write(&push);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
+  if (argc < 3) return 2;
   runtime::Stop stop;
   {
-    Stranger stranger(static_cast<std::uint32_t>(std::stoul(argv[1])));
-    const bool writes = argv[2] == std::string_view("writes");
+    const std::string_view what = argv[2];
+    Stranger stranger(static_cast<std::uint32_t>(std::stoul(argv[1])),
+                      argc > 3 ? argv[3] : "stranger");
+    const bool writes = what == "writes";
     for (const topics::Topic* row : topics::kCatalogue) {
-      const bool its_own = row == &topics::kMotorCommand || row == &topics::kTrialControl;
-      if (!writes || !its_own) stranger.read(*row);
+      const bool its_own =
+          row == &topics::kMotorCommand || (writes && row == &topics::kTrialControl);
+      if (what == "reads" || !its_own) stranger.read(*row);
     }
-    edds::DataWriter* motor = writes ? stranger.writer(topics::kMotorCommand) : nullptr;
-    edds::DataWriter* control = writes ? stranger.writer(topics::kTrialControl) : nullptr;
-    stillhand_msgs::MotorCommand push;
-    push.rig(1);
-    push.force_n(40.0);
-    stillhand_msgs::TrialControl end;
-    end.rig(1);
-    end.session(stillhand_msgs::SESSION_ENDING);
-    while (!stop.requested()) {
-      push.tick(push.tick() + 1);
-      if (motor != nullptr) motor->write(&push);
-      if (control != nullptr) control->write(&end);
-      stillhand::support::eventually([&] { return stop.requested(); },
-                                     std::chrono::milliseconds(10));
+    if (writes) {
+      write_two_topics(stranger, stop);
+    } else if (what == "pushes") {
+      push_the_motor(stranger, stop);
+    } else {
+      stop.wait();
     }
   }
   std::printf("received %ld, heard by %ld\n", received.load(), readers.load());

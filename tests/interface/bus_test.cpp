@@ -72,6 +72,7 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
   expect_delivery<ClockOffset>(topics::kClockOffset);
   expect_delivery<HostStatus>(topics::kHostStatus);
   expect_delivery<SessionCommand>(topics::kSessionCommand);
+  expect_delivery<SessionSources>(topics::kSessionSources);
   expect_delivery<RecorderCommand>(topics::kRecorderCommand);
 }
 

@@ -34,10 +34,10 @@ const char* unit(Watch watch) { return kWatchTexts[static_cast<std::size_t>(watc
 // The kind comes from the bus: it can be any number.
 const char* word(stillhand_msgs::EventKind kind) {
   constexpr std::array kKinds{
-      "deadline missed",      "cycle missed",     "ticks lost", "liveliness lost",
-      "liveliness recovered", "interlock opened", "force zero", "model refused",
-      "model loaded",         "incompatible QoS", "note",       "clock stepped",
-      "clock drifts",         "command"};
+      "deadline missed",      "cycle missed",     "ticks lost",   "liveliness lost",
+      "liveliness recovered", "interlock opened", "force zero",   "model refused",
+      "model loaded",         "incompatible QoS", "note",         "clock stepped",
+      "clock drifts",         "command",          "second writer"};
   const auto number = static_cast<std::size_t>(kind);
   return number < kKinds.size() ? kKinds[number] : "unknown";
 }
@@ -47,6 +47,7 @@ Level level_of(stillhand_msgs::EventKind kind) {
     case stillhand_msgs::EVENT_LIVELINESS_LOST:
     case stillhand_msgs::EVENT_INTERLOCK_OPENED:
     case stillhand_msgs::EVENT_INCOMPATIBLE_QOS:
+    case stillhand_msgs::EVENT_SECOND_WRITER:
       return Level::kCritical;
     case stillhand_msgs::EVENT_DEADLINE_MISSED:
     case stillhand_msgs::EVENT_CYCLE_MISSED:

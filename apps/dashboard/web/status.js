@@ -5,6 +5,7 @@ import { SIGN_IN, clock, element, short, span, write } from "/elements.js";
 const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
 const SESSIONS = { none: "No session", waiting: "Session waiting", ending: "Session over", unknown: "Session unknown" };
+const SECOND_WRITER_SHOWN_MS = 60000; // it also stays in the list of events
 export const LEVELS = ["healthy", "warning", "critical"];
 
 function amount(alarm) {
@@ -74,10 +75,13 @@ export function showStatus(snapshot) {
   element("acknowledge").hidden = recording;
   const title = recording ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
   const shown = alarmsOfNow(snapshot);
+  const second = snapshot.events.find(({ kind, at_ms: at }) => kind === "second writer" && now - at < SECOND_WRITER_SHOWN_MS);
   if (session.emergency) {
     const when = session.emergency_ms ? `requested ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
     const ends = session.state === "ending" ? "the session is over" : "the motor's force goes to zero, the platform brakes, the session ends";
     strip("critical", "Emergency stop", ends, when);
+  } else if (second !== undefined) {
+    strip("critical", "Second writer", `${second.peer} also writes ${short(second.topic)}: nobody listens to it, and the interlock opens`, `since ${clock(second.at_ms)}\n${span(now - second.at_ms)} ago`);
   } else if (shown.length > 0) {
     stripOfAlarms(shown, session.state, now);
   } else if (session.state === "running" || session.state === "paused") {

@@ -26,13 +26,23 @@ namespace edds = eprosima::fastdds::dds;
 
 struct Bus::Impl {
   explicit Impl(const Bus::Options& options)
-      : peers(options.service, options.rig, options.answers_replay,
-              options.serialized ? &writers : nullptr, !options.security.empty()) {}
+      : sources({options.rig, options.experiment, identities(options),
+                 [this, &options](const Sources::Second& second) { report(options, second); }}),
+        peers(options.service, options.rig, options.answers_replay,
+              options.serialized ? &writers : nullptr, !options.security.empty(),
+              one_source(options) ? &sources : nullptr) {}
   ~Impl() {
     if (participant == nullptr) return;
     participant->delete_contained_entities();
     edds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
+
+  /// A replay has other sources than the session it was recorded from.
+  static bool one_source(const Bus::Options& options) {
+    return options.one_source && !options.answers_replay;
+  }
+  static Sources::Identities identities(const Bus::Options& options);
+  void report(const Bus::Options& options, const Sources::Second& second) const;
 
   /// The carrier of a type on this participant: the type itself, or its bytes.
   static edds::TypeSupport carrier(const Bus::Options& options, const edds::TypeSupport& real) {
@@ -45,6 +55,7 @@ struct Bus::Impl {
   // Readers and writers hand callbacks into `endpoints` until the participant is gone, and the
   // participant into `peers`, which notify `writers`: order of members matters.
   FoundWriters writers;
+  Sources sources;
   Peers peers;
   std::atomic<bool> supervising{false};
   std::vector<std::unique_ptr<detail::Endpoint>> endpoints;
@@ -55,6 +66,28 @@ struct Bus::Impl {
   edds::Publisher* publisher = nullptr;
   edds::Subscriber* subscriber = nullptr;
 };
+
+Sources::Identities Bus::Impl::identities(const Bus::Options& options) {
+  Sources::Identities all;
+  if (options.security.empty() || !one_source(options)) return all;
+  const Identity own = Identity::of(options.security, options.service);
+  for (const std::string_view service : topics::kServices) {
+    all.push_back(guid_start(own, std::string(service)));
+  }
+  return all;
+}
+
+// Each reader of the topic reports it.  Sources are named after start(), so `endpoints` is
+// complete.
+void Bus::Impl::report(const Bus::Options& options, const Sources::Second& second) const {
+  const bool reads = std::ranges::any_of(endpoints, [&](const auto& endpoint) {
+    return !endpoint->writes() && &endpoint->topic() == second.topic;
+  });
+  if (!reads || !options.on_incident) return;
+  BusIncident incident{BusIncident::Kind::kSecondWriter, second.topic, {}, 0.0, second.id};
+  second.name.copy(incident.peer, sizeof(incident.peer) - 1);
+  options.on_incident(incident);
+}
 
 Bus::Bus(Options options) : options_(std::move(options)) {
   impl_ = std::make_unique<Impl>(options_);
@@ -147,6 +180,7 @@ void Bus::subscribe_serialized(
                      std::string(stream ? "record_stream" : topics::profile_of(topic.pattern)),
                      std::make_shared<SerializedSample>(),
                      [call = std::move(on_sample)](const void* sample, const Arrival& arrival) {
+                       // What others write is recorded, too.
                        return call(*static_cast<const SerializedSample*>(sample), arrival);
                      });
 }
@@ -162,6 +196,8 @@ void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& to
   auto endpoint = std::make_unique<detail::ReaderEndpoint>(topic, peers, options, supervising,
                                                            std::move(sample), std::move(deliver),
                                                            options.serialized ? &writers : nullptr);
+  // Sources::take() decides by itself which experiment names them.
+  if (one_source(options) && &topic != &topics::kSessionSources) endpoint->sources = &sources;
   endpoint->reader = subscriber->create_datareader(dds_topic, qos, endpoint.get());
   if (endpoint->reader == nullptr) {
     throw BusError("Fast DDS refused the reader of " + std::string(topic.name));
@@ -202,7 +238,22 @@ std::vector<std::string> Bus::missing_peers() const {
       missing.push_back(std::string(wanted) + " (" + std::string(row.name) + ")");
     }
   }
+  if (Impl::one_source(options_) && options_.service != "experiment" && missing.empty() &&
+      !impl_->sources.named()) {
+    missing.emplace_back("experiment (to name the session's sources)");
+  }
   return missing;
+}
+
+ParticipantId Bus::participant() const {
+  ParticipantId own{};
+  std::ranges::copy(impl_->participant->guid().guidPrefix.value, own.begin());
+  return own;
+}
+
+std::vector<Source> Bus::sources_found() const { return impl_->peers.sources_found(participant()); }
+bool Bus::take_sources(const ParticipantId& from, const std::vector<Source>& sources) {
+  return impl_->peers.take_sources(from, sources);
 }
 
 std::vector<std::string> Bus::duplicate_peers() const { return impl_->peers.duplicates(); }

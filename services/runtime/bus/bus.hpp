@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 
 #include "idl/topics.hpp"
 #include "services/contract/tick.hpp"
+#include "services/runtime/bus/source.hpp"
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::runtime {
@@ -41,6 +43,8 @@ struct Arrival {
   /// finding.  nullptr without, and for a writer that discovery did not announce.
   const FoundWriter* writer = nullptr;
   std::size_t writer_number = 0;
+  ParticipantId participant{};  ///< the writer's
+  bool foreign = false;         ///< the session names another writer of the topic
 };
 
 /// An incident at an endpoint, reported from DDS's own threads.  Plain, so that it can leave a
@@ -52,13 +56,15 @@ struct BusIncident {
     kTicksLost,
     kLivelinessLost,
     kLivelinessRecovered,
-    kIncompatibleQos
+    kIncompatibleQos,
+    kSecondWriter
   };
   Kind kind;
   const topics::Topic* topic;  ///< never null
   char peer[32];               ///< service concerned, where known; zero-terminated
   double by_us;                ///< [us] how much too late; [ticks] for kTicksLost
-  const char* policy;          ///< QoS policy of kIncompatibleQos; a literal, never null
+  /// QoS policy of kIncompatibleQos, participant of kSecondWriter; never null, lives as the Bus.
+  const char* policy;
 };
 
 /// Counters of one endpoint, for the status topic.
@@ -79,6 +85,7 @@ struct SampleClock {
   bool ours = false;  ///< false: another rig's
   Tick tick = -1;     ///< -1: the type has none
   std::int64_t stamp_ns = 0;
+  bool foreign = false;  ///< this rig's, from a writer that the session did not name
 };
 using Deliver = std::function<SampleClock(const void*, const Arrival&)>;
 }  // namespace detail
@@ -119,6 +126,11 @@ class Bus {
     /// This process accepts samples of a replay and carries the replay's mark itself, so that no
     /// rig accepts its answers.  Other processes drop every sample of a marked writer.
     bool answers_replay = false;
+    /// Of a topic with one writer, samples come only from the participant that the experiment names
+    /// (take_sources()); peers_alive() needs the names, and that nobody else writes such a topic.
+    bool one_source = false;
+    /// The experiment that started this process: nobody else names sources or announces a trial.
+    std::optional<ParticipantId> experiment;
     /// A folder written by deploy/security/make.sh: only processes with a certificate of its
     /// authority exchange samples, each on its own topics.  Empty: no security.
     std::filesystem::path security;
@@ -147,6 +159,7 @@ class Bus {
                    const void* sample, const Arrival& arrival) -> detail::SampleClock {
                  const auto& message = *static_cast<const Message*>(sample);
                  if (message.rig() != rig) return {};
+                 if (arrival.foreign) return {.foreign = true};
                  call(message, arrival);
                  if constexpr (requires { message.tick(); }) {
                    return {true, message.tick(), message.stamp_ns()};
@@ -176,8 +189,17 @@ class Bus {
   [[nodiscard]] std::vector<std::string> missing_peers() const;
   /// Services that are on the bus more than once under this rig number.
   [[nodiscard]] std::vector<std::string> duplicate_peers() const;
+  /// This process's own number on the bus.
+  [[nodiscard]] ParticipantId participant() const;
+  /// Every process of this rig that is on the bus, this one included; one that is there twice is
+  /// there twice.
+  [[nodiscard]] std::vector<Source> sources_found() const;
+  /// The participant `from`, an experiment, names the sources of its session.  @returns false when
+  /// they are not accepted (Sources::take()).
+  bool take_sources(const ParticipantId& from, const std::vector<Source>& sources);
   /// True when every other service of the catalogue has a live status writer and no replay is on
-  /// the domain.  With Options::answers_replay: while a replay is on the domain.
+  /// the domain; with Options::one_source, the sources are named, and nobody else writes for them.
+  /// With Options::answers_replay: while a replay is on the domain.
   [[nodiscard]] bool peers_alive() const noexcept;
   /// A participant that carries the replay's mark is on the domain.
   [[nodiscard]] bool replay_present() const noexcept;

@@ -113,6 +113,7 @@ ReaderEndpoint::ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus
                                const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
                                Deliver deliver, const FoundWriters* writers)
     : Endpoint(row, peers, options, supervising),
+      source_(Sources::writer_of(row)),
       sample_(std::move(sample)),
       deliver_(std::move(deliver)) {
   if (writers != nullptr) writer_of_.emplace(*writers);
@@ -136,7 +137,11 @@ void ReaderEndpoint::on_data_available(edds::DataReader* source) {
         arrival.writer_number = entry->number;
       }
     }
+    std::copy_n(&info.publication_handle.value[0], arrival.participant.size(),
+                arrival.participant.begin());
+    arrival.foreign = sources != nullptr && !sources->admits(source_, info.publication_handle);
     const auto clock = deliver_(sample_.get(), arrival);
+    if (clock.foreign) sources->note_refused(info.publication_handle);
     if (!clock.ours) continue;
     samples_.fetch_add(1, std::memory_order_relaxed);
     last_arrival_ns_.store(arrival.received_ns, std::memory_order_relaxed);

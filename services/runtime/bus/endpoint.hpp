@@ -111,7 +111,9 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
     clock_ahead_ns_.store(ahead_ns, std::memory_order_relaxed);
   }
 
-  eprosima::fastdds::dds::DataReader* reader = nullptr;  // set once, before enable()
+  // Set once, before enable().
+  eprosima::fastdds::dds::DataReader* reader = nullptr;
+  Sources* sources = nullptr;  // nullptr: every writer's samples are taken
 
  private:
   void on_data_available(eprosima::fastdds::dds::DataReader*) override;
@@ -128,6 +130,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
       const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
   void supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns);
 
+  const std::size_t source_;  // place of the topic's only writer, or Sources::kAnybody
   std::shared_ptr<void> sample_;
   Deliver deliver_;
   std::optional<SampleWriters> writer_of_;  // receiving thread only

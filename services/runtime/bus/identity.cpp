@@ -35,6 +35,7 @@ using Certificate = std::unique_ptr<X509, Freed<X509_free>>;
 using Key = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY_free>>;
 using Store = std::unique_ptr<X509_STORE, Freed<X509_STORE_free>>;
 using Verification = std::unique_ptr<X509_STORE_CTX, Freed<X509_STORE_CTX_free>>;
+using Subject = std::unique_ptr<X509_NAME, Freed<X509_NAME_free>>;
 using Signed = std::unique_ptr<PKCS7, Freed<PKCS7_free>>;
 
 Bytes opened(const fs::path& file) {
@@ -195,10 +196,21 @@ std::string expiry_warning(const Identity& identity) {
 }
 
 std::array<std::uint8_t, 6> guid_start(const Identity& identity) {
+  return guid_start(identity, identity.name);
+}
+
+std::array<std::uint8_t, 6> guid_start(const Identity& identity, const std::string& name) {
   const Certificate certificate = certificate_in(identity.own_file("certificate.pem"));
+  const Subject subject(X509_NAME_dup(X509_get_subject_name(certificate.get())));
+  if (name != identity.name) {
+    const int place = X509_NAME_get_index_by_NID(subject.get(), NID_commonName, -1);
+    X509_NAME_ENTRY_free(X509_NAME_delete_entry(subject.get(), place));
+    X509_NAME_add_entry_by_NID(subject.get(), NID_commonName, MBSTRING_UTF8,
+                               reinterpret_cast<const unsigned char*>(name.c_str()), -1, place, 0);
+  }
   std::array<std::uint8_t, EVP_MAX_MD_SIZE> digest{};
   unsigned int size = 0;
-  X509_NAME_digest(X509_get_subject_name(certificate.get()), EVP_sha256(), digest.data(), &size);
+  X509_NAME_digest(subject.get(), EVP_sha256(), digest.data(), &size);
   std::array<std::uint8_t, 6> start{};
   std::uint8_t carried = 1;  // one set bit, then 47 of the digest
   for (std::size_t i = 0; i < start.size(); ++i) {

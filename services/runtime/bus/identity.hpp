@@ -38,5 +38,8 @@ std::string expiry_warning(const Identity& identity);
 /// First 6 bytes of the GUID of a participant that authenticates as this identity, made from the
 /// certificate's subject (DDS Security 1.1, 9.3.3.1).  @throws ConfigError when it cannot be read
 std::array<std::uint8_t, 6> guid_start(const Identity& identity);
+/// The same of another identity of the same lab, whose certificate need not be on this machine: the
+/// subjects of a lab differ in their common name alone.
+std::array<std::uint8_t, 6> guid_start(const Identity& identity, const std::string& name);
 
 }  // namespace stillhand::runtime

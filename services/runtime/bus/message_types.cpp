@@ -84,6 +84,7 @@ STILLHAND_MESSAGE(Event)
 STILLHAND_MESSAGE(ServiceStatus)
 STILLHAND_MESSAGE(HostStatus)
 STILLHAND_MESSAGE(SessionCommand)
+STILLHAND_MESSAGE(SessionSources)
 STILLHAND_MESSAGE(ClockQuestion)
 STILLHAND_MESSAGE(ClockAnswer)
 STILLHAND_MESSAGE(ClockOffset)
@@ -104,7 +105,7 @@ const TypeTag* find_type(std::string_view type_name) {
       &type_tag<Event>(),           &type_tag<ServiceStatus>(),    &type_tag<ClockQuestion>(),
       &type_tag<ClockAnswer>(),     &type_tag<ClockOffset>(),      &type_tag<RecorderCommand>(),
       &type_tag<RecorderStatus>(),  &type_tag<ReplayCommand>(),    &type_tag<ReplayStatus>(),
-      &type_tag<HostStatus>(),      &type_tag<SessionCommand>()};
+      &type_tag<HostStatus>(),      &type_tag<SessionCommand>(),   &type_tag<SessionSources>()};
   for (const TypeTag* tag : tags) {
     if (tag->support.get_type_name() == type_name) return tag;
   }

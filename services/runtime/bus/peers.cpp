@@ -15,12 +15,13 @@ using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
 using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
 
 Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWriters* writers,
-             bool secured)
+             bool secured, Sources* sources)
     : self_(std::move(self)),
       prefix_(participant_name(rig, "")),
       answers_replay_(answers_replay),
       writers_(writers),
-      secured_(secured) {
+      secured_(secured),
+      sources_(sources) {
   for (const std::string_view service : topics::kServices) {
     missing_lines_.push_back("a process is missing: " + std::string(service));
   }
@@ -34,9 +35,17 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* 
                                      ParticipantDiscoveryInfo&& info) {
   if (writers_ != nullptr) writers_->note_participant(info);
   const std::string name = info.info.m_participantName.to_string();
+  const bool here = info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
+                    info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT;
+  if (sources_ != nullptr) {
+    // A mark comes first: a replay is not a second writer.
+    const auto& participant = info.info.m_guid.guidPrefix;
+    if (here && is_replay_mark(info.info.m_userData.data_vec())) sources_->note_replay(participant);
+    if (here) sources_->note_participant(participant, name);
+    if (!here) sources_->forget_participant(participant);
+  }
   const std::lock_guard lock(mutex_);
-  if (info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
-      info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
+  if (here) {
     if (name.starts_with(prefix_)) {
       services_[info.info.m_guid.guidPrefix] = name.substr(prefix_.size());
     }
@@ -46,6 +55,7 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* 
     marked_now_.erase(info.info.m_guid.guidPrefix);
     authenticated_.erase(info.info.m_guid.guidPrefix);
     refresh_replay();
+    refresh();
   }
 }
 
@@ -66,8 +76,15 @@ bool Peers::counts(const GuidPrefix_t& participant) const {
 void Peers::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                    WriterDiscoveryInfo&& info) {
   if (writers_ != nullptr) writers_->note_writer(info);
-  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) return;
-  if (!is_replay_mark(info.info.m_qos.m_userData.data_vec())) return;
+  const bool marked = is_replay_mark(info.info.m_qos.m_userData.data_vec());
+  const bool here = info.status != WriterDiscoveryInfo::REMOVED_WRITER;
+  if (sources_ != nullptr) {
+    const InstanceHandle_t writer(info.info.guid());
+    if (here && marked) sources_->note_replay(info.info.guid().guidPrefix);
+    if (here) sources_->note_writer(writer, info.info.topicName().to_string());
+    if (!here) sources_->forget_writer(writer);
+  }
+  if (!here || !marked) return;
   const std::lock_guard lock(mutex_);
   mark(info.info.guid().guidPrefix);
 }
@@ -115,11 +132,15 @@ bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
 }
 
 void Peers::refresh() {
-  const auto missing = std::ranges::find_if(topics::kServices, [this](std::string_view service) {
-    return service != self_ && std::ranges::none_of(alive_writers_, [&](const auto& writer) {
-             return writer.second == service;
-           });
-  });
+  const auto missing =
+      std::ranges::find_if(topics::kServices, [this](const std::string_view& service) {
+        const auto place = static_cast<std::size_t>(&service - topics::kServices.data());
+        return service != self_ && std::ranges::none_of(alive_writers_, [&](const auto& writer) {
+                 if (writer.second != service) return false;
+                 return sources_ == nullptr || !sources_->named() ||
+                        sources_->admits(place, writer.first);
+               });
+      });
   const bool all = missing == topics::kServices.end();
   if (!all) {
     newest_missing_.store(static_cast<std::size_t>(missing - topics::kServices.begin()),
@@ -131,7 +152,29 @@ void Peers::refresh() {
 const char* Peers::why_not_alive() const noexcept {
   if (answers_replay_) return "no replay is on the bus";
   if (replay_present()) return "a replay is on the bus";
+  if (sources_ != nullptr && (!sources_->sound() || all_alive_.load(std::memory_order_acquire))) {
+    return sources_->why_not();
+  }
   return missing_lines_[newest_missing_.load(std::memory_order_acquire)].c_str();
+}
+
+std::vector<Source> Peers::sources_found(const ParticipantId& own) const {
+  std::vector<Source> found{{self_, own}};
+  const std::lock_guard lock(mutex_);
+  for (const auto& [prefix, service] : services_) {
+    if (!counts(prefix) || !topics::is_service(service)) continue;
+    Source source{service, {}};
+    std::ranges::copy(prefix.value, source.participant.begin());
+    found.push_back(std::move(source));
+  }
+  return found;
+}
+
+bool Peers::take_sources(const ParticipantId& from, const std::vector<Source>& sources) {
+  if (sources_ == nullptr || !sources_->take(from, sources)) return false;
+  const std::lock_guard lock(mutex_);
+  refresh();
+  return true;
 }
 
 std::vector<std::string> Peers::lost() const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "services/runtime/bus/found_writers.hpp"
+#include "services/runtime/bus/sources.hpp"
 
 namespace stillhand::runtime {
 
@@ -27,8 +28,9 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   /// @param answers_replay  this process accepts samples of a replay, and is marked itself
   /// @param writers  notified of every writer, or nullptr
   /// @param secured  names are not proof; only authenticated participants count
+  /// @param sources  alive() and life signs depend on them; nullptr: not, as outside of a session
   Peers(std::string self, std::uint32_t rig, bool answers_replay = false,
-        FoundWriters* writers = nullptr, bool secured = false);
+        FoundWriters* writers = nullptr, bool secured = false, Sources* sources = nullptr);
 
   static std::string participant_name(std::uint32_t rig, const std::string& service);
 
@@ -48,14 +50,22 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   /// A status writer came alive or stopped being so.  @return true when that changed anything.
   bool set_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
 
-  /// Each service of the catalogue but this one has a live status writer, and no replay is on the
-  /// bus; for a process that answers a replay: one is.  Wait-free.
+  /// The participant of each service of this rig, if there is exactly one; `own` is this one's.
+  [[nodiscard]] std::vector<Source> sources_found(const ParticipantId& own) const;
+  /// Sources::take(), and life signs count again.
+  bool take_sources(const ParticipantId& from, const std::vector<Source>& sources);
+
+  /// Each service of the catalogue but this one has a live status writer, the session's sources are
+  /// named and alone, and no replay is on the bus; for a process that answers a replay: one is.
+  /// Wait-free.
   [[nodiscard]] bool alive() const noexcept {
     if (answers_replay_) return replay_present();
-    return all_alive_.load(std::memory_order_acquire) && !replay_present();
+    return all_alive_.load(std::memory_order_acquire) && !replay_present() &&
+           (sources_ == nullptr || sources_->sound());
   }
-  /// Why alive() is false, in one line: a replay, or the process without a life sign that was
-  /// noticed last.  The text lives as long as this object.  Wait-free.
+  /// Why alive() is false, in one line: a replay, a second writer, or the process without a life
+  /// sign that was noticed last.  The text lives as long as this object and its Sources.
+  /// Wait-free.
   [[nodiscard]] const char* why_not_alive() const noexcept;
   /// A marked participant is on the bus now.  Wait-free.
   [[nodiscard]] bool replay_present() const noexcept {
@@ -85,6 +95,7 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   bool answers_replay_;
   FoundWriters* writers_;
   bool secured_;
+  Sources* sources_;
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> authenticated_;
   std::set<eprosima::fastrtps::rtps::GuidPrefix_t> marked_now_;
   // Never forgotten: a sample may outlive its writer in a reader's history.

@@ -13,7 +13,7 @@ namespace {
 
 TEST(WordsTest, EveryKindOfEventHasANameOfItsOwn) {
   std::set<std::string> names;
-  for (std::uint32_t kind = 0; kind <= stillhand_msgs::EVENT_COMMAND; ++kind) {
+  for (std::uint32_t kind = 0; kind <= stillhand_msgs::EVENT_SECOND_WRITER; ++kind) {
     const std::string name = word(static_cast<stillhand_msgs::EventKind>(kind));
     EXPECT_NE(name, "unknown") << kind;
     EXPECT_TRUE(names.insert(name).second) << name;
@@ -23,7 +23,7 @@ TEST(WordsTest, EveryKindOfEventHasANameOfItsOwn) {
 // The number comes from the bus.
 TEST(WordsTest, AKindThatTheIdlDoesNotDefineIsUnknownAndHealthy) {
   for (const unsigned kind :
-       {std::uint32_t{stillhand_msgs::EVENT_COMMAND} + 1u, 1000u, 0x7FFF'FFFFu, UINT32_MAX}) {
+       {std::uint32_t{stillhand_msgs::EVENT_SECOND_WRITER} + 1u, 1000u, 0x7FFF'FFFFu, UINT32_MAX}) {
     const auto strange = static_cast<stillhand_msgs::EventKind>(kind);
     EXPECT_STREQ(word(strange), "unknown") << kind;
     EXPECT_EQ(level_of(strange), Level::kHealthy) << kind;
@@ -32,7 +32,8 @@ TEST(WordsTest, AKindThatTheIdlDoesNotDefineIsUnknownAndHealthy) {
 
 TEST(WordsTest, LossOfAProcessAnOpenInterlockAndQosAreCriticalAndAReturnIsHealthy) {
   using namespace stillhand_msgs;
-  for (const auto kind : {EVENT_LIVELINESS_LOST, EVENT_INTERLOCK_OPENED, EVENT_INCOMPATIBLE_QOS}) {
+  for (const auto kind : {EVENT_LIVELINESS_LOST, EVENT_INTERLOCK_OPENED, EVENT_INCOMPATIBLE_QOS,
+                          EVENT_SECOND_WRITER}) {
     EXPECT_EQ(level_of(kind), Level::kCritical) << word(kind);
   }
   for (const auto kind : {EVENT_DEADLINE_MISSED, EVENT_CYCLE_MISSED, EVENT_TICKS_LOST,

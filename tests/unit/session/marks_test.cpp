@@ -26,10 +26,10 @@ Event event_of(EventKind kind, const char* source, const char* topic, const char
 
 TEST(MarkTest, EveryKindOfEventHasANameOfItsOwn) {
   std::set<std::string> names;
-  for (std::uint32_t kind = 0; kind <= std::uint32_t{EVENT_COMMAND}; ++kind) {
+  for (std::uint32_t kind = 0; kind <= std::uint32_t{EVENT_SECOND_WRITER}; ++kind) {
     names.insert(mark_of(event_of(static_cast<EventKind>(kind), "rig", "", "", 0.0)).what);
   }
-  EXPECT_EQ(names.size(), static_cast<std::size_t>(EVENT_COMMAND) + 1);
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(EVENT_SECOND_WRITER) + 1);
   EXPECT_FALSE(names.contains("event"));
   EXPECT_EQ(mark_of(event_of(static_cast<EventKind>(1000), "rig", "", "", 0.0)).what, "event");
 }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/rtps/common/InstanceHandle.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "idl/topics.hpp"
+#include "services/runtime/bus/source.hpp"
+
+namespace stillhand::runtime {
+
+/// Which participant writes for each process of this rig's session, as the experiment names them,
+/// and who else writes a topic that has one writer.  Called from DDS's threads and the owner's;
+/// admits(), named(), sound() and why_not() are wait-free, the rest locks.
+class Sources {
+ public:
+  using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+  using Handle = eprosima::fastrtps::rtps::InstanceHandle_t;
+  /// First bytes of the GUID of each of topics::kServices, as security makes them; empty: no keys.
+  using Identities = std::vector<std::array<std::uint8_t, 6>>;
+
+  /// A writer that the session did not name.  Valid as long as the Sources.
+  struct Second {
+    const topics::Topic* topic;
+    std::string name;  ///< of its participant
+    const char* id;    ///< "participant " and its number
+  };
+  struct Options {
+    std::uint32_t rig = 1;
+    std::optional<ParticipantId> experiment;  ///< nobody else names sources; nothing: any may
+    Identities identities;
+    std::function<void(const Second&)> on_second;  ///< once for each; no lock is held
+  };
+
+  /// Not a place of topics::kServices: the topic has several writers, or none in a session.
+  static constexpr std::size_t kAnybody = topics::kServices.size();
+  /// Place of the only process that writes a topic in topics::kServices.
+  static std::size_t writer_of(const topics::Topic& topic);
+
+  explicit Sources(Options options);
+
+  /// An experiment names its session's sources.  They are those of the first experiment until its
+  /// participant leaves.
+  /// @returns false if they are not accepted: not one source for each process, not the sender as
+  ///          the experiment, a participant of another identity, or not the expected experiment
+  bool take(const ParticipantId& from, const std::vector<Source>& sources);
+
+  void note_participant(const Prefix& participant, const std::string& name);
+  void forget_participant(const Prefix& participant);
+  /// The participant is of a replay, which opens the interlock by itself.
+  void note_replay(const Prefix& participant);
+  void note_writer(const Handle& writer, const std::string& topic);
+  void forget_writer(const Handle& writer);
+  /// A sample of this rig came from a writer that admits() refuses.
+  void note_refused(const Handle& writer);
+
+  /// The writer belongs to the participant that is named for a process.  Before the sources are
+  /// named: it writes for the experiment.
+  [[nodiscard]] bool admits(std::size_t service, const Handle& writer) const noexcept;
+  [[nodiscard]] bool named() const noexcept { return named_.load(std::memory_order_acquire); }
+  /// The sources are named, and nobody else writes their topics.
+  [[nodiscard]] bool sound() const noexcept {
+    return named() && !second_present_.load(std::memory_order_acquire);
+  }
+  /// Why sound() is or was false, in one line that lives as long as this object.
+  [[nodiscard]] const char* why_not() const noexcept;
+
+ private:
+  /// A participant, readable without a lock.  A torn read is equal to no participant.
+  struct Named {
+    std::atomic<bool> known{false};
+    std::atomic<std::uint64_t> front{0};
+    std::atomic<std::uint32_t> back{0};
+  };
+  struct Writer {
+    const topics::Topic* topic;
+    bool refused = false;  ///< a sample of this rig came from it
+    std::optional<Second> second;
+  };
+  [[nodiscard]] bool acceptable(const ParticipantId& from,
+                                const std::vector<Source>& sources) const;
+  void adopt();
+  void set(std::size_t service, const ParticipantId& participant);
+  [[nodiscard]] bool is_second(const Handle& handle, const Writer& writer) const;
+  [[nodiscard]] bool of_another_rig(const std::string& name, const topics::Topic& topic) const;
+  Second second_of(const Handle& handle, const Writer& writer);
+  /// @returns those that are new
+  std::vector<Second> judge();
+  void report(const std::vector<Second>& fresh) const;
+  const char* kept(std::string line);
+
+  Options options_;
+  std::array<Named, topics::kServices.size()> sources_;
+  std::atomic<bool> named_{false};
+  std::atomic<bool> second_present_{false};
+  std::atomic<const char*> newest_second_{nullptr};  // a line of lines_
+
+  std::mutex mutex_;                                                      // guards what follows
+  std::vector<std::pair<ParticipantId, std::vector<Source>>> announced_;  // the first one counts
+  std::map<Prefix, std::string> names_;
+  std::map<Handle, Writer> writers_;  // of topics with one writer
+  std::set<Prefix> replays_;
+  std::deque<std::string> lines_;  // their addresses stay
+};
+
+}  // namespace stillhand::runtime

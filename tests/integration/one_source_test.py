@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A program of no session commands 25 N, a thousand times a second, next to a trial that cancels: it moves nothing.
+
+The rig takes motor commands from the session's canceller alone. The second writer opens the interlock, and an event
+with its name is recorded.
+"""
+import signal
+import subprocess
+
+import lab_process
+from lab_process import BUILD, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
+
+STRANGER = BUILD / "tests" / "stranger"
+FORCE_LIMIT_TICKS = 50    # the motor force ramps to zero within 40 ticks, and the tick is at most 5 ms late, twice
+PUSHED_N = 25.0           # the stranger's command, and the limit of the motor
+# The canceller's own force in this session: 8.7 N at most in a run without a stranger. 20 N leaves twice that.
+OWN_FORCE_LIMIT_N = 20.0
+
+
+class OneSourceTest(LabTestCase):
+    def push_during_trial(self, name):
+        """A stranger of this name next to the second second of the trial; returns the ended lab and its recording."""
+        lab = self.lab(*quick_session(self.folder / "config"))
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        stranger = subprocess.Popen([str(STRANGER), str(lab.domain), "pushes", name], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(stranger.kill)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1, lab.errors())
+        stranger.send_signal(signal.SIGTERM)
+        heard = int(stranger.communicate(timeout=10)[0].split()[-1])
+        self.assert_nothing_left(lab)
+        # Rig and recorder did match it: the rig had its commands, and did not use them.
+        self.assertGreaterEqual(heard, 2)
+        recording = lab.recording(10**9)
+        self.assertGreater(recording["messages"]["stillhand/motor_command"], len(recording["rig"]["tick"]),
+                           "the recording holds what the stranger wrote, too")
+        return lab, recording
+
+    def test_a_program_that_commands_the_motor_moves_nothing_and_is_named(self):
+        lab, recording = self.push_during_trial("a stranger")
+        rig = recording["rig"]
+        force = rig["motor_force_n"]
+        opened = max(i for i, permitted in enumerate(rig["motor_permitted"]) if permitted) + 1
+        self.assertGreater(max(abs(f) for f in force[opened - TICKS_PER_S:opened]), 1.0)
+        self.assertLess(max(abs(f) for f in force), OWN_FORCE_LIMIT_N)
+        after = force[opened + FORCE_LIMIT_TICKS:]
+        self.assertGreater(len(after), 0, "the recording ends before the force is zero")
+        self.assertEqual([f for f in after if f != 0.0], [])
+        named = "a second writer of stillhand/motor_command: a stranger"
+        self.assertTrue(any(source == "rig" and text.startswith(named) for source, text in recording["commands"]),
+                        recording["commands"])
+        self.assertIn(["stillhand/motor_command", "a stranger"], recording["second_writers"])
+        self.assertIn(named, lab.errors()[-1])
+        trial = lab.summary()["trials"][-1]
+        self.assertIn(named, trial["aborted"])
+
+
+if __name__ == "__main__":
+    lab_process.main(STRANGER)
