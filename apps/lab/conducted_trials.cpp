@@ -34,7 +34,10 @@ ConductedTrials::ConductedTrials(const LabOptions& options, const AskedMotions& 
       clocks_(service),
       conductor_(
           service, watch_of(service.bus(), processes, options),
-          [this](const Progress& progress) { progress_.show(progress.what, progress.done); }) {}
+          [this](const Progress& progress) { progress_.show(progress.what, progress.done); }) {
+  if (options.stop_key.empty()) return;
+  stop_key_.emplace(options.stop_key, [this] { conductor_.stop_at_once(); });
+}
 
 void ConductedTrials::run(const Script& script) {
   conductor_.await_everybody(options_.match_s);

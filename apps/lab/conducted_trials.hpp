@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "apps/lab/live_trials.hpp"
 #include "apps/lab/processes.hpp"
 #include "apps/lab/rehearsal.hpp"
+#include "apps/lab/stop_key.hpp"
 #include "apps/report/progress.hpp"
 #include "services/runtime/service.hpp"
 
@@ -50,6 +52,7 @@ class ConductedTrials final : public LiveTrials {
   report::ProgressLine progress_;
   Clocks clocks_;
   Conductor conductor_;
+  std::optional<StopKey> stop_key_;
 };
 
 }  // namespace stillhand::lab

@@ -120,6 +120,9 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
                "start no service: conduct the services that systemd started with --one-session, "
                "and fetch their recording")
       ->excludes(lab.get_option("--canceller"));  // their settings say it
+  lab.add_option("--stop-key", options.stop_key,
+                 "input device, such as /dev/input/event3: any key of it is an emergency stop, and "
+                 "so is its loss");
   lab.add_flag("--no-real-time", words.ordinary, "do not ask for real-time priority");
 }
 

@@ -16,6 +16,7 @@
 #include "apps/record/record_command.hpp"
 #include "apps/recordings/recorder_commands.hpp"
 #include "apps/replay/replay_command.hpp"
+#include "apps/stop/stop_command.hpp"
 #include "apps/study/study_command.hpp"
 #include "services/contract/config_error.hpp"
 #include "version.hpp"
@@ -53,6 +54,7 @@ int run(int argc, char** argv) {
     stillhand::record::add_record_command(cli, status);
     stillhand::replay::add_replay_command(cli, status);
     stillhand::dashboard::add_dashboard_command(cli, status);
+    stillhand::stop::add_stop_command(cli, status);
     stillhand::deploy::add_deploy_command(cli, status);
     cli.parse(argc, argv);
     return flushed(status);

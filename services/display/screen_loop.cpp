@@ -18,6 +18,8 @@ constexpr int kRows = 768;
 constexpr double kRate_hz = 60.0;
 // With no new tick for this long the picture is old.
 constexpr std::int64_t kLinkLost_ns = 100'000'000;
+// An emergency stop is repeated with every frame for this long.
+constexpr std::int64_t kRepeated_ns = 1'000'000'000;
 
 ViewStatus status_of(const Shown& shown, bool fresh) {
   ViewStatus status;
@@ -52,6 +54,7 @@ class ScreenLoop::Screen {
     }
     return !window_ || window_->show(frame);
   }
+  [[nodiscard]] bool escape_pressed() { return window_ && window_->escape_pressed(); }
   [[nodiscard]] std::optional<double> pointer_m() const {
     return window_ ? window_->pointer_m() : std::nullopt;
   }
@@ -96,6 +99,9 @@ void ScreenLoop::run() {
       const runtime::OrdinaryWhile ordinary;
       open = screen_->show(shown, due_ns - fresh_ns < kLinkLost_ns);
     }
+    // The window stays: the session ends by itself, and the subject sees why.
+    if (screen_->escape_pressed()) escape_ns_ = due_ns;
+    if (escape_ns_ && due_ns - *escape_ns_ < kRepeated_ns) shell_.stop_at_once();
     // This process ends, and with it the session; the experiment quotes the line.
     if (!open) throw std::runtime_error("the tracking window was closed");
     if (options_.pointer) publish_pointer(shown.tick, screen_->pointer_m());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -40,7 +41,8 @@ class ScreenLoop {
   Shell& shell_;
   ScreenOptions options_;
   runtime::Publisher<stillhand_msgs::Pointer> pointer_;
-  std::unique_ptr<Screen> screen_;  ///< null when nobody looks
+  std::unique_ptr<Screen> screen_;         ///< null when nobody looks
+  std::optional<std::int64_t> escape_ns_;  ///< when Escape was pressed
 };
 
 }  // namespace stillhand::display

@@ -169,7 +169,8 @@ bool ScreenWindow::show(const cv::Mat& frame) {
     sized_ = true;
     cv::imshow(title_, frame);
     const int key = cv::waitKey(1);
-    if (key == kEscapeKey || key == 'q') return false;
+    if (key == kEscapeKey) escape_ = true;
+    if (key == 'q') return false;
     return cv::getWindowProperty(title_, cv::WND_PROP_VISIBLE) > 0.0;
   } catch (const cv::Exception&) {
     return false;

@@ -6,6 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "services/display/core/projection.hpp"
 
@@ -54,11 +55,14 @@ class ScreenWindow {
   ScreenWindow& operator=(const ScreenWindow&) = delete;
 
   /// Shows a frame and lets the window system work for about a millisecond.
-  /// @return false once the window was closed, or Escape or q pressed in it.
+  /// @return false once the window was closed, or q pressed in it.
   [[nodiscard]] bool show(const cv::Mat& frame);
 
   /// Pointer on the screen, right of its centre [m]; nothing before it first moved over the window.
   [[nodiscard]] std::optional<double> pointer_m() const noexcept { return pointer_m_; }
+
+  /// Escape was pressed since the last call.
+  [[nodiscard]] bool escape_pressed() noexcept { return std::exchange(escape_, false); }
 
  private:
   static void on_mouse(int event, int column, int row, int flags, void* window);
@@ -66,6 +70,7 @@ class ScreenWindow {
   std::string title_;
   Projection projection_;
   std::optional<double> pointer_m_;
+  bool escape_ = false;
   bool sized_;  ///< the window has its size: full screen, or the first frame's
 };
 

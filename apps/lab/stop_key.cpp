@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/stop_key.hpp"
+
+#include <fcntl.h>
+#include <linux/input.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::lab {
+
+bool KeyPresses::take(std::span<const std::byte> bytes) {
+  rest_.insert(rest_.end(), bytes.begin(), bytes.end());
+  bool pressed = false;
+  std::size_t done = 0;
+  for (; rest_.size() - done >= sizeof(input_event); done += sizeof(input_event)) {
+    input_event event{};
+    std::memcpy(&event, rest_.data() + done, sizeof(event));
+    pressed = pressed || (event.type == EV_KEY && event.value == 1);
+  }
+  rest_.erase(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(done));
+  return pressed;
+}
+
+StopKey::StopKey(const std::filesystem::path& device, std::function<void()> on_press)
+    : device_(open(device.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)),
+      on_press_(std::move(on_press)) {
+  if (device_ < 0) {
+    throw ConfigError("--stop-key",
+                      device.string() + ", which cannot be opened: " + std::strerror(errno),
+                      "a device such as /dev/input/event3 that this user may read");
+  }
+  thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
+}
+
+StopKey::~StopKey() {
+  thread_.request_stop();
+  thread_.join();
+  close(device_);
+}
+
+bool StopKey::wait_for_press(const std::stop_token& stop) const {
+  constexpr int kLook_ms = 100;  // for the stop of this thread
+  KeyPresses presses;
+  std::array<std::byte, 64 * sizeof(input_event)> bytes{};
+  while (!stop.stop_requested()) {
+    pollfd wait{device_, POLLIN, 0};
+    if (poll(&wait, 1, kLook_ms) <= 0) continue;
+    const ssize_t count = read(device_, bytes.data(), bytes.size());
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (count <= 0) return true;  // unplugged
+    if (presses.take(std::span(bytes).first(static_cast<std::size_t>(count)))) return true;
+  }
+  return false;
+}
+
+void StopKey::watch(const std::stop_token& stop) const {
+  if (!wait_for_press(stop)) return;
+  constexpr int kTimes = 50;
+  constexpr std::int64_t kPause_ns = 20'000'000;
+  for (int i = 0; i < kTimes && !stop.stop_requested(); ++i) {
+    on_press_();
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kPause_ns);
+  }
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/stop/stop.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "apps/stop/running_sessions.hpp"
+#include "idl/topics.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/emergency_stop.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
+
+namespace stillhand::stop {
+namespace {
+
+std::vector<RunningSession> asked_sessions(const StopOptions& options) {
+  std::ifstream sockets("/proc/net/unix");
+  std::vector<RunningSession> sessions;
+  for (const RunningSession& session : running_sessions(sockets)) {
+    if (options.domain && session.domain != *options.domain) continue;
+    if (options.rig && session.rig != *options.rig) continue;
+    sessions.push_back(session);
+  }
+  // Its lab may run on another machine.
+  if (sessions.empty() && options.domain) {
+    sessions.push_back({*options.domain, options.rig.value_or(1)});
+  }
+  return sessions;
+}
+
+runtime::Bus::Options bus_options(const StopOptions& options, const RunningSession& session) {
+  runtime::Bus::Options bus;
+  // It has the rights of a dashboard.
+  bus.service = fmt::format("{}-stop-{}", topics::kDashboard, getpid());
+  bus.rig = session.rig;
+  bus.domain = session.domain;
+  bus.profiles = options.profiles;
+  bus.security = options.security;
+  return bus;
+}
+
+/// One rig that is asked, and what it answers.
+class Asked {
+ public:
+  Asked(const StopOptions& options, const RunningSession& session)
+      : name_(fmt::format("domain {} rig {}", session.domain, session.rig)),
+        bus_(bus_options(options, session)),
+        request_(bus_, "stillhand stop") {
+    // Events are kept for those that come later, in their order.
+    bus_.subscribe<stillhand_msgs::Event>(topics::kEvent, [this](const stillhand_msgs::Event& event,
+                                                                 const runtime::Arrival& arrival) {
+      take(event, arrival.received_ns);
+    });
+    bus_.start();
+  }
+
+  void ask() {
+    if (asked_ns_ == 0 && bus_.matched_peers(topics::kSessionCommand).contains("rig")) {
+      asked_ns_ = runtime::monotonic_ns();
+    }
+    request_.ask();
+  }
+  [[nodiscard]] bool confirmed() const noexcept { return zero_ns_ != 0; }
+  [[nodiscard]] std::string line(std::int64_t began_ns) const {
+    if (!confirmed()) {
+      return name_ + (asked_ns_ == 0 ? ": no rig answers" : ": the rig did not report zero force");
+    }
+    const std::int64_t zero_ns = zero_ns_;
+    if (asked_ns_ == 0) return name_ + ": the force was zero before, after an emergency stop";
+    return fmt::format("{}: force zero after {:.0f} ms ({:.0f} ms to reach the rig)", name_,
+                       static_cast<double>(zero_ns - began_ns) / 1e6,
+                       static_cast<double>(asked_ns_ - began_ns) / 1e6);
+  }
+
+ private:
+  void take(const stillhand_msgs::Event& event, std::int64_t now_ns) {
+    if (event.source() != "rig") return;
+    if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
+      stopped_ = event.text() == topics::kEmergencyStop.data();
+    }
+    if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && stopped_ && zero_ns_ == 0) {
+      zero_ns_ = now_ns;
+    }
+  }
+
+  std::string name_;
+  bool stopped_ = false;  // receiving thread
+  std::atomic<std::int64_t> zero_ns_{0};
+  std::int64_t asked_ns_ = 0;
+  runtime::Bus bus_;  // its callbacks use what is above
+  runtime::EmergencyStop request_;
+};
+
+}  // namespace
+
+int run_stop(const StopOptions& options, const runtime::Stop& interrupted) {
+  const std::int64_t began_ns = runtime::monotonic_ns();
+  const std::vector<RunningSession> sessions = asked_sessions(options);
+  if (sessions.empty()) {
+    std::cerr << "stillhand stop: no session runs on this machine; --domain N asks one whose lab "
+                 "runs elsewhere\n";
+    return 1;
+  }
+  // On a busy machine a process without it may not even find the rig in time.  The threads of the
+  // bus inherit it.
+  runtime::become_real_time(!options.security.empty());
+  std::deque<Asked> all;
+  for (const RunningSession& session : sessions) all.emplace_back(options, session);
+  const auto limit_ns = began_ns + static_cast<std::int64_t>(options.wait_s * 1e9);
+  const auto open = [&] {
+    return std::ranges::any_of(all, [](const Asked& asked) { return !asked.confirmed(); });
+  };
+  constexpr std::int64_t kPeriod_ns = 10'000'000;
+  while (open() && runtime::monotonic_ns() < limit_ns && !interrupted.requested()) {
+    for (Asked& asked : all) asked.ask();
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kPeriod_ns);
+  }
+  for (const Asked& asked : all) std::cout << asked.line(began_ns) << '\n';
+  if (open() && options.security.empty()) {
+    std::cerr << "stillhand stop: a session with keys hears only a stop with --security DIR\n";
+  }
+  return open() ? 1 : 0;
+}
+
+}  // namespace stillhand::stop

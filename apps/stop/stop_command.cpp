@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/stop/stop_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apps/stop/stop.hpp"
+#include "services/runtime/process/shipped.hpp"
+#include "services/settings/check_name.hpp"
+
+namespace stillhand::stop {
+
+void add_stop_command(CLI::App& cli, int& status) {
+  auto options = std::make_shared<StopOptions>();
+  options->profiles = runtime::shipped("qos/profiles.xml");
+  CLI::App* stop = cli.add_subcommand(
+      "stop",
+      "Emergency stop without a dashboard: the motor force goes to zero, the platform brakes, the\n"
+      "session ends. It asks every session that a lab of this machine runs, and prints how long "
+      "it\n"
+      "took until each rig reported zero force. Exit status 1 if one did not report it.\n"
+      "Example: stillhand stop");
+  stop->add_option("--domain", options->domain, "DDS domain of one session [all of this machine]")
+      ->check(CLI::Range(0, 232));
+  stop->add_option("--rig", options->rig, "number of one rig [all on the domain]");
+  stop->add_option("--security", options->security,
+                   "folder of keys (deploy/security/make.sh), for a session with keys")
+      ->check(settings::check_name);
+  stop->add_option("--wait", options->wait_s, "longest wait for the rigs' answers [s]")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  stop->add_option("--profiles", options->profiles, "file with the QoS profiles")
+      ->capture_default_str();
+  stop->callback([options, &status] {
+    const runtime::Stop interrupted;
+    status = run_stop(*options, interrupted);
+  });
+}
+
+}  // namespace stillhand::stop

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An emergency stop without a dashboard: `stillhand stop`, Escape on the tracking screen, a key of an input device.
+
+Each prints the time from the command or the key to the first tick at which the rig's force is zero. By default the
+verb stops a trial that cancels, and the two keys a pegged trial, which has no force; `--campaign` stops a trial that
+cancels with each key.
+"""
+import os
+import struct
+import subprocess
+import time
+
+import lab_process
+from lab_process import STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
+from virtual_display import VirtualDisplay, missing_tools
+
+FORCE_LIMIT_TICKS = 50  # the motor force ramps to zero within 40 ticks
+EV_KEY, KEY_ENTER, PRESSED = 1, 28, 1
+INPUT_EVENT = "llHHi"   # linux/input.h: seconds, microseconds, type, code, value
+STOP_KEY, ESCAPE = "the stop key", "Escape on the tracking screen"
+
+
+class StopTest(LabTestCase):
+    def assert_stopped(self, lab, since_ns, what, forced):
+        """The session ended by an emergency stop, with its force at zero; prints when."""
+        self.assertEqual(lab.end_status(), 1, lab.errors())
+        self.assert_nothing_left(lab)
+        self.assertIn(f"emergency stop, asked by {what}", lab.errors()[-1])
+        recording = lab.recording(10**9)
+        self.assertIn(["rig", "emergency stop"], recording["commands"])
+        rig = recording["rig"]
+        # The event carries the newest tick that the rig had published; it reports the one that it computes.
+        zero = rig["tick"].index(recording["force_zero_ticks"][-1]) + 1
+        force = rig["motor_force_n"]
+        self.assertEqual([each for each in force[zero:] if each != 0.0], [])
+        self.assertNotIn(True, rig["motor_permitted"][zero:])
+        pressed = next(i for i, stamp_ns in enumerate(rig["stamp_ns"]) if stamp_ns >= since_ns)
+        if forced:
+            self.assertGreater(max(abs(each) for each in force[pressed - TICKS_PER_S:pressed]), 1.0)
+        print(f"{what}: force zero after {(rig['stamp_ns'][zero] - since_ns) / 1e6:.0f} ms"
+              f"{'' if forced else ' (there was none)'}", flush=True)
+
+    def test_the_verb_stops_a_session_of_this_machine_and_says_when(self):
+        lab = self.lab(*quick_session(self.folder / "config"))
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        since_ns = time.monotonic_ns()
+        stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab.domain)], capture_output=True, text=True,
+                                 timeout=30, check=False)
+        self.assertEqual(stopped.returncode, 0, stopped.stderr)
+        self.assertRegex(stopped.stdout,
+                         rf"^domain {lab.domain} rig 1: force zero after \d+ ms \(\d+ ms to reach the rig\)\n$")
+        print(stopped.stdout, end="", flush=True)
+        self.assert_stopped(lab, since_ns, "stillhand stop", forced=True)
+
+    def test_without_a_session_the_verb_fails_with_one_line(self):
+        stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab_process.next_domain()), "--wait", "0.5"],
+                                 capture_output=True, text=True, timeout=30, check=False)
+        self.assertEqual(stopped.returncode, 1)
+        self.assertRegex(stopped.stdout, "^domain [0-9]+ rig 1: no rig answers\n$")
+
+    def test_a_key_of_an_input_device(self):
+        self.press(STOP_KEY, forced=False)
+
+    def test_escape_on_the_tracking_screen(self):
+        self.press(ESCAPE, forced=False)
+
+    @campaign
+    def test_a_key_of_an_input_device_ends_the_force(self):
+        self.press(STOP_KEY, forced=True)
+
+    @campaign
+    def test_escape_on_the_tracking_screen_ends_the_force(self):
+        self.press(ESCAPE, forced=True)
+
+    def press(self, what, forced):
+        if what == ESCAPE and missing_tools():
+            self.skipTest(f"not installed: {missing_tools()}")
+        device = self.folder / "device"
+        os.mkfifo(device)
+        pipe = os.open(device, os.O_RDWR)
+        self.addCleanup(os.close, pipe)
+        display = None
+        if what == ESCAPE:
+            display = VirtualDisplay()
+            self.addCleanup(display.close)
+        words = quick_session(self.folder / "config") if forced else ["--identify-seconds", 60]
+        lab = self.lab(*words, "--stop-key", device, "--match-seconds", 60, headless=display is None,
+                       environment=display and display.environment)
+        lab.wait_for_tick(1 if forced else 0, 1, TRIAL_LIMIT_S)
+        window = display and lab.wait_for("the window", lambda: display.window("Stillhand"), TRIAL_LIMIT_S)
+        since_ns = time.monotonic_ns()
+        if display:
+            display.xdotool("windowfocus", "--sync", window, "key", "Escape")
+        else:
+            os.write(pipe, struct.pack(INPUT_EVENT, 0, 0, EV_KEY, KEY_ENTER, PRESSED))
+        self.assert_stopped(lab, since_ns, what, forced)
+
+
+if __name__ == "__main__":
+    lab_process.main()
