@@ -223,6 +223,27 @@ Finding check_keys(const std::vector<std::string>& refused,
   return good("keys", "valid for every service of this host, for at least 30 days");
 }
 
+Finding check_security(const Inventory& inventory) {
+  if (!inventory.open_to_all()) {
+    return good("security", inventory.security.empty() ? "one machine needs no keys"
+                                                       : "the bus takes only those with keys");
+  }
+  return wrong("security",
+               "none: every program on the network of these machines can read, disturb or imitate "
+               "a session",
+               "deploy/security/make.sh FOLDER, and `security: FOLDER` in the inventory");
+}
+
+Finding check_authority(const std::vector<std::string>& authority_keys) {
+  if (authority_keys.empty()) {
+    return good("authority", "its private key is in no folder that services read");
+  }
+  return wrong(
+      "authority",
+      fmt::format("{}: who reads it can certify any program", fmt::join(authority_keys, ", ")),
+      "move it to a place away from the lab's machines, or delete it");
+}
+
 Finding reachability_commands(const Inventory& inventory, const Host& host) {
   std::vector<std::string> others;
   for (const Host& each : inventory.hosts) {

@@ -70,6 +70,11 @@ Finding check_governor(const std::vector<std::string>& governors);
 Finding check_keys(const std::vector<std::string>& refused,
                    const std::vector<std::string>& expiring);
 
+/// Wrong if several machines have no keys.
+Finding check_security(const Inventory& inventory);
+/// @param authority_keys  private keys of an authority in folders that services read
+Finding check_authority(const std::vector<std::string>& authority_keys);
+
 /// Never wrong: a ping needs rights, and a closed port proves nothing.  Gives the commands to type.
 Finding reachability_commands(const Inventory& inventory, const Host& host);
 

@@ -136,7 +136,8 @@ void add_deploy_command(CLI::App& cli, int& status) {
   CLI::App* check = verb->add_subcommand(
       "check",
       "Checks this machine as a host of the lab: address, clock, rights, buffers, ports,\n"
-      "processors, certificates. Each check prints one line, with the remedy if something is\n"
+      "processors, certificates, and whether there are keys at all. Each check prints one line, "
+      "with the remedy if something is\n"
       "wrong. Exit status: 0 nothing is wrong, 1 something is wrong, 2 the inventory is refused.");
   common(check);
   check->add_option("--host", words->host,

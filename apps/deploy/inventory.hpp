@@ -48,10 +48,12 @@ struct Inventory {
   std::string lab;           ///< letters, digits and '-'
   std::uint32_t domain = 0;  ///< DDS domain, 0 to 232
   Discovery discovery = Discovery::kPeers;
-  std::filesystem::path security;  ///< folder of keys and permissions; empty: none
+  std::filesystem::path security;  ///< folder of keys and permissions; empty: `security: none`
   std::vector<Host> hosts;         ///< at least one
   std::vector<Rig> rigs;           ///< at least one
 
+  /// Several machines without keys: every program on their network can take part.
+  [[nodiscard]] bool open_to_all() const { return hosts.size() > 1 && security.empty(); }
   /// The host of that name, or nullptr.
   [[nodiscard]] const Host* find_host(std::string_view name) const;
   /// The host that runs a service of a rig.  @param rig  number of one of `rigs`

@@ -16,6 +16,7 @@
 #include <map>
 #include <set>
 
+#include "apps/deploy/generated_file.hpp"
 #include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
@@ -138,6 +139,17 @@ Finding check_keys_of(const Inventory& inventory, const Host& host) {
   return check_keys({refused.begin(), refused.end()}, expiring);
 }
 
+std::vector<std::string> authority_keys_of(const Inventory& inventory) {
+  std::vector<std::string> found;
+  for (const fs::path& folder :
+       {inventory.security, fs::path(installed_folder(inventory)) / "security"}) {
+    std::error_code unseen;
+    const fs::path key = folder / "authority_key.pem";
+    if (fs::exists(key, unseen)) found.push_back(key.string());
+  }
+  return found;
+}
+
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
                                    const Buffers& buffers) {
   const DomainPorts ports(inventory.domain);
@@ -155,7 +167,11 @@ std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
                             read_of(net / "ipv4/ip_local_reserved_ports"), ports.first, last),
       check_governor(governors()),
       reachability_commands(inventory, host)};
-  if (!inventory.security.empty()) findings.push_back(check_keys_of(inventory, host));
+  findings.push_back(check_security(inventory));
+  if (!inventory.security.empty()) {
+    findings.push_back(check_keys_of(inventory, host));
+    findings.push_back(check_authority(authority_keys_of(inventory)));
+  }
   return findings;
 }
 

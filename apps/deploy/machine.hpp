@@ -15,6 +15,9 @@ std::vector<std::string> own_addresses();
 /// present.  On a host with neither, the keys of both tools.
 Finding check_keys_of(const Inventory& inventory, const Host& host);
 
+/// Private keys of an authority in the folders from which a host's services read their keys.
+std::vector<std::string> authority_keys_of(const Inventory& inventory);
+
 /// Runs every check on this machine as that host.  Reads /proc, /sys and the folder of keys.
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,
                                    const Buffers& buffers);

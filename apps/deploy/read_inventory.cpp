@@ -50,6 +50,11 @@ class Reader {
     const Entry& hosts = required(reader, top_, "inventory", "hosts", "hosts: a list of machines");
     read_hosts(hosts);
     placements_.refuse_absent(hosts);
+    if (reader.find("security") == nullptr && inventory_.hosts.size() > 1) {
+      throw ConfigError(hosts.place + ": inventory", "several machines and no \"security\"",
+                        "security: a folder that deploy/security/make.sh makes; or security: none, "
+                        "with which every program on their network can take part");
+    }
     return std::move(inventory_);
   }
 
@@ -67,8 +72,8 @@ class Reader {
 
   void read_security(SectionReader& reader) {
     const Entry* entry = reader.find("security");
-    if (entry == nullptr) return;
-    const std::string want = "a folder with the lab's keys, relative to the inventory";
+    if (entry == nullptr || entry->text == "none") return;
+    const std::string want = "a folder with the lab's keys, relative to the inventory, or none";
     inventory_.security =
         inventory_.file.parent_path() / text_of(*entry, "inventory.security", want);
     std::error_code ignored;

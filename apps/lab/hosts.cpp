@@ -37,6 +37,11 @@ Hosts::Hosts(const LabOptions& options)
     domain_ = inventory_->domain;
     local_.security = inventory_->security;
     check(options);
+    if (inventory_->open_to_all()) {
+      std::cerr << "stillhand lab: " << options.inventory.string()
+                << ": security: none: every program on the network of these machines can read, "
+                   "disturb or imitate this session\n";
+    }
   }
   // A service that runs already has checked its own keys.
   check_keys(local_.security, domain_,

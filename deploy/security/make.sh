@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Creates a lab's authority, a key, a certificate and signed permissions for each service, and the signed governance:
-# every file that `--security DIR` reads (deploy/security/README.md).
+# every file that `--security DIR` reads (deploy/security/README.md).  The authority's private key, which no service
+# reads, goes into DIR-authority.
 # Usage: deploy/security/make.sh DIR [--days N] [--lab NAME] [--domain N]
 #   DIR       new folder; it must not exist
 #   --days    validity of the certificates [days], default 365
@@ -28,7 +29,10 @@ done
 # Characters that need no quotes in a certificate's name.
 [[ $lab =~ ^[A-Za-z0-9._-]{1,64}$ ]] || fail "--lab: got $lab, want 1 to 64 letters, digits and . _ -"
 [[ $first =~ ^(0|[1-9][0-9]{0,2})$ ]] && [ "$first" -le 232 ] || fail "--domain: got $first, want 0 to 232"
-[ ! -e "$dir" ] || fail "$dir: got a folder that exists, want a new one"
+dir=${dir%/}
+for each in "$dir" "$dir-authority"; do
+  [ ! -e "$each" ] || fail "$each: got a folder that exists, want a new one"
+done
 parent=$(dirname "$dir")
 [ -w "$parent" ] || fail "$parent: got no folder that can be written, want one in which $(basename "$dir") can be made"
 command -v openssl >/dev/null || fail "got no openssl, want it installed (deploy/setup.sh installs it)"
@@ -84,5 +88,7 @@ done <"$made/identities"
 rm -r "$made/unsigned" "$made/identities" "$made/openssl.cnf" "$made/request.pem" "$log"
 # Everybody may read every file but the keys.
 find "$made" -type d -exec chmod 755 {} + -o ! -name '*key.pem' -exec chmod 644 {} +
+mkdir -m 700 "$dir-authority"
+mv "$made/authority_key.pem" "$dir-authority"
 mv -T "$made" "$dir"
-echo "$dir: valid for $days days; keep authority_key.pem offline, away from the lab's machines"
+echo "$dir: valid for $days days; keep $dir-authority offline, away from the lab's machines, or delete it"

@@ -211,7 +211,8 @@ int measure(const fs::path& self, int rounds) {
       " && openssl smime -verify -text -in governance.p7s -CAfile authority.pem -out rules.xml "
       "2>log && "
       "sed -i 's/>SIGN</>ENCRYPT</' rules.xml && openssl smime -sign -text -in rules.xml -out "
-      "governance.p7s -signer authority.pem -inkey authority_key.pem");
+      "governance.p7s -signer authority.pem -inkey " +
+      folders.authority_key(all_encrypted).string());
   const std::vector<std::pair<const char*, fs::path>> kinds{
       {"without", ""}, {"as configured", folders.lab()}, {"all encrypted", all_encrypted}};
   const fs::path scratch = all_encrypted.parent_path() / "output";

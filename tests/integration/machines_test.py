@@ -176,9 +176,10 @@ class MachinesTest(LabTestCase):
         lab = self.lab("--conditions", "C", start=self.network[network.HERE].words(), inventory=wrong)
         self.assertEqual(lab.end_status(END_LIMIT_S), 2)
         line = 1 + text[:text.index("- name: screen-pc")].count("\n")
-        self.assertEqual(len(lab.errors()), 1, lab.errors())
-        self.assertIn(f"wrong.yaml:{line}:", lab.errors()[0])
-        self.assertIn("screen-pc", lab.errors()[0])
+        self.assertEqual(len(lab.errors()), 2, lab.errors())
+        self.assertIn("security: none: every program on the network", lab.errors()[0])
+        self.assertIn(f"wrong.yaml:{line}:", lab.errors()[1])
+        self.assertIn("screen-pc", lab.errors()[1])
         self.assertFalse(lab.out.exists())
         self.assertEqual(self.network["rig-pc"].run("ls", "/tmp"), "")
 

@@ -185,7 +185,7 @@ class Network:
         before: {machine: further words before a command there}; keys: folder of deploy/security/make.sh.
         """
         lines = [f"lab: {LAB}", f"domain: {domain}", "discovery: peers"]
-        lines += [f"security: {keys}"] if keys else []
+        lines += [f"security: {keys or 'none'}"]
         lines += ["hosts:"]
         for name, services in SERVICES.items():
             machine = self.machines[name]

@@ -157,7 +157,7 @@ class SecuredSessionTest(LabTestCase):
         rig = self.keys / "rig"
         for words in (["-in", rig / "certificate.pem", "-x509toreq", "-signkey", rig / "key.pem", "-out", request],
                       ["-req", "-in", request, "-days", "-1", "-CA", self.keys / "authority.pem", "-CAkey",
-                       self.keys / "authority_key.pem", "-set_serial", "7", "-out", rig / "certificate.pem"]):
+                       f"{self.keys}-authority/authority_key.pem", "-set_serial", "7", "-out", rig / "certificate.pem"]):
             subprocess.run(["openssl", "x509", *map(str, words)], check=True, capture_output=True)
         self.assert_refused(rig / "certificate.pem", "expired on")
 

@@ -59,6 +59,17 @@ TEST(CheckIdentityTest, AFolderAsItIsMadeIsGoodForEveryServiceDashboardAndTap) {
   EXPECT_EQ(refusal({lab(), std::string(topics::kTap)}), "");
 }
 
+// A machine holds the certificates of its own services alone, and knows whom to expect elsewhere.
+TEST(CheckIdentityTest, TheGuidOfAnotherServiceFollowsFromOnesOwnCertificate) {
+  std::set<std::array<std::uint8_t, 6>> all;
+  for (const std::string_view service : topics::kServices) {
+    const auto start = guid_start({lab(), std::string(service)});
+    EXPECT_EQ(guid_start({lab(), "rig"}, std::string(service)), start) << service;
+    all.insert(start);
+  }
+  EXPECT_EQ(all.size(), topics::kServices.size());
+}
+
 TEST(CheckIdentityTest, PrivateKeysAreTheOwnersAlone) {
   for (const auto& entry : fs::recursive_directory_iterator(lab())) {
     if (!entry.path().string().ends_with("key.pem")) continue;

@@ -167,7 +167,7 @@ void rewrite(const fs::path& folder, const char* file, const std::string& script
       "cd " + folder.string() + " && openssl smime -verify -text -CAfile authority.pem -in " +
       file + " 2>log | sed '" + script + "' >altered.xml && openssl smime -sign -text -in " +
       "altered.xml -out " + file + " -signer " + (authority / "authority.pem").string() +
-      " -inkey " + (authority / "authority_key.pem").string());
+      " -inkey " + SecurityFolders::get().authority_key(authority).string());
 }
 
 TEST(StrangersTest, WithACertificateOfAnotherAuthorityNothingIsHeardOrDelivered) {

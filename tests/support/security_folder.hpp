@@ -42,6 +42,12 @@ class SecurityFolders {
     std::filesystem::copy(lab(), root_ / name, std::filesystem::copy_options::recursive);
     return root_ / name;
   }
+  /// The private key of a folder's authority; of a copy, that of the lab.
+  [[nodiscard]] std::filesystem::path authority_key(const std::filesystem::path& folder) const {
+    const std::filesystem::path own = folder.string() + "-authority";
+    const std::filesystem::path of = std::filesystem::exists(own) ? own : root_ / "lab-authority";
+    return of / "authority_key.pem";
+  }
   /// @throws std::runtime_error when it fails
   static void shell(const std::string& command) {
     if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
@@ -76,7 +82,8 @@ inline void reissue(const std::filesystem::path& folder, const std::string& iden
   const std::unique_ptr<X509, void (*)(X509*)> certificate(
       PEM_read_X509(open(path, "r").get(), nullptr, nullptr, nullptr), X509_free);
   const std::unique_ptr<EVP_PKEY, void (*)(EVP_PKEY*)> key(
-      PEM_read_PrivateKey(open(folder / "authority_key.pem", "r").get(), nullptr, nullptr, nullptr),
+      PEM_read_PrivateKey(open(SecurityFolders::get().authority_key(folder), "r").get(), nullptr,
+                          nullptr, nullptr),
       EVP_PKEY_free);
   X509_gmtime_adj(X509_getm_notBefore(certificate.get()), from_s);
   X509_gmtime_adj(X509_getm_notAfter(certificate.get()), to_s);

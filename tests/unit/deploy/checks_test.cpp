@@ -189,6 +189,28 @@ TEST(CheckTest, OfAToolsKeysThoseThatAreThereAreLookedAt) {
               AllOf(HasSubstr("rig/certificate.pem"), dashboard, testing::Not(tap)));
 }
 
+TEST(CheckTest, SeveralMachinesWithoutKeysAreWrong) {
+  Inventory inventory = sample_inventory(two_rigs());
+  EXPECT_THAT(check_security(inventory), wrong("every program on the network", "make.sh"));
+  inventory.security = "keys";
+  EXPECT_EQ(check_security(inventory).state, State::kGood);
+  inventory.security = "";
+  inventory.hosts.resize(1);
+  EXPECT_EQ(check_security(inventory).state, State::kGood);
+}
+
+TEST(CheckTest, TheAuthoritysPrivateKeyAmongTheServicesKeysIsWrong) {
+  const SampleFolder folder;
+  Inventory inventory = sample_inventory(two_rigs());
+  inventory.lab = "a-lab-that-no-machine-has";
+  inventory.security = folder.path();
+  EXPECT_EQ(check_authority(authority_keys_of(inventory)).state, State::kGood);
+  const auto key = folder.path() / "authority_key.pem";
+  std::ofstream(key) << "a key";
+  EXPECT_THAT(check_authority(authority_keys_of(inventory)),
+              wrong(key.string(), "away from the lab's machines"));
+}
+
 TEST(CheckTest, WhetherOtherHostsAnswerIsNotChecked) {
   const Inventory inventory = sample_inventory(two_rigs());
   const Finding sut = reachability_commands(inventory, inventory.hosts[0]);

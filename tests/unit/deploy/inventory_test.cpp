@@ -92,6 +92,7 @@ hosts:
     address: 192.168.7.3
     prefix: /usr
     services: [display, human_operator, identification, recorder, experiment]
+security: none
 )";
 
 TEST_P(InventoryRefusalTest, SaysWhereAndWhatWouldBeRight) {
@@ -130,12 +131,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"hosts\" perhaps"},
         Refusal{"UnknownDiscovery", "domain: 12", "discovery: broadcast",
                 ":2:12: inventory.discovery", "broadcast", "peers, server or multicast"},
-        Refusal{"SecurityThatIsNotThere", "domain: 12", "security: keys",
-                ":2:11: inventory.security", "no folder", "a folder with the lab's keys"},
-        Refusal{"SecurityThroughAServer", "domain: 12", "security: .\ndiscovery: server",
-                ":2:11: inventory.security", "strangers", "discovery: peers"},
-        Refusal{"SecurityByMulticast", "domain: 12", "security: .\ndiscovery: multicast",
-                ":2:11: inventory.security", "never authenticate", "discovery: peers"},
+        Refusal{"SeveralMachinesAndNoWordOnKeys", "security: none\n", "", ":4:3: inventory",
+                "several machines and no \"security\"", "or security: none"},
+        Refusal{"SecurityThatIsNotThere", "security: none", "security: keys",
+                ":12:11: inventory.security", "no folder", "a folder with the lab's keys"},
+        Refusal{"SecurityThroughAServer", "security: none", "security: .\ndiscovery: server",
+                ":12:11: inventory.security", "strangers", "discovery: peers"},
+        Refusal{"SecurityByMulticast", "security: none", "security: .\ndiscovery: multicast",
+                ":12:11: inventory.security", "never authenticate", "discovery: peers"},
         Refusal{"HostsOfAWord", "  - name: rig-pc\n", "  rig-pc\n  - name: rig-pc\n", ":5:9",
                 "illegal map value", "well-formed YAML"},
         Refusal{"HostWithoutName", "name: desk\n    address", "address", ":8:5: hosts[1]",
@@ -222,6 +225,21 @@ TEST(InventoryTest, MoreServicesThanADomainHasPortsForAreRefused) {
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("hosts[0].services: got 117 services, want at most 113"));
   }
+}
+
+TEST(InventoryTest, SeveralMachinesHaveKeysOrSayThatTheyHaveNone) {
+  const Inventory none = sample_inventory(kGood);
+  EXPECT_TRUE(none.security.empty());
+  EXPECT_TRUE(none.open_to_all());
+  const SampleFolder folder;
+  std::filesystem::create_directory(folder.path() / "keys");
+  std::string text = kGood;
+  text.replace(text.find("none"), 4, "keys");
+  EXPECT_FALSE(read_inventory(folder.file(text)).open_to_all());
+  // One machine needs no word.
+  EXPECT_FALSE(sample_inventory("lab: a\nhosts: [{name: pc, address: 127.0.0.1, services: [" +
+                                kAllServices + "]}]\n")
+                   .open_to_all());
 }
 
 TEST(InventoryTest, AFileThatIsNotThereIsNamed) {

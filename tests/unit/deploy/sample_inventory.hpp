@@ -59,7 +59,8 @@ inline std::string two_rigs() {
     }
     return "[" + list + "]";
   };
-  return "lab: pair\ndomain: 3\nrigs: [{name: left, number: 1}, {name: right, number: 7}]\n"
+  return "lab: pair\ndomain: 3\nsecurity: none\nrigs: [{name: left, number: 1}, {name: right, "
+         "number: 7}]\n"
          "hosts:\n"
          "  - {name: one, address: 10.0.0.1, start: [ssh, one], services: " +
          all("left") +

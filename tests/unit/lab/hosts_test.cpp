@@ -32,7 +32,7 @@ std::string two_hosts(const std::string& there, const std::string& here,
                       const std::string& address = own_address(), const std::string& start = "") {
   return "lab: bench\ndomain: 7\nhosts:\n  - {name: desk, address: " + address + start +
          ", services: [" + here + "]}\n  - {name: rig-pc, address: 10.0.0.2, " +
-         "start: [ssh, rig-pc], services: [" + there + "]}\n";
+         "start: [ssh, rig-pc], services: [" + there + "]}\nsecurity: none\n";
 }
 
 class HostsTest : public testing::Test {

@@ -27,7 +27,7 @@ class LaunchesTest : public testing::Test {
     options_.rig = 4;
   }
   [[nodiscard]] std::vector<Launch> all(const std::string& sealed = "") const {
-    return launches(options_, Hosts(options_), "0123456789abcdef01234567", sealed);
+    return launches(options_, Hosts(options_), "fedcba9876543210fedcba98", sealed);
   }
   [[nodiscard]] Launch of(const std::string& service, const std::string& sealed = "") const {
     for (const Launch& launch : all(sealed)) {
@@ -64,7 +64,7 @@ TEST_F(LaunchesTest, EveryProcessGetsBusSeedAndPlacesAndEndsWithTheLab) {
   for (const Launch& launch : all()) {
     EXPECT_EQ(value_of(launch, "--domain"), "9") << launch.name;
     EXPECT_EQ(value_of(launch, "--rig"), "4") << launch.name;
-    EXPECT_EQ(value_of(launch, "--experiment"), "0123456789abcdef01234567") << launch.name;
+    EXPECT_EQ(value_of(launch, "--experiment"), "fedcba9876543210fedcba98") << launch.name;
     EXPECT_EQ(value_of(launch, "--seed"), "9223372036854775808") << launch.name;
     EXPECT_EQ(value_of(launch, "--profiles"), "/profiles.xml") << launch.name;
     EXPECT_EQ(value_of(launch, "--config"), "/config") << launch.name;
