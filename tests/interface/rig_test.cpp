@@ -6,13 +6,18 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "places.hpp"
 #include "services/runtime/bus/bus.hpp"
+#include "services/runtime/sources_codec.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
@@ -49,6 +54,7 @@ class RigProcessTest : public testing::Test {
     for (runtime::Bus* bus : {&experiment_, &motion_, &cancellation_, &sensing_, &recorder_}) {
       bus->start();
     }
+    name_sources();
     stillhand_msgs::TrialControl running;
     running.session(stillhand_msgs::SESSION_RUNNING);
     running.trial(-1);
@@ -58,6 +64,23 @@ class RigProcessTest : public testing::Test {
     rig_.finish();
     sensing_.stop_receiving();
     recorder_.stop_receiving();
+  }
+
+  /// The rig takes commands from the participants that its experiment names.
+  void name_sources() {
+    std::vector<runtime::Source> sources;
+    const std::map<std::string_view, const runtime::Bus*> own{{"experiment", &experiment_},
+                                                              {"motion", &motion_},
+                                                              {"cancellation", &cancellation_},
+                                                              {"sensing", &sensing_},
+                                                              {"recorder", &recorder_}};
+    for (const std::string_view service : topics::kServices) {
+      sources.push_back({std::string(service), {}});
+      const auto found = own.find(service);
+      if (found != own.end()) sources.back().participant = found->second->participant();
+    }
+    auto message = runtime::to_idl(sources);
+    sources_.write(message);
   }
 
   void answer(Tick tick) {
@@ -93,6 +116,8 @@ class RigProcessTest : public testing::Test {
   runtime::Bus recorder_{options_of("recorder")};
   runtime::Publisher<stillhand_msgs::TrialControl> control_ =
       experiment_.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+  runtime::Publisher<stillhand_msgs::SessionSources> sources_ =
+      experiment_.publisher<stillhand_msgs::SessionSources>(topics::kSessionSources);
   runtime::Publisher<stillhand_msgs::SessionCommand> request_ =
       experiment_.publisher<stillhand_msgs::SessionCommand>(topics::kSessionCommand);
   runtime::Publisher<stillhand_msgs::PlatformCommand> platform_ =
