@@ -97,6 +97,27 @@ TEST_F(PeersTest, AnotherRigsServiceAndAStrangerGiveNoLifeSign) {
 }
 
 // A service that was started again has a new writer; the end of the old one comes later.
+TEST_F(PeersTest, OnlyWithNamedSourcesAndWithoutASecondWriterEverybodyIsAlive) {
+  const auto id_of = [](std::string_view service) {
+    ParticipantId id{};
+    std::ranges::copy(announced::prefix_of(number_of(service)).value, id.begin());
+    return id;
+  };
+  Sources sources({.rig = kRig, .experiment = {}, .identities = {}, .on_second = {}});
+  Peers sut("rig", kRig, false, nullptr, false, &sources);
+  all_live(sut);
+  EXPECT_FALSE(sut.alive()) << "the session has not named its sources";
+  std::vector<Source> named;
+  for (const std::string_view service : topics::kServices) {
+    named.push_back({std::string(service), id_of(service)});
+  }
+  ASSERT_TRUE(sut.take_sources(id_of("experiment"), named));
+  EXPECT_TRUE(sut.alive());
+  constexpr std::uint8_t kStranger = 70;
+  sources.note_writer(handle_of(kStranger), "stillhand/motor_command");
+  EXPECT_FALSE(sut.alive()) << "two writers of the motor command";
+}
+
 TEST_F(PeersTest, ASecondLifeSignOfAServiceKeepsItAlive) {
   all_live(sut_);
   join(sut_, 60, Peers::participant_name(kRig, "motion"));
