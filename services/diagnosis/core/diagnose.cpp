@@ -97,11 +97,11 @@ Baseline chosen_baseline(const Signals& signals, const Blocks& blocks,
   return arx;
 }
 
-// A body that rings or settles slowly, where its bounds hold back the one that was fitted, Eq.
+// A body that rings for long, where the bound of its modes holds back the one that was fitted, Eq.
 // DG-66.
 void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& blocks) {
   const Body& body = diagnosis.baseline.model.body;
-  if (body.order() == 0 || !is_near_bound(body)) return;
+  if (body.order() == 0 || !rings_near_bound(body)) return;
   const Signals slow = signals.with_slow_poles();
   Baseline other = fit_baseline(slow, blocks, diagnosis.options.order);
   const double before = held_out(diagnosis.baseline.model, signals, blocks).rmse();
@@ -109,7 +109,7 @@ void allow_slow_poles(Diagnosis& diagnosis, Signals& signals, const Blocks& bloc
   diagnosis.baseline = std::move(other);
   signals = slow;
   diagnosis.notes.emplace_back(
-      "the body rings or settles slowly: poles may decay within half of the recording");
+      "the body rings for long: its modes may decay within half of the recording");
 }
 
 std::string measured_channel(const Effect& effect, const Signals& signals,

@@ -60,7 +60,7 @@ class Signals {
   /// is 0 stay 0.
   void whiten(Eigen::Ref<Eigen::MatrixXd> columns, const std::vector<double>& weight) const;
   [[nodiscard]] bool is_whitened() const noexcept { return !whitening_.empty(); }
-  /// The same signals for bodies that ring or settle slowly, Eq. DG-66.
+  /// The same signals for bodies that ring for long, Eq. DG-66.
   [[nodiscard]] Signals with_slow_poles() const;
   [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
   /// The same signals, one of them with other values.

@@ -127,7 +127,7 @@ TEST(DiagnoseTest, ABodyThatRingsForLongIsNoEffect) {
   EXPECT_EQ(sut.verdict(), "nothing missing");
   // 5900 samples know the noise to 1 %; the start of the ringing is not fitted.
   EXPECT_NEAR(sut.baseline_error.rmse, 0.02, 0.002);
-  EXPECT_THAT(sut.notes, Contains(HasSubstr("rings or settles slowly")));
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("rings for long")));
 }
 
 // A pole of 4 s, slower than all that the ride excites: no body within the bounds is right, and

@@ -13,8 +13,8 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr double kLongestRinging = 0.5;     // of the record, Eq. DG-66
-constexpr double kLongestSettling = 0.125;  // likewise
+constexpr double kUsualPart = 24.0;  // record over the longest ringing
+constexpr double kSlowPart = 2.0;    // likewise, Eq. DG-66
 
 // Least squares by Householder QR, columns scaled.
 Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& right) {
@@ -26,24 +26,17 @@ Eigen::VectorXd least_squares(Eigen::MatrixXd columns, const Eigen::VectorXd& ri
 
 // A mode rings for a twenty-fourth of the record at most; what the input does not excite is
 // forgotten within a sixtieth.  The free response of a slower pole would fit a tone or a drift.
-// Slow poles, Eq. DG-66: half of the record, and what is as slow as the slowest that the input
-// excites.
+// Where a body rings for long, Eq. DG-66, a mode may do so for half of the record.
 void bound_poles(const Signals& signals, Body& body) {
   const auto radius = [&](double longest_s) {
     return std::exp(-1.0 / (longest_s * signals.rate_hz()));
   };
-  const double duration_s = signals.duration_s();
-  const double lowest_rad_s = 2.0 * std::numbers::pi * signals.lowest_excited_hz();
-  double ringing_s = std::max(2.0, duration_s / 24.0);
-  double settling_s = std::max(1.0, duration_s / 60.0);
-  if (signals.slow_poles()) {
-    ringing_s = std::max(ringing_s, kLongestRinging * duration_s);
-    settling_s = std::max(
-        settling_s, std::min(1.0 / std::max(lowest_rad_s, 1e-9), kLongestSettling * duration_s));
-  }
+  const double longest_s = signals.duration_s();
+  const double ringing_s =
+      std::max(2.0, longest_s / (signals.slow_poles() ? kSlowPart : kUsualPart));
   body.largest_radius = radius(ringing_s);
-  body.slowest_radius = radius(settling_s);
-  body.least_turn = lowest_rad_s / signals.rate_hz();
+  body.slowest_radius = radius(std::max(1.0, longest_s / 60.0));
+  body.least_turn = 2.0 * std::numbers::pi * signals.lowest_excited_hz() / signals.rate_hz();
   stabilise(body);
 }
 

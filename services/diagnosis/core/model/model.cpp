@@ -52,12 +52,12 @@ bool is_stable(const Body& body) {
   });
 }
 
-bool is_near_bound(const Body& body) {
+bool rings_near_bound(const Body& body) {
   // A decay within half of the time: the radius squared.
+  const double near = body.largest_radius * body.largest_radius;
   const auto poles = signal::poles({1.0, body.denominator, body.denominator});
   return std::ranges::any_of(poles, [&](const std::complex<double>& pole) {
-    const double bound = bound_on(pole, body);
-    return std::abs(pole) > bound * bound;
+    return std::abs(std::arg(pole)) >= body.least_turn && std::abs(pole) > near;
   });
 }
 

@@ -41,9 +41,9 @@ std::size_t complexity(const Model& model) noexcept;
 /// decays too slowly would fit a tone, and that of one below the excited band a drift.
 bool is_stable(const Body& body);
 
-/// True when a pole decays within more than half of the time that its bound allows: the bound may
-/// hold it back, Eq. DG-66.
-bool is_near_bound(const Body& body);
+/// True when a pole that turns at least least_turn decays within more than half of the time that
+/// largest_radius allows: the bound may hold a mode back, Eq. DG-66.
+bool rings_near_bound(const Body& body);
 
 /// The poles that is_stable() would refuse, mirrored into the unit circle, then drawn in.
 void stabilise(Body& body);
