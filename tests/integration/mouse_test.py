@@ -206,13 +206,6 @@ class WindowEndTest(MouseTestCase):
         self.display.press_close_button(window)
         self.assert_ended(lab, "the tracking window was closed")
 
-    def test_escape_in_the_window_does_the_same(self):
-        lab = self.start()
-        self.wait_for_window(lab)
-        lab.wait_for_tick(0, 0.5, TRIAL_LIMIT_S)
-        self.display.xdotool("mousemove", 300, 300, "key", "Escape")
-        self.assert_ended(lab, "the tracking window was closed")
-
     def test_ctrl_c_closes_the_window(self):
         lab = self.start()
         self.wait_for_window(lab)
