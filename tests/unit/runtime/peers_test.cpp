@@ -114,6 +114,7 @@ TEST_F(PeersTest, OnlyWithNamedSourcesAndWithoutASecondWriterEverybodyIsAlive) {
   ASSERT_TRUE(sut.take_sources(id_of("experiment"), named));
   EXPECT_TRUE(sut.alive());
   constexpr std::uint8_t kStranger = 70;
+  join(sut, kStranger, "a stranger");
   sources.note_writer(handle_of(kStranger), "stillhand/motor_command");
   EXPECT_FALSE(sut.alive()) << "two writers of the motor command";
 }
