@@ -4,7 +4,7 @@
 
 60 s at 100 Hz, an input of 0.2 to 10 Hz with random phases, white noise of 2 % of the output. One row for each body: a
 mode at 2 Hz that decays within the time stated, or a real pole with that time constant. The right verdict is "nothing
-missing", and the right error is the noise, 0.02. No row is judged: the bounds of DG-1 make some of them wrong today.
+missing", and the right error is the noise, 0.02. No row is judged: the bound of DG-1 makes slow real poles wrong today.
 
     STILLHAND_BUILD=build python3 tests/benchmark/linear_bodies.py     # half a minute
 """
