@@ -37,7 +37,19 @@ bool is_loopback(const std::string& address) {
 }
 
 Access access_of(const DashboardOptions& options) {
-  if (!options.token_file.empty()) return Access(read_token(options.token_file));
+  if (options.token_file.empty() && !options.watch_token_file.empty()) {
+    throw ConfigError("--watch-token-file", "it without --token-file",
+                      "--token-file FILE too, for those who act");
+  }
+  if (!options.token_file.empty()) {
+    const std::string token = read_token(options.token_file);
+    if (options.watch_token_file.empty()) return Access(token);
+    const std::string watch_token = read_token(options.watch_token_file);
+    if (watch_token == token) {
+      throw ConfigError("--watch-token-file", "the token of --token-file", "another token");
+    }
+    return Access(token, watch_token);
+  }
   if (!is_loopback(options.server.address)) {
     throw ConfigError("--bind", options.server.address + " without --token-file",
                       "--token-file FILE, since other hosts can reach this address");

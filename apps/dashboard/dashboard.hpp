@@ -17,6 +17,7 @@ struct DashboardOptions {
   std::filesystem::path config;  ///< folder of the settings
   std::filesystem::path pages;   ///< folder of the page's files
   std::string token_file;        ///< empty: none
+  std::string watch_token_file;  ///< empty: none
   std::string recording;         ///< empty: the bus
   std::uint32_t rig = 1;
   bool blinded = true;

@@ -28,7 +28,12 @@ void add_dashboard_command(CLI::App& cli, int& status) {
                    "address to listen on; an address other than loopback requires --token-file")
       ->capture_default_str();
   verb->add_option("--token-file", options->token_file,
-                   "file with a token; a browser shows the token once, as /?token=...")
+                   "file with a token, for watching and acting; a browser shows the token once, "
+                   "as /?token=...")
+      ->check(settings::check_name);
+  verb->add_option("--watch-token-file", options->watch_token_file,
+                   "file with a second token, for people who watch: it shows everything and can do "
+                   "nothing but an emergency stop")
       ->check(settings::check_name);
   verb->add_option("--recording", options->recording,
                    "show this recording (MCAP) of a session instead of the bus")

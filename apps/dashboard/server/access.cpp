@@ -2,11 +2,13 @@
 #include "apps/dashboard/server/access.hpp"
 
 #include <openssl/crypto.h>
+#include <openssl/rand.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <stdexcept>
 
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
@@ -46,37 +48,81 @@ std::string_view value_behind(std::string_view text, std::string_view key, char 
   return {};
 }
 
+// The length is no secret; the comparison takes a time that does not depend on the content.
+bool is_secret(std::string_view word, const std::string& secret) {
+  return !secret.empty() && word.size() == secret.size() &&
+         CRYPTO_memcmp(word.data(), secret.data(), secret.size()) == 0;
+}
+
+bool is_of_own_page(const Access::Request& request) {
+  const std::string host(request.host);
+  return request.origin.empty() || request.origin == "http://" + host ||
+         request.origin == "https://" + host;
+}
+
+std::string random_word() {
+  std::array<unsigned char, 32> bytes{};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
+    throw std::runtime_error("OpenSSL gives no random numbers");
+  }
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string word;
+  for (const unsigned char byte : bytes) {
+    word += kDigits[byte >> 4];
+    word += kDigits[byte & 0xf];
+  }
+  return word;
+}
+
 }  // namespace
 
-bool Access::is_token(std::string_view word) const {
-  // The length is no secret; the comparison takes a time that does not depend on the content.
-  return !token_.empty() && word.size() == token_.size() &&
-         CRYPTO_memcmp(word.data(), token_.data(), token_.size()) == 0;
+Access::Access(std::string token, std::string watch_token)
+    : token_(std::move(token)),
+      watch_token_(std::move(watch_token)),
+      cookie_(token_.empty() ? "" : random_word()),
+      watch_cookie_(watch_token_.empty() ? "" : random_word()) {}
+
+Access::Role Access::role_of_token(std::string_view word) const {
+  if (is_secret(word, token_)) return Role::kActing;
+  return is_secret(word, watch_token_) ? Role::kWatching : Role::kNobody;
+}
+
+Access::Role Access::role_of(const Request& request) const {
+  if (token_.empty()) {
+    constexpr std::array<std::string_view, 3> kLoopback{"127.0.0.1", "localhost", "[::1]"};
+    const bool here = std::ranges::find(kLoopback, name_of(request.host)) != kLoopback.end();
+    return here ? Role::kActing : Role::kNobody;
+  }
+  if (request.authorization.starts_with(kBearer)) {
+    return role_of_token(request.authorization.substr(kBearer.size()));
+  }
+  const std::string_view shown = value_behind(request.cookie, cookie_key(request.host), ';');
+  if (is_secret(shown, cookie_)) return Role::kActing;
+  return is_secret(shown, watch_cookie_) ? Role::kWatching : Role::kNobody;
 }
 
 bool Access::signs_in(const Request& request) const {
-  return is_token(value_behind(request.query, kQuery, '&'));
+  return role_of_token(value_behind(request.query, kQuery, '&')) != Role::kNobody;
 }
 
-bool Access::allows(const Request& request) const {
-  if (token_.empty()) {
-    constexpr std::array<std::string_view, 3> kLoopback{"127.0.0.1", "localhost", "[::1]"};
-    return std::ranges::find(kLoopback, name_of(request.host)) != kLoopback.end();
-  }
-  if (request.authorization.starts_with(kBearer)) {
-    return is_token(request.authorization.substr(kBearer.size()));
-  }
-  return is_token(value_behind(request.cookie, cookie_key(request.host), ';'));
+bool Access::allows(const Request& request) const { return role_of(request) != Role::kNobody; }
+
+bool Access::only_watches(const Request& request) const {
+  return role_of(request) == Role::kWatching;
 }
 
 bool Access::allows_change(const Request& request) const {
-  if (!allows(request)) return false;
-  return request.origin.empty() || request.origin == "http://" + std::string(request.host) ||
-         request.origin == "https://" + std::string(request.host);
+  return role_of(request) == Role::kActing && is_of_own_page(request);
+}
+
+bool Access::allows_emergency_stop(const Request& request) const {
+  return allows(request) && is_of_own_page(request);
 }
 
 std::string Access::cookie(const Request& request) const {
-  return cookie_key(request.host) + token_ + "; Path=/; HttpOnly; SameSite=Strict";
+  const bool acts = role_of_token(value_behind(request.query, kQuery, '&')) == Role::kActing;
+  return cookie_key(request.host) + (acts ? cookie_ : watch_cookie_) +
+         "; Path=/; HttpOnly; SameSite=Strict";
 }
 
 std::string read_token(const std::string& file) {

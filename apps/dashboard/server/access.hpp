@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,11 +10,14 @@ namespace stillhand::dashboard {
 
 /// Decides which requests may see the page.  Without a token: requests that name the host as a
 /// loopback address, since otherwise a page of another site could reach this one through a host
-/// name of its own ("DNS rebinding").  With a token: requests that show it.
+/// name of its own ("DNS rebinding").  With a token: requests that show it, or a cookie that was
+/// given for it.  A cookie is a random number of this object, so it reveals no token and ends with
+/// the process.
 class Access {
  public:
-  /// @param token  empty: loopback
-  explicit Access(std::string token) : token_(std::move(token)) {}
+  /// @param token  for everything; empty: loopback
+  /// @param watch_token  shows everything and changes nothing but by an emergency stop; empty: none
+  explicit Access(std::string token, std::string watch_token = "");
 
   /// The parts of a request that decide; empty if missing.
   struct Request {
@@ -23,18 +27,26 @@ class Access {
 
   /// May see everything.
   [[nodiscard]] bool allows(const Request& request) const;
-  /// May also cause an action: never for a page of another site.
+  /// May also cause an action: not with the watching token, and never for a page of another site.
   [[nodiscard]] bool allows_change(const Request& request) const;
-  /// The query shows the right token, which then moves from the address into a cookie.
+  /// May stop the motor: everybody who may see, since a stop is always safe; never for a page of
+  /// another site.
+  [[nodiscard]] bool allows_emergency_stop(const Request& request) const;
+  /// The request shows the watching token or its cookie.
+  [[nodiscard]] bool only_watches(const Request& request) const;
+  /// The query shows a right token, for which the browser then gets a cookie.
   [[nodiscard]] bool signs_in(const Request& request) const;
-  /// Its name contains the port that the browser uses, since cookies ignore ports; otherwise
-  /// another dashboard on the host would be signed out.
+  /// That of the token in the query.  Its name contains the port that the browser uses, since
+  /// cookies ignore ports; otherwise another dashboard on the host would be signed out.
   [[nodiscard]] std::string cookie(const Request& request) const;
 
  private:
-  [[nodiscard]] bool is_token(std::string_view word) const;
+  enum class Role : std::uint8_t { kNobody, kWatching, kActing };
+  [[nodiscard]] Role role_of_token(std::string_view word) const;
+  [[nodiscard]] Role role_of(const Request& request) const;
 
-  std::string token_;
+  std::string token_, watch_token_;
+  std::string cookie_, watch_cookie_;  ///< random; empty without the token
 };
 
 /// The token of a file: 16 to 256 letters, digits, '-', '_' and '.', in a file that only its owner

@@ -61,7 +61,10 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
   }
   if (!access.allows(request)) return refusal(403, kSignIn);
   if (question.method == "POST") {
-    if (!access.allows_change(request))
+    const bool stops = path == "/emergency-stop";
+    if (!stops && access.only_watches(request))
+      return refusal(403, "signed in with the token for watching, which can stop and nothing else");
+    if (!(stops ? access.allows_emergency_stop(request) : access.allows_change(request)))
       return refusal(403, "requests from pages of other sites are refused");
     return answer_to(served.act(path));
   }

@@ -126,7 +126,29 @@ TEST_F(RoutesTest, TheTokenGoesFromTheAddressIntoACookie) {
   const Answer signed_in = of("/?token=" + kToken, "");
   EXPECT_EQ(signed_in.status, 303u);
   EXPECT_EQ(signed_in.location, "/");
+  EXPECT_EQ(signed_in.cookie.find(kToken), std::string::npos);
   EXPECT_EQ(of("/events", signed_in.cookie).status, 200u);
+}
+
+TEST_F(RoutesTest, WhoWatchesIsShownThePageAndCanOnlyStop) {
+  const Access both(kToken, "watching-0123456789");
+  const auto of = [&](std::string_view method, std::string_view target, std::string_view cookie) {
+    return answer({method, target, "lab", "", "", cookie}, *pages_, both, served_);
+  };
+  const std::string watching = of("GET", "/?token=watching-0123456789", "").cookie;
+  const std::string acting = of("GET", "/?token=" + kToken, "").cookie;
+  EXPECT_EQ(of("GET", "/snapshot", watching).status, 200u);
+  const Answer refused = of("POST", "/acknowledge", watching);
+  EXPECT_EQ(refused.status, 403u);
+  EXPECT_EQ(refused.body,
+            "signed in with the token for watching, which can stop and nothing else\n");
+  EXPECT_EQ(acknowledged_, 0);
+  EXPECT_EQ(of("POST", "/emergency-stop", watching).status,
+            of("POST", "/emergency-stop", acting).status);
+  EXPECT_NE(of("POST", "/emergency-stop", watching).status, 403u);
+  EXPECT_EQ(of("POST", "/emergency-stop", "").status, 403u);
+  EXPECT_EQ(of("POST", "/acknowledge", acting).status, 204u);
+  EXPECT_EQ(acknowledged_, 1);
 }
 
 TEST_F(RoutesTest, EveryRequestOfRandomBytesHasAnAnswerAndDoesNothing) {
