@@ -28,6 +28,15 @@ Blocks by_part(const Blocks& blocks, const Signals& signals) {
   return result;
 }
 
+// The first sample of each part but the first.
+std::vector<std::size_t> borders_of(const Blocks& parts) {
+  std::vector<std::size_t> borders;
+  for (std::size_t b = 1; b < parts.count; ++b) {
+    if (parts.fold_of(b) != parts.fold_of(b - 1)) borders.push_back(b * parts.length);
+  }
+  return borders;
+}
+
 struct PartErrors {
   std::vector<double> squares;  ///< [parts] mean squares
   double rmse = std::numeric_limits<double>::infinity();
@@ -48,11 +57,16 @@ Model bare_of_terms(const Model& model) {
 class Carrying {
  public:
   Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks)
-      : all_(signals), fitted_(without_bursts), blocks_(blocks), parts_(by_part(blocks, signals)) {}
+      : all_(signals),
+        fitted_(without_bursts),
+        blocks_(blocks),
+        parts_(by_part(blocks, signals)),
+        apart_(signals.restarted(borders_of(parts_))) {}
 
   [[nodiscard]] bool several() const { return all_.stretches().back().recording > 0; }
 
-  // Error of each part, by a fit to the others; bursts are left out of the fits alone.
+  // Error of each part, by a fit to the others, from an unknown past as `predict` has it; bursts
+  // are left out of the fits alone.
   [[nodiscard]] PartErrors errors(const Model& model, const Signals& fitted) const {
     PartErrors errors;
     double sum = 0.0;
@@ -63,14 +77,13 @@ class Carrying {
       options.max_iterations = kPartIterations;
       options.without_fold = static_cast<int>(part);
       fit(refitted, fitted, parts_, options);
-      FreeRun run;
-      const Eigen::VectorXd residual = residual_of(refitted, all_, run);
+      const FreeRun run = free_run(refitted, apart_);
       if (!run.finite) return {};
       double of_part = 0.0;
       double weight_of_part = 0.0;
       for (std::size_t n = 0; n < all_.size(); ++n) {
         if (parts_.fold_of(n / parts_.length) != part) continue;
-        const double r = residual[static_cast<Eigen::Index>(n)];
+        const double r = run.weight[n] * (all_.output().values[n] - run.prediction[n]);
         of_part += r * r;
         weight_of_part += run.weight[n];
       }
@@ -104,6 +117,7 @@ class Carrying {
   const Signals& fitted_;
   const Blocks& blocks_;
   const Blocks parts_;
+  const Signals apart_;  // every part starts as a recording does
 };
 
 LeftOut left_out(const Effect& effect, std::string why) {

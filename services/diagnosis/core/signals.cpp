@@ -115,14 +115,18 @@ Signals::Signals(const Measurement& measurement, const std::vector<std::string>&
     Signal signal = from_channel(channel);
     if (signal.deviation > 0.0) all_.push_back(std::move(signal));  // a constant explains nothing
   }
+  leave_starts_unjudged();
+  add_derived();
+  find_excited_band();
+}
+
+void Signals::leave_starts_unjudged() {
   for (const Stretch& stretch : stretches_) {
     const auto length = static_cast<double>(stretch.end - stretch.first);
     const auto unjudged =
         static_cast<std::size_t>(std::min(kUnjudged_s * rate_hz_, kUnjudgedShare * length));
     std::fill_n(weight_.begin() + static_cast<std::ptrdiff_t>(stretch.first), unjudged, 0.0);
   }
-  add_derived();
-  find_excited_band();
 }
 
 void Signals::find_excited_band() {
@@ -217,6 +221,24 @@ Signals Signals::whitened(std::vector<double> taps) const {
 Signals Signals::with_slow_poles() const {
   Signals other = *this;
   other.slow_poles_ = true;
+  return other;
+}
+
+Signals Signals::restarted(const std::vector<std::size_t>& at) const {
+  Signals other = *this;
+  other.stretches_.clear();
+  for (Stretch stretch : stretches_) {
+    for (const std::size_t first : at) {
+      if (first <= stretch.first || first >= stretch.end) continue;
+      Stretch before = stretch;
+      before.end = first;
+      other.stretches_.push_back(before);
+      stretch.first = first;
+      stretch.start_s = time_s_[first];
+    }
+    other.stretches_.push_back(stretch);
+  }
+  other.leave_starts_unjudged();
   return other;
 }
 

@@ -63,6 +63,8 @@ class Signals {
   /// The same signals for bodies that ring for long, Eq. DG-66.
   [[nodiscard]] Signals with_slow_poles() const;
   [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
+  /// The same signals, a stretch beginning at each of these samples too.
+  [[nodiscard]] Signals restarted(const std::vector<std::size_t>& at) const;
   /// The same signals, one of them with other values.
   [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
   /// The same signals, each held within its range; the inputs as the body sees them stay.
@@ -86,6 +88,7 @@ class Signals {
 
  private:
   void add_derived();
+  void leave_starts_unjudged();
   void find_excited_band();
 
   double rate_hz_;

@@ -14,14 +14,6 @@ namespace {
 
 constexpr double kNear = 1.35;  // of the best error: worth fitting to the end
 
-// Held-out error of a model at its fit, without refitting.
-HeldOut judged(const Model& model, const Signals& signals, const Blocks& blocks) {
-  const Linearisation line = linearised(model, signals);
-  if (!line.finite) return {};
-  return held_out_linearised(grams_of(line.jacobian, line.residual, line.run.weight, blocks),
-                             blocks);
-}
-
 }  // namespace
 
 Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, int iterations,
@@ -30,8 +22,13 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
   FitOptions options;
   options.max_iterations = iterations;
   options.relative_tolerance = 1e-8;
-  fit(model, signals, blocks, options);
-  trial.held_out = refitting ? held_out(model, signals, blocks) : judged(model, signals, blocks);
+  options.grams_at_end = true;
+  const FitResult fitted = fit(model, signals, blocks, options);
+  if (refitting) {
+    trial.held_out = held_out(model, signals, blocks, fitted.grams ? &*fitted.grams : nullptr);
+  } else if (fitted.grams) {
+    trial.held_out = held_out_linearised(*fitted.grams, blocks);
+  }
   trial.rmse =
       trial.held_out.finite ? trial.held_out.rmse() : std::numeric_limits<double>::infinity();
   trial.added = model.effects.empty() ? 0 : model.effects.size() - 1;
@@ -128,7 +125,8 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
   const Screening screening(current, signals, blocks, impulse_response);
   std::vector<const EffectKind*> kinds;
   std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
-    return kind->any_shape() == (shapes == Shapes::kAny);
+    if (kind->any_shape() != (shapes == Shapes::kAny)) return false;
+    return shapes != Shapes::kSlow || kind->slow();
   });
   std::vector<std::vector<Proposal>> proposals(kinds.size());
   for_each(kinds.size(), [&](std::size_t k) { proposals[k] = kinds[k]->proposed(screening); });

@@ -17,7 +17,10 @@ double cubic(double z, LoopMemory& /*memory*/) { return cube(z); }
 double bent(double z, LoopMemory& /*memory*/) { return cube(z) / (1.0 + z * z); }
 
 // Cubic for small z; what a spring loses whose force levels off.
-double levelled(double z, LoopMemory& /*memory*/) { return z - std::tanh(z); }
+// z - tanh z; by one exponential, which takes half the time of std::tanh.
+double levelled(double z, LoopMemory& /*memory*/) {
+  return z - 1.0 + 2.0 / (std::exp(2.0 * z) + 1.0);
+}
 
 class NonlinearStiffness final : public EffectKind {
  public:

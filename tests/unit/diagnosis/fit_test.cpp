@@ -136,6 +136,45 @@ TEST(FitTest, AStartThatRunsAwayIsLeftAsItIs) {
   EXPECT_EQ(packed(sut), before);
 }
 
+// What a fit kept of its last step is what a linearisation at the same numbers computes again.  A
+// number in packed order and back differs in its last digits: 1e-9 of the largest product.
+TEST(FitTest, TheGramsAtTheEndAreThoseOfTheFittedModel) {
+  const Model truth = made::model_of(
+      made::two_pole_body(), {with_parameter("nonlinear_stiffness", "bent of the output", {},
+                                             {"threshold", "N", 0.8, 0.05, 9.0}, {-0.01, 0.05})});
+  const std::vector<double> noise = made::white(kCount, 4);
+  std::vector<double> y = output_of(truth);
+  for (std::size_t n = 0; n < kCount; ++n) y[n] += 0.1 * noise[n];
+  const Signals signals = signals_of(y);
+  const Blocks blocks = make_blocks(signals);
+  for (const int iterations : {1, 2, 5, 60}) {
+    Model sut = disturbed(truth);
+    FitOptions options;
+    options.max_iterations = iterations;
+    options.grams_at_end = true;
+    const FitResult result = fit(sut, signals, blocks, options);
+    ASSERT_TRUE(result.grams) << iterations;
+    const Linearisation line = linearised(sut, signals);
+    const Eigen::MatrixXd want =
+        grams_of(line.jacobian, line.residual, line.run.weight, blocks).total(blocks);
+    const Eigen::MatrixXd got = result.grams->total(blocks);
+    EXPECT_LT((got - want).cwiseAbs().maxCoeff(), 1e-9 * want.cwiseAbs().maxCoeff()) << iterations;
+    EXPECT_LT((result.residual - line.residual).norm(), 1e-9 * line.residual.norm());
+    // Known at the start, they change nothing.
+    Model again = sut;
+    Model other = sut;
+    options.without_fold = 1;
+    const FitResult without = fit(again, signals, blocks, options);
+    options.at_start = &*result.grams;
+    EXPECT_NEAR(fit(other, signals, blocks, options).rmse, without.rmse, 1e-9 * without.rmse);
+  }
+  FitOptions options;
+  options.grams_at_end = true;
+  Model runs_away = made::model_of(made::two_pole_body());
+  runs_away.body.denominator = {1.0, -2.1, 1.1};
+  EXPECT_FALSE(fit(runs_away, signals, blocks, options).grams);
+}
+
 TEST(FitTest, AFoldThatIsLeftOutDoesNotCount) {
   const Model truth = made::model_of(made::two_pole_body());
   std::vector<double> y = output_of(truth);

@@ -16,6 +16,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Pair;
 
 constexpr std::size_t kCount = 3000;
 
@@ -171,6 +172,26 @@ TEST(SignalsTest, TheStartOfAStretchIsNotJudged) {
     ASSERT_EQ(sut.weight()[n], judged ? 1.0 : 0.0) << n;
   }
   EXPECT_DOUBLE_EQ(sut.duration_s(), 29.99 + 5.0);
+}
+
+TEST(SignalsTest, ARestartBeginsAStretchThatIsNotJudgedAtFirst) {
+  const Measurement measurement =
+      made::measurement_of({{"u", "V", made::ride(kCount, 1)}, {"y", "N", made::ride(kCount, 2)}});
+  const Signals signals(made::cut_in_two(measurement, 2600, 5.0), {"u"}, "y");
+  // A border of a stretch, and one beyond the end, add nothing.
+  const Signals sut = signals.restarted({1000, 1400, 2600, kCount});
+  std::vector<std::pair<std::size_t, std::size_t>> stretches;
+  for (const Stretch& stretch : sut.stretches()) {
+    stretches.emplace_back(stretch.first, stretch.end);
+    EXPECT_EQ(stretch.start_s, sut.time_s()[stretch.first]);
+  }
+  EXPECT_THAT(stretches,
+              ElementsAre(Pair(0, 1000), Pair(1000, 1400), Pair(1400, 2600), Pair(2600, kCount)));
+  EXPECT_EQ(sut.weight()[1039], 0.0);  // a tenth of 400 samples is less than a second
+  EXPECT_EQ(sut.weight()[1040], 1.0);
+  EXPECT_EQ(sut.weight()[1499], 0.0);
+  EXPECT_EQ(sut.weight()[1500], 1.0);
+  EXPECT_EQ(signals.weight()[1020], 1.0);
 }
 
 // Outside the band lies a hundredth of the power on each side: for sines of equal power at 1 and

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "services/diagnosis/core/model/model_run.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -14,6 +17,16 @@ constexpr double kRidge = 1e-11;
 
 double squared_error(const Eigen::MatrixXd& gram) { return gram(gram.rows() - 1, gram.cols() - 1); }
 
+// A point of the search, so that nothing is computed twice there.
+struct Point {
+  Eigen::VectorXd numbers;
+  Evaluation evaluation;
+  double error = 0.0;          // sum of squares outside the fold
+  std::optional<Grams> grams;  // where the columns were needed
+
+  [[nodiscard]] bool finite() const { return evaluation.run.free.finite; }
+};
+
 // The problem as ceres::TinySolver wants it: [J r] compressed to the Cholesky factor of its Gram
 // matrix, which has the same J^T J, J^T r and |r|.
 class Compressed {
@@ -22,11 +35,11 @@ class Compressed {
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
 
   Compressed(Model& model, const Signals& signals, const Blocks& blocks, const FitOptions& options)
-      : model_(model), signals_(signals), blocks_(blocks), without_fold_(options.without_fold) {
+      : model_(model), signals_(signals), blocks_(blocks), options_(options) {
     start_ = packed(model);
-    Eigen::MatrixXd gram = options.at_start != nullptr
-                               ? options.at_start->total(blocks, without_fold_)
-                               : gram_at(start_);
+    Eigen::MatrixXd gram = options.at_start != nullptr ? total(*options.at_start) : gram_at(start_);
+    const bool finite = options.at_start != nullptr || accepted_->finite();
+    before_ = finite ? squared_error(gram) : kNotFinite;
     if (const double step = offset_step(gram); step != 0.0) {
       start_[0] += step;
       gram = gram_at(start_);
@@ -36,6 +49,7 @@ class Compressed {
       if (!(scale_[i] > 0.0)) scale_[i] = 1.0;
     }
     unit_ = std::sqrt(std::max(squared_error(gram), 1e-300));
+    if (!finite) before_ *= unit_ * unit_;
     first_ = gram;
   }
 
@@ -49,11 +63,18 @@ class Compressed {
     r.setZero();
     const Eigen::VectorXd numbers = numbers_at(Eigen::Map<const Eigen::VectorXd>(x, count));
     if (jacobian == nullptr) {
+      ++steps_;
       r[count] = std::sqrt(error_at(numbers)) / unit_;
       return true;
     }
-    const bool at_start = numbers == start_;
-    Eigen::MatrixXd gram = at_start ? first_ : gram_at(numbers);
+    Eigen::Map<Eigen::MatrixXd> compressed(jacobian, count + 1, count);
+    if (steps_ > 0 && steps_ + 1 >= options_.max_iterations) {
+      // No step follows: without columns the solver ends here.
+      compressed.setZero();
+      r[count] = std::sqrt(error_at(numbers)) / unit_;
+      return true;
+    }
+    Eigen::MatrixXd gram = numbers == start_ ? first_ : gram_at(numbers);
     for (Eigen::Index i = 0; i < count; ++i) {
       gram.row(i) /= scale_[i];
       gram.col(i) /= scale_[i];
@@ -63,7 +84,6 @@ class Compressed {
     gram.col(count) /= unit_;
     gram(count, count) *= 1.0 + kRidge;
     const Eigen::LLT<Eigen::MatrixXd> factor(gram);
-    Eigen::Map<Eigen::MatrixXd> compressed(jacobian, count + 1, count);
     if (factor.info() != Eigen::Success) {
       // Rank-deficient beyond rounding: the diagonal alone, a gradient step.
       compressed.setZero();
@@ -82,24 +102,20 @@ class Compressed {
   [[nodiscard]] Eigen::VectorXd numbers_at(const Eigen::VectorXd& x) const {
     return start_ + (x.array() * unit_ / scale_.array()).matrix();
   }
+  // Of the model as it was given.
+  [[nodiscard]] double error_before() const { return before_; }
   [[nodiscard]] double error_at(const Eigen::VectorXd& numbers) const {
-    unpack(numbers, model_);
-    FreeRun run;
-    const Eigen::VectorXd residual = residual_of(model_, signals_, run);
-    if (!run.finite) return 1e12 * unit_ * unit_;
-    double sum = 0.0;
-    const auto length = static_cast<Eigen::Index>(blocks_.length);
-    for (Eigen::Index n = 0; n < residual.size(); n += length) {
-      if (static_cast<int>(blocks_.fold_of(static_cast<std::size_t>(n / length))) ==
-          without_fold_) {
-        continue;
-      }
-      sum += residual.segment(n, std::min(length, residual.size() - n)).squaredNorm();
-    }
-    return sum;
+    const Point& point = point_at(numbers);
+    return point.finite() ? point.error : kNotFinite * unit_ * unit_;
+  }
+  // With columns if the options ask for them.
+  [[nodiscard]] Point taken_at(const Eigen::VectorXd& numbers) const {
+    return std::move(options_.grams_at_end ? with_columns(numbers) : point_at(numbers));
   }
 
  private:
+  static constexpr double kNotFinite = 1e12;  // [errors at the start]
+
   // A term of a channel far from 0 comes with a large constant; as long as that is most of the
   // error, the body's numbers follow it instead.  0: it isn't.
   static double offset_step(const Eigen::MatrixXd& gram) {
@@ -109,24 +125,59 @@ class Compressed {
     return most ? product / gram(0, 0) : 0.0;
   }
 
-  [[nodiscard]] Eigen::MatrixXd gram_at(const Eigen::VectorXd& numbers) const {
-    unpack(numbers, model_);
-    const Linearisation at = linearised(model_, signals_);
-    if (!at.finite) {
-      const Eigen::Index size = numbers.size() + 1;
-      return Eigen::MatrixXd::Identity(size, size);
+  [[nodiscard]] Eigen::MatrixXd total(const Grams& grams) const {
+    return grams.total(blocks_, options_.without_fold);
+  }
+
+  [[nodiscard]] Point& point_at(const Eigen::VectorXd& numbers) const {
+    for (std::optional<Point>* each : {&tried_, &accepted_}) {
+      if (*each && (*each)->numbers == numbers) return **each;
     }
-    return grams_of(at.jacobian, at.residual, at.run.weight, blocks_).total(blocks_, without_fold_);
+    unpack(numbers, model_);
+    tried_.emplace(Point{numbers, evaluated(model_, signals_), 0.0, {}});
+    const Eigen::VectorXd& residual = tried_->evaluation.residual;
+    const auto length = static_cast<Eigen::Index>(blocks_.length);
+    for (Eigen::Index n = 0; n < residual.size(); n += length) {
+      if (static_cast<int>(blocks_.fold_of(static_cast<std::size_t>(n / length))) ==
+          options_.without_fold) {
+        continue;
+      }
+      tried_->error += residual.segment(n, std::min(length, residual.size() - n)).squaredNorm();
+    }
+    return *tried_;
+  }
+
+  Point& with_columns(const Eigen::VectorXd& numbers) const {
+    const Point& point = point_at(numbers);
+    if (tried_ && &point == &*tried_) accepted_.swap(tried_);
+    if (accepted_->finite() && !accepted_->grams) {
+      unpack(numbers, model_);
+      const Evaluation& at = accepted_->evaluation;
+      accepted_->grams =
+          grams_of(jacobian_of(model_, signals_, at), at.residual, at.run.free.weight, blocks_);
+    }
+    return *accepted_;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd gram_at(const Eigen::VectorXd& numbers) const {
+    const Point& point = with_columns(numbers);
+    if (point.grams) return total(*point.grams);
+    const Eigen::Index size = numbers.size() + 1;
+    return Eigen::MatrixXd::Identity(size, size);
   }
 
   Model& model_;
   const Signals& signals_;
   const Blocks& blocks_;
-  int without_fold_;
+  const FitOptions& options_;
   Eigen::VectorXd start_;
   Eigen::VectorXd scale_;
   double unit_ = 1.0;
+  double before_ = 0.0;
   Eigen::MatrixXd first_;
+  mutable int steps_ = 0;
+  mutable std::optional<Point> tried_;     // the newest
+  mutable std::optional<Point> accepted_;  // the newest of which the solver wanted the columns
 };
 
 double weight_outside(const std::vector<double>& weight, const Blocks& blocks, int fold) {
@@ -139,60 +190,32 @@ double weight_outside(const std::vector<double>& weight, const Blocks& blocks, i
 
 }  // namespace
 
-Eigen::MatrixXd Grams::total(const Blocks& layout, int without_fold) const {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(blocks.front().rows(), blocks.front().cols());
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    if (static_cast<int>(layout.fold_of(b)) != without_fold) sum += blocks[b];
-  }
-  return sum;
-}
-
-Grams grams_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
-               const std::vector<double>& weight, const Blocks& blocks) {
-  const Eigen::Index columns = jacobian.cols();
-  Grams grams;
-  for (std::size_t b = 0; b < blocks.count; ++b) {
-    const auto first = static_cast<Eigen::Index>(b * blocks.length);
-    const Eigen::Index rows =
-        std::min(static_cast<Eigen::Index>(blocks.length), residual.size() - first);
-    Eigen::MatrixXd gram(columns + 1, columns + 1);
-    const auto j = jacobian.middleRows(first, rows);
-    const auto r = residual.segment(first, rows);
-    gram.topLeftCorner(columns, columns).noalias() = j.transpose() * j;
-    gram.col(columns).head(columns).noalias() = j.transpose() * r;
-    gram.row(columns).head(columns) = gram.col(columns).head(columns).transpose();
-    gram(columns, columns) = r.squaredNorm();
-    grams.blocks.push_back(std::move(gram));
-    double sum = 0.0;
-    for (Eigen::Index n = first; n < first + rows; ++n) sum += weight[static_cast<std::size_t>(n)];
-    grams.weights.push_back(sum);
-  }
-  return grams;
-}
-
 FitResult fit(Model& model, const Signals& signals, const Blocks& blocks,
               const FitOptions& options) {
   Model work = model;
   Compressed problem(work, signals, blocks, options);
   FitResult result;
-  const Eigen::VectorXd start = packed(model);
-  const double before = problem.error_at(start);
   ceres::TinySolver<Compressed> solver;
   solver.options.max_num_iterations = options.max_iterations;
   solver.options.gradient_tolerance = 1e-12;
   solver.options.parameter_tolerance = 1e-10;
   solver.options.function_tolerance = options.relative_tolerance;
   solver.options.initial_trust_region_radius = 1e7;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(start.size());
-  result.iterations = solver.Solve(problem, &x).iterations;
-  double after = problem.error_at(problem.numbers_at(x));
-  if (after < before) {
-    unpack(problem.numbers_at(x), model);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.NumParameters());
+  solver.Solve(problem, &x);
+  Eigen::VectorXd numbers = problem.numbers_at(x);
+  double error = problem.error_at(numbers);
+  if (error < problem.error_before()) {
+    unpack(numbers, model);
   } else {
-    after = before;
+    error = problem.error_before();
+    numbers = packed(model);
   }
-  result.residual = residual_of(model, signals, result.run);
-  result.rmse = std::sqrt(after / weight_outside(result.run.weight, blocks, options.without_fold));
+  Point end = problem.taken_at(numbers);
+  result.residual = std::move(end.evaluation.residual);
+  result.grams = std::move(end.grams);
+  result.run = std::move(end.evaluation.run.free);
+  result.rmse = std::sqrt(error / weight_outside(result.run.weight, blocks, options.without_fold));
   result.finite = result.run.finite;
   return result;
 }

@@ -51,23 +51,28 @@ HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks) {
 }
 
 HeldOut held_out(const Model& model, const Signals& signals, const Blocks& blocks) {
+  // Every fold's fit starts at the same numbers, as they are packed.
+  Model packed_model = model;
+  unpack(packed(model), packed_model);
+  const Linearisation start = linearised(packed_model, signals);
+  if (!start.finite) return held_out(model, signals, blocks, nullptr);
+  const Grams grams = grams_of(start.jacobian, start.residual, start.run.weight, blocks);
+  return held_out(model, signals, blocks, &grams);
+}
+
+HeldOut held_out(const Model& model, const Signals& signals, const Blocks& blocks,
+                 const Grams* grams) {
   constexpr int kRefitIterations = 3;
   HeldOut result;
   result.finite = true;
   result.squares.assign(blocks.count, 0.0);
   result.weights.assign(blocks.count, 0.0);
-  // Every fold's fit starts at the same numbers, as they are packed.
-  Model packed_model = model;
-  unpack(packed(model), packed_model);
-  const Linearisation start = linearised(packed_model, signals);
-  const Grams at_start =
-      start.finite ? grams_of(start.jacobian, start.residual, start.run.weight, blocks) : Grams{};
   for (std::size_t fold = 0; fold < blocks.folds; ++fold) {
     Model refitted = model;
     FitOptions options;
     options.max_iterations = kRefitIterations;
     options.without_fold = static_cast<int>(fold);
-    if (start.finite) options.at_start = &at_start;
+    options.at_start = grams;
     const FitResult fitted = fit(refitted, signals, blocks, options);
     result.finite = result.finite && fitted.finite;
     for (std::size_t n = 0; n < signals.size(); ++n) {

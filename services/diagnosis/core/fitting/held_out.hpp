@@ -24,5 +24,8 @@ double sum_of(const std::vector<double>& values);
 HeldOut held_out_linearised(const Grams& grams, const Blocks& blocks);
 /// The same by refitting the model five times, started at the fit to all.
 HeldOut held_out(const Model& model, const Signals& signals, const Blocks& blocks);
+/// @param grams  of the model; null: not known, or its run is not finite
+HeldOut held_out(const Model& model, const Signals& signals, const Blocks& blocks,
+                 const Grams* grams);
 
 }  // namespace stillhand::diagnosis

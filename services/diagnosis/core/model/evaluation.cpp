@@ -211,15 +211,6 @@ void run_all(std::span<const Model> models, const Signals& signals, std::span<Mo
   }
 }
 
-Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals) {
-  Eigen::VectorXd residual(static_cast<Eigen::Index>(signals.size()));
-  const auto& measured = signals.output().values;
-  for (std::size_t n = 0; n < signals.size(); ++n) {
-    residual[static_cast<Eigen::Index>(n)] = run.weight[n] * (measured[n] - run.prediction[n]);
-  }
-  return residual;
-}
-
 namespace {
 
 using Filter = void (*)(std::span<const double> x, const std::vector<double>& denominator,
@@ -319,15 +310,36 @@ bool without_effects(const Model& model, const Signals& signals,
   return true;
 }
 
-Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun& run) {
-  run = free_run(model, signals);
-  Eigen::VectorXd residual = weighted_error(run, signals);
-  if (!run.finite) return residual;
-  const InitialStates initial(model, signals, run.weight);
-  Eigen::Ref<Eigen::MatrixXd> view(residual);
-  initial.remove_from(view);
-  signals.whiten(view, run.weight);
+namespace {
+
+Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals) {
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(signals.size()));
+  const auto& measured = signals.output().values;
+  for (std::size_t n = 0; n < signals.size(); ++n) {
+    residual[static_cast<Eigen::Index>(n)] = run.weight[n] * (measured[n] - run.prediction[n]);
+  }
   return residual;
+}
+
+}  // namespace
+
+Evaluation evaluated(const Model& model, const Signals& signals) {
+  Evaluation result;
+  run_all(model, signals, result.run);
+  const FreeRun& run = result.run.free;
+  result.residual = weighted_error(run, signals);
+  if (!run.finite) return result;
+  result.initial.emplace(model, signals, run.weight);
+  Eigen::Ref<Eigen::MatrixXd> view(result.residual);
+  result.initial->remove_from(view);
+  signals.whiten(view, run.weight);
+  return result;
+}
+
+Eigen::VectorXd residual_of(const Model& model, const Signals& signals, FreeRun& run) {
+  Evaluation at = evaluated(model, signals);
+  run = std::move(at.run.free);
+  return std::move(at.residual);
 }
 
 }  // namespace stillhand::diagnosis

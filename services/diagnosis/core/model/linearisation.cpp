@@ -198,27 +198,25 @@ void write_difference_columns(const Model& model, const Signals& signals, const 
 
 }  // namespace
 
+Eigen::MatrixXd jacobian_of(const Model& model, const Signals& signals, const Evaluation& at) {
+  const Loop loop = loop_of(model);
+  const std::vector<bool> which = by_differences(model, loop);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(signals.size()),
+                                                   static_cast<Eigen::Index>(which.size()));
+  write_exact_columns(model, signals, at.run, loop, jacobian);
+  write_difference_columns(model, signals, at.run, which, jacobian);
+  at.initial->remove_from(jacobian);
+  signals.whiten(jacobian, at.run.free.weight);
+  return jacobian;
+}
+
 Linearisation linearised(const Model& model, const Signals& signals) {
+  Evaluation at = evaluated(model, signals);
   Linearisation result;
-  ModelRun run;
-  run_all(model, signals, run);
-  result.residual = weighted_error(run.free, signals);
-  result.finite = run.free.finite;
-  if (result.finite) {
-    const Loop loop = loop_of(model);
-    const std::vector<bool> which = by_differences(model, loop);
-    result.jacobian.setZero(static_cast<Eigen::Index>(signals.size()),
-                            static_cast<Eigen::Index>(which.size()));
-    write_exact_columns(model, signals, run, loop, result.jacobian);
-    write_difference_columns(model, signals, run, which, result.jacobian);
-    const InitialStates initial(model, signals, run.free.weight);
-    initial.remove_from(result.jacobian);
-    Eigen::Ref<Eigen::MatrixXd> view(result.residual);
-    initial.remove_from(view);
-    signals.whiten(result.jacobian, run.free.weight);
-    signals.whiten(view, run.free.weight);
-  }
-  result.run = std::move(run.free);
+  result.finite = at.run.free.finite;
+  if (result.finite) result.jacobian = jacobian_of(model, signals, at);
+  result.residual = std::move(at.residual);
+  result.run = std::move(at.run.free);
   return result;
 }
 

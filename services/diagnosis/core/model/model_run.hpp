@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,18 @@ void run_all(const Model& model, const Signals& signals, ModelRun& run);
 /// The same for models that differ in their numbers alone.
 void run_all(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs);
 
-/// Weighted output - prediction.
-Eigen::VectorXd weighted_error(const FreeRun& run, const Signals& signals);
+/// A model's run and its residual: what its columns at the same numbers are made of.
+struct Evaluation {
+  ModelRun run;
+  Eigen::VectorXd residual;              ///< as in Linearisation; not finite: output - prediction
+  std::optional<InitialStates> initial;  ///< none if the run is not finite
+};
+
+Evaluation evaluated(const Model& model, const Signals& signals);
+
+/// The columns of Linearisation.
+/// @param at  of the same model, finite
+Eigen::MatrixXd jacobian_of(const Model& model, const Signals& signals, const Evaluation& at);
 
 bool acts_at(const Effect& effect, Stage stage);
 /// Those that act inside the body.

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/diagnosis/core/fitting/grams.hpp"
+
+#include <algorithm>
+
+namespace stillhand::diagnosis {
+
+Eigen::MatrixXd Grams::total(const Blocks& layout, int without_fold) const {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(blocks.front().rows(), blocks.front().cols());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (static_cast<int>(layout.fold_of(b)) != without_fold) sum += blocks[b];
+  }
+  return sum;
+}
+
+Grams grams_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
+               const std::vector<double>& weight, const Blocks& blocks) {
+  const Eigen::Index columns = jacobian.cols();
+  Grams grams;
+  for (std::size_t b = 0; b < blocks.count; ++b) {
+    const auto first = static_cast<Eigen::Index>(b * blocks.length);
+    const Eigen::Index rows =
+        std::min(static_cast<Eigen::Index>(blocks.length), residual.size() - first);
+    Eigen::MatrixXd gram(columns + 1, columns + 1);
+    const auto j = jacobian.middleRows(first, rows);
+    const auto r = residual.segment(first, rows);
+    gram.topLeftCorner(columns, columns).noalias() = j.transpose() * j;
+    gram.col(columns).head(columns).noalias() = j.transpose() * r;
+    gram.row(columns).head(columns) = gram.col(columns).head(columns).transpose();
+    gram(columns, columns) = r.squaredNorm();
+    grams.blocks.push_back(std::move(gram));
+    double sum = 0.0;
+    for (Eigen::Index n = first; n < first + rows; ++n) sum += weight[static_cast<std::size_t>(n)];
+    grams.weights.push_back(sum);
+  }
+  return grams;
+}
+
+}  // namespace stillhand::diagnosis
