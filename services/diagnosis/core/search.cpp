@@ -140,10 +140,6 @@ class Forward {
     if (result.whitened) fit(result.model, signals_, blocks_, refitting());
     const HeldOut current = held_out(result.model, signals_, blocks_);
     if (is_rounding(current.rmse(), signals_)) return false;
-    if (result.whitened) {
-      judged = judged_by(result.model);
-      if (judged.is_whitened()) return extended_behind(result, current, judged);
-    }
     std::vector<Trial> tried = trials_of(result.model, current, signals_);
     std::optional<SearchResult> behind;
     if (!tried.empty() && std::isfinite(tried.front().rmse)) {
@@ -159,38 +155,6 @@ class Forward {
       return true;
     }
     return extended_freely(behind ? *behind : result, judged, result);
-  }
-
-  // A later round, after one behind a filter: what the model leaves is noise, unless a candidate
-  // leaves clearly less.  Without the filter only what it may hide is tried.
-  bool extended_behind(SearchResult& result, const HeldOut& current, Signals& judged) const {
-    constexpr double kClearly = 0.5;  // of the least fall that is worth adding
-    SearchResult behind;
-    for (const bool again : {false, true}) {
-      behind = refitted_behind(judged, result);
-      const HeldOut filtered = held_out(behind.model, judged, blocks_);
-      std::vector<Trial> tried = trials_of(behind.model, filtered, judged);
-      const double clearly_less = (1.0 - kClearly * options_.least_fall) * filtered.rmse();
-      if (!again && !tried.empty() && tried.front().rmse < clearly_less) {
-        if (Signals next = judged_by(tried.front().model); next.is_whitened()) {
-          judged = std::move(next);
-          continue;
-        }
-      }
-      if (extend_by_one(behind, filtered, std::move(tried), judged)) {
-        result = std::move(behind);
-        return true;
-      }
-      break;
-    }
-    std::vector<Trial> slow = trials_of(result.model, current, signals_, Shapes::kSlow);
-    if (extend_by_one(result, current, std::move(slow), signals_)) {
-      judged = signals_;
-      return true;
-    }
-    result.last_tried = std::move(behind.last_tried);
-    result.last_current = std::move(behind.last_current);
-    return false;
   }
 
   [[nodiscard]] SearchResult refitted_behind(const Signals& whitened,

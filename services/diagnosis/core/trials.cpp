@@ -125,8 +125,7 @@ std::vector<Trial> trials(const Model& current, double current_rmse, const Signa
   const Screening screening(current, signals, blocks, impulse_response);
   std::vector<const EffectKind*> kinds;
   std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
-    if (kind->any_shape() != (shapes == Shapes::kAny)) return false;
-    return shapes != Shapes::kSlow || kind->slow();
+    return kind->any_shape() == (shapes == Shapes::kAny);
   });
   std::vector<std::vector<Proposal>> proposals(kinds.size());
   for_each(kinds.size(), [&](std::size_t k) { proposals[k] = kinds[k]->proposed(screening); });

@@ -18,9 +18,8 @@ using ForEach =
 /// One after the other.
 void in_order(std::size_t count, const std::function<void(std::size_t)>& task);
 
-/// Which kinds a round tries: those with a law, those of them that may act slowly, or those that
-/// take any shape.
-enum class Shapes { kNamed, kSlow, kAny };
+/// Which kinds a round tries: those with a law, or those that take any shape.
+enum class Shapes { kNamed, kAny };
 
 /// The model fitted in at most `iterations` steps, and its held-out error: by refitting, Eq. DG-12
 /// by one linearisation otherwise.

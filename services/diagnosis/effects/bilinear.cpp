@@ -13,7 +13,6 @@ constexpr double kLargest = 10.0;  // [-] of the gain, per standard deviation of
 class Bilinear final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "bilinear"; }
-  [[nodiscard]] bool slow() const override { return true; }
   [[nodiscard]] Stage stage(const Effect& effect) const override {
     return effect.form == "gain of the body" ? Stage::kGain : Stage::kTerm;
   }

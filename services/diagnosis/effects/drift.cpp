@@ -54,7 +54,6 @@ bool stands_out(const Effect& drift, const HalfCosines& of_residual, const Scree
 class Drift final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "drift"; }
-  [[nodiscard]] bool slow() const override { return true; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kTerm; }
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
   void terms(const Effect& effect, const Signals& signals,

@@ -17,7 +17,6 @@ constexpr double kLargest = 5.0;
 class RegimeChange final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "regime_change"; }
-  [[nodiscard]] bool slow() const override { return true; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kGain; }
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
   void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const override {

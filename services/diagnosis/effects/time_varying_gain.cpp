@@ -29,7 +29,6 @@ bool is_weight(const Effect& effect, std::size_t i) { return effect.form != "sin
 class TimeVaryingGain final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "time_varying_gain"; }
-  [[nodiscard]] bool slow() const override { return true; }
   [[nodiscard]] double size_found() const override { return 1.5; }
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kGain; }
   // predict() takes it at its mean, 1.

@@ -75,13 +75,6 @@ TEST(SearchTest, TasksAreDoneInOrder) {
   EXPECT_THAT(done, ElementsAre(0u, 1u, 2u));
 }
 
-// A first-order low-pass with a pole at 0.98, of RMS 1: a person's own slow force.
-std::vector<double> slow_noise(std::size_t count, std::uint64_t seed) {
-  std::vector<double> x = made::white(count, seed);
-  for (std::size_t n = 1; n < count; ++n) x[n] += 0.98 * x[n - 1];
-  return made::scaled_to(std::move(x), 1.0);
-}
-
 // Static and short, so that a whole search takes little: y = 2 u + 0.5 v + 0.25 w + noise.
 struct Searched {
   explicit Searched(double of_v, double of_w, SearchOptions options = {}) {
@@ -148,55 +141,6 @@ TEST(SearchTest, OfTwoThatExplainAsMuchTheSimplerIsAdded) {
   EXPECT_GT(first.chosen, 0u);
   EXPECT_EQ(first.tried[first.chosen].model.effects[0].form, "linear");
   EXPECT_EQ(sut.model.effects[0].form, "linear");
-}
-
-// Slow noise of 0.3 and two quick effects of 0.2 and 0.12: each is far above what of the noise lies
-// in its band (a fifth of it).  The first is added behind a filter, and the second one too,
-// although the filter of its round is estimated while it is still missing.
-TEST(SearchTest, BehindAFilterTheSecondEffectIsFoundToo) {
-  constexpr std::size_t kCount = 6000;
-  const auto u = made::ride(kCount, 1);
-  const auto v = made::ride(kCount, 2);
-  const auto w = made::ride(kCount, 3);
-  std::vector<double> y = slow_noise(kCount, 4);
-  for (std::size_t n = 0; n < kCount; ++n) {
-    y[n] = 0.3 * y[n] + 2.0 * u[n] + 0.2 * v[n] + 0.12 * w[n];
-  }
-  const Signals signals(
-      made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"w", "V", w}, {"y", "N", y}}), {"u"},
-      "y");
-  const Blocks blocks = make_blocks(signals);
-  const SearchResult sut = search(fit_baseline(signals, blocks, 0), signals, blocks, {}, in_order,
-                                  [](const std::string&) { return true; });
-  EXPECT_TRUE(sut.whitened);
-  std::vector<std::string> found;
-  for (const Effect& effect : sut.model.effects) {
-    found.push_back(effect.kind + " of " +
-                    (effect.channels.empty() ? "" : effect.channels.front()));
-  }
-  EXPECT_THAT(found, ElementsAre("coupled_input of v", "coupled_input of w"));
-  EXPECT_FALSE(sut.last_tried.empty());
-}
-
-// A drift shows in the means of blocks and hardly behind the filter, by which the first effect was
-// added: the later round without the filter tries what can act slowly.
-TEST(SearchTest, AfterARoundBehindAFilterADriftIsStillFound) {
-  constexpr std::size_t kCount = 6000;
-  const auto u = made::ride(kCount, 1);
-  const auto v = made::ride(kCount, 2);
-  std::vector<double> y = slow_noise(kCount, 4);
-  for (std::size_t n = 0; n < kCount; ++n) {
-    const double t = static_cast<double>(n) / kCount;
-    y[n] = 0.2 * y[n] + 2.0 * u[n] + 0.2 * v[n] + 1.5 * t;
-  }
-  const Signals signals(made::measurement_of({{"u", "V", u}, {"v", "V", v}, {"y", "N", y}}), {"u"},
-                        "y");
-  const Blocks blocks = make_blocks(signals);
-  const SearchResult sut = search(fit_baseline(signals, blocks, 0), signals, blocks, {}, in_order,
-                                  [](const std::string&) { return true; });
-  std::vector<std::string> kinds;
-  for (const Effect& effect : sut.model.effects) kinds.push_back(effect.kind);
-  EXPECT_THAT(kinds, testing::UnorderedElementsAre("coupled_input", "drift"));
 }
 
 TEST(SearchTest, WhereNothingIsMissingNothingIsAdded) {

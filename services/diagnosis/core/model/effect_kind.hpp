@@ -54,9 +54,6 @@ class EffectKind {
   [[nodiscard]] virtual bool time_only(const Effect& /*effect*/) const { return false; }
   /// True when it takes any shape and has no law: tried apart from the others, Eq. DG-64.
   [[nodiscard]] virtual bool any_shape() const { return false; }
-  /// True when it may act so slowly that the mean of a block shows it and one sample after the
-  /// other does not: a filter that makes slow noise white hides it, Eq. DG-61.
-  [[nodiscard]] virtual bool slow() const { return false; }
   /// [-] times Eq. DG-62: the size at which it is found as often as not, measured (README,
   /// "Power"): 1, 1.5, 2 or 6.
   [[nodiscard]] virtual double size_found() const { return 1.0; }
