@@ -2,7 +2,9 @@
 // loop_stamps FILE: latencies of the control loop in a session's recording, by the stamps of its
 // messages, as one JSON object [us]: from the raw sample to the sensed sample, to the motor command
 // and to the rig's step that used it, and the parts between them.  The ticks are those of the
-// measured parts of the trials in which the motor may act.  Used by loop_latency.py.
+// measured parts of the trials in which the motor may act.  "late": samples that the rig took, and
+// commands that came, more than 1 ms after they were due.  Used by loop_latency.py, loop_misses.py.
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <set>
@@ -76,6 +78,25 @@ std::map<Tick, Stamps> stamps_of(const session::SessionRecording& session) {
   return by_tick;
 }
 
+// A sample is due a millisecond after the one before, counted from the median sample.
+json late_of(const std::map<Tick, Stamps>& by_tick) {
+  constexpr std::int64_t kCycle_ns = 1'000'000;
+  std::vector<std::int64_t> offsets_ns;
+  std::size_t commands = 0;
+  for (const auto& [tick, s] : by_tick) {
+    if (s.raw_ns == 0) continue;
+    offsets_ns.push_back(s.raw_ns - tick * kCycle_ns);
+    if (s.command_ns == 0 || s.command_ns - s.raw_ns > kCycle_ns) ++commands;
+  }
+  if (offsets_ns.empty()) return {{"samples", 0}, {"commands", 0}};
+  const auto middle = offsets_ns.begin() + static_cast<std::ptrdiff_t>(offsets_ns.size() / 2);
+  std::ranges::nth_element(offsets_ns, middle);
+  const std::int64_t due_ns = *middle;
+  const auto samples = std::ranges::count_if(
+      offsets_ns, [due_ns](std::int64_t offset_ns) { return offset_ns - due_ns > kCycle_ns; });
+  return {{"samples", samples}, {"commands", commands}};
+}
+
 json loop_of(const session::SessionRecording& session) {
   const std::map<Tick, Stamps> by_tick = stamps_of(session);
   std::vector<std::int64_t> sensed, command, used, to_sensed, to_command, to_use;
@@ -95,6 +116,7 @@ json loop_of(const session::SessionRecording& session) {
   const double ticks = static_cast<double>(std::max<std::size_t>(by_tick.size(), 1));
   return {{"ticks", by_tick.size()},
           {"unanswered", by_tick.size() - command.size()},
+          {"late", late_of(by_tick)},
           {"same_cycle_share", static_cast<double>(same_cycle) / ticks},
           {"sensed", benchmark::figures(sensed)},
           {"command", benchmark::figures(command)},
