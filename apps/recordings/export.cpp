@@ -14,6 +14,7 @@
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/recording/core/messages/schema_types.hpp"
 #include "services/recording/core/topic_filter.hpp"
 
 namespace stillhand::recordings {
@@ -47,14 +48,8 @@ class Schemas {
     const auto& known = recording_.reader.schemas();
     const auto found = known.find(channel.schema_id);
     if (found == known.end()) return of_catalogue(channel);
-    const recording::Schema& schema = found->second;
-    if (schema.encoding != recording::kSchemaEncoding) {
-      throw ConfigError(channel.topic, "a schema in '" + schema.encoding + "'",
-                        "a schema in 'omgidl'");
-    }
-    const std::string_view text(reinterpret_cast<const char*>(schema.bytes.data()),
-                                schema.bytes.size());
-    return type_in(text, schema.name, recording_.path + ", schema " + std::to_string(schema.id));
+    return type_of(found->second,
+                   recording_.path + ", schema " + std::to_string(channel.schema_id));
   }
 
  private:
@@ -65,25 +60,21 @@ class Schemas {
     if (topic == nullptr) {
       throw ConfigError(channel.topic, "no schema in the recording", "a schema in 'omgidl'");
     }
-    return type_in(topics::idl_of(topic->type), std::string(topic->type), "the catalogue");
+    const std::string_view text = topics::idl_of(topic->type);
+    recording::Schema schema{0, std::string(topic->type), recording::kSchemaEncoding, {}};
+    for (const char c : text) schema.bytes.push_back(static_cast<std::byte>(c));
+    return type_of(schema, "the catalogue");
   }
 
-  std::pair<const recording::IdlSchema*, const recording::IdlStruct*> type_in(
-      std::string_view text, const std::string& name, const std::string& source) {
-    const auto* schema = parse(text, source);
-    const auto* type = schema->find(name);
-    if (type == nullptr) {
-      throw ConfigError(source, "no struct " + name, "the type of the messages");
-    }
-    return {schema, type};
-  }
-
-  const recording::IdlSchema* parse(std::string_view text, const std::string& source) {
-    auto& parsed = parsed_[std::string(text)];
+  std::pair<const recording::IdlSchema*, const recording::IdlStruct*> type_of(
+      const recording::Schema& schema, const std::string& source) {
+    std::string key = schema.encoding + "\n" + schema.name + "\n";
+    key.append(reinterpret_cast<const char*>(schema.bytes.data()), schema.bytes.size());
+    auto& parsed = parsed_[key];
     if (!parsed) {
-      parsed = std::make_unique<recording::IdlSchema>(recording::parse_idl(text, source));
+      parsed = std::make_unique<recording::IdlSchema>(recording::parse_schema(schema, source));
     }
-    return parsed.get();
+    return {parsed.get(), parsed->find(schema.name)};
   }
 
   const OpenRecording& recording_;

@@ -190,7 +190,7 @@ TEST_F(ExportTest, AnotherProgramsRecordingIsExportedAsFarAsItsSchemasAreKnown) 
     recording::McapWriterOptions options;
     options.profile = "ros2";
     recording::McapWriter writer(sink, options);
-    const auto ros = writer.add_schema("std_msgs/msg/Bool", "ros2msg", "bool data");
+    const auto ros = writer.add_schema("std_msgs/msg/Bool", "ros2idl", "bool data");
     writer.add_channel("/flag", ros, "cdr");
     writer.add_channel("/json", 0, "json");
     const auto broken = writer.add_schema("a::B", "omgidl", "struct B { double x }");
@@ -205,15 +205,14 @@ TEST_F(ExportTest, AnotherProgramsRecordingIsExportedAsFarAsItsSchemasAreKnown) 
       config_error_of([&] {
         export_recording(path("ros.mcap"), {path("out"), {}, {}, {}});
       }),
-      HasSubstr("nothing that can be exported (/flag: got a schema in 'ros2msg', want a schema "
-                "in 'omgidl')"));
+      HasSubstr("schema 1: got a schema in 'ros2idl', want a schema in 'omgidl' or 'ros2msg')"));
   EXPECT_EQ(file_count(), 1u) << "no folder of results that never were";
   write(true);
   const Exported sut = export_recording(path("ros.mcap"), {path("out"), {}, {}, {}});
   ASSERT_EQ(sut.topics.size(), 1u);
   EXPECT_EQ(sut.topics[0].topic, "/known");
   EXPECT_THAT(sut.left_out,
-              testing::ElementsAre(HasSubstr("ros2msg"), HasSubstr("messages in 'json'"),
+              testing::ElementsAre(HasSubstr("ros2idl"), HasSubstr("messages in 'json'"),
                                    HasSubstr("schema 2, IDL line 1:21: got '}', want ;")));
 }
 
