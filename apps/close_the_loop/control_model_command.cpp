@@ -10,7 +10,7 @@
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/drive.hpp"
 #include "apps/lab/lab_options.hpp"
-#include "apps/measurement/read.hpp"
+#include "apps/measurement/read_options.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/cancellation/control_model_file.hpp"
 #include "services/diagnosis/core/working_set.hpp"
@@ -77,9 +77,11 @@ void add_control_model_command(CLI::App& cli, int& status) {
       "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
       "control.json");
   verb->add_option("MODEL", words->model, "model file")->required();
-  verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
+  verb->add_option("REC", words->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
+      ->required();
   verb->add_option("--trial", words->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(*verb, words->read);
   verb->add_option("--save", words->save, "file of the control model")
       ->required()
       ->check(settings::check_name);

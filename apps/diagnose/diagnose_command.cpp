@@ -9,7 +9,7 @@
 
 #include "apps/diagnose/diagnosis_json.hpp"
 #include "apps/diagnose/page/diagnosis_report.hpp"
-#include "apps/measurement/read.hpp"
+#include "apps/measurement/read_options.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
 #include "apps/report/result_files.hpp"
@@ -107,10 +107,12 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       "free run on samples that the fit has not seen, traces it to an effect, adds the effect, "
       "and\n"
       "prints the error before and after. services/diagnosis/README.md lists the kinds of effect.\n"
-      "REC: CSV with columns 'name [unit]', 't [s]' first; or the MCAP file of a session. Several\n"
-      "recordings of one rig are diagnosed together.\n"
+      "REC: the MCAP file of a session, or a CSV, MATLAB, HDF5, ROS 2 (MCAP) or sound file with\n"
+      "columns 'name [unit]' and 't [s]', or with others and --map. Several recordings of one rig\n"
+      "are diagnosed together.\n"
       "Example: stillhand diagnose ride.csv --input a_y --output f --json out.json --report DIR");
-  verb->add_option("REC", words->recordings, "recording(s), CSV or MCAP")->required();
+  verb->add_option("REC", words->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
+      ->required();
   verb->add_option("--input", words->inputs, "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -132,6 +134,7 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--trial", words->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(*verb, words->read);
   verb->add_option("--save", words->save, "file for the diagnosed model, for `stillhand predict`")
       ->check(settings::check_name);
   verb->add_option("--json", words->json, "file for the verdict")->check(settings::check_name);

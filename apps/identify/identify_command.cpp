@@ -8,7 +8,7 @@
 
 #include "apps/identify/identify.hpp"
 #include "apps/identify/identify_output.hpp"
-#include "apps/measurement/read.hpp"
+#include "apps/measurement/read_options.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/identification/model_file.hpp"
@@ -50,11 +50,15 @@ void add_identify_command(CLI::App& cli, int& status) {
       "identify",
       "Fits the paper's model to one recording: a difference model by least squares at 50 Hz.\n"
       "Reports its frequency response next to the measured one, and its error on the quarter of\n"
-      "the recording that the fit did not see. REC is a CSV file with columns 'name [unit]',\n"
-      "'t [s]' first, at 100 Hz or more; or the MCAP file of a session. Files of earlier results\n"
-      "are replaced; they appear together or not at all.\n"
-      "Example: stillhand identify demo/session.mcap --save model.json --json out.json");
-  verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
+      "the recording that the fit did not see. REC is the MCAP file of a session, or a CSV, "
+      "MATLAB,\n"
+      "HDF5, ROS 2 (MCAP) or sound file at 100 Hz or more, with columns 'name [unit]' and 't "
+      "[s]',\n"
+      "or with others and --map. Files of earlier results are replaced; they appear together or\n"
+      "not at all.\n"
+      "Examples: stillhand identify demo/session.mcap --save model.json --json out.json\n"
+      "          stillhand identify ride.csv --map 'time=t [s]' 'acc=a_y [m/s^2]' 'force=f [N]'");
+  verb->add_option("REC", words->recording, "recording")->required();
   verb->add_option("--order", words->identify.config.order, "order of the model, 1 to 12")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
@@ -67,6 +71,7 @@ void add_identify_command(CLI::App& cli, int& status) {
   verb->add_option(
       "--trial", words->read.trial,
       "trial of a session: number, or letter of its condition (I, A, B, C) [identification]");
+  measurement::add_read_options(*verb, words->read);
   verb->add_option("--save", words->save, "file for the model, in the form that cancellation reads")
       ->check(settings::check_name);
   verb->add_option("--json", words->json, "file for all results")->check(settings::check_name);

@@ -18,8 +18,8 @@ using diagnosis::Measurement;
 
 constexpr double kLeastStretch_s = 1.0;
 constexpr std::size_t kLeastStretch_samples = 20;
-// A hand moves at 0.1 to 10 Hz, which a slower recording can't show.
-constexpr double kLeastRate_hz = 5.0;
+// A hand moves at 0.1 to 10 Hz, which a slower recording doesn't show.
+constexpr double kSlowRate_hz = 5.0;
 
 // "1 row", "2 rows"
 std::string counted(double count, const std::string& what) {
@@ -60,12 +60,10 @@ std::size_t grid_size(const RowPlaces& places) {
   return samples;
 }
 
-// A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.
-void check_rate(const std::string& source, double rate_hz) {
-  if (rate_hz >= kLeastRate_hz) return;
-  throw ConfigError(source + ", time", figure(1.0 / rate_hz) + " s between rows",
-                    "at most " + figure(1.0 / kLeastRate_hz) +
-                        " s; are the times in milliseconds, although 't [s]' means seconds?");
+void note_slow_rows(double rate_hz, std::vector<std::string>& notes) {
+  if (rate_hz >= kSlowRate_hz) return;
+  notes.push_back(
+      fmt::format("{} s between rows: no motion of a hand shows.", figure(1.0 / rate_hz)));
 }
 
 void check_size(const recording::Recording& rows, std::size_t samples, std::size_t most_values) {
@@ -150,7 +148,6 @@ void check_use(const Measurement& measurement, std::size_t rows, double rate_hz)
 Measurement on_grid(recording::Recording rows, std::size_t most_values) {
   const std::size_t row_count = rows.row_count();
   RowPlaces places = place_rows(rows);
-  check_rate(rows.source, places.rate_hz);
   rows.time_s = {};
   Measurement out;
   out.source = rows.source;
@@ -162,6 +159,7 @@ Measurement on_grid(recording::Recording rows, std::size_t most_values) {
   fill(out, rows, places);
   check_use(out, row_count, places.rate_hz);
   const auto filled = static_cast<std::size_t>(std::ranges::count(out.weight, 0.0));
+  note_slow_rows(places.rate_hz, out.notes);
   note_what_happened(places, long_gaps, filled, out.notes);
   out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
   if (rows.repeated_rows > 0) {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/measurement/read.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cstdio>
+#include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include "apps/measurement/grid.hpp"
 #include "apps/measurement/session.hpp"
+#include "apps/measurement/tables/apply_mapping.hpp"
+#include "apps/measurement/tables/bag_table.hpp"
+#include "apps/measurement/tables/text_table.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/csv.hpp"
 #include "services/recording/file_io.hpp"
@@ -15,54 +21,21 @@
 namespace stillhand::measurement {
 namespace {
 
-// A table of short numbers has fewer bytes than its doubles; one of 20-digit numbers has more.
-// 2 GiB of text hold 60 million 20-digit numbers.
-constexpr std::uint64_t kMostCsv_bytes = std::uint64_t{2} << 30;
+// A hand moves at 0.1 to 10 Hz, which fewer rows a second don't show.
+constexpr double kLeastHandRate_hz = 5.0;
 
-bool is_mcap(const std::string& path) {
-  // MCAP specification, "Magic".  Only five of its eight bytes: the rest may be cut off.
-  constexpr std::array<std::byte, 5> kMagic{std::byte{0x89}, std::byte{'M'}, std::byte{'C'},
-                                            std::byte{'A'}, std::byte{'P'}};
-  recording::FileSource file(path);
-  if (file.size() < kMagic.size()) return false;
-  std::array<std::byte, kMagic.size()> begin{};
-  const recording::Status status = file.read_at(0, begin);
-  if (!status.ok()) throw ConfigError(path, status.text, "a file that can be read");
-  return begin == kMagic;
-}
-
-// Length in bytes of the first character of the text; 0 if it is no UTF-8 (RFC 3629).
-std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead < 0xC2   ? 0
-                             : lead < 0xE0 ? 2
-                             : lead < 0xF0 ? 3
-                             : lead < 0xF5 ? 4
-                                           : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return 0;
-  }
-  // Overlong, a surrogate, or beyond U+10FFFF.
-  if ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) > 0x9F) ||
-      (lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) > 0x8F)) {
-    return 0;
-  }
-  return length;
-}
-
-// Names and units are written to JSON and HTML, so they must be UTF-8.
-void check_titles(const std::string& path, std::string_view text) {
-  const std::string_view header = text.substr(0, text.find('\n'));
-  for (std::size_t i = 0; i < header.size();) {
-    const std::size_t length = character_length(header.substr(i));
-    if (length == 0) {
-      throw ConfigError(path + ":1:" + std::to_string(i + 1), "a title that is no UTF-8",
-                        "CSV text in UTF-8");
-    }
-    i += length;
+// A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.  Slow sensors
+// exist, but none measures the motion or the force of a hand.
+void refuse_slow_hand(const diagnosis::Measurement& measurement) {
+  if (measurement.rate_hz >= kLeastHandRate_hz) return;
+  for (const diagnosis::Channel& channel : measurement.channels) {
+    if (si_unit(channel.name).empty()) continue;
+    throw ConfigError(
+        measurement.source + ", time",
+        fmt::format("{:.4g} s between rows of {}", 1.0 / measurement.rate_hz, channel.name),
+        fmt::format("at most {:.4g} s; if the times are milliseconds, although 't [s]' "
+                    "means seconds: --map 't [s]=t [ms]' and the other columns",
+                    1.0 / kLeastHandRate_hz));
   }
 }
 
@@ -81,36 +54,93 @@ void check_table_size(const std::string& path, const std::string& text, std::siz
   }
 }
 
-recording::Recording read_table(const std::string& path, std::size_t most_values) {
-  const std::uint64_t bytes = recording::FileSource(path).size();
-  if (bytes > kMostCsv_bytes) {
-    throw ConfigError(path, std::to_string(bytes >> 20) + " MiB",
-                      "at most " + std::to_string(kMostCsv_bytes >> 20) +
-                          " MiB; use a part of the file, fewer columns or a lower rate");
+diagnosis::Measurement with_notes(recording::Recording rows, std::size_t most_values,
+                                  const std::vector<std::string>& notes) {
+  diagnosis::Measurement out = on_grid(std::move(rows), most_values);
+  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
+  return out;
+}
+
+diagnosis::Measurement read_session(const std::string& path, const ReadOptions& options) {
+  SessionRows session = options.session_trial.empty()
+                            ? read_session_rows(path, options.trial)
+                            : read_session_rows(path, options.session_trial, true);
+  if (!session.loss.empty()) std::fprintf(stderr, "stillhand: %s\n", session.loss.c_str());
+  return with_notes(std::move(session.rows), options.most_values, session.notes);
+}
+
+// The mapping of a file; signs and sample rate that are options count before those of a file.
+Mapping mapping_for(const std::string& path, const ReadOptions& options) {
+  if (options.map_file.empty()) return options.mapping;
+  std::error_code error;
+  const bool there = std::filesystem::exists(options.map_file, error);
+  if (there && std::filesystem::equivalent(path, options.map_file, error)) {
+    throw ConfigError("--map-file", options.map_file + ", the recording itself",
+                      "a file of its own");
   }
-  const std::string text = recording::read_file(path);
-  check_table_size(path, text, most_values);
-  check_titles(path, text);
-  return recording::parse_csv(text, path);
+  if (!there && !options.ask) {
+    throw ConfigError("--map-file", options.map_file + ", which is not there",
+                      "a mapping file, or a terminal on which it can be asked for");
+  }
+  if (!there) return options.mapping;
+  Mapping mapping = read_mapping(options.map_file);
+  if (options.mapping.rate_hz) mapping.rate_hz = options.mapping.rate_hz;
+  if (options.mapping.form.separator != 0) mapping.form.separator = options.mapping.form.separator;
+  if (options.mapping.form.decimal != 0) mapping.form.decimal = options.mapping.form.decimal;
+  return mapping;
+}
+
+// Asks for the mapping and writes it down, if the file is to be made.
+void ask_if_needed(TableFile& file, const ReadOptions& options, Mapping& mapping) {
+  if (options.map_file.empty() || std::filesystem::exists(options.map_file)) return;
+  const Mapping stated = mapping;
+  mapping = options.ask(file);
+  mapping.form = stated.form;
+  if (stated.rate_hz) mapping.rate_hz = stated.rate_hz;
+  const recording::Status status =
+      recording::write_file_atomically(options.map_file, mapping_yaml(mapping, file.head().path));
+  if (!status.ok()) throw ConfigError("--map-file", status.text, "a place that can be written");
+}
+
+diagnosis::Measurement read_table(const std::string& path, FileKind kind,
+                                  const ReadOptions& options) {
+  Mapping mapping = mapping_for(path, options);
+  std::unique_ptr<TableFile> file;
+  if (kind == FileKind::kText) {
+    DecodedText decoded = to_utf8(read_text(path), path);
+    if (options.map_file.empty() && mapping.empty() && recording::has_own_header(decoded.text)) {
+      check_table_size(path, decoded.text, options.most_values);
+      std::vector<std::string> notes;
+      if (!decoded.note.empty()) notes.push_back(decoded.note);
+      diagnosis::Measurement out =
+          with_notes(recording::parse_csv(decoded.text, path), options.most_values, notes);
+      refuse_slow_hand(out);
+      return out;
+    }
+    file = text_table(std::move(decoded), path, mapping.form, options.most_values);
+  } else {
+    file = open_table(path, mapping.form, options.most_values);
+  }
+  ask_if_needed(*file, options, mapping);
+  MappedRows mapped = apply_mapping(*file, mapping);
+  file.reset();  // a text is as large as its numbers
+  diagnosis::Measurement out =
+      with_notes(std::move(mapped.rows), options.most_values, mapped.notes);
+  if (mapping.columns.empty()) refuse_slow_hand(out);  // a mapping confirms the unit of the times
+  return out;
 }
 
 }  // namespace
 
 diagnosis::Measurement read_measurement(const std::string& path, const ReadOptions& options) {
-  if (!is_mcap(path)) {
-    if (!options.trial.empty()) {
-      throw ConfigError("--trial", options.trial + " with the table " + path,
-                        "no --trial, or the recording of a session (MCAP)");
-    }
-    return on_grid(read_table(path, options.most_values), options.most_values);
+  const FileKind kind = kind_of(path);
+  const bool mapped = !options.mapping.empty() || !options.map_file.empty();
+  if (kind == FileKind::kMcap && !mapped && is_session(path)) return read_session(path, options);
+  if (!options.trial.empty()) {
+    throw ConfigError("--trial", options.trial + " with the table " + path,
+                      "no --trial, or the recording of a session (MCAP) without --map");
   }
-  SessionRows session = options.session_trial.empty()
-                            ? read_session_rows(path, options.trial)
-                            : read_session_rows(path, options.session_trial, true);
-  if (!session.loss.empty()) std::fprintf(stderr, "stillhand: %s\n", session.loss.c_str());
-  diagnosis::Measurement out = on_grid(std::move(session.rows), options.most_values);
-  out.notes.insert(out.notes.begin(), session.notes.begin(), session.notes.end());
-  return out;
+  return read_table(path, kind, options);
 }
 
 }  // namespace stillhand::measurement

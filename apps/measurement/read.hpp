@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "apps/measurement/tables/mapping.hpp"
+#include "apps/measurement/tables/table_file.hpp"
 #include "services/diagnosis/core/measurement.hpp"
 
 namespace stillhand::measurement {
@@ -19,14 +22,20 @@ struct ReadOptions {
   std::string session_trial = {};
   /// [-] samples times channels that are read at most; 8 B each, and as much again while reading.
   std::size_t most_values = 60'000'000;
+  /// Columns, sample rate and signs of a file of another program, README "Recordings of other
+  /// programs".  If it is empty, the titles state the columns.
+  Mapping mapping = {};
+  std::string map_file = {};  ///< YAML file of a mapping; empty: none
+  /// Makes the mapping for a `map_file` that is not there; empty: nobody can be asked.
+  std::function<Mapping(TableFile&)> ask = {};
 };
 
-/// Reads a recording: an MCAP file of a session, or CSV (services/recording/README.md).  The first
-/// bytes show which.  The result is on a uniform grid; the notes say how it got there.  If a
-/// session's recording is damaged or cut off, one line on standard error reports the loss, and the
-/// rest is used.
+/// Reads a recording: an MCAP file of a session, CSV (services/recording/README.md), or a file of
+/// another program: a text table, MATLAB, HDF5, MCAP of ROS 2, WAV.  The first bytes show which.
+/// The result is on a uniform grid; the notes say how it got there.  If a session's recording is
+/// damaged or cut off, one line on standard error reports the loss, and the rest is used.
 /// @throws stillhand::ConfigError when the file can't be read or holds nothing useful.  The message
-///         gives line and column of a CSV file, or the trials of a session.
+///         gives line and column of a text, the trials of a session, or a mapping that would do.
 diagnosis::Measurement read_measurement(const std::string& path, const ReadOptions& options = {});
 
 /// Joins recordings of one rig as stretches of one recording.  Time continues where the previous

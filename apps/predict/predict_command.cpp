@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/measurement/read.hpp"
+#include "apps/measurement/read_options.hpp"
 #include "apps/predict/predict.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/diagnosis/model_file.hpp"
@@ -52,9 +52,11 @@ void add_predict_command(CLI::App& cli, int& status) {
       "seen, an effect is held at its edge. A note reports each.\n"
       "Example: stillhand predict model.json ride.csv --out prediction.csv");
   verb->add_option("MODEL", words->model, "model file")->required();
-  verb->add_option("REC", words->recording, "recording, CSV or MCAP")->required();
+  verb->add_option("REC", words->recording, "recording: MCAP, CSV, MATLAB, HDF5 or sound")
+      ->required();
   verb->add_option("--trial", words->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
+  measurement::add_read_options(*verb, words->read);
   verb->add_option("--out", words->out, "CSV file of the prediction")
       ->required()
       ->check(settings::check_name);

@@ -3,6 +3,7 @@
 
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/recorded/recorded_output.hpp"
+#include "apps/measurement/read_options.hpp"
 #include "apps/report/command_line.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
@@ -65,10 +66,10 @@ CLI::Option* add_files(CLI::App& verb, const char* name, std::vector<std::string
 
 void add_recorded_options(CLI::App& verb, RecordedOptions& options,
                           const std::vector<CLI::Option*>& others) {
-  CLI::Option* pegged =
-      add_files(verb, "--pegged", options.pegged,
-                "recording(s) with the stick held, CSV or MCAP: closes the loop from recordings, "
-                "without a rig");
+  CLI::Option* pegged = add_files(
+      verb, "--pegged", options.pegged,
+      "recording(s) with the stick held, MCAP, CSV, MATLAB, HDF5 or sound: closes the loop "
+      "from recordings, without a rig");
   add_files(verb, "--moving", options.moving,
             "recording(s) of condition B, 1 kHz with theta, f and f_motor: friction and ripple")
       ->needs(pegged);
@@ -89,6 +90,9 @@ void add_recorded_options(CLI::App& verb, RecordedOptions& options,
       ->needs(pegged)
       ->capture_default_str()
       ->group("From recordings");
+  for (CLI::Option* option : measurement::add_read_options(verb, options.read)) {
+    option->needs(pegged);
+  }
   for (CLI::Option* other : others) pegged->excludes(other);
 }
 

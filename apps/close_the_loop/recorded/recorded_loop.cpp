@@ -21,8 +21,8 @@ constexpr double kKeptApart = 0.3;
 // A rate that differs by more is not the control rate.
 constexpr double kRateTolerance = 1e-3;
 
-diagnosis::Measurement read(const std::string& path, const char* trial) {
-  measurement::ReadOptions options;
+diagnosis::Measurement read(const std::string& path, const char* trial,
+                            measurement::ReadOptions options) {
   options.session_trial = trial;
   return measurement::read_measurement(path, options);
 }
@@ -30,8 +30,9 @@ diagnosis::Measurement read(const std::string& path, const char* trial) {
 // The stick's own signals, at 1 kHz: the longest stretch without a long gap, whose short gaps are
 // filled in.
 recording::Recording read_stick(const std::string& path, const char* trial,
+                                const measurement::ReadOptions& options,
                                 std::vector<std::string>& notes) {
-  const diagnosis::Measurement measured = read(path, trial);
+  const diagnosis::Measurement measured = read(path, trial, options);
   if (std::abs(measured.rate_hz / kControlRateHz - 1.0) > kRateTolerance) {
     throw ConfigError(path, fmt::format("{:.6g} Hz", measured.rate_hz),
                       "1000 Hz: the delays of the motor are a few milliseconds");
@@ -91,11 +92,11 @@ class RecordedLoopRun {
     step("reading");
     read_pegged();
     for (const std::string& path : options_.moving) {
-      moving_.push_back(read_stick(path, "B", out_.notes));
+      moving_.push_back(read_stick(path, "B", options_.read, out_.notes));
       want_channels(moving_.back(), path);
     }
     for (const std::string& path : options_.cancelled) {
-      cancelled_.push_back(read_stick(path, "C", out_.notes));
+      cancelled_.push_back(read_stick(path, "C", options_.read, out_.notes));
       want_channels(cancelled_.back(), path);
     }
     diagnose();
@@ -121,8 +122,9 @@ class RecordedLoopRun {
 
   void read_pegged() {
     std::vector<diagnosis::Measurement> parts;
-    for (const std::string& path : options_.pegged) parts.push_back(read(path, "I"));
-    for (const std::string& path : options_.unseen) unseen_.push_back(read(path, "I"));
+    for (const std::string& path : options_.pegged) parts.push_back(read(path, "I", options_.read));
+    for (const std::string& path : options_.unseen)
+      unseen_.push_back(read(path, "I", options_.read));
     if (unseen_.empty() && parts.size() > 1) {
       unseen_.push_back(std::move(parts.back()));
       parts.pop_back();

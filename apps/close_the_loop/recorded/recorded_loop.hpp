@@ -9,10 +9,11 @@
 
 #include "apps/close_the_loop/recorded/replay.hpp"
 #include "apps/close_the_loop/verdict.hpp"
+#include "apps/measurement/read.hpp"
 
 namespace stillhand::close_the_loop {
 
-/// The recordings that close the loop without a rig, CSV or MCAP of a session each.
+/// The recordings that close the loop without a rig, each in any form that measurement reads.
 struct RecordedOptions {
   std::vector<std::string> pegged;     ///< at least one: a_y to f with the stick held
   std::vector<std::string> moving;     ///< condition B: the stick's own equation
@@ -20,6 +21,7 @@ struct RecordedOptions {
   std::vector<std::string> unseen;     ///< pegged, for judging; empty: kept apart from `pegged`
   std::vector<std::string> inputs{"a_y"};
   std::string output = "f";
+  measurement::ReadOptions read;  ///< columns of files of other programs, for all of them
   DeclaredDrive declared;
   diagnosis::ForEach for_each = diagnosis::in_order;
   std::function<bool(const std::string& step)> progress = [](const std::string&) { return true; };

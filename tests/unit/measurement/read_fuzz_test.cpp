@@ -126,12 +126,13 @@ struct Count {
   int refused = 0;
 };
 
-void try_to_read(const std::string& path, const std::string& bytes, Count& count) {
+void try_to_read(const std::string& path, const std::string& bytes, Count& count,
+                 const ReadOptions& options = {}) {
   // A new file each time: rewriting one waits for the disk.
   std::remove(path.c_str());
   std::ofstream(path, std::ios::binary) << bytes;
   try {
-    check(read_measurement(path));
+    check(read_measurement(path, options));
     ++count.read;
   } catch (const ConfigError& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
@@ -167,6 +168,42 @@ TEST(ReadFuzzTest, ASpoiltTableIsReadOrRefused) {
   // Both ends are reached, or the generator spoils too little or too much.
   EXPECT_GT(count.read, 300);
   EXPECT_GT(count.refused, 400);
+}
+
+// The same text with other signs and titles, which are looked for and mapped.
+TEST(ReadFuzzTest, ASpoiltTableOfAnotherProgramIsReadOrRefused) {
+  std::string good =
+      "# made by a logger\nzeit;acc (g);kraft\n" + good_table().substr(good_table().find('\n') + 1);
+  for (char& c : good) c = c == ',' ? ';' : c == '.' ? ',' : c;
+  const std::string path = testing::TempDir() + "fuzz_foreign.csv";
+  ReadOptions options;
+  for (const char* wish : {"zeit=t [s]", "acc=a_y", "kraft=f [N]"}) {
+    options.mapping.columns.push_back(parse_wish(wish));
+  }
+  Random random(20241125);
+  Count count;
+  for (int run = 0; run < 4000; ++run) {
+    std::string text = good;
+    for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !text.empty(); --spoils) {
+      switch (below(random, 4)) {
+        case 0:
+          flip_byte(text, random);
+          break;
+        case 1:
+          cut(text, random);
+          break;
+        case 2:
+          swap_lines(text, random);
+          break;
+        default:
+          text.replace(below(random, text.size()), 1, 1, ";,. \"\n#-e\0"[below(random, 11)]);
+      }
+    }
+    SCOPED_TRACE("run " + std::to_string(run));
+    ASSERT_NO_THROW(try_to_read(path, text, count, options));
+  }
+  EXPECT_GT(count.read, 300);
+  EXPECT_GT(count.refused, 300);
 }
 
 TEST(ReadFuzzTest, ASpoiltSessionIsReadOrRefused) {

@@ -225,11 +225,9 @@ TEST(SessionTest, AFileCutOffBeforeTheFirstSampleIsRefused) {
   }
 }
 
-TEST(SessionTest, AnotherProgramsMcapIsRefusedWithWhatWasExpected) {
+TEST(SessionTest, AnotherProgramsMcapIsRefusedWithAMappingThatWouldDo) {
   const auto bytes = tests::recorded_file(100, recording::Compression::kZstd, 1024);
-  EXPECT_THAT(error_of(file_of(bytes)),
-              HasSubstr("got an MCAP file without samples of stillhand/sensed, want the recording "
-                        "of a Stillhand session, or CSV"));
+  EXPECT_THAT(error_of(file_of(bytes)), HasSubstr("add --map 'even.x=a_y [m/s^2]' 'odd.x=f [N]'"));
 }
 
 TEST(SessionTest, TicksAndLengthsThatNoSessionHasAreNotBelieved) {

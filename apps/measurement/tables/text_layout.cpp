@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/measurement/tables/text_layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include "apps/measurement/tables/text_cells.hpp"
+#include "apps/measurement/tables/titles.hpp"
+#include "apps/measurement/tables/units.hpp"
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+constexpr std::size_t kLinesLookedAt = 1000;
+constexpr std::size_t kMostColumns = 10'000;
+
+// In order of preference between equals.
+constexpr std::array<TextForm, 7> kForms{
+    {{'\t', '.'}, {'\t', ','}, {';', '.'}, {';', ','}, {',', '.'}, {' ', '.'}, {' ', ','}}};
+
+// Cells of a line with one choice of signs.
+struct LineShape {
+  std::size_t cells = 0;
+  std::size_t numbers = 0;
+  std::size_t texts = 0;
+  auto operator<=>(const LineShape&) const = default;
+};
+
+LineShape shape_of(std::string_view line, const TextForm& form,
+                   std::vector<std::string_view>& cells) {
+  split(line, form.separator, cells);
+  LineShape shape{cells.size()};
+  double number = 0.0;
+  for (const std::string_view cell : cells) {
+    switch (read_cell(cell, form.decimal, number)) {
+      case CellContent::kNumber:
+        ++shape.numbers;
+        break;
+      case CellContent::kText:
+        ++shape.texts;
+        break;
+      case CellContent::kMissing:
+        break;
+    }
+  }
+  return shape;
+}
+
+// What one choice of signs makes of the lines.
+struct Reading {
+  TextForm form;
+  std::vector<LineShape> lines;
+  LineShape usual;           ///< the most frequent shape of a row
+  std::ptrdiff_t score = 0;  ///< numbers less texts, over the rows with that many cells
+};
+
+Reading read_as(const TextForm& form, const std::vector<TextLine>& lines) {
+  Reading out{form, {}, {}, 0};
+  std::vector<std::string_view> cells;
+  std::map<LineShape, std::ptrdiff_t> counts;
+  std::map<std::size_t, std::ptrdiff_t> scores;  // by the number of cells
+  for (const TextLine& line : lines) {
+    const LineShape shape = shape_of(line.text, form, cells);
+    out.lines.push_back(shape);
+    if (shape.numbers == 0) continue;
+    ++counts[shape];
+    scores[shape.cells] +=
+        static_cast<std::ptrdiff_t>(shape.numbers) - static_cast<std::ptrdiff_t>(shape.texts);
+  }
+  for (const auto& [width, score] : scores) {
+    if (score <= out.score) continue;
+    out.score = score;
+    out.usual = {};
+    std::ptrdiff_t most = 0;
+    for (const auto& [shape, count] : counts) {
+      if (shape.cells != width || count < most) continue;
+      most = count;
+      out.usual = shape;
+    }
+  }
+  return out;
+}
+
+// A row may lack some of its values, and be shorter.
+bool is_row(const LineShape& line, const LineShape& usual) {
+  return line.cells <= usual.cells && line.texts <= usual.texts &&
+         line.numbers >= std::max<std::size_t>(1, usual.numbers / 2);
+}
+
+std::vector<TextLine> first_lines(std::string_view text) {
+  std::vector<TextLine> lines;
+  TextLines walk(text);
+  TextLine line;
+  while (lines.size() < kLinesLookedAt && walk.next(line)) {
+    if (line.text.find_first_not_of(" \t") != std::string_view::npos) lines.push_back(line);
+  }
+  return lines;
+}
+
+// The first line of a spreadsheet that states its separator: "sep=;".
+std::optional<char> stated_separator(const std::vector<TextLine>& lines) {
+  if (lines.empty() || lines[0].text.size() != 5 || !lines[0].text.starts_with("sep=")) {
+    return std::nullopt;
+  }
+  return lines[0].text[4];
+}
+
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  split(line, separator, cells);
+  std::vector<std::string> out;
+  for (const std::string_view cell : cells) out.emplace_back(plain_cell(cell));
+  return out;
+}
+
+// "[s]" or "(s)" or "s"
+std::string bare_unit(const std::string& cell) {
+  const bool in_brackets = cell.size() > 2 && ((cell.front() == '[' && cell.back() == ']') ||
+                                               (cell.front() == '(' && cell.back() == ')'));
+  return in_brackets ? cell.substr(1, cell.size() - 2) : cell;
+}
+
+bool are_units(const std::vector<std::string>& cells) {
+  return std::ranges::all_of(cells, [](const std::string& cell) {
+    const std::string unit = bare_unit(cell);
+    return unit.empty() || unit == "-" || unit == "1" || unit == "%" || is_unit(unit);
+  });
+}
+
+std::string_view without_comment_mark(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t#%/");
+  return first == std::string_view::npos ? std::string_view() : line.substr(first);
+}
+
+// Titles from the lines above the first row, nearest line first.
+void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, std::size_t cells,
+                 const std::string& path, TextLayout& out) {
+  const char separator = out.form.separator;
+  std::vector<std::vector<std::string>> above;
+  std::string_view comment;
+  for (std::size_t i = first_row; i-- > 0 && above.size() < 2;) {
+    if (is_comment(lines[i].text)) {
+      if (comment.empty()) comment = without_comment_mark(lines[i].text);
+      continue;
+    }
+    std::vector<std::string> titles = cells_of(lines[i].text, separator);
+    if (titles.size() == cells) {
+      above.push_back(std::move(titles));
+      continue;
+    }
+    if (above.empty() && titles.size() > 1) {
+      throw ConfigError(path + ":" + std::to_string(lines[i].number) + ":1",
+                        std::to_string(titles.size()) + " titles above rows of " +
+                            std::to_string(cells) + " cells, with " + separator_name(separator) +
+                            " between them",
+                        "a title for each cell; is the decimal sign taken for a separator?");
+    }
+    break;
+  }
+  if (above.empty() && !comment.empty()) {
+    std::vector<std::string> titles = cells_of(comment, separator);
+    if (titles.size() == cells) above.push_back(std::move(titles));
+  }
+  if (above.size() == 2 && are_units(above[0])) {
+    for (std::string& cell : above[0]) out.units.push_back(bare_unit(cell));
+    above.erase(above.begin());
+  }
+  if (!above.empty()) out.titles = std::move(above[0]);
+  out.titles.resize(cells);
+  for (std::size_t i = 0; i < cells; ++i) {
+    if (out.titles[i].empty()) out.titles[i] = "column " + std::to_string(i + 1);
+  }
+}
+
+}  // namespace
+
+std::string separator_name(char separator) {
+  if (separator == '\t') return "tabs";
+  if (separator == ' ') return "blanks";
+  return "'" + std::string(1, separator) + "'";
+}
+
+TextLayout find_layout(std::string_view text, const TextForm& asked, const std::string& path) {
+  std::vector<TextLine> lines = first_lines(text);
+  TextForm wanted = asked;
+  if (const auto stated = stated_separator(lines)) {
+    if (wanted.separator == 0) wanted.separator = *stated;
+    lines.erase(lines.begin());
+  }
+  std::vector<TextLine> plain;
+  std::ranges::copy_if(lines, std::back_inserter(plain),
+                       [](const TextLine& line) { return !is_comment(line.text); });
+  Reading best;
+  for (const TextForm& form : kForms) {
+    if (wanted.separator != 0 && form.separator != wanted.separator) continue;
+    if (wanted.decimal != 0 && form.decimal != wanted.decimal) continue;
+    Reading reading = read_as(form, plain);
+    // Of equals the one with more columns: ",1" may be a tenth, or a cell behind an empty one.
+    if (reading.score > best.score ||
+        (reading.score == best.score && reading.usual.cells > best.usual.cells)) {
+      best = std::move(reading);
+    }
+  }
+  if (best.score <= 0 || best.usual.cells > kMostColumns) {
+    throw ConfigError(path, lines.empty() ? "an empty file" : "no rows of numbers",
+                      "a table: a line of titles, then rows of numbers");
+  }
+  const auto row = std::ranges::find_if(
+      best.lines, [&](const LineShape& line) { return is_row(line, best.usual); });
+  const TextLine& first = plain[static_cast<std::size_t>(row - best.lines.begin())];
+  TextLayout out;
+  out.form = best.form;
+  out.first_offset = first.offset;
+  out.first_line = first.number;
+  const auto at = std::ranges::find(lines, first.number, &TextLine::number);
+  take_titles(lines, static_cast<std::size_t>(at - lines.begin()), best.usual.cells, path, out);
+  return out;
+}
+
+}  // namespace stillhand::measurement

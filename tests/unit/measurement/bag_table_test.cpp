@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/measurement/tables/bag_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "apps/measurement/read.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/file_io.hpp"
+#include "tests/support/cdr_bytes.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr std::int32_t kEpoch_s = 1'700'000'000;
+
+// A ROS 2 recording with an IMU at 100 Hz and a force sensor at 200 Hz, 2.5 ms later.
+class Bag {
+ public:
+  explicit Bag(const std::string& path)
+      : sink_(path, recording::Existing::kReplace), writer_(sink_, options()) {
+    const auto imu = writer_.add_schema("sensor_msgs/msg/Imu", "ros2msg", tests::imu_definition());
+    imu_ = writer_.add_channel("/imu/data", imu, "cdr");
+    const auto wrench =
+        writer_.add_schema("geometry_msgs/msg/WrenchStamped", "ros2msg",
+                           "std_msgs/Header header\nWrench wrench\n===\nMSG: geometry_msgs/Wrench\n"
+                           "Vector3 force\nVector3 torque\n===\nMSG: geometry_msgs/Vector3\n"
+                           "float64 x\nfloat64 y\nfloat64 z\n===\nMSG: std_msgs/Header\n"
+                           "builtin_interfaces/Time stamp\nstring frame_id\n");
+    wrench_ = writer_.add_channel("/stick/wrench", wrench, "cdr");
+    writer_.add_channel("/chatter", 0, "json");
+  }
+
+  void imu(std::int64_t time_ns, double a_y, bool stamped = true) {
+    tests::CdrBytes message = head(stamped ? time_ns : -1);
+    for (int i = 0; i < 4 + 9 + 3 + 9; ++i) message.put(0.0);
+    message.put(0.0).put(a_y).put(9.81);
+    for (int i = 0; i < 9; ++i) message.put(0.0);
+    write(imu_, time_ns, message);
+  }
+  void wrench(std::int64_t time_ns, double f_y) {
+    tests::CdrBytes message = head(time_ns);
+    message.put(1.0).put(f_y).put(2.0).put(0.0).put(0.0).put(0.0);
+    write(wrench_, time_ns, message);
+  }
+  void close() { ASSERT_TRUE(writer_.close().ok()); }
+
+ private:
+  static recording::McapWriterOptions options() {
+    recording::McapWriterOptions options;
+    options.profile = "ros2";
+    return options;
+  }
+  static tests::CdrBytes head(std::int64_t time_ns) {
+    tests::CdrBytes message;
+    const bool stamped = time_ns >= 0;
+    message.put(stamped ? static_cast<std::int32_t>(kEpoch_s + time_ns / 1'000'000'000) : 0);
+    message.put(stamped ? static_cast<std::uint32_t>(time_ns % 1'000'000'000) : 0U);
+    message.text("base");
+    return message;
+  }
+  // It arrives 3 ms after its stamp.
+  void write(recording::ChannelId channel, std::int64_t time_ns, const tests::CdrBytes& message) {
+    const auto log_ns = static_cast<std::uint64_t>(kEpoch_s) * 1'000'000'000ULL +
+                        static_cast<std::uint64_t>(time_ns) + 3'000'000ULL;
+    ASSERT_TRUE(writer_.write(channel, 0, log_ns, log_ns, message.bytes()).ok());
+  }
+
+  recording::FileSink sink_;
+  recording::McapWriter writer_;
+  recording::ChannelId imu_ = 0;
+  recording::ChannelId wrench_ = 0;
+};
+
+std::string path_of(const char* name) { return testing::TempDir() + name; }
+
+std::string error_of(const std::string& path, const ReadOptions& options = {}) {
+  try {
+    (void)read_measurement(path, options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+ReadOptions mapped(const std::vector<const char*>& wishes) {
+  ReadOptions options;
+  for (const char* wish : wishes) options.mapping.columns.push_back(parse_wish(wish));
+  return options;
+}
+
+TEST(BagTableTest, TwoTopicsComeToTheTimesOfTheFirst) {
+  const std::string path = path_of("two.mcap");
+  Bag bag(path);
+  const auto force = [](double t) { return 5.0 * std::sin(6.0 * t); };
+  for (std::int64_t i = 0; i < 200; ++i) {
+    bag.imu(i * 10'000'000, 0.1 * static_cast<double>(i % 7));
+    for (const std::int64_t ns : {i * 10'000'000 + 2'500'000, i * 10'000'000 + 7'500'000}) {
+      bag.wrench(ns, force(1e-9 * static_cast<double>(ns)));
+    }
+  }
+  bag.close();
+  const auto sut = read_measurement(
+      path, mapped({"/imu/data.linear_acceleration.y=a_y", "/stick/wrench.wrench.force.y=f"}));
+  EXPECT_EQ(sut.rate_hz, 100.0);
+  EXPECT_EQ(sut.size(), 199u) << "the first row is before the first force";
+  ASSERT_EQ(sut.channels.size(), 2u);
+  EXPECT_EQ(sut.channels[0].unit, "m/s^2");
+  EXPECT_EQ(sut.channels[1].unit, "N");
+  EXPECT_EQ(sut.channels[0].values[0], 0.1);
+  for (std::size_t n = 1; n + 1 < sut.size(); ++n) {
+    // A cubic over steps of h: at most 3/128 (w h)^4 times the amplitude, (6 * 0.005)^4 * 5 *
+    // 0.024.
+    const double t = 0.01 * static_cast<double>(n + 1);
+    ASSERT_NEAR(sut.channels[1].values[n], force(t), 1e-7) << n;
+  }
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("/stick/wrench are taken at the times of /imu/data")));
+}
+
+TEST(BagTableTest, OneTopicIsReadValueByValueInTheOrderOfItsStamps) {
+  const std::string path = path_of("one.mcap");
+  Bag bag(path);
+  for (std::int64_t i = 0; i < 100; ++i) {
+    const std::int64_t shuffled = i % 10 == 3 ? i + 1 : i % 10 == 4 ? i - 1 : i;
+    bag.imu(shuffled * 10'000'000, 0.25 * static_cast<double>(shuffled));
+  }
+  bag.imu(990'000'000, 24.75);  // twice
+  bag.close();
+  const auto sut = read_measurement(path, mapped({"/imu/data.linear_acceleration.y=a_y"}));
+  ASSERT_EQ(sut.size(), 100u);
+  for (std::size_t n = 0; n < sut.size(); ++n) {
+    EXPECT_EQ(sut.channels[0].values[n], 0.25 * static_cast<double>(n));
+  }
+  EXPECT_EQ(sut.stretches[0].start_s, 0.0);
+  EXPECT_THAT(sut.notes, Contains(HasSubstr("1 messages of /imu/data left out")));
+}
+
+TEST(BagTableTest, WithoutAStampTheTimeOfRecordingCounts) {
+  const std::string path = path_of("unstamped.mcap");
+  Bag bag(path);
+  for (std::int64_t i = 0; i < 100; ++i) bag.imu(i * 10'000'000, static_cast<double>(i), false);
+  bag.close();
+  EXPECT_EQ(read_measurement(path, mapped({"/imu/data.linear_acceleration.y=a_y"})).rate_hz, 100.0);
+}
+
+TEST(BagTableTest, WithoutAMappingItIsRefusedWithOne) {
+  const std::string path = path_of("unmapped.mcap");
+  Bag bag(path);
+  for (std::int64_t i = 0; i < 100; ++i) {
+    bag.imu(i * 10'000'000, 1.0);
+    bag.wrench(i * 10'000'000, 1.0);
+  }
+  bag.close();
+  const std::string sut = error_of(path);
+  EXPECT_THAT(sut, HasSubstr("'/imu/data.linear_acceleration.y=a_y [m/s^2]'"));
+  EXPECT_THAT(sut, HasSubstr("'/stick/wrench.wrench.force.y=f [N]'"));
+  EXPECT_EQ(sut.find('\n'), std::string::npos);
+}
+
+TEST(BagTableTest, AFileWithoutSuchMessagesIsRefused) {
+  const std::string path = path_of("json.mcap");
+  {
+    recording::FileSink sink(path, recording::Existing::kReplace);
+    recording::McapWriter writer(sink);
+    writer.add_channel("/json", 0, "json");
+    ASSERT_TRUE(writer.close().ok());
+  }
+  EXPECT_THAT(error_of(path), HasSubstr("no topic to read (/json: got messages in 'json'"));
+}
+
+}  // namespace
+}  // namespace stillhand::measurement

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/measurement/tables/text_layout.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::measurement {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string error_of(std::string_view text, const TextForm& asked = {}) {
+  try {
+    (void)find_layout(text, asked, "ride.csv");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(TextLayoutTest, SeparatorAndDecimalSignAreFound) {
+  struct Case {
+    const char* text;
+    char separator;
+    char decimal;
+  };
+  for (const Case& each :
+       {Case{"t,a,f\n0.0,1.5,2\n0.1,1,2\n", ',', '.'},
+        Case{"t;a;f\n0,0;1,5;2\n0,1;1;2\n", ';', ','},
+        Case{"t;a;f\n0.0;1.5;2\n0.1;1;2\n", ';', '.'},
+        Case{"t\ta\tf\n0,0\t1,5\t2\n0,1\t1\t2\n", '\t', ','},
+        Case{"t\ta\tf\n0.0\t1.5\t2\n0.1\t1\t2\n", '\t', '.'},
+        Case{"t a f\n  0.0   1.5 2\n  0.1 1 2\n", ' ', '.'}, Case{"t,a\n0,1\n1,2\n2,3\n", ',', '.'},
+        Case{"t;a\n0;1\n1;2\n", ';', '.'}, Case{"t;a\n0,01;1,5\n0,02;1,5\n", ';', ','}}) {
+    const TextLayout sut = find_layout(each.text, {}, "x");
+    EXPECT_EQ(sut.form.separator, each.separator) << each.text;
+    EXPECT_EQ(sut.form.decimal, each.decimal) << each.text;
+    EXPECT_EQ(sut.first_line, 2u) << each.text;
+  }
+}
+
+TEST(TextLayoutTest, WhatIsAskedForIsTaken) {
+  // Two columns with a decimal point, or four whole numbers.
+  const char* text = "a;b\n1.5;2\n1.25;3\n";
+  EXPECT_EQ(find_layout(text, {';', 0}, "x").titles.size(), 2u);
+  EXPECT_THAT(error_of(text, {'\t', 0}), HasSubstr("no rows of numbers"));
+  EXPECT_EQ(find_layout("a;b\n1,5;2\n", {0, ','}, "x").form.separator, ';');
+}
+
+TEST(TextLayoutTest, CommentsAndAPreambleAreLeftOut) {
+  const TextLayout sut = find_layout(
+      "sep=;\n# made by a logger\nDevice: 4711\n\nDate;2024\n% another comment\n"
+      "zeit;acc;kraft\n0,0;1,5;2\n0,1;1,5;2\n",
+      {}, "x");
+  EXPECT_THAT(sut.titles, ElementsAre("zeit", "acc", "kraft"));
+  EXPECT_EQ(sut.first_line, 8u);
+}
+
+TEST(TextLayoutTest, ALineOfUnitsStandsBelowTheTitles) {
+  const TextLayout sut = find_layout("t;acc;f\n[ms];[m/s²];[N]\n0;1,5;2\n1;1,5;2\n", {}, "x");
+  EXPECT_THAT(sut.titles, ElementsAre("t", "acc", "f"));
+  EXPECT_THAT(sut.units, ElementsAre("ms", "m/s²", "N"));
+}
+
+TEST(TextLayoutTest, TitlesMayStandInACommentOrBeMissing) {
+  EXPECT_THAT(find_layout("# t, acc, f\n0,1.5,2\n1,1.5,2\n", {}, "x").titles,
+              ElementsAre("t", "acc", "f"));
+  EXPECT_THAT(find_layout("0,1.5,2\n1,1.5,2\n", {}, "x").titles,
+              ElementsAre("column 1", "column 2", "column 3"));
+  EXPECT_THAT(find_layout("t,,f\n0,1.5,2\n1,1.5,2\n", {}, "x").titles,
+              ElementsAre("t", "column 2", "f"));
+}
+
+TEST(TextLayoutTest, ASeparatorInQuotesIsPartOfATitle) {
+  EXPECT_THAT(find_layout("\"t\",\"acc, lateral\"\n0,1.5\n1,1.5\n", {}, "x").titles,
+              ElementsAre("t", "acc, lateral"));
+}
+
+TEST(TextLayoutTest, TheFirstRowMayLackValues) {
+  const TextLayout sut = find_layout("t,a,b,c\n0,,,5\n1,2,3,4\n2,2,3,4\n", {}, "x");
+  EXPECT_EQ(sut.first_line, 2u);
+}
+
+TEST(TextLayoutTest, SaysWhatIsWrong) {
+  EXPECT_THAT(error_of(""), HasSubstr("ride.csv: got an empty file"));
+  EXPECT_THAT(error_of("Dear reader,\n\nthis is a letter.\n"), HasSubstr("no rows of numbers"));
+  // The decimal comma is the separator, too.
+  EXPECT_THAT(error_of("t,f\n0,01,1,5\n0,02,1,5\n"),
+              HasSubstr("ride.csv:1:1: got 2 titles above rows of 4 cells, with ',' between them"));
+}
+
+}  // namespace
+}  // namespace stillhand::measurement
