@@ -98,9 +98,9 @@ class DiagnoseTest(unittest.TestCase):
             "not_a_number": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,nan,2\n", ":3:"),
             "infinite": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,1,inf\n", ":3:"),
             "repeated_times": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,1,3\n0.01,2,2\n", ":4:"),
-            "acceleration_in_g": ("t [s],a_y [g],f [N]\n0,1,2\n0.01,1,3\n", "a_y [m/s^2]"),
-            "force_in_kn": ("t [s],a_y [m/s^2],f [kN]\n0,1,2\n0.01,1,3\n", "f [N]"),
-            "time_in_ms": ("t [ms],a_y [m/s^2],f [N]\n0,1,2\n10,1,3\n", "t [s]"),
+            "acceleration_in_volts": ("t [s],a_y [V],f [N]\n0,1,2\n0.01,1,3\n", "a_y [m/s^2]"),
+            "force_in_metres": ("t [s],a_y [m/s^2],f [m]\n0,1,2\n0.01,1,3\n", "f [N]"),
+            "time_in_volts": ("t [V],a_y [m/s^2],f [N]\n0,1,2\n10,1,3\n", "t [s]"),
             "without_units": ("t,a_y,f\n0,1,2\n0.01,1,3\n", "unit"),
             "without_input": ("t [s],f [N]\n" + "".join(f"{t},{f}\n" for t, _, f in rows), "a_y"),
             "constant_output": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},2\n" for t, a, _ in rows), "constant"),
@@ -124,6 +124,8 @@ class DiagnoseTest(unittest.TestCase):
                 said = self.refused(*words)
                 self.assertIn("ms.csv, time", said)
                 self.assertIn("milliseconds", said)
+        run = stillhand("diagnose", path, "--most-effects", 0, "--map", "t [s]=t [ms]", "a_y=a_y", "f=f")
+        self.assertEqual(run.returncode, 0, run.stderr)
 
     def test_places_that_cannot_be_written_are_refused_before_anything_is_read(self):
         file, gone = self.folder / "file", self.folder / "gone.csv"
