@@ -65,8 +65,10 @@ int main(int argc, char** argv) {
   return runtime::run_service(
       "rig", argc, argv,
       [&](runtime::Service& service) {
-        rig::Shell shell(service, holds_effect ? sealed_effect(service) : rig::SealedEffect());
-        shell.run();
+        const auto config = rig::seeded(service.config<rig::RigConfig>(), service.options().seed);
+        rig::SimulatedPlant plant(config,
+                                  holds_effect ? sealed_effect(service) : rig::SealedEffect());
+        rig::Shell(service, plant, config.motor).run();
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.add_flag("--undeclared-effect", holds_effect,

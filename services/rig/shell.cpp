@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "idl/session_state.hpp"
 
@@ -19,18 +18,12 @@ constexpr std::int64_t kMaxCatchUp_ns = 5 * kPeriod_ns;
 constexpr Tick kMostEnd_ticks = 1000;
 constexpr double kRest_m_s = 0.001;
 
-RigConfig seeded(RigConfig config, std::uint64_t seed) {
-  constexpr std::uint64_t kSeedMask = 0xffffffffu;  // RigConfig::seed is a 32-bit number
-  config.seed = static_cast<std::int64_t>(seed & kSeedMask);
-  return config;
-}
-
 }  // namespace
 
-Shell::Shell(runtime::Service& service, SealedEffect effect)
+Shell::Shell(runtime::Service& service, Plant& plant, const MotorConfig& motor)
     : service_(service),
-      config_(seeded(service.config<RigConfig>(), service.options().seed)),
-      core_(config_, std::move(effect)),
+      plant_(plant),
+      motor_config_(motor),
       raw_(service.bus().publisher<stillhand_msgs::RawSample>(topics::kRawSample)),
       truth_(service.bus().publisher<stillhand_msgs::RigTruth>(topics::kRigTruth)) {
   for (auto& command : commands_) command.tick(-1);
@@ -49,7 +42,7 @@ Shell::Shell(runtime::Service& service, SealedEffect effect)
   bus.subscribe<stillhand_msgs::MotorCommand>(topics::kMotorCommand,
                                               [this](const auto& message, const auto&) {
                                                 motor_.store(message);
-                                                if (config_.motor.answers_in_tick())
+                                                if (motor_config_.answers_in_tick())
                                                   motor_came_.post();
                                               });
   bus.subscribe<stillhand_msgs::OperatorForce>(
@@ -67,7 +60,6 @@ Shell::Shell(runtime::Service& service, SealedEffect effect)
       });
   service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
     announced_.store({trial, message.session()});
-    service_.note_armed(trial.number);
   });
   service.on_incident([this](const runtime::BusIncident& incident) {
     if (incident.kind == runtime::BusIncident::Kind::kDeadlineMissed &&
@@ -86,7 +78,13 @@ void Shell::run() {
       runtime::sleep_until_ns(due_ns);
       // A latched end of the previous session does not start the clock; the end of this session
       // does not stop it.
-      if (tick == 0 && !is_running(announced_.load().session)) continue;
+      if (tick == 0 && !is_running(announced_.load().session)) {
+        plant_.wait();
+        continue;
+      }
+      if (const char* parts = plant_.parts(); tick == 0 && parts != nullptr) {
+        service_.note_event(stillhand_msgs::EVENT_NOTE, parts);
+      }
       const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
       if (late_ns > kMaxCatchUp_ns) {
         due_ns += late_ns;
@@ -107,6 +105,7 @@ bool Shell::goes_on(Tick tick) {
 void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   const Trial trial = announced_.load().trial;
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
+  plant_.begin(trial, tick);
   const auto* command = command_for(tick);
   // Without a command the platform brakes and holds.
   if (interlock_.stopped() || stop_tick_ >= 0) command = nullptr;
@@ -116,15 +115,15 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   RigInput input = make_input(tick, command, nullptr, volition, pegged, false);
 
   // The sample goes out before the motor is driven, so that its answer can drive it.
-  const bool waits = config_.motor.answers_in_tick();
+  const bool waits = motor_config_.answers_in_tick();
   const auto* motor = waits ? nullptr : take_motor(trial, tick, input);
-  RigOutput output = waits ? core_.sample(input) : core_.step(input);
+  RigOutput output = waits ? plant_.sample(input) : plant_.step(input);
   auto raw = to_idl(output, tick);
   raw_.write(raw);
   if (waits) {
     await_answer(tick, due_ns);
     motor = take_motor(trial, tick, input);
-    core_.drive(input, output);
+    plant_.drive(input, output);
   }
   at_rest_ =
       output.truth.motor_force_n == 0.0 && std::abs(output.truth.platform_velocity_m_s) < kRest_m_s;
@@ -136,13 +135,14 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   if (volition != nullptr) used.volition = volition->tick();
   auto truth = to_idl(output, tick, input, used);
   truth_.write(truth);
+  if (plant_.prepared()) service_.note_armed(trial.number);
   service_.note_tick(tick);
 }
 
 void Shell::await_answer(Tick tick, std::int64_t due_ns) {
   // A tick that is late itself waits less: the next one begins in time.
   constexpr std::int64_t kReserve_ns = 200'000;
-  const auto wait_ns = static_cast<std::int64_t>(config_.motor.answer_wait_s * 1e9);
+  const auto wait_ns = static_cast<std::int64_t>(motor_config_.answer_wait_s * 1e9);
   const std::int64_t until_ns =
       std::min(runtime::monotonic_ns() + wait_ns, due_ns + kPeriod_ns - kReserve_ns);
   motor_came_.wait_until_ns(until_ns, [&] { return motor_.load().tick() >= tick; });
@@ -152,7 +152,8 @@ const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick t
                                                       RigInput& input) {
   // A stop that came during the wait counts.
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
-  const bool closed = interlock_.step(trial, tick, service_.bus().peers_alive());
+  const bool closed =
+      interlock_.step(trial, tick, service_.bus().peers_alive() && plant_.unsound() == nullptr);
   const bool permitted = closed && stop_tick_ < 0;
   const auto* motor = motor_now();
   put_motor(input, tick, motor, permitted);
@@ -163,9 +164,11 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
   const auto notice =
       interlock_report_.step(interlock_.latched(trial), interlock_.stopped(), tick, motor_force_n);
   if (notice.opened) {
-    service_.note_event(
-        stillhand_msgs::EVENT_INTERLOCK_OPENED,
-        interlock_.stopped() ? topics::kEmergencyStop.data() : service_.bus().why_not_alive());
+    const char* unsound = plant_.unsound();
+    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
+                        interlock_.stopped() ? topics::kEmergencyStop.data()
+                        : unsound != nullptr ? unsound
+                                             : service_.bus().why_not_alive());
   }
   if (notice.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",

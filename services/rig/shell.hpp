@@ -7,8 +7,8 @@
 
 #include "idl/control_loop.h"
 #include "services/rig/codec.hpp"
-#include "services/rig/core/rig.hpp"
 #include "services/rig/interlock_report.hpp"
+#include "services/rig/plant.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/process/latest_value.hpp"
 #include "services/runtime/process/wake_up.hpp"
@@ -17,11 +17,13 @@
 namespace stillhand::rig {
 
 /// The process of the rig: one step each millisecond on an absolute schedule.  It holds the sample
-/// clock that all other processes answer, so only this process has a timed loop.
+/// clock that all other processes answer, so only this process has a timed loop.  The same for the
+/// simulated rig and for one of devices.
 class Shell {
  public:
-  /// @param effect  the undeclared effect; empty: none
-  Shell(runtime::Service& service, SealedEffect effect);
+  /// @param plant  outlives the shell
+  /// @param motor  of the rig's settings: how long the motor command is waited for
+  Shell(runtime::Service& service, Plant& plant, const MotorConfig& motor);
   void run();
 
  private:
@@ -44,8 +46,8 @@ class Shell {
   const stillhand_msgs::MotorCommand* motor_now();
 
   runtime::Service& service_;
-  RigConfig config_;
-  Rig core_;
+  Plant& plant_;
+  MotorConfig motor_config_;
   runtime::Interlock interlock_;
   InterlockReport interlock_report_;
 

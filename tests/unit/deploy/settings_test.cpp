@@ -11,6 +11,7 @@
 #include "apps/dashboard/core/config.hpp"
 #include "places.hpp"
 #include "services/cancellation/core/canceller.hpp"
+#include "services/device_rig/core/devices_config.hpp"
 #include "services/display/core/tracking_display.hpp"
 #include "services/human_operator/core/subject_config.hpp"
 #include "services/identification/core/identifier.hpp"
@@ -84,6 +85,7 @@ void expect_in_step(const std::string& file) {
 
 TEST(DeployedSettingsTest, EveryFileShowsEveryKeyWithItsDefault) {
   expect_in_step<rig::RigConfig>("config/rig.yaml");
+  expect_in_step<device_rig::DevicesConfig>("config/devices.yaml");
   expect_in_step<sensing::Config>("config/sensing.yaml");
   expect_in_step<motion::MotionGenerator::Config>("config/motion.yaml");
   expect_in_step<cancellation::Config>("config/cancellation.yaml");

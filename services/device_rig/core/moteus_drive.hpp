@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "services/device_rig/core/moteus_frame.hpp"
+
+namespace stillhand::device_rig::moteus {
+
+/// Modes of register 0x000 that Stillhand commands or meets.
+enum Mode : int {
+  kStopped = 0,
+  kFaulted = 1,
+  kInPosition = 10,
+  kTimedOut = 11,
+  kZeroVelocity = 12,
+};
+
+/// What one torque command says.
+struct TorqueCommand {
+  double torque_n_m = 0.0;      ///< at the output
+  double max_torque_n_m = 0.0;  ///< the drive's own bound for this command
+  double watchdog_s = 0.0;      ///< the command counts for so long
+};
+
+/// A pure torque, README Eq. DR-3: mode 10 with position NaN, kp, kd and the integral's limit 0.
+/// Mode 10 because only there the drive's watchdog trips; in current mode it never does.  Every
+/// command writes the mode, since nothing else feeds the watchdog, and carries the watchdog's time.
+/// The frame also asks for the reply of query().
+/// A torque that is not finite becomes 0, and one beyond the bound the bound.
+Frame torque_frame(const TorqueCommand& command) noexcept;
+/// Mode 0: driver off.  It clears a fault and a timeout, which latch until then.
+Frame stop_frame() noexcept;
+/// Asks for the state alone.  It does not feed the watchdog.
+Frame query_frame() noexcept;
+
+/// State of the drive, as one reply tells it.
+struct DriveReply {
+  int mode = kStopped;
+  int fault = 0;                ///< 32 to 50: of a fault; 96 to 103: what limits at present
+  double position_rev = kNone;  ///< of the output
+  double velocity_rev_s = kNone;
+  double torque_n_m = kNone;  ///< measured
+  double voltage_v = kNone;
+  double temperature_c = kNone;
+  double analog1 = kNone;  ///< AUX1, 0 to 1
+  double analog2 = kNone;  ///< AUX2, 0 to 1
+  int milliseconds = 0;    ///< counter of 16 bit
+  bool whole = false;      ///< mode, position, velocity, torque and fault were in it
+  bool refused = false;    ///< it holds an error: another firmware does not know a register
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+};
+
+DriveReply read_reply(std::span<const std::uint8_t> payload) noexcept;
+
+}  // namespace stillhand::device_rig::moteus

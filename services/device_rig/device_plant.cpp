@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/device_plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "services/device_rig/plant_limits.hpp"
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+// No encoder counts so far: sensing takes it as a fault of the counter and holds the last angle.
+constexpr std::int64_t kNoCounts = std::int64_t{1} << 40;
+constexpr double kMostTurns = 1e6;
+
+// An amplifier that is at its end, or a wire that is off.
+bool ends(double share) noexcept { return !(share > 0.002 && share < 0.998); }
+
+bool is_young(std::uint64_t count, std::int64_t at_ns, std::int64_t now_ns,
+              std::int64_t most_ticks) noexcept {
+  return count > 0 && now_ns - at_ns <= most_ticks * 1'000'000;
+}
+
+}  // namespace
+
+DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices)
+    : rig_config_(rig),
+      devices_(devices),
+      parts_(parts_of(devices)),
+      simulated_(rig),
+      motor_(barrier(rig.motor), rig.stick.lever_m),
+      guard_(set_point_limits(rig.platform)),
+      words_("rig of devices: " + in_words(devices.signals)) {
+  if (parts_.needs_drive()) {
+    drive_ = std::make_unique<DriveLink>(devices.drive, setting_limits(rig, devices));
+  }
+  if (parts_.needs_platform()) {
+    platform_ = std::make_unique<PlatformLink>(devices.platform, parts_.platform);
+  }
+}
+
+bool DevicePlant::drive_fresh() const noexcept {
+  return is_young(stick_.sequence, stick_.at_ns, now_ns_, devices_.drive.max_age_ticks);
+}
+
+bool DevicePlant::platform_fresh() const noexcept {
+  return is_young(seat_.count, seat_.at_ns, now_ns_, devices_.platform.max_age_ticks);
+}
+
+void DevicePlant::take_drive() noexcept {
+  if (!drive_) return;
+  const DriveSample& newest = drive_->newest();
+  if (newest.sequence > stick_.sequence && stick_.sequence > 0) {
+    // README Eq. DR-11; 2 ms: two stamps of a busy host differ from the drive's times by as much.
+    const double elapsed_s = 1e-9 * static_cast<double>(newest.at_ns - stick_.at_ns) + 0.002;
+    const double moved_rad =
+        kTurn_rad * std::abs(newest.reply.position_rev - stick_.reply.position_rev);
+    jumped_ = jumped_ || moved_rad > devices_.drive.max_rate_rad_s * elapsed_s;
+  }
+  stick_ = newest;
+}
+
+bool DevicePlant::at_rail() const noexcept {
+  const auto at_end = [&](Parts::Source source, std::int64_t input) {
+    return source == Parts::Source::kDrive &&
+           ends(input == 1 ? stick_.reply.analog1 : stick_.reply.analog2);
+  };
+  return stick_.sequence > 0 && (at_end(parts_.force, devices_.drive.force_input) ||
+                                 at_end(parts_.acceleration, devices_.drive.acceleration_input));
+}
+
+void DevicePlant::take_platform() noexcept {
+  if (platform_) seat_ = platform_->newest();
+}
+
+void DevicePlant::wait() noexcept {
+  constexpr std::int64_t kEach_ticks = 10;
+  if (++tick_ % kEach_ticks != 0) return;
+  now_ns_ = runtime::monotonic_ns();
+  take_drive();
+  take_platform();
+  if (drive_) drive_->demand(Order::kQuery, 0.0);
+  if (platform_) platform_->demand({.follow = false, .position_m = seat_.reply.position_m});
+}
+
+void DevicePlant::begin(const Trial& trial, Tick tick) noexcept {
+  trial_ = trial;
+  tick_ = tick;
+  now_ns_ = runtime::monotonic_ns();
+  take_drive();
+  take_platform();
+  rail_ticks_ = at_rail() ? rail_ticks_ + 1 : 0;
+  judge();
+}
+
+rig::RigOutput DevicePlant::step(const rig::RigInput& input) noexcept {
+  rig::RigOutput driven{};
+  drive(input, driven);
+  return sample(input);
+}
+
+rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
+  rig::RigOutput output = simulated_.sample(input);
+  if (!drive_ && !platform_) return output;
+  put_stick(output);
+  put_platform(output);
+  // What only a simulation knows is unknown as soon as a part is real.
+  output.truth.feedthrough_force_n = kUnknown;
+  output.truth.volitional_force_n = kUnknown;
+  output.truth.hand_force_n = kUnknown;
+  if (parts_.motor != Parts::Motor::kSimulated) output.truth.motor_force_n = force_n_;
+  move_platform(input, output);
+  return output;
+}
+
+void DevicePlant::put_stick(rig::RigOutput& output) const noexcept {
+  if (!drive_) return;
+  const bool fresh = drive_fresh();
+  const moteus::DriveReply& reply = stick_.reply;
+  const auto volts = [&](std::int64_t input) {
+    const double share = input == 1 ? reply.analog1 : reply.analog2;
+    return fresh && !ends(share) ? devices_.drive.analogue_v * share : kUnknown;
+  };
+  if (!fresh) output.flags |= kInputStale;
+  if (jumped_) output.flags |= kFault;
+  if (parts_.force == Parts::Source::kDrive) {
+    output.raw.load_cell_v = volts(devices_.drive.force_input);
+  }
+  if (parts_.acceleration == Parts::Source::kDrive) {
+    output.raw.accel_x_v = output.raw.accel_z_v = 0.0;
+    output.raw.accel_y_v = volts(devices_.drive.acceleration_input);
+  }
+  if (parts_.angle != Parts::Source::kDrive) return;
+  const bool known = fresh && !jumped_ && std::abs(reply.position_rev) < kMostTurns;
+  const auto sign = static_cast<double>(devices_.drive.angle_sign);
+  output.raw.encoder_counts = known
+                                  ? std::llround(sign * reply.position_rev *
+                                                 static_cast<double>(devices_.drive.counts_per_rev))
+                                  : kNoCounts;
+  output.truth.theta_rad = known ? sign * kTurn_rad * reply.position_rev : kUnknown;
+  output.truth.omega_rad_s = known ? sign * kTurn_rad * reply.velocity_rev_s : kUnknown;
+}
+
+void DevicePlant::put_platform(rig::RigOutput& output) const noexcept {
+  if (!platform_) return;
+  const bool fresh = platform_fresh();
+  if (parts_.acceleration == Parts::Source::kPlatform) {
+    output.raw.accel_x_v = output.raw.accel_z_v = 0.0;
+    output.raw.accel_y_v = fresh ? seat_.reply.acceleration_m_s2 : kUnknown;
+  }
+  output.truth.platform_position_m = fresh ? seat_.reply.position_m : kUnknown;
+  output.truth.platform_acceleration_m_s2 = fresh ? seat_.reply.acceleration_m_s2 : kUnknown;
+  if (!fresh) output.flags |= kInputStale;
+}
+
+void DevicePlant::move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept {
+  if (!platform_) return;
+  // Until it follows, the set-point is where the platform stands: no jump when it begins.
+  if (seat_.reply.stage != PlatformStage::kFollowing) guard_.stand_at(seat_.reply.position_m);
+  const auto guarded = guard_.step({.follow = input.command_valid,
+                                    .position_m = input.command_position_m,
+                                    .velocity_m_s = input.command_velocity_m_s,
+                                    .acceleration_m_s2 = input.command_acceleration_m_s2});
+  output.flags |= guarded.flags;
+  output.truth.platform_velocity_m_s = guarded.set_point.velocity_m_s;
+  if (tick_ % devices_.platform.period_ticks == 0) platform_->demand(guarded.set_point);
+}
+
+void DevicePlant::drive(const rig::RigInput& input, rig::RigOutput& output) noexcept {
+  if (parts_.motor == Parts::Motor::kSimulated) simulated_.drive(input, output);
+  if (drive_) drive_motor(input, output);
+}
+
+void DevicePlant::drive_motor(const rig::RigInput& input, rig::RigOutput& output) noexcept {
+  const bool free_trial = trial_.phase == TrialPhase::kTracking && trial_.covers(tick_);
+  const auto armed = arming_.step(
+      {.fresh = drive_fresh(),
+       .checked = stick_.checked,
+       .jumped = jumped_,
+       .mode = stick_.reply.mode,
+       .fault = stick_.reply.fault,
+       .wanted = parts_.motor == Parts::Motor::kDrive && input.motor_permitted && free_trial,
+       .force_zero = force_n_ == 0.0,
+       .trial = trial_.number});
+  if (parts_.motor != Parts::Motor::kSimulated) {
+    const auto driven = motor_.step({input.motor_valid, input.motor_age_ticks, input.motor_force_n,
+                                     input.motor_permitted && armed.follows});
+    force_n_ = armed.follows ? driven.force_n : 0.0;
+    output.truth.motor_force_n = force_n_;
+    output.flags |= driven.flags;
+  }
+  // A stop does not wait for the turn of an exchange.
+  const bool turn = tick_ % devices_.drive.period_ticks == 0;
+  if (turn || (armed.order == Order::kStop && order_ != Order::kStop)) {
+    const double torque_n_m =
+        static_cast<double>(devices_.drive.torque_sign) * force_n_ * rig_config_.stick.lever_m;
+    drive_->demand(armed.order, torque_n_m);
+  }
+  order_ = armed.order;
+}
+
+bool DevicePlant::prepared() const noexcept {
+  const bool stick =
+      !drive_ || arming_.stage() == Stage::kChecked || arming_.stage() == Stage::kArmed;
+  const bool seat = !platform_ || (platform_fresh() && seat_.reply.stage != PlatformStage::kFault);
+  return stick && seat;
+}
+
+void DevicePlant::judge() noexcept {
+  why_ = nullptr;
+  if (platform_ && !platform_fresh()) why_ = "the platform is silent";
+  if (platform_ && platform_fresh() && seat_.reply.stage == PlatformStage::kFault) {
+    std::snprintf(text_.data(), text_.size(), "the platform reports fault 0x%x", seat_.reply.fault);
+    why_ = text_.data();
+  }
+  if (!drive_) return;
+  constexpr Tick kRail_ticks = 20;
+  if (rail_ticks_ >= kRail_ticks) why_ = "an analogue input of the drive stands at its end";
+  if (!drive_fresh()) why_ = text_of(Reason::kSilent);
+  if (jumped_) why_ = text_of(Reason::kEncoder);
+  if (arming_.stage() != Stage::kFaulted || trial_.number != arming_.trial()) return;
+  if (arming_.fault() != 0) {
+    std::snprintf(text_.data(), text_.size(), "the drive reports fault %d", arming_.fault());
+    why_ = text_.data();
+  } else {
+    why_ = text_of(arming_.reason());
+  }
+}
+
+}  // namespace stillhand::device_rig

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "services/device_rig/core/arming.hpp"
+#include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/core/set_point_guard.hpp"
+#include "services/device_rig/drive_link.hpp"
+#include "services/device_rig/platform_link.hpp"
+#include "services/rig/plant.hpp"
+
+namespace stillhand::device_rig {
+
+/// The rig made of devices: settings say which part serves which signal; the simulated rig serves
+/// the rest.  Each tick takes the newest sample of each device and gives it one demand; the links
+/// do the talking.  README Eq. DR-3 to DR-11.
+class DevicePlant final : public rig::Plant {
+ public:
+  /// Opens and checks every device.
+  /// @throws ConfigError for settings that do not fit, or a device that is missing or refused
+  DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices);
+
+  void wait() noexcept override;
+  void begin(const Trial& trial, Tick tick) noexcept override;
+  rig::RigOutput step(const rig::RigInput& input) noexcept override;
+  rig::RigOutput sample(const rig::RigInput& input) noexcept override;
+  void drive(const rig::RigInput& input, rig::RigOutput& output) noexcept override;
+  [[nodiscard]] bool prepared() const noexcept override;
+  [[nodiscard]] const char* unsound() const noexcept override { return why_; }
+  [[nodiscard]] const char* parts() const noexcept override { return words_.c_str(); }
+
+ private:
+  void take_drive() noexcept;
+  void take_platform() noexcept;
+  void put_stick(rig::RigOutput& output) const noexcept;
+  void put_platform(rig::RigOutput& output) const noexcept;
+  void move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept;
+  void drive_motor(const rig::RigInput& input, rig::RigOutput& output) noexcept;
+  void judge() noexcept;
+  [[nodiscard]] bool at_rail() const noexcept;
+  [[nodiscard]] bool drive_fresh() const noexcept;
+  [[nodiscard]] bool platform_fresh() const noexcept;
+
+  rig::RigConfig rig_config_;
+  DevicesConfig devices_;
+  Parts parts_;
+  rig::Rig simulated_;
+  rig::Motor motor_;  ///< age, permission and envelope of the force: those of the simulated rig
+  SetPointGuard guard_;
+  Arming arming_;
+  std::unique_ptr<DriveLink> drive_;  ///< null: no part is the drive's
+  std::unique_ptr<PlatformLink> platform_;
+
+  Trial trial_;
+  Tick tick_ = 0;
+  std::int64_t now_ns_ = 0;
+  DriveSample stick_;
+  PlatformSample seat_;
+  bool jumped_ = false;   ///< the angle jumped; until this process is started again
+  Tick rail_ticks_ = 0;   ///< an analogue input stands at its end for so long
+  double force_n_ = 0.0;  ///< as the drive was told
+  Order order_ = Order::kQuery;
+  const char* why_ = nullptr;
+  std::array<char, 120> text_{};
+  std::string words_;
+};
+
+}  // namespace stillhand::device_rig

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/drive_link.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+constexpr std::int64_t kMs_ns = 1'000'000;
+// A demand that waited for so long is of an earlier state of the stick.
+constexpr std::int64_t kOldest_ns = 5 * kMs_ns;
+constexpr std::int64_t kAnswerLimit_ns = 1000 * kMs_ns;
+// A drive that answers later than this is of no use at 1 kHz; the usual cause is a USB serial chip
+// that collects bytes for 16 ms (its latency_timer).
+constexpr double kSlowest_ms = 10.0;
+constexpr std::int64_t kPollEach_ns = 10 * kMs_ns;
+constexpr int kWait_ms = 100;
+
+}  // namespace
+
+DriveLink::DriveLink(const DriveConfig& config, const moteus::SettingLimits& limits)
+    : config_(config), limits_(limits), port_(std::make_unique<runtime::SerialPort>(config.port)) {
+  const std::string drive = "drive " + std::to_string(config.id) + " at " + config.port;
+  // The adapter's bus may be off; a drive's UART does not know this command, which does no harm.
+  if (!config.checksum) port_->write("\ncan on\n");
+  const auto trip_ms = round_trip_ms();
+  if (!trip_ms) {
+    throw ConfigError(drive, "no answer", "a moteus with power, the right id, and its cables");
+  }
+  if (*trip_ms > kSlowest_ms) {
+    throw ConfigError(drive, "an answer after " + std::to_string(*trip_ms) + " ms",
+                      "at most 10 ms (latency_timer of a USB serial chip: 1)");
+  }
+  if (const auto fault = wrong_setting()) {
+    throw ConfigError(drive + ": " + fault->name, fault->got,
+                      fault->want + "; this mends it: " + fault->mend);
+  }
+  sample_.checked = true;
+  samples_.store(sample_);
+  thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+}
+
+DriveLink::~DriveLink() {
+  thread_.request_stop();
+  bell_.ring();
+}
+
+void DriveLink::demand(Order order, double torque_n_m) noexcept {
+  demands_.store({++demand_number_, runtime::monotonic_ns(), order, torque_n_m});
+  bell_.ring();
+}
+
+void DriveLink::work(const std::stop_token& stop) noexcept {
+  while (!stop.stop_requested()) {
+    bell_.wait(port_ ? port_->descriptor() : -1, kWait_ms);
+    if (!port_ || port_->gone()) open_again();
+    if (!port_) continue;
+    receive();
+    if (unchecked_) {
+      unchecked_ = !check_again();
+    } else {
+      send_demand();
+    }
+  }
+  if (port_) send(moteus::stop_frame());
+}
+
+// A cable that was pulled and put in again: the drive may be another one.
+void DriveLink::open_again() {
+  port_.reset();
+  sample_.checked = false;
+  samples_.store(sample_);
+  unchecked_ = true;
+  try {
+    port_ = std::make_unique<runtime::SerialPort>(config_.port);
+  } catch (const std::exception&) {
+    // Not there yet: the next turn tries again.  Nothing rings meanwhile as often as the loop.
+    runtime::sleep_until_ns(runtime::monotonic_ns() + kWait_ms * kMs_ns);
+  }
+}
+
+bool DriveLink::check_again() {
+  // What is still under way does not answer what is asked now.
+  receive_until(runtime::monotonic_ns() + kAnswerLimit_ns, [] { return false; });
+  if (port_->gone()) return false;
+  reply_clock_.clear();
+  const auto trip_ms = round_trip_ms();
+  const bool good = trip_ms && *trip_ms <= kSlowest_ms && !wrong_setting();
+  sample_.checked = good;
+  samples_.store(sample_);
+  return good;
+}
+
+void DriveLink::send(const moteus::Frame& frame) noexcept {
+  constexpr std::uint32_t kReplyWanted = 0x8000;
+  const auto line = moteus::send_line(kReplyWanted | static_cast<std::uint32_t>(config_.id), frame,
+                                      config_.checksum);
+  // A newline first ends the piece of a line that the port took before.
+  if (piece_sent_ && !port_->write("\n")) {
+    ++sample_.unsent;
+    return;
+  }
+  piece_sent_ = !port_->write(line.view());
+  if (piece_sent_) ++sample_.unsent;
+}
+
+void DriveLink::send_demand() noexcept {
+  const Demand& demand = demands_.load();
+  if (demand.number == sent_number_) return;
+  sent_number_ = demand.number;
+  if (runtime::monotonic_ns() - demand.at_ns > kOldest_ns) {
+    ++sample_.unsent;
+    return;
+  }
+  switch (demand.order) {
+    case Order::kQuery:
+      return send(moteus::query_frame());
+    case Order::kStop:
+      return send(moteus::stop_frame());
+    case Order::kTorque:
+      return send(moteus::torque_frame({.torque_n_m = demand.torque_n_m,
+                                        .max_torque_n_m = config_.max_torque_n_m,
+                                        .watchdog_s = config_.watchdog_s}));
+  }
+}
+
+void DriveLink::receive() noexcept {
+  std::array<char, 1024> bytes{};
+  // A device that never stops talking does not hold the thread.
+  for (int turn = 0; turn < 8; ++turn) {
+    const std::string_view text = port_->read(bytes);
+    if (text.empty()) return;
+    splitter_.take(
+        text, [this](std::string_view line) { take(moteus::read_line(line, config_.checksum)); });
+  }
+}
+
+void DriveLink::take(const moteus::Received& received) noexcept {
+  using Kind = moteus::Received::Kind;
+  if (received.kind == Kind::kDamaged) ++sample_.damaged;
+  if (received.kind != Kind::kFrame) return;
+  constexpr std::uint32_t kNumber = 0x7f;
+  if ((received.identifier >> 8 & kNumber) != static_cast<std::uint32_t>(config_.id)) return;
+  moteus::FrameReader reader(received.frame.payload());
+  bool console = false;
+  while (const auto item = reader.next()) {
+    if (item->kind != moteus::FrameReader::Kind::kConsole) continue;
+    console = true;
+    answer_.take(item->console);
+  }
+  if (console) return;
+  const auto reply = moteus::read_reply(received.frame.payload());
+  if (reply.whole) {
+    take_state(reply);
+  } else {
+    ++sample_.damaged;
+  }
+}
+
+void DriveLink::take_state(const moteus::DriveReply& reply) noexcept {
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  switch (reply_clock_.step(reply.milliseconds, 1e-6 * static_cast<double>(now_ns))) {
+    case ReplyClock::Verdict::kYoung:
+      ++sample_.sequence;
+      sample_.at_ns = now_ns;
+      sample_.reply = reply;
+      break;
+    case ReplyClock::Verdict::kOld:
+      ++sample_.late;
+      break;
+    case ReplyClock::Verdict::kRestarted:
+      // It has the settings of its memory now, which may be others.
+      sample_.checked = false;
+      unchecked_ = true;
+      break;
+  }
+  samples_.store(sample_);
+}
+
+template <typename IsThere>
+bool DriveLink::receive_until(std::int64_t until_ns, IsThere is_there) noexcept {
+  while (!is_there()) {
+    const std::int64_t left_ns = until_ns - runtime::monotonic_ns();
+    if (left_ns <= 0 || port_->gone()) return false;
+    bell_.wait(port_->descriptor(), static_cast<int>(std::min(left_ns, kPollEach_ns) / kMs_ns) + 1);
+    receive();
+  }
+  return true;
+}
+
+std::optional<double> DriveLink::round_trip_ms() {
+  const std::uint64_t before = sample_.sequence;
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    const std::int64_t sent_ns = runtime::monotonic_ns();
+    send(moteus::stop_frame());
+    if (receive_until(sent_ns + kAnswerLimit_ns / 10, [&] { return sample_.sequence > before; })) {
+      return 1e-6 * static_cast<double>(runtime::monotonic_ns() - sent_ns);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<moteus::SettingFault> DriveLink::wrong_setting() {
+  for (const std::string_view name : moteus::kSettings) {
+    const auto answer = ask(name);
+    if (auto fault = moteus::judge_setting(name, answer.value_or("no answer"), limits_)) {
+      return fault;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> DriveLink::ask(std::string_view name) {
+  answer_.clear();
+  send(moteus::ask_setting(name));
+  const std::int64_t until_ns = runtime::monotonic_ns() + kAnswerLimit_ns;
+  while (runtime::monotonic_ns() < until_ns && !port_->gone()) {
+    send(moteus::poll_setting());
+    const std::int64_t next_ns = runtime::monotonic_ns() + kPollEach_ns;
+    if (receive_until(next_ns, [&] { return answer_.line().has_value(); })) return answer_.line();
+  }
+  return std::nullopt;
+}
+
+}  // namespace stillhand::device_rig

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/emulators/laboratory.hpp"
+#include "tests/emulators/serial_side.hpp"
+
+namespace stillhand::emulators {
+
+struct LoopOptions {
+  std::filesystem::path drive_link;
+  std::uint16_t platform_port = 0;
+  bool uart = false;
+  std::vector<std::string> settings;  ///< NAME=VALUE
+};
+
+/// Devices and physics in one thread: it answers whatever comes at once, and steps the physics each
+/// millisecond of its own clock.  Lines on standard input make faults and ask for the record.
+class EmulatedLoop {
+ public:
+  EmulatedLoop(const LoopOptions& options, const rig::RigConfig& rig);
+  ~EmulatedLoop();
+  EmulatedLoop(const EmulatedLoop&) = delete;
+  EmulatedLoop& operator=(const EmulatedLoop&) = delete;
+
+  /// Until standard input ends.  @param person  null: nobody holds the stick
+  void run(Person* person);
+
+ private:
+  void hear_drive(std::int64_t now_ns);
+  void hear_platform(std::int64_t now_ns);
+  /// @returns false at the end of standard input
+  bool hear_orders(std::int64_t now_ns);
+  void obey(const std::string& line, std::int64_t now_ns);
+  bool obey_drive(const std::string& word, double value, std::int64_t now_ns);
+  bool obey_way(const std::string& word, double value);
+  void report(std::int64_t now_ns) const;
+
+  MoteusEmulator drive_;
+  PlatformEmulator platform_;
+  SerialSide serial_;
+  Laboratory laboratory_;
+  int socket_ = -1;
+  bool platform_silent_ = false;
+  std::string orders_;
+  std::int64_t fault_ns_ = 0;         ///< of the newest order that makes a fault
+  double fault_torque_n_m_ = 0.0;     ///< at that moment
+  std::int64_t torque_until_ns_ = 0;  ///< newest time with a torque
+  std::int64_t worst_step_ns_ = 0;    ///< longest time between two steps
+};
+
+}  // namespace stillhand::emulators

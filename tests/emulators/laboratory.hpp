@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "services/contract/trial.hpp"
+#include "services/rig/core/rig.hpp"
+#include "services/runtime/bus/tap.hpp"
+#include "services/runtime/process/latest_value.hpp"
+#include "tests/emulators/moteus_emulator.hpp"
+#include "tests/emulators/platform_emulator.hpp"
+
+namespace stillhand::emulators {
+
+/// What the session's simulated person does with the emulated stick: a witness on the bus, outside
+/// of the session.  The force of `operator_force` is that of a hand, and the peg is in while a
+/// pegged trial runs.
+class Person {
+ public:
+  Person(std::uint32_t domain, const std::filesystem::path& profiles);
+  ~Person();
+  Person(const Person&) = delete;
+  Person& operator=(const Person&) = delete;
+
+  /// Puts the person's part into the input.  One thread.
+  void put(rig::RigInput& input);
+
+ private:
+  struct Push {
+    bool valid = false;
+    Tick tick = 0;
+    double force_n = 0.0;
+  };
+  void take(const runtime::FoundWriter& writer, const runtime::TappedSample& sample);
+
+  // One writer thread each: a tap has a reader for each topic.
+  runtime::LatestValue<Push> push_;
+  runtime::LatestValue<Trial> trial_;
+  std::atomic<Tick> tick_{-1};
+  std::unique_ptr<runtime::Tap> tap_;
+};
+
+/// Body, stick and platform of the emulated laboratory: the simulated rig's own core, driven by the
+/// torque of the emulated drive and the set-points of the emulated platform.
+class Laboratory {
+ public:
+  Laboratory(const rig::RigConfig& config, MoteusEmulator& drive, PlatformEmulator& platform);
+
+  /// One millisecond.
+  void step(std::int64_t now_ns, Person* person);
+  /// The encoder slips by so much.
+  void slip(double angle_rev) { slip_rev_ += angle_rev; }
+  /// The accelerometer's amplifier sticks at its end.
+  void saturate(bool saturated) { saturated_ = saturated; }
+  [[nodiscard]] const rig::RigTruth& truth() const { return output_.truth; }
+
+ private:
+  double lever_m_;
+  rig::Rig rig_;
+  MoteusEmulator& drive_;
+  PlatformEmulator& platform_;
+  rig::RigOutput output_{};
+  double slip_rev_ = 0.0;
+  bool saturated_ = false;
+};
+
+}  // namespace stillhand::emulators

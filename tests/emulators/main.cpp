@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// emulated_laboratory: a moteus drive behind a pseudo-terminal and a platform behind UDP, with the
+// simulated rig's body, stick and platform between them.  README.md.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <optional>
+
+#include "services/contract/config_error.hpp"
+#include "services/rig/plant.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/settings/load.hpp"
+#include "tests/emulators/emulated_loop.hpp"
+
+int main(int argc, char** argv) {
+  using namespace stillhand;
+  emulators::LoopOptions options;
+  std::filesystem::path config;
+  std::filesystem::path profiles;
+  std::uint64_t seed = 1;
+  std::optional<std::uint32_t> domain;
+  bool ordinary = false;
+  CLI::App cli("emulated_laboratory: a servo drive and a platform that are not there");
+  cli.add_option("--drive-link", options.drive_link, "name of the drive's serial port")->required();
+  cli.add_option("--platform-port", options.platform_port, "UDP port of the platform")->required();
+  cli.add_option("--config", config, "folder with rig.yaml: body and stick")->required();
+  cli.add_option("--profiles", profiles, "QoS profiles");
+  cli.add_option("--domain", domain, "DDS domain of the session whose person holds the stick");
+  cli.add_option("--seed", seed, "of the sensors' noise");
+  cli.add_flag("--uart", options.uart, "the drive's own UART: lines with checksums");
+  cli.add_option("--set", options.settings, "NAME=VALUE of the drive's settings")
+      ->allow_extra_args(false);
+  cli.add_flag("--no-real-time", ordinary, "do not ask for real-time priority");
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    runtime::end_with_parent();
+    if (!ordinary) runtime::become_real_time();
+    const auto rig = rig::seeded(settings::load<rig::RigConfig>(config / "rig.yaml", "rig"), seed);
+    std::optional<emulators::Person> person;
+    if (domain) person.emplace(*domain, profiles);
+    emulators::EmulatedLoop loop(options, rig);
+    loop.run(person ? &*person : nullptr);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "emulated_laboratory: " << error.what() << '\n';
+    return 2;
+  }
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of a rig of devices together, without a bus: a stick on a desk, whose drive is
+// emulated, with a simulated platform.
+#include "services/device_rig/device_plant.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/support/wait.hpp"
+#include "tests/unit/device_rig/emulated_drive.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+using support::eventually;
+
+constexpr double kLever_m = 0.1;  // rig.yaml
+constexpr Tick kFar = 1'000'000;
+
+class DevicePlantTest : public testing::Test {
+ protected:
+  DevicePlantTest() {
+    auto& signals = devices_.signals;
+    signals.force = signals.angle = signals.motor = "drive";
+    devices_.drive.port = emulated_.port();
+    // A busy machine steps the test late.
+    devices_.drive.watchdog_s = 0.1;
+    devices_.drive.max_age_ticks = 100;
+  }
+  /// One tick of the rig's shell.
+  rig::RigOutput tick(rig::Plant& sut) {
+    sut.begin(trial_, ++tick_);
+    rig::RigInput input;
+    input.motor_valid = true;
+    input.motor_force_n = force_n_;
+    input.motor_permitted = permitted_;
+    auto output = sut.sample(input);
+    sut.drive(input, output);
+    return output;
+  }
+  template <typename Condition>
+  bool ticks_until(rig::Plant& sut, Condition condition) {
+    return eventually([&] { return condition(tick(sut)); });
+  }
+  void announce(std::int64_t number, TrialPhase phase) {
+    trial_ = {.number = number, .phase = phase, .start_tick = 0, .duration_ticks = kFar};
+  }
+  bool stands_for(rig::Plant& sut, int ticks) {
+    int still = 0;
+    return ticks_until(sut,
+                       [&](const auto&) {
+                         if (emulated_.record().commands > 0) return true;
+                         return ++still > ticks;
+                       }) &&
+           emulated_.record().commands == 0;
+  }
+
+  EmulatedDrive emulated_;
+  DevicesConfig devices_;
+  Trial trial_;
+  Tick tick_ = 0;
+  double force_n_ = 0.0;
+  bool permitted_ = false;
+};
+
+TEST_F(DevicePlantTest, NothingIsArmedWithoutPermissionOrWithThePegIn) {
+  DevicePlant sut({}, devices_);
+  ASSERT_TRUE(ticks_until(sut, [&](const auto&) { return sut.prepared(); }));
+  force_n_ = 5.0;
+  announce(1, TrialPhase::kTracking);
+  EXPECT_TRUE(stands_for(sut, 100));
+  announce(2, TrialPhase::kPegged);
+  permitted_ = true;
+  EXPECT_TRUE(stands_for(sut, 100));
+  EXPECT_EQ(sut.unsound(), nullptr);
+}
+
+TEST_F(DevicePlantTest, AForceIsATorqueWithItsSignAndComesWithoutAJump) {
+  devices_.drive.torque_sign = -1;
+  DevicePlant sut({}, devices_);
+  announce(1, TrialPhase::kTracking);
+  permitted_ = true;
+  force_n_ = 8.0;
+  ASSERT_TRUE(ticks_until(sut, [&](const auto& output) {
+    // Both are of this tick or one before; a float's rounding.
+    return std::abs(emulated_.torque_n_m() + kLever_m * output.truth.motor_force_n) < 1e-6 &&
+           output.truth.motor_force_n > 7.99;
+  }));
+  EXPECT_EQ(emulated_.record().first_torque_n_m, 0.0);
+  permitted_ = false;
+  EXPECT_TRUE(ticks_until(sut, [&](const auto& output) {
+    return output.truth.motor_force_n == 0.0 && emulated_.record().stops > 1 &&
+           emulated_.torque_n_m() == 0.0;
+  }));
+}
+
+TEST_F(DevicePlantTest, AMotorThatIsOffIsNeverDriven) {
+  devices_.signals.motor = "off";
+  DevicePlant sut({}, devices_);
+  announce(1, TrialPhase::kTracking);
+  permitted_ = true;
+  force_n_ = 8.0;
+  EXPECT_TRUE(stands_for(sut, 200));
+}
+
+TEST_F(DevicePlantTest, AngleAndForceAreTheDrivesAndTheRestIsSimulatedAndUnknown) {
+  emulated_.with([](auto& drive, auto&) {
+    drive.sense({.position_rev = 0.05, .velocity_rev_s = 0.0, .analog1 = 0.25, .analog2 = 0.5});
+  });
+  DevicePlant sut({}, devices_);
+  rig::RigOutput output{};
+  ASSERT_TRUE(ticks_until(sut, [&](const auto& now) {
+    output = now;
+    return output.raw.encoder_counts != 0 && sut.prepared();
+  }));
+  EXPECT_EQ(output.raw.encoder_counts, std::lround(0.05 * 4096));
+  // A converter of 12 bit at 3.3 V.
+  EXPECT_NEAR(output.raw.load_cell_v, 0.25 * 3.3, 3.3 / 4095);
+  EXPECT_NEAR(output.raw.accel_z_v, 1.0, 0.05);  // the simulated accelerometer: 1 g
+  EXPECT_TRUE(std::isnan(output.truth.feedthrough_force_n));
+  EXPECT_STREQ(sut.parts(),
+               "rig of devices: force drive, angle drive, motor drive; simulated: acceleration, "
+               "platform");
+}
+
+TEST_F(DevicePlantTest, ASilentDriveIsUnsoundAndItsSamplesHaveNoValue) {
+  DevicePlant sut({}, devices_);
+  ASSERT_TRUE(ticks_until(sut, [&](const auto&) { return sut.prepared(); }));
+  emulated_.with([](auto&, auto& serial) { serial.mischief.silent = true; });
+  EXPECT_TRUE(ticks_until(sut, [&](const auto& output) {
+    return sut.unsound() != nullptr && std::isnan(output.raw.load_cell_v);
+  }));
+  EXPECT_THAT(sut.unsound(), testing::StrEq("the drive is silent"));
+  EXPECT_FALSE(sut.prepared());
+}
+
+TEST_F(DevicePlantTest, AnAngleThatJumpsDisarmsForGood) {
+  DevicePlant sut({}, devices_);
+  announce(1, TrialPhase::kTracking);
+  permitted_ = true;
+  ASSERT_TRUE(ticks_until(sut, [&](const auto&) { return emulated_.record().commands > 5; }));
+  emulated_.with([](auto& drive, auto&) { drive.sense({.position_rev = 3.0}); });
+  EXPECT_TRUE(ticks_until(sut, [&](const auto&) { return sut.unsound() != nullptr; }));
+  EXPECT_THAT(sut.unsound(), testing::HasSubstr("jumped"));
+  announce(2, TrialPhase::kTracking);
+  EXPECT_TRUE(ticks_until(sut, [&](const auto&) { return emulated_.torque_n_m() == 0.0; }));
+  EXPECT_FALSE(sut.prepared());
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig

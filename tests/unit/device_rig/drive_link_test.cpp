@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The drive's thread against the emulator behind a pseudo-terminal.
+#include "services/device_rig/drive_link.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "services/contract/config_error.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "tests/support/wait.hpp"
+#include "tests/unit/device_rig/emulated_drive.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+using support::eventually;
+using testing::HasSubstr;
+
+constexpr moteus::SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
+
+class DriveLinkTest : public testing::Test {
+ protected:
+  explicit DriveLinkTest(bool uart = false) : emulated_(uart) {
+    config_.port = emulated_.port();
+    config_.checksum = uart;
+  }
+  std::string refusal() {
+    try {
+      const DriveLink sut(config_, kLimits);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  /// Orders until the condition holds.
+  template <typename Condition>
+  bool orders_until(DriveLink& sut, Order order, double torque_n_m, Condition condition) {
+    return eventually([&] {
+      sut.demand(order, torque_n_m);
+      return condition(sut.newest());
+    });
+  }
+
+  EmulatedDrive emulated_;
+  DriveConfig config_;
+};
+
+class UartLinkTest : public DriveLinkTest {
+ protected:
+  UartLinkTest() : DriveLinkTest(true) {}
+};
+
+TEST_F(DriveLinkTest, ReadsTheSettingsBackAndFollowsOrders) {
+  DriveLink sut(config_, kLimits);
+  EXPECT_TRUE(sut.newest().checked);
+  EXPECT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
+    return sample.reply.mode == moteus::kInPosition && sample.reply.torque_n_m > 0.49;
+  }));
+  EXPECT_EQ(emulated_.record().without_watchdog, 0u);
+}
+
+TEST_F(UartLinkTest, SpeaksWithChecksums) {
+  DriveLink sut(config_, kLimits);
+  EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return sample.sequence > 5; }));
+  EXPECT_EQ(sut.newest().damaged, 0u);
+}
+
+TEST_F(DriveLinkTest, ADriveThatDampsAfterATimeoutIsRefusedWithTheCommandThatMendsIt) {
+  emulated_.with([](auto& drive, auto&) { drive.set("servo.timeout_mode", "12"); });
+  EXPECT_THAT(refusal(), HasSubstr("servo.timeout_mode: got 12, want 0: the driver is off after a "
+                                   "timeout; this mends it: conf set servo.timeout_mode 0"));
+}
+
+TEST_F(DriveLinkTest, ADriveWithTooMuchCurrentIsRefused) {
+  emulated_.with([](auto& drive, auto&) { drive.set("servo.max_current_A", "40.0"); });
+  EXPECT_THAT(refusal(), HasSubstr("servo.max_current_A: got 40.0, want at most 10 A"));
+}
+
+TEST_F(DriveLinkTest, ADriveThatDoesNotAnswerOrAnswersLateIsRefused) {
+  emulated_.with([](auto&, auto& serial) { serial.mischief.late_ms = 30.0; });
+  EXPECT_THAT(refusal(), HasSubstr("want at most 10 ms"));
+  emulated_.with([](auto&, auto& serial) { serial.mischief.silent = true; });
+  EXPECT_THAT(refusal(), HasSubstr("got no answer"));
+}
+
+TEST_F(DriveLinkTest, TwoProcessesDoNotShareAPort) {
+  const DriveLink sut(config_, kLimits);
+  EXPECT_THAT(refusal(), testing::AnyOf(HasSubstr("another process"), HasSubstr("busy")));
+}
+
+TEST_F(DriveLinkTest, ItSendsNothingByItselfSoTheWatchdogTrips) {
+  DriveLink sut(config_, kLimits);
+  ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
+    return sample.reply.torque_n_m > 0.49;
+  }));
+  EXPECT_TRUE(eventually([&] { return emulated_.record().timeouts == 1; }));
+  EXPECT_EQ(emulated_.torque_n_m(), 0.0);
+}
+
+TEST_F(DriveLinkTest, ItsEndSwitchesTheDriverOff) {
+  {
+    DriveLink sut(config_, kLimits);
+    ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
+      return sample.reply.mode == moteus::kInPosition;
+    }));
+  }
+  EXPECT_TRUE(eventually(
+      [&] { return emulated_.with([](auto& drive, auto&) { return drive.mode() == 0; }); }));
+}
+
+TEST_F(DriveLinkTest, ADriveThatStartsAnewIsCheckedAgain) {
+  DriveLink sut(config_, kLimits);
+  ASSERT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return sample.sequence > 300; }));
+  emulated_.with([](auto& drive, auto&) { drive.reboot(runtime::monotonic_ns()); });
+  EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return !sample.checked; }));
+  EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return sample.checked; }));
+}
+
+TEST_F(DriveLinkTest, AfterTheCableWasOutTheDriveIsCheckedAgain) {
+  DriveLink sut(config_, kLimits);
+  emulated_.with([](auto&, auto& serial) { serial.pull_out(); });
+  EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return !sample.checked; }));
+  emulated_.with([](auto&, auto& serial) { serial.put_in(); });
+  EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return sample.checked; }));
+}
+
+TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {
+  DriveLink sut(config_, kLimits);
+  for (bool emulators::Mischief::*kind :
+       {&emulators::Mischief::garbage, &emulators::Mischief::truncated}) {
+    emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = true; });
+    // What was under way before comes first.
+    std::uint64_t last = 0;
+    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0, [&](const DriveSample& sample) {
+      return sample.sequence == std::exchange(last, sample.sequence);
+    }));
+    emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = false; });
+    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                             [&](const DriveSample& sample) { return sample.sequence > last; }));
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules of a torque command, judged by the emulator, which is written from the maker's
+// documents and shares no code with the driver.
+#include "services/device_rig/core/moteus_drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "services/device_rig/core/fdcanusb_line.hpp"
+#include "tests/emulators/moteus_emulator.hpp"
+
+namespace stillhand::device_rig::moteus {
+namespace {
+
+constexpr std::int64_t kMs_ns = 1'000'000;
+
+class TorqueFrameTest : public testing::Test {
+ protected:
+  DriveReply exchange(const Frame& frame) {
+    const std::string answers = drive_.take(send_line(0x8001, frame, false).view(), now_ns_);
+    DriveReply reply;
+    LineSplitter splitter;
+    splitter.take(answers, [&](std::string_view line) {
+      const auto received = read_line(line, false);
+      if (received.kind == Received::Kind::kFrame) reply = read_reply(received.frame.payload());
+    });
+    return reply;
+  }
+  DriveReply command(double torque_n_m) {
+    return exchange(
+        torque_frame({.torque_n_m = torque_n_m, .max_torque_n_m = 2.0, .watchdog_s = 0.02}));
+  }
+  void wait_ms(int count) {
+    for (int i = 0; i < count; ++i) drive_.tick(now_ns_ += kMs_ns);
+  }
+
+  std::int64_t now_ns_ = kMs_ns;
+  emulators::MoteusEmulator drive_{false};
+};
+
+TEST_F(TorqueFrameTest, IsThatTorqueWhereverTheStickIsAndHoweverItMoves) {
+  drive_.sense({.position_rev = 0.07, .velocity_rev_s = -1.5});
+  const DriveReply reply = command(0.8);
+  EXPECT_TRUE(reply.whole);
+  EXPECT_EQ(reply.mode, kInPosition);
+  // A float carries 0.8 with a relative error below 2^-24.
+  EXPECT_NEAR(drive_.torque_n_m(), 0.8, 1e-7);
+  drive_.sense({.position_rev = -0.05, .velocity_rev_s = 2.0});
+  wait_ms(1);
+  EXPECT_NEAR(drive_.torque_n_m(), 0.8, 1e-7);
+  EXPECT_EQ(drive_.record().with_gains, 0u);
+  EXPECT_EQ(drive_.record().without_bound, 0u);
+  EXPECT_EQ(drive_.record().without_watchdog, 0u);
+}
+
+TEST_F(TorqueFrameTest, IsBoundedHereAndAtTheDrive) {
+  command(50.0);
+  EXPECT_DOUBLE_EQ(drive_.torque_n_m(), 2.0);
+  command(std::nan(""));
+  EXPECT_EQ(drive_.torque_n_m(), 0.0);
+  command(-std::numeric_limits<double>::infinity());
+  EXPECT_EQ(drive_.torque_n_m(), 0.0);
+}
+
+TEST_F(TorqueFrameTest, FitsOneFrame) { EXPECT_LE(torque_frame({1.0, 2.0, 0.02}).size, 48u); }
+
+TEST_F(TorqueFrameTest, EndsWithTheWatchdogAndLatchesUntilAStop) {
+  command(0.8);
+  wait_ms(19);
+  EXPECT_GT(drive_.torque_n_m(), 0.0);
+  wait_ms(2);
+  EXPECT_EQ(drive_.torque_n_m(), 0.0);
+  EXPECT_EQ(command(0.8).mode, kTimedOut);
+  EXPECT_EQ(drive_.torque_n_m(), 0.0);
+  EXPECT_EQ(exchange(stop_frame()).mode, kStopped);
+  EXPECT_EQ(command(0.8).mode, kInPosition);
+}
+
+TEST_F(TorqueFrameTest, AQueryDoesNotFeedTheWatchdog) {
+  command(0.8);
+  for (int i = 0; i < 25; ++i) {
+    wait_ms(1);
+    exchange(query_frame());
+  }
+  EXPECT_EQ(drive_.torque_n_m(), 0.0);
+  EXPECT_EQ(drive_.record().timeouts, 1u);
+}
+
+// Trap 3 of the drive: its shipped setting damps after a timeout, with up to 5 N m.
+TEST_F(TorqueFrameTest, ADriveWithTheShippedTimeoutModeStillPushes) {
+  drive_.set("servo.timeout_mode", "12");
+  drive_.sense({.velocity_rev_s = 1.0});
+  command(0.8);
+  wait_ms(30);
+  EXPECT_LT(drive_.torque_n_m(), -0.1);
+}
+
+TEST_F(TorqueFrameTest, TheReplyHoldsTheAnalogueInputs) {
+  drive_.sense({.position_rev = 0.01, .analog1 = 0.25, .analog2 = 0.75});
+  const DriveReply reply = exchange(query_frame());
+  // A converter of 12 bit, then an int16.
+  EXPECT_NEAR(reply.analog1, 0.25, 0.5 / 4095 + 0.5 / 32767);
+  EXPECT_NEAR(reply.analog2, 0.75, 0.5 / 4095 + 0.5 / 32767);
+  EXPECT_NEAR(reply.position_rev, 0.01, 0.5e-5);
+}
+
+TEST_F(TorqueFrameTest, AFirmwareWithoutARegisterIsSeen) {
+  drive_.forget(0x03);
+  const DriveReply reply = exchange(query_frame());
+  EXPECT_TRUE(reply.refused);
+  EXPECT_FALSE(reply.whole);
+}
+
+TEST_F(TorqueFrameTest, APositionWithoutAValueIsNoWholeReply) {
+  drive_.lose_position(true);
+  EXPECT_FALSE(exchange(query_frame()).whole);
+}
+
+// The maker's printed command, given to the emulator: what it asks for is answered in that form.
+// The torque is -1.76 N m and 0.003 N m of the emulator's gains, in steps of 0.01 N m.
+TEST_F(TorqueFrameTest, TheEmulatorTakesTheMakersPrintedCommand) {
+  drive_.sense({.position_rev = 0.008, .velocity_rev_s = 0.064});
+  const std::string answers =
+      drive_.take("can send 8001 01000a07206000200150ff140400130d\n", now_ns_);
+  EXPECT_EQ(answers.substr(0, 4 + 24 + 6),
+            "OK\r\nrcv 100 2404000A0050000001"
+            "50FF");
+  EXPECT_EQ(drive_.mode(), 10);
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig::moteus

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/core/moteus_frame.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "services/device_rig/core/moteus_drive.hpp"
+
+namespace stillhand::device_rig::moteus {
+namespace {
+
+std::string hex(const Frame& frame) {
+  std::string text;
+  for (const std::uint8_t each : frame.payload()) {
+    char digits[3];
+    std::snprintf(digits, sizeof(digits), "%02x", each);
+    text += digits;
+  }
+  return text;
+}
+
+std::vector<std::uint8_t> bytes(const std::string& digits) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
+    out.push_back(static_cast<std::uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
+  }
+  return out;
+}
+
+// The exchange that the maker prints: mjbots/moteus, docs/protocol/can.md, "Example".
+TEST(FrameWriterTest, MakesTheFrameThatTheMakerPrints) {
+  Frame frame;
+  FrameWriter sut(frame);
+  sut.write(Resolution::kInt8, kMode, {10});
+  sut.write(Resolution::kInt16, kCommandPosition, {3.456 / 360.0, 25.92 / 360.0, -1.76});
+  sut.read(Resolution::kInt16, kMode, 4);
+  sut.read(Resolution::kInt8, kVoltage, 3);
+  sut.pad();
+  EXPECT_TRUE(sut.good());
+  EXPECT_EQ(hex(frame), "01000a07206000200150ff140400130d");
+}
+
+// The maker's reply; its text says what each value is.  Tolerance: half a step of an int16.
+TEST(FrameReaderTest, ReadsTheReplyThatTheMakerPrints) {
+  const auto payload = bytes("2404000a005000000170ff230d181400");
+  const DriveReply reply = read_reply(payload);
+  EXPECT_TRUE(reply.whole);
+  EXPECT_EQ(reply.mode, 10);
+  EXPECT_NEAR(reply.position_rev * 360.0, 2.88, 0.018);
+  EXPECT_NEAR(reply.velocity_rev_s * 360.0, 23.04, 0.045);
+  EXPECT_NEAR(reply.torque_n_m, -1.44, 0.005);
+  EXPECT_NEAR(reply.voltage_v, 12.0, 0.25);
+  EXPECT_NEAR(reply.temperature_c, 20.0, 0.5);
+  EXPECT_EQ(reply.fault, 0);
+}
+
+TEST(FrameWriterTest, NotANumberIsTheMostNegativeInteger) {
+  Frame frame;
+  FrameWriter sut(frame);
+  sut.write(Resolution::kInt16, kCommandPosition, {std::nan("")});
+  EXPECT_EQ(hex(frame), "05200080");
+}
+
+TEST(FrameWriterTest, WhatIsTooLargeForItsTypeIsTheLargestOfTheType) {
+  Frame frame;
+  FrameWriter sut(frame);
+  sut.write(Resolution::kInt16, kCommandTorque, {1e9, -1e9});
+  EXPECT_EQ(hex(frame), "0622ff7f0180");
+}
+
+TEST(FrameWriterTest, PadsToALengthOfCanFd) {
+  Frame frame;
+  FrameWriter sut(frame);
+  sut.write(Resolution::kFloat, kCommandTorque, {1.0, 2.0, 3.0});
+  sut.pad();
+  EXPECT_EQ(frame.size, 16u);
+  EXPECT_EQ(frame.bytes[14], 0x50);
+  EXPECT_EQ(frame.bytes[15], 0x50);
+}
+
+TEST(FrameWriterTest, AFrameThatIsFullSaysSo) {
+  Frame frame;
+  FrameWriter sut(frame);
+  sut.to_console(std::string(80, 'x'));
+  EXPECT_FALSE(sut.good());
+  EXPECT_EQ(frame.size, Frame::kMost);
+}
+
+TEST(FrameReaderTest, EveryCutOfAReplyIsUnsoundOrShorter) {
+  const auto payload = bytes("2404000a005000000170ff230d181400");
+  for (std::size_t size = 0; size < payload.size(); ++size) {
+    const DriveReply reply = read_reply(std::span(payload).first(size));
+    EXPECT_FALSE(reply.whole) << size;
+  }
+}
+
+TEST(FrameReaderTest, EveryByteChangedIsReadWithoutHarm) {
+  const auto good = bytes("2404000a005000000170ff230d181400");
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    for (unsigned value = 0; value < 256; ++value) {
+      auto payload = good;
+      payload[at] = static_cast<std::uint8_t>(value);
+      FrameReader sut(payload);
+      int items = 0;
+      while (sut.next() && items < 100) ++items;
+      EXPECT_LT(items, 100);
+    }
+  }
+}
+
+TEST(FrameReaderTest, AnErrorOfARegisterIsAnItem) {
+  const auto payload = bytes("316001");
+  FrameReader sut(payload);
+  const auto item = sut.next();
+  ASSERT_TRUE(item);
+  EXPECT_EQ(item->kind, FrameReader::Kind::kReadError);
+  EXPECT_EQ(item->address, 0x60u);
+  EXPECT_TRUE(read_reply(payload).refused);
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig::moteus

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/core/moteus_settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace stillhand::device_rig::moteus {
+namespace {
+
+constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
+
+TEST(JudgeSettingTest, TheDriverIsOffAfterATimeoutOrTheDriveIsRefused) {
+  EXPECT_FALSE(judge_setting("servo.timeout_mode", "0", kLimits));
+  for (const char* shipped : {"12", "10", "15", "nan", "", "no answer"}) {
+    const auto sut = judge_setting("servo.timeout_mode", shipped, kLimits);
+    ASSERT_TRUE(sut) << shipped;
+    EXPECT_EQ(sut->mend, "conf set servo.timeout_mode 0, then conf write");
+  }
+}
+
+TEST(JudgeSettingTest, TheDefaultWatchdogEndsACommandWithin100Ms) {
+  EXPECT_FALSE(judge_setting("servo.default_timeout_s", "0.100000", kLimits));
+  for (const char* wrong : {"nan", "0", "0.2", "-1", "inf"}) {
+    EXPECT_TRUE(judge_setting("servo.default_timeout_s", wrong, kLimits)) << wrong;
+  }
+}
+
+TEST(JudgeSettingTest, TheCurrentIsAtMostThatOfTheSettings) {
+  EXPECT_FALSE(judge_setting("servo.max_current_A", "10.000000", kLimits));
+  EXPECT_TRUE(judge_setting("servo.max_current_A", "10.5", kLimits));
+  EXPECT_TRUE(judge_setting("servo.max_current_A", "nan", kLimits));
+}
+
+TEST(JudgeSettingTest, AModeWithoutLimitsIsRefused) {
+  EXPECT_FALSE(judge_setting("servo.fixed_voltage_mode", "0", kLimits));
+  EXPECT_TRUE(judge_setting("servo.fixed_voltage_mode", "1", kLimits));
+}
+
+TEST(JudgeSettingTest, PositionLimitsLieOutsideOfTheStop) {
+  EXPECT_FALSE(judge_setting("servopos.position_min", "nan", kLimits));
+  EXPECT_FALSE(judge_setting("servopos.position_min", "-0.1", kLimits));
+  EXPECT_TRUE(judge_setting("servopos.position_min", "-0.01", kLimits));
+  EXPECT_FALSE(judge_setting("servopos.position_max", "0.1", kLimits));
+  EXPECT_TRUE(judge_setting("servopos.position_max", "0.01", kLimits));
+  EXPECT_TRUE(judge_setting("servopos.position_max", "ERR unknown", kLimits));
+}
+
+TEST(AskSettingTest, TheLongestNameFitsAFrame) {
+  for (const std::string_view name : kSettings) {
+    const Frame frame = ask_setting(name);
+    const std::string text(frame.bytes.begin(),
+                           frame.bytes.begin() + static_cast<long>(frame.size));
+    EXPECT_THAT(text, testing::HasSubstr("conf get " + std::string(name) + "\n"));
+  }
+}
+
+TEST(ConsoleAnswerTest, IsALineFromPieces) {
+  ConsoleAnswer sut;
+  const auto take = [&](const std::string& text) {
+    sut.take({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  take("0.1");
+  EXPECT_FALSE(sut.line());
+  take("00\r\nmore");
+  EXPECT_EQ(sut.line(), "0.100");
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig::moteus

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/core/parts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+std::string refusal(const DevicesConfig& config) {
+  try {
+    parts_of(config);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PartsTest, TheDefaultsNeedNoDevice) {
+  const Parts sut = parts_of({});
+  EXPECT_FALSE(sut.needs_drive());
+  EXPECT_FALSE(sut.needs_platform());
+  EXPECT_EQ(in_words({}), "everything simulated");
+}
+
+TEST(PartsTest, AMixtureIsNamed) {
+  DevicesConfig config;
+  config.signals.angle = config.signals.force = config.signals.motor = "drive";
+  const Parts sut = parts_of(config);
+  EXPECT_TRUE(sut.needs_drive());
+  EXPECT_EQ(in_words(config.signals),
+            "force drive, angle drive, motor drive; simulated: acceleration, platform");
+}
+
+TEST(PartsTest, AMotorThatIsOffStillNeedsTheDriveToSaySo) {
+  DevicesConfig config;
+  config.signals.motor = "off";
+  EXPECT_TRUE(parts_of(config).needs_drive());
+}
+
+TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
+  DevicesConfig config;
+  config.signals.force = "platform";
+  EXPECT_THAT(refusal(config),
+              testing::HasSubstr("devices.signals.force: got platform, want one of"));
+  config = {};
+  config.signals.motor = "drive";
+  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.angle"));
+  config = {};
+  config.signals.acceleration = "platform";
+  EXPECT_THAT(refusal(config), testing::HasSubstr("plain_udp"));
+  config = {};
+  config.drive.torque_sign = 0;
+  EXPECT_THAT(refusal(config), testing::HasSubstr("1 or -1"));
+  config = {};
+  config.signals.acceleration = config.signals.force = "drive";
+  config.drive.acceleration_input = 1;
+  EXPECT_THAT(refusal(config), testing::HasSubstr("the other connector"));
+  config = {};
+  config.drive.watchdog_s = 0.02;
+  config.drive.period_ticks = 10;
+  EXPECT_THAT(refusal(config), testing::HasSubstr("three times"));
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig
