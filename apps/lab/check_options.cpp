@@ -4,11 +4,30 @@
 #include <fmt/format.h>
 
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/core/parts.hpp"
 #include "services/motion/ride_file.hpp"
 #include "services/runtime/process/domain.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand::lab {
 namespace {
+
+// Before anything starts: the words of the file.  The devices themselves are the rig's business.
+void check_devices(const LabOptions& options) {
+  if (options.undeclared_effect != 0) {
+    throw ConfigError("--undeclared-effect", "it with --rig devices",
+                      "it with the simulated rig: nobody plants an effect in a person");
+  }
+  if (options.attach) {
+    throw ConfigError("--attach", "--rig devices with it",
+                      "the rig of devices as a service that runs already");
+  }
+  if (!options.inventory.empty() && options.devices.parent_path() != options.config) {
+    throw ConfigError("--rig", options.devices.string() + " with --inventory",
+                      "devices: the devices.yaml of --config, which goes to the rig's host");
+  }
+  device_rig::parts_of(settings::load<device_rig::DevicesConfig>(options.devices, "devices"));
+}
 
 void check_combinations(const LabOptions& options) {
   if ((options.protocol.motion == session::Motion::kRide) == options.ride.empty()) {
@@ -18,6 +37,7 @@ void check_combinations(const LabOptions& options) {
   if (options.who == Operator::kMouse && options.headless) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
+  if (!options.devices.empty()) check_devices(options);
   if (options.attach &&
       (options.undeclared_effect != 0 || options.subject != 0 || options.video ||
        options.who == Operator::kMouse || options.protocol.motion != session::Motion::kBandNoise)) {

@@ -2,12 +2,18 @@
 #include "apps/lab/lab_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "apps/lab/lab.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/settings/check_name.hpp"
+#include "services/settings/repeatable.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -17,7 +23,8 @@ struct Words {
   std::string conditions = "A,B,C";
   std::string who = "simulated";
   std::string motion = "noise";
-  bool ordinary = false;  // scheduling
+  bool ordinary = false;         // scheduling
+  std::vector<std::string> rig;  // its number, what it is made of, or both
   std::optional<std::string> road_class;
   std::optional<double> road_speed_m_s;
 };
@@ -30,6 +37,28 @@ void take_road(const Words& words, session::ProtocolOptions& protocol) {
   }
   protocol.road_class = words.road_class.value_or(protocol.road_class);
   protocol.road_speed_m_s = words.road_speed_m_s.value_or(protocol.road_speed_m_s);
+}
+
+// "2", "simulated", "devices", or a file; as many of them as are given.
+void take_rig(const std::vector<std::string>& words, LabOptions& options) {
+  for (const std::string& word : words) {
+    if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos) {
+      const auto [end, error] =
+          std::from_chars(word.data(), word.data() + word.size(), options.rig);
+      if (error == std::errc()) continue;
+    } else if (word == "simulated") {
+      options.devices.clear();
+      continue;
+    } else if (word == "devices") {
+      options.devices = options.config / "devices.yaml";
+      continue;
+    } else if (std::filesystem::is_regular_file(word)) {
+      options.devices = std::filesystem::absolute(word);
+      continue;
+    }
+    throw ConfigError("--rig", word,
+                      "a number, simulated, devices, or a file in the form of devices.yaml");
+  }
 }
 
 // The trials and the person or model that tracks.
@@ -108,7 +137,10 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
                  "(deploy/security/make.sh makes it); without: no security")
       ->excludes(inventory)
       ->check(settings::check_name);
-  lab.add_option("--rig", options.rig, "number of the rig on the bus")->capture_default_str();
+  settings::repeatable(lab.add_option(
+      "--rig", words.rig,
+      "number of the rig on the bus [1]; or what it is made of: simulated, devices (devices.yaml "
+      "of --config says which), or such a file [simulated]; both may be given"));
   lab.add_option("--match-seconds", options.match_s,
                  "longest wait until every endpoint has matched [s]")
       ->capture_default_str();
@@ -133,6 +165,7 @@ void take_words(const Words& words, LabOptions& options) {
                             : words.motion == "ride" ? session::Motion::kRide
                                                      : session::Motion::kBandNoise;
   take_road(words, options.protocol);
+  take_rig(words.rig, options);
   options.real_time = !words.ordinary;
 }
 

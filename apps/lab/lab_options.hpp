@@ -23,6 +23,7 @@ struct LabOptions {
   std::filesystem::path config;    ///< folder of the services' settings
   std::uint32_t domain = 0;
   std::uint32_t rig = 1;
+  std::filesystem::path devices;  ///< which device serves which signal; empty: the simulated rig
   bool headless = false;
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy

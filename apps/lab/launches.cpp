@@ -82,12 +82,18 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
     const Place place = hosts.of(service);
     Launch launch;
     launch.name = service;
-    launch.executable = options.programs / ("stillhand-" + launch.name);
+    const bool devices = service == "rig" && !options.devices.empty();
+    launch.executable =
+        options.programs / (devices ? "stillhand-device_rig" : "stillhand-" + launch.name);
     launch.log = options.out / "logs" / (launch.name + ".log");
     launch.arguments = shared_words(options, hosts, place);
     launch.arguments.insert(launch.arguments.end(), {"--experiment", experiment});
     const Arguments own = own_words(service, options, place);
     launch.arguments.insert(launch.arguments.end(), own.begin(), own.end());
+    // On another host it reads the copy among its settings.
+    if (devices && options.inventory.empty()) {
+      launch.arguments.insert(launch.arguments.end(), {"--devices", options.devices.string()});
+    }
     if (service == "rig" && !sealed.empty()) {
       launch.arguments.insert(launch.arguments.end(),
                               {"--undeclared-effect", "--out", options.out.string()});

@@ -2,6 +2,7 @@
 #include "apps/lab/session_figure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,12 +34,15 @@ std::string title_of(const session::TrialResult& trial) {
 report::Panel force_panel(const session::TrialResult& trial) {
   const session::Excerpt& excerpt = trial.excerpt;
   report::Panel out = panel(title_of(trial), "force [N]", kForceExtent_n);
+  // Of a rig of devices nobody knows the feedthrough.
+  const bool known = !excerpt.feedthrough_n.empty() && std::isfinite(excerpt.feedthrough_n.front());
   out.series = {
       {.label = "feedthrough",
        .colour = Colour::kMeasured,
        .x = excerpt.time_s,
        .y = excerpt.feedthrough_n},
       {.label = "motor", .colour = Colour::kModel, .x = excerpt.time_s, .y = excerpt.motor_n}};
+  if (!known) out.series.erase(out.series.begin());
   return out;
 }
 

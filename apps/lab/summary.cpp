@@ -10,9 +10,11 @@
 
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/summary_json.hpp"
+#include "services/device_rig/core/parts.hpp"
 #include "services/identification/codec.hpp"
 #include "services/identification/model_file.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -42,6 +44,12 @@ void print_table(const session::SessionResult& result) {
   std::printf(
       "The paper's RMS error has no unit; one unit is near 5.5 mm. One trial of each condition has "
       "no interval;\n`stillhand close-the-loop --repeats` measures it.\n");
+}
+
+void print_rig(const LabOptions& options) {
+  if (options.devices.empty()) return;
+  const auto devices = settings::load<device_rig::DevicesConfig>(options.devices, "devices");
+  std::printf("rig: %s\n", device_rig::in_words(devices.signals).c_str());
 }
 
 void print_models(const session::SessionResult& result,
@@ -113,6 +121,7 @@ int report_session(const LabOptions& options, const std::vector<session::TrialOu
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
   draw(result, options.out);
   print_table(result);
+  print_rig(options);
   print_models(result, options.model);
   print_motion(outcomes, options.protocol);
   std::int64_t lost = 0;

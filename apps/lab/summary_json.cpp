@@ -5,6 +5,8 @@
 
 #include "apps/report/or_null.hpp"
 #include "apps/session/paper_table.hpp"
+#include "services/device_rig/core/parts.hpp"
+#include "services/settings/load.hpp"
 #include "version.hpp"
 
 namespace stillhand::lab {
@@ -111,6 +113,15 @@ ordered_json trial_json(const session::TrialOutcome& outcome,
           {"marks", marks}};
 }
 
+// What the rig was made of: no result of a simulated part may pass for one of a real one.
+ordered_json rig_json(const LabOptions& options) {
+  if (options.devices.empty()) return {{"kind", "simulated"}};
+  const auto devices = settings::load<device_rig::DevicesConfig>(options.devices, "devices");
+  ordered_json parts = ordered_json::object();
+  for (const auto& [signal, part] : device_rig::named_parts(devices.signals)) parts[signal] = part;
+  return {{"kind", "devices"}, {"parts", parts}};
+}
+
 ordered_json identification_json(const session::SessionResult& result) {
   if (!result.model) return nullptr;
   const auto& model = *result.model;
@@ -163,6 +174,7 @@ ordered_json summary_json(const LabOptions& options,
   summary["manova"] = nullptr;
   summary["restoration"] = restoration_json(result);
   summary["identification"] = identification_json(result);
+  summary["rig"] = rig_json(options);
   summary["control_model"] = or_null(options.model.string());
   summary["canceller"] = options.canceller;
   summary["trials"] = ordered_json::array();

@@ -112,17 +112,25 @@ ForceSignals true_forces(const SessionRecording& session, const Trial& trial) {
           truth([&](const auto& t) { return lever_m * t.omega_rad_s(); })};
 }
 
+/// The feedthrough is known: of a rig of devices nobody knows it.
+bool is_known(const std::vector<double>& feedthrough_n) {
+  return std::ranges::all_of(feedthrough_n, [](double each) { return std::isfinite(each); });
+}
+
 void judge_cancellation(const SessionRecording& session, const PlannedTrial& planned,
                         const identification::TrackingRecord& record, TrialResult& result) {
   const Trial& trial = planned.trial;
   const ForceSignals forces = true_forces(session, trial);
   result.forces = trial_forces(forces, kControlRateHz);
   if (!planned.moving) return;
-  result.cancelled_share = session::cancelled_share(forces.feedthrough_n, forces.motor_n);
+  const bool known = is_known(forces.feedthrough_n);
+  if (known) result.cancelled_share = cancelled_share(forces.feedthrough_n, forces.motor_n);
   result.excerpt = excerpt_of(forces.feedthrough_n, forces.motor_n, record);
   if (!planned.cancellation) return;
-  result.counterforce_delay_s =
-      counterforce_delay_s(forces.feedthrough_n, forces.motor_n, kControlRateHz);
+  if (known) {
+    result.counterforce_delay_s =
+        counterforce_delay_s(forces.feedthrough_n, forces.motor_n, kControlRateHz);
+  }
   result.sensor_to_command = sensor_to_command(session, trial);
   judge_use(session, trial, result);
 }
@@ -188,7 +196,8 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
     if (!outcome.completed || planned.trial.phase != TrialPhase::kTracking) continue;
     result.trials.push_back(evaluate_trial(session, planned));
     if (planned.moving && result.model && result.model->usable() && !result.conversion) {
-      result.conversion = conversion_cost(session, *result.model, planned.trial);
+      const RateConversionCost cost = conversion_cost(session, *result.model, planned.trial);
+      if (std::isfinite(cost.control_filter)) result.conversion = cost;
     }
   }
   return result;

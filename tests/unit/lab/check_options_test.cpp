@@ -55,6 +55,20 @@ TEST_F(CheckOptionsTest, TheDefaultsAreTakenAndEveryMovingTrialIsRehearsed) {
   EXPECT_EQ(check_options(options_).size(), 2u);  // identification and B
 }
 
+TEST_F(CheckOptionsTest, ARigOfDevicesIsReadBeforeAnythingStarts) {
+  options_.devices = options_.config / "devices.yaml";
+  EXPECT_EQ(refusal(), "taken");
+  options_.undeclared_effect = 3;
+  EXPECT_THAT(refusal(), StartsWith("--undeclared-effect: got it with --rig devices"));
+  options_.undeclared_effect = 0;
+  options_.devices = folder_.path() / "devices.yaml";
+  std::ofstream(options_.devices) << "signals:\n  force: scales\n";
+  EXPECT_THAT(refusal(),
+              HasSubstr("devices.signals.force: got scales, want one of simulated, drive"));
+  options_.devices = folder_.path() / "absent.yaml";
+  EXPECT_THAT(refusal(), HasSubstr("absent.yaml"));
+}
+
 TEST_F(CheckOptionsTest, ARideAndItsMotionGoTogether) {
   options_.ride = "x.csv";
   EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: got x.csv"), HasSubstr("--motion ride")));

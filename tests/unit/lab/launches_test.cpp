@@ -74,6 +74,16 @@ TEST_F(LaunchesTest, EveryProcessGetsBusSeedAndPlacesAndEndsWithTheLab) {
   }
 }
 
+TEST_F(LaunchesTest, ARigOfDevicesIsAnotherProgramWithTheFileOfItsDevices) {
+  EXPECT_THAT(of("rig").arguments, Not(Contains("--devices")));
+  options_.devices = "/config/devices.yaml";
+  for (const Launch& launch : all()) {
+    const bool rig = launch.name == "rig";
+    EXPECT_EQ(launch.executable, "/programs/stillhand-" + (rig ? "device_rig" : launch.name));
+    EXPECT_EQ(value_of(launch, "--devices"), rig ? "/config/devices.yaml" : "");
+  }
+}
+
 TEST_F(LaunchesTest, WithoutRealTimeNoProcessAsksForIt) {
   options_.real_time = false;
   for (const Launch& launch : all()) {
