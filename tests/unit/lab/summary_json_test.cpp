@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "places.hpp"
+
 namespace stillhand::lab {
 namespace {
 
@@ -227,8 +229,8 @@ TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(keys, ElementsAre("conditions", "t_tests", "manova", "restoration", "identification",
-                                "control_model", "canceller", "trials", "lost_ticks", "clocks",
-                                "recording_damage", "interrupted", "seed", "subject",
+                                "rig", "control_model", "canceller", "trials", "lost_ticks",
+                                "clocks", "recording_damage", "interrupted", "seed", "subject",
                                 "trial_seconds", "identify_seconds", "reference_note", "version"));
   EXPECT_EQ(json["conditions"], ordered_json::object());
   EXPECT_EQ(json["clocks"], ordered_json::object());
@@ -241,6 +243,16 @@ TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
   EXPECT_EQ(json["interrupted"], true);
   EXPECT_TRUE(json_of(result)["control_model"].is_null());
   EXPECT_NE(json_of(result)["reference_note"], json["reference_note"]);  // 180 s and 20 s
+}
+
+TEST(SummaryJsonTest, ARigOfDevicesIsNamedWithItsParts) {
+  LabOptions options;
+  EXPECT_EQ(json_of({}, {}, options, false)["rig"], ordered_json({{"kind", "simulated"}}));
+  options.devices = STILLHAND_SOURCE "/deploy/config/devices.yaml";
+  const auto rig = json_of({}, {}, options, false)["rig"];
+  EXPECT_EQ(rig["kind"], "devices");
+  EXPECT_EQ(rig["parts"].size(), 5u);
+  EXPECT_EQ(rig["parts"]["platform"], "simulated");
 }
 
 }  // namespace
