@@ -68,7 +68,8 @@ class DriveLink {
   /// Waits for what comes, at most until a time of CLOCK_MONOTONIC.
   template <typename IsThere>
   bool receive_until(std::int64_t until_ns, IsThere is_there) noexcept;
-  /// Sends a stop and waits for its reply.  @returns the time between [ms]; nothing if none came
+  /// Sends stops and waits for their replies.  @returns the shortest time between [ms]; nothing if
+  /// no reply came
   std::optional<double> round_trip_ms();
   /// Reads the settings back.  @returns the first that is wrong
   std::optional<moteus::SettingFault> wrong_setting();

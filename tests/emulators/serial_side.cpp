@@ -8,6 +8,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace stillhand::emulators {
@@ -66,11 +67,16 @@ std::string SerialSide::spoilt(std::string answer) {
   if (mischief.garbage) {
     for (char& c : answer) c = static_cast<char>(next() >> 24);
   }
-  if (mischief.damaged) {
-    const std::size_t at = answer.find("rcv 100 ");
-    if (at != std::string::npos) answer[at + 12] = answer[at + 12] == '0' ? '1' : '0';
+  constexpr std::string_view kReply = "rcv 100 ";
+  constexpr std::size_t kDigit = kReply.size() + 4;  // of the mode
+  for (std::size_t at = answer.find(kReply); mischief.damaged && at != std::string::npos;
+       at = answer.find(kReply, at + 1)) {
+    answer[at + kDigit] = answer[at + kDigit] == '0' ? '1' : '0';
   }
-  if (mischief.truncated) answer.resize(answer.size() / 2);
+  // A host that was late asks twice at once: nothing of the second answer is left either.
+  if (const std::size_t at = answer.find(kReply); mischief.truncated && at != std::string::npos) {
+    answer.resize(at + 40);
+  }
   if (mischief.repeated) return last_.empty() ? answer : last_;
   last_ = answer;
   return answer;

@@ -40,12 +40,14 @@ class DriveLinkTest : public testing::Test {
   bool orders_until(DriveLink& sut, Order order, double torque_n_m, Condition condition) {
     return eventually([&] {
       sut.demand(order, torque_n_m);
+      ++demands_;
       return condition(sut.newest());
     });
   }
 
   EmulatedDrive emulated_;
   DriveConfig config_;
+  std::uint64_t demands_ = 0;
 };
 
 class UartLinkTest : public DriveLinkTest {
@@ -99,6 +101,8 @@ TEST_F(DriveLinkTest, ItSendsNothingByItselfSoTheWatchdogTrips) {
   }));
   EXPECT_TRUE(eventually([&] { return emulated_.record().timeouts == 1; }));
   EXPECT_EQ(emulated_.torque_n_m(), 0.0);
+  // A busy machine trips the watchdog by itself: the number of commands is the proof.
+  EXPECT_LE(emulated_.record().commands, demands_);
 }
 
 TEST_F(DriveLinkTest, ItsEndSwitchesTheDriverOff) {
