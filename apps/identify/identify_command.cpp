@@ -26,7 +26,8 @@ struct Words {
 };
 
 int run(const Words& words) {
-  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}}, {words.recording});
+  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
+                            {words.recording, words.read.map_file});
   const IdentifyResult result =
       identify(measurement::read_measurement(words.recording, words.read), words.identify);
   if (files.wants("--save")) {

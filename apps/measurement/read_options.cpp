@@ -31,7 +31,7 @@ std::vector<CLI::Option*> add_read_options(CLI::App& verb, ReadOptions& options)
               "'TITLE=NAME [UNIT]', the time is t: 'time=t [ms]' 'acc=a_y [g]' 'force=f [N]'.\n"
               "A gain may follow: 'ai0=f [V] * 22.5 [N/V]'. Without a title: '#2'. Units become\n"
               "SI ones. Without it, titles are 'name [unit]', and 't [s]' is the time")
-          ->type_name("'TITLE=NAME [UNIT]'...")
+          ->type_name("'TITLE=NAME [UNIT]'")
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
           ->group(kGroup);
   CLI::Option* file =

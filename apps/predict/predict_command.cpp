@@ -25,7 +25,8 @@ struct Words {
 };
 
 int run(const Words& words) {
-  report::ResultFiles files({{"--out", words.out}}, {words.model, words.recording});
+  report::ResultFiles files({{"--out", words.out}},
+                            {words.model, words.recording, words.read.map_file});
   const diagnosis::CarriedModel carried = diagnosis::parse_carried_model(
       recording::read_file(words.model.string()), words.model.string());
   const diagnosis::Model& model = carried.model;

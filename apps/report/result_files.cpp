@@ -75,6 +75,7 @@ ResultFiles::ResultFiles(const std::vector<ResultFile>& files,
     std::error_code error;
     entry.plain = !fs::exists(entry.place, error) || fs::is_regular_file(entry.place, error);
     for (const fs::path& input : inputs) {
+      if (input.empty()) continue;  // the option that names it was not given
       if (followed(input) == entry.place || fs::equivalent(input, entry.place, error)) {
         throw ConfigError(file.option, file.path.string(),
                           "a file other than " + input.string() + ", which is read");
