@@ -44,7 +44,7 @@ STILLHAND = str(lab_process.STILLHAND)
 RATE_HZ = 100
 ROWS = 3000
 MAP = ["--map", "time=t [s]", "acc=a_y [m/s^2]", "force=f [N]"]
-DAMAGED_EACH = 40
+DAMAGED_EACH = 25
 
 
 def stillhand(*words, **keywords):
