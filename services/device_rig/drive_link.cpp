@@ -86,6 +86,8 @@ void DriveLink::open_again() {
 }
 
 bool DriveLink::check_again() {
+  // A command that was under way may have armed the drive that started anew.
+  send(moteus::stop_frame());
   // What is still under way does not answer what is asked now.
   receive_until(runtime::monotonic_ns() + kAnswerLimit_ns, [] { return false; });
   if (port_->gone()) return false;

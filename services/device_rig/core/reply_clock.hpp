@@ -8,7 +8,8 @@ namespace stillhand::device_rig {
 
 /// Judges by the drive's millisecond counter whether a reply is as young as it looks, README
 /// Eq. DR-10.  A reply that was held up on its way, or that is sent again and again, falls behind
-/// the host's clock; a counter that jumps and then runs on is a drive that started anew.
+/// the host's clock; a counter that goes back, runs ahead, or jumps and runs on is a drive that
+/// started anew.
 /// Pure; one thread.
 class ReplyClock {
  public:
@@ -27,6 +28,8 @@ class ReplyClock {
     // The counter wraps after 65 s: a longer silence hides any number of turns.
     if (elapsed_ms > kUnambiguous_ms) return restart();
     behind_ms_ += elapsed_ms - step_ms;
+    // Replies come in their order: no delay makes a counter go back, or run ahead of the host.
+    if (step_ms < -kOrder_ms || behind_ms_ < -kMost_ms) return restart();
     if (std::abs(behind_ms_) <= kMost_ms) {
       behind_ms_ -= kForget * behind_ms_;
       outside_ = false;
@@ -39,6 +42,7 @@ class ReplyClock {
 
  private:
   static constexpr double kMost_ms = 20.0;  ///< behind or ahead, of a young reply
+  static constexpr double kOrder_ms = 1.0;
   /// Share of the difference that a reply forgets: two clocks that differ by 1 % stand 10 ms apart
   /// at 1 kHz.
   static constexpr double kForget = 1e-3;

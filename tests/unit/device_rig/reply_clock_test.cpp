@@ -43,16 +43,22 @@ TEST(ReplyClockTest, RepliesThatAreHeldUpAreOldUntilTheyComeInTime) {
   EXPECT_EQ(sut.step(wrapped(1150), 1150), Verdict::kYoung);
 }
 
-TEST(ReplyClockTest, ACounterThatJumpsAndRunsOnIsANewStart) {
+// A drive that starts anew must not get another torque: the first reply tells it.
+TEST(ReplyClockTest, ACounterThatBeginsAgainIsANewStartAtOnce) {
+  for (const int on_ms : {50, 5000, 30'000, 40'000, 65'000}) {
+    ReplyClock sut;
+    for (int ms = 0; ms < on_ms; ++ms) sut.step(wrapped(ms), ms);
+    EXPECT_EQ(sut.step(wrapped(0), on_ms), Verdict::kRestarted) << on_ms;
+    EXPECT_EQ(sut.step(wrapped(1), on_ms + 1), Verdict::kYoung) << on_ms;
+  }
+}
+
+TEST(ReplyClockTest, ACounterThatStaysBehindIsANewStartInTheEnd) {
   ReplyClock sut;
   for (int ms = 0; ms < 5000; ++ms) sut.step(wrapped(ms), ms);
-  bool restarted = false;
-  for (int ms = 5000; ms < 5400; ++ms) {
-    const Verdict verdict = sut.step(wrapped(ms - 5000), ms);
-    EXPECT_TRUE(restarted || verdict != Verdict::kYoung);
-    restarted = restarted || verdict == Verdict::kRestarted;
-  }
-  EXPECT_TRUE(restarted);
+  int old = 0;
+  while (sut.step(wrapped(5000 + old), 5050.0 + old) == Verdict::kOld) ++old;
+  EXPECT_EQ(old, 200);
 }
 
 TEST(ReplyClockTest, AfterALongSilenceNothingIsKnown) {

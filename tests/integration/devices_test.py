@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand lab --rig devices` over an emulated servo drive and an emulated platform.
+
+By default: a session whose rig process is stopped while the motor pushes, so that the drive's own watchdog has to end
+the torque; a drive and a port that are refused before the session. `--campaign`: conditions A, B and C next to the
+simulated rig, and every fault of FAULTS; each prints what the drive saw in its own clock. STILLHAND_WATCHDOG_MS and
+STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine; STILLHAND_FAULTS names some of the faults.
+"""
+import contextlib
+import os
+import signal
+
+import lab_process
+from emulated_laboratory import MAX_AGE_MS, PROGRAM, WATCHDOG_MS, EmulatedLaboratory
+from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick_session, wait_for
+
+# From a fault to the end of the torque. A host that lives notices by the age of the newest reply or by the drive's
+# counter (20 ms more), and stops the drive, or its force ramps down in 40 ticks. A host that does not live leaves it to
+# the watchdog. 5 ms: the emulator looks each millisecond, and a command may be under way.
+HOST_LIMIT_MS = MAX_AGE_MS + 20 + 40 + 5
+DRIVE_LIMIT_MS = WATCHDOG_MS + 5
+PUSH_N_M = 0.1  # 1 N at the hand
+# Orders to the emulator, and what the session says of them; None: it goes on.
+FAULTS = {
+    "silent": (["silent", 1], "the drive is silent"),
+    "deaf": (["deaf", 1], "the drive is silent"),
+    "garbage": (["garbage", 1], "the drive is silent"),
+    "truncated": (["truncated", 1], "the drive is silent"),
+    "wrong_checksum": (["damaged", 1], "the drive is silent"),
+    "digit_changed": (["damaged", 1], "mode that Stillhand does not command"),
+    "repeated": (["repeated", 1], "the drive is silent"),
+    "late_5_ms": (["late", 5], None),
+    "late_50_ms": (["late", 50], "the drive is silent"),
+    "late_500_ms": (["late", 500], "the drive is silent"),
+    "cable_out": (["cable", 0], "the drive is silent"),
+    "reboot": (["reboot"], "the drive started anew"),
+    "drive_fault": (["fault", 38], "the drive reports fault 38"),
+    "other_firmware": (["firmware", 3], "the drive is silent"),
+    "no_position": (["nan", 1], "the drive is silent"),
+    "encoder_slips": (["slip", 0.25], "the angle of the drive jumped"),
+    "accelerometer_sticks": (["saturate", 1], "an analogue input of the drive stands at its end"),
+    "platform_silent": (["platform_silent", 1], "the platform is silent"),
+    "platform_fault": (["platform_fault", 2], "the platform reports fault 0x2"),
+}
+
+
+class DevicesTest(LabTestCase):
+    def laboratory(self, config=None, **keywords):
+        laboratory = EmulatedLaboratory(config or self.folder / "config", **keywords)
+        self.addCleanup(laboratory.close)
+        return laboratory
+
+    @contextlib.contextmanager
+    def apart(self, name):
+        """A case of its own, with a folder of its own and nothing left from the one before."""
+        with self.subTest(name):
+            try:
+                yield
+            finally:
+                self.doCleanups()
+                self.setUp()
+
+    def pushing_session(self, uart=False):
+        """A session in condition C, in which the emulated drive pushes."""
+        domain = next_domain()
+        arguments = quick_session(self.folder / "config")
+        laboratory = self.laboratory(domain=domain, uart=uart)
+        lab = self.lab("--rig", "devices", *arguments, domain=domain)
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        lab.wait_for("a torque of the drive", lambda: abs(laboratory.report()["torque_n_m"]) > PUSH_N_M, 10, 0.002)
+        return lab, laboratory
+
+    def assert_torque_ended(self, laboratory, limit_ms, what):
+        """The torque ended in time and stays away; every command kept the rules."""
+        wait_for("end of the torque", lambda: laboratory.report()["since_fault_ms"] > 500, 10)
+        seen = laboratory.report()
+        print(f"{what}: torque until {seen['torque_after_fault_ms']:.1f} ms after the fault, mode {seen['mode']}, "
+              f"watchdog {seen['timeouts']}, last torque {seen['torque_after_command_ms']:.1f} ms after its command, "
+              f"slowest step of the emulator {seen['worst_step_ms']:.1f} ms", flush=True)
+        self.assertEqual(seen["torque_n_m"], 0.0)
+        self.assertLess(seen["torque_after_fault_ms"], limit_ms + seen["worst_step_ms"])
+        self.assertLess(seen["torque_after_command_ms"], DRIVE_LIMIT_MS + seen["worst_step_ms"])
+        self.assert_rules(seen)
+        return seen
+
+    def assert_rules(self, seen):
+        self.assertGreater(seen["commands"], 100)
+        for rule in ("other_modes", "without_watchdog", "with_gains", "without_bound"):
+            self.assertEqual(seen[rule], 0, rule)
+        self.assertLessEqual(seen["most_torque_n_m"], 2.5)
+        self.assertEqual(seen["first_torque_n_m"], 0.0)  # of the command that arms
+
+    def test_a_rig_process_that_stops_leaves_no_torque(self):
+        lab, laboratory = self.pushing_session()
+        pid = lab.pid_of("device_rig")
+        laboratory.order("mark")
+        os.kill(pid, signal.SIGSTOP)
+        seen = self.assert_torque_ended(laboratory, DRIVE_LIMIT_MS, "SIGSTOP of the rig's process")
+        self.assertEqual(seen["timeouts"], 1)
+        self.assertEqual(lab.end_status(), 1, lab.errors())
+        self.assert_nothing_left(lab)
+        parts = {"acceleration": "drive", "force": "drive", "angle": "drive", "motor": "drive", "platform": "plain_udp"}
+        self.assertEqual(lab.summary()["rig"], {"kind": "devices", "parts": parts})
+
+    def test_a_drive_that_damps_after_a_timeout_is_refused_with_the_command_that_mends_it(self):
+        self.laboratory(settings=["servo.timeout_mode=12"])
+        lab = self.lab("--rig", "devices", "--config", self.folder / "config")
+        self.assertEqual(lab.end_status(), 2, lab.errors())
+        self.assertIn("servo.timeout_mode: got 12, want 0: the driver is off after a timeout; this mends it: "
+                      "conf set servo.timeout_mode 0, then conf write", lab.errors()[-1])
+
+    def test_a_port_that_is_not_there_is_refused(self):
+        laboratory = self.laboratory()
+        laboratory.close()
+        (self.folder / "drive").unlink(missing_ok=True)
+        lab = self.lab("--rig", "devices", "--config", self.folder / "config")
+        self.assertEqual(lab.end_status(), 2, lab.errors())
+        self.assertIn(f"serial port {self.folder / 'drive'}: got No such file or directory", lab.errors()[-1])
+
+    def fault(self, name):
+        orders, reason = FAULTS[name]
+        lab, laboratory = self.pushing_session(uart=name == "wrong_checksum")
+        laboratory.order(*orders)
+        if reason is None:
+            wait_for("a second with the fault", lambda: laboratory.report()["since_fault_ms"] > 1000, 10)
+            self.assertIsNone(lab.process.poll(), lab.errors())
+            self.assertEqual(laboratory.report()["mode"], 10)
+            lab.interrupt()
+            lab.end_status()
+            return self.assert_rules(laboratory.report())
+        self.assert_torque_ended(laboratory, max(HOST_LIMIT_MS, DRIVE_LIMIT_MS), name)
+        self.assertEqual(lab.end_status(), 1, lab.errors())
+        self.assert_nothing_left(lab)
+        self.assertIn(reason, lab.summary()["trials"][-1]["aborted"])
+        return None
+
+    @campaign
+    def test_no_fault_leaves_torque(self):
+        for name in os.environ.get("STILLHAND_FAULTS", ",".join(FAULTS)).split(","):
+            with self.apart(name):
+                self.fault(name)
+
+    @campaign
+    def test_neither_a_killed_rig_nor_a_frozen_host_leaves_torque(self):
+        for name, everybody in (("killed", False), ("frozen", True)):
+            with self.apart(name):
+                lab, laboratory = self.pushing_session()
+                pids = lab_process.running(lab.domain) if everybody else {lab.pid_of("device_rig"): ""}
+                laboratory.order("mark")
+                for pid in pids:
+                    os.kill(pid, signal.SIGSTOP if everybody else signal.SIGKILL)
+                seen = self.assert_torque_ended(laboratory, DRIVE_LIMIT_MS, name)
+                self.assertEqual(seen["timeouts"], 1)
+                for pid in pids:
+                    if everybody:
+                        os.kill(pid, signal.SIGCONT)
+                self.assertEqual(lab.end_status(), 1, lab.errors())
+
+    @campaign
+    def test_a_session_over_the_devices_is_like_one_of_the_simulated_rig(self):
+        session = ["--conditions", "A,B,C", "--trial-seconds", 20, "--identify-seconds", 40, "--seed", 5]
+        simulated = self.lab(*session, out=self.folder / "simulated")
+        self.assertEqual(simulated.end_status(200), 0, simulated.errors())
+        domain = next_domain()
+        laboratory = self.laboratory(domain=domain)
+        devices = self.lab("--rig", "devices", *session, "--config", self.folder / "config",
+                           out=self.folder / "devices", domain=domain)
+        self.assertEqual(devices.end_status(200), 0, devices.errors())
+        seen = laboratory.report()
+        self.assert_rules(seen)
+        self.assertEqual(seen["timeouts"], 0)
+        for name, key in (("RMS error [mm]", "rms_error_mm"), ("dwell ratio", "dwell_ratio"), ("f_c [Hz]", "crossover_hz")):
+            rows = [[lab.summary()["conditions"][each][key]["mean"] for each in "ABC"] for lab in (simulated, devices)]
+            print(f"{name}: simulated {rows[0]}, devices {rows[1]}", flush=True)
+        print("held-out VAF:", [lab.summary()["identification"]["heldout_vaf_percent"] for lab in (simulated, devices)],
+              "latency [us]:", [lab.summary()["conditions"]["C"]["sensor_to_force_us"] for lab in (simulated, devices)],
+              flush=True)
+        for each in "ABC":
+            errors = [lab.summary()["conditions"][each]["rms_error_mm"]["mean"] for lab in (simulated, devices)]
+            self.assertLess(abs(errors[1] / errors[0] - 1.0), RMS_TOLERANCE, each)
+
+
+# The RMS error of a trial of 20 s varies from repeat to repeat; see tests/emulators/README.md.
+RMS_TOLERANCE = 0.15
+
+if __name__ == "__main__":
+    lab_process.main(PROGRAM)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A servo drive and a platform that are not there, for a `stillhand lab --rig devices` (tests/emulators/README.md)."""
+import json
+import os
+import pathlib
+import shutil
+import socket
+import subprocess
+
+from lab_process import BUILD, SOURCE
+
+PROGRAM = BUILD / "tests" / "emulated_laboratory"
+PROFILES = SOURCE / "qos" / "profiles.xml"
+# Longer than the settings' defaults (20 and 10 ms): on a busy machine other programs hold the processor for up to 55 ms.
+WATCHDOG_MS = int(os.environ.get("STILLHAND_WATCHDOG_MS", 100))
+MAX_AGE_MS = int(os.environ.get("STILLHAND_MAX_AGE_MS", 80))
+# Amplifiers between the simulated sensors and the drive's inputs: tests/emulators/laboratory.cpp.
+SENSING = f"""
+accel_sensitivity_v_m_s2: {0.1019716 * 0.97:.9f}
+accel_x_offset_v: 0
+accel_y_offset_v: {1.65 + 0.97 * 0.01:.6f}
+accel_z_offset_v: 0
+load_cell_sensitivity_v_n: 0.02
+load_cell_offset_v: 1.651
+adc_range_v: 3.3
+"""
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def devices_yaml(link, port, uart=False, **signals):
+    """Settings in which every signal is a device's, but those that are given."""
+    parts = {"acceleration": "drive", "force": "drive", "angle": "drive", "motor": "drive", "platform": "plain_udp"}
+    lines = ["signals:"] + [f"  {name}: {part}" for name, part in (parts | signals).items()]
+    lines += ["drive:", f"  port: {link}", f"  watchdog_s: {WATCHDOG_MS / 1000}", f"  max_age_ticks: {MAX_AGE_MS}",
+              f"  checksum: {'true' if uart else 'false'}"]
+    lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}"]
+    return "\n".join(lines) + "\n"
+
+
+class EmulatedLaboratory:
+    """The emulator's process. `config` is a settings folder, which gets the devices' settings."""
+
+    def __init__(self, config, domain=None, uart=False, settings=(), **signals):
+        self.config = pathlib.Path(config)
+        if not self.config.is_dir():
+            shutil.copytree(SOURCE / "deploy" / "config", self.config)
+        link = self.config.parent / "drive"
+        port = free_port()
+        (self.config / "devices.yaml").write_text(devices_yaml(link, port, uart, **signals))
+        (self.config / "sensing.yaml").write_text(SENSING)
+        words = [str(PROGRAM), "--drive-link", str(link), "--platform-port", str(port), "--config", str(self.config)]
+        words += ["--domain", str(domain), "--profiles", str(PROFILES)] if domain is not None else []
+        words += ["--uart"] if uart else []
+        for each in settings:
+            words += ["--set", each]
+        self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        ready = self.process.stdout.readline()
+        if ready != "ready\n":
+            raise AssertionError(f"the emulated laboratory says {ready!r}")
+
+    def order(self, *words):
+        print(*words, file=self.process.stdin, flush=True)
+
+    def report(self):
+        self.order("report")
+        return json.loads(self.process.stdout.readline())
+
+    def close(self):
+        self.process.kill()
+        self.process.communicate()
