@@ -3,7 +3,7 @@
 
 By default: a session whose rig process is stopped while the motor pushes, so that the drive's own watchdog has to end
 the torque; a drive and a port that are refused before the session. `--campaign`: conditions A, B and C next to the
-simulated rig, and every fault of FAULTS; each prints what the drive saw in its own clock. STILLHAND_WATCHDOG_MS and
+simulated rig, a mixture, and every fault of FAULTS; each prints what the drive saw in its own clock. STILLHAND_WATCHDOG_MS and
 STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine; STILLHAND_FAULTS names some of the faults.
 """
 import contextlib
@@ -155,6 +155,24 @@ class DevicesTest(LabTestCase):
                     if everybody:
                         os.kill(pid, signal.SIGCONT)
                 self.assertEqual(lab.end_status(), 1, lab.errors())
+
+    # A stick on a desk, its power stage off: condition B with a simulated platform.
+    @campaign
+    def test_a_mixture_runs_and_is_named_and_a_motor_that_is_off_is_never_driven(self):
+        domain = next_domain()
+        arguments = quick_session(self.folder / "config")
+        laboratory = self.laboratory(domain=domain, acceleration="simulated", platform="simulated", motor="off")
+        (self.folder / "config" / "sensing.yaml").write_text(
+            "load_cell_sensitivity_v_n: 0.02\nload_cell_offset_v: 1.651\n")
+        lab = self.lab("--rig", "devices", *arguments, "--conditions", "B", "--trial-seconds", 5, domain=domain)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())
+        seen = laboratory.report()
+        self.assertEqual((seen["commands"], seen["most_torque_n_m"]), (0, 0.0))
+        self.assertGreater(seen["queries"], 1000)
+        words = "force drive, angle drive, motor off; simulated: acceleration, platform"
+        self.assertIn(f"rig: {words}\n", lab.output())
+        self.assertIn(["rig", f"rig of devices: {words}"], lab.recording(1)["notes"])
+        self.assertIsNone(lab.summary()["conditions"]["B"]["cancelled_share"])
 
     @campaign
     def test_a_session_over_the_devices_is_like_one_of_the_simulated_rig(self):
