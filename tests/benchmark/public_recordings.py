@@ -10,7 +10,7 @@ The columns: the effects found; the error on blocks that the fit did not see, be
 that nothing was fitted to, without its first tenth (the start is unknown to every model). The last column has what is
 known or published, and what a linear difference model by ordinary least squares leaves of the unseen record.
 
-The engine reads at least 5 rows a second. Where a recording is slower, or its rate is not published, the CSV has 10
+The engine's bounds in seconds mean a hand. Where a recording is slower, or its rate is not published, the CSV has 10
 rows a second (PERIOD_S); `--period` tries another one.
 
 Exit status: 0; 1 where a file is not the one of the README's figures, or where the effects make the error on the unseen
