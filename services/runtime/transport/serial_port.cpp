@@ -28,7 +28,8 @@ void make_raw(int descriptor, const std::string& path) {
   cfsetispeed(&settings, kSpeed);
   cfsetospeed(&settings, kSpeed);
   settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cc[VMIN] = 0;
+  settings.c_cc[VMIN] =
+      1;  // nothing there reads as EAGAIN, and 0 means that the other side is gone
   settings.c_cc[VTIME] = 0;
   if (tcsetattr(descriptor, TCSANOW, &settings) != 0)
     refuse(path, std::strerror(errno), "a serial port");
@@ -63,9 +64,7 @@ SerialPort::~SerialPort() {
 std::string_view SerialPort::read(std::span<char> into) noexcept {
   const ssize_t count = ::read(descriptor_, into.data(), into.size());
   if (count > 0) return {into.data(), static_cast<std::size_t>(count)};
-  // A terminal whose other side is gone reads as an error or as its end; with nothing there it is
-  // EAGAIN.
-  if (count < 0 && errno != EAGAIN && errno != EINTR) gone_ = true;
+  if (count == 0 || (errno != EAGAIN && errno != EINTR)) gone_ = true;
   return {};
 }
 
