@@ -25,7 +25,8 @@ import lab_process  # noqa: E402 (found by the line above)
 BUILD = lab_process.BUILD
 CORES = ("signal", "statistics", "motion_core", "rig_core", "sensing_core", "identification_core", "cancellation_core",
          "diagnosis_core", "clock_core", "display_core", "human_operator_core", "recording_core")
-PROGRAMS = {"stillhand", "stillhand-permissions", *(f"stillhand-{service}" for service in lab_process.SERVICES)}
+PROGRAMS = {"stillhand", "stillhand-permissions", "stillhand-device_rig",
+            *(f"stillhand-{service}" for service in lab_process.SERVICES)}
 # Makes the copy of this system at $1 with the packages of $2, and hides $3, $4, ...; then stays until its input ends.
 INSTALL = r"""
 set -e
