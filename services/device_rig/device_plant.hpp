@@ -62,7 +62,7 @@ class DevicePlant final : public rig::Plant {
   PlatformSample seat_;
   bool jumped_ = false;   ///< the angle jumped; until this process is started again
   Tick rail_ticks_ = 0;   ///< an analogue input stands at its end for so long
-  double force_n_ = 0.0;  ///< as the drive was told
+  double force_n_ = 0.0;  ///< as the drive was ordered
   Order order_ = Order::kQuery;
   const char* why_ = nullptr;
   std::array<char, 120> text_{};

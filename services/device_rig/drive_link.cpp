@@ -86,7 +86,7 @@ void DriveLink::open_again() {
 }
 
 bool DriveLink::check_again() {
-  // A command that was under way may have armed the drive that started anew.
+  // A command that was under way may have armed the drive that started again.
   send(moteus::stop_frame());
   // What is still under way does not answer what is asked now.
   receive_until(runtime::monotonic_ns() + kAnswerLimit_ns, [] { return false; });

@@ -34,7 +34,7 @@ void SerialSide::put_in() {
   tcgetattr(slave_, &settings);
   cfmakeraw(&settings);
   tcsetattr(slave_, TCSANOW, &settings);
-  // Beside it first: the name always leads somewhere.
+  // Next to it first: the name always leads somewhere.
   const std::filesystem::path fresh = link_.string() + ".new";
   std::error_code ignored;
   std::filesystem::remove(fresh, ignored);

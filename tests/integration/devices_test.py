@@ -33,7 +33,7 @@ FAULTS = {
     "late_50_ms": (["late", 50], "the drive is silent"),
     "late_500_ms": (["late", 500], "the drive is silent"),
     "cable_out": (["cable", 0], "the drive is silent|the drive was away"),
-    "reboot": (["reboot"], "the drive was away or started anew"),
+    "reboot": (["reboot"], "the drive was away or started again"),
     "drive_fault": (["fault", 38], "the drive reports fault 38"),
     "other_firmware": (["firmware", 3], "the drive is silent"),
     "no_position": (["nan", 1], "the drive is silent"),

@@ -20,7 +20,7 @@ const char* text_of(Reason reason) noexcept {
     case Reason::kNotArmed:
       return "the drive does not follow";
     case Reason::kUnchecked:
-      return "the drive was away or started anew; its settings are not read back";
+      return "the drive was away or started again; its settings are not read back";
     case Reason::kEncoder:
       return "the angle of the drive jumped";
   }

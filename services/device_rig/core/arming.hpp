@@ -28,7 +28,7 @@ enum class Reason : std::uint8_t {
   kOff,        ///< the driver went off by itself: a new start, or somebody stopped it
   kOtherMode,  ///< somebody else commands it
   kNotArmed,   ///< it did not follow the command to arm
-  kUnchecked,  ///< it was away or started anew, and its settings are not read back
+  kUnchecked,  ///< it was away or started again, and its settings are not read back
   kEncoder     ///< the angle jumped by more than a hand can move
 };
 const char* text_of(Reason reason) noexcept;

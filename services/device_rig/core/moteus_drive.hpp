@@ -36,7 +36,7 @@ Frame stop_frame() noexcept;
 /// Asks for the state alone.  It does not feed the watchdog.
 Frame query_frame() noexcept;
 
-/// State of the drive, as one reply tells it.
+/// State of the drive, as one reply reports it.
 struct DriveReply {
   int mode = kStopped;
   int fault = 0;                ///< 32 to 50: of a fault; 96 to 103: what limits at present

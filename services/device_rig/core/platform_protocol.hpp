@@ -20,7 +20,7 @@ struct SetPoint {
   double acceleration_m_s2 = 0.0;
 };
 
-/// State of the platform, as one packet tells it.
+/// State of the platform, as one packet reports it.
 struct PlatformReply {
   bool whole = false;  ///< the packet is one of this protocol, undamaged
   PlatformStage stage = PlatformStage::kOff;

@@ -19,7 +19,7 @@ class SerialPort {
   SerialPort& operator=(const SerialPort&) = delete;
 
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-  /// Bytes that are there; empty if none.  gone() tells a port that was pulled out.
+  /// Bytes that are there; empty if none.  gone() reports a port that was pulled out.
   std::string_view read(std::span<char> into) noexcept;
   /// All or a part, never waiting.  @returns false if not all of it was taken: the other side then
   /// has a piece, which the caller ends with a newline before the next line

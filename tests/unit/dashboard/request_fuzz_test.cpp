@@ -158,9 +158,9 @@ TEST_F(RequestFuzzTest, NobodyGetsInWithoutTheToken) {
   int refused = 0, let_in = 0;
   for (int i = 0; i < kRequests; ++i) {
     const Spoilt all = request(random, sut);
-    const std::string told = all.authorization + '\n' + all.cookie + '\n' + all.target;
+    const std::string sent = all.authorization + '\n' + all.cookie + '\n' + all.target;
     const bool shown =
-        told.find(kToken) != std::string::npos || all.cookie.find(word) != std::string::npos;
+        sent.find(kToken) != std::string::npos || all.cookie.find(word) != std::string::npos;
     const unsigned status = ask(all, sut);
     ASSERT_TRUE(shown || status == 403) << status << " for " << all.target;
     (status == 403 ? refused : let_in) += 1;

@@ -6,7 +6,7 @@
 namespace stillhand::device_rig {
 namespace {
 
-/// A drive that does what it is told, one tick later.
+/// A drive that does what it is asked, one tick later.
 class ArmingTest : public testing::Test {
  protected:
   ArmingTest() { in_.fresh = in_.checked = true; }

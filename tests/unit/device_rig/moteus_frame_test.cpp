@@ -9,27 +9,10 @@
 #include <vector>
 
 #include "services/device_rig/core/moteus_drive.hpp"
+#include "tests/support/hex.hpp"
 
 namespace stillhand::device_rig::moteus {
 namespace {
-
-std::string hex(const Frame& frame) {
-  std::string text;
-  for (const std::uint8_t each : frame.payload()) {
-    char digits[3];
-    std::snprintf(digits, sizeof(digits), "%02x", each);
-    text += digits;
-  }
-  return text;
-}
-
-std::vector<std::uint8_t> bytes(const std::string& digits) {
-  std::vector<std::uint8_t> out;
-  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-    out.push_back(static_cast<std::uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
-  }
-  return out;
-}
 
 // The exchange that the maker prints: mjbots/moteus, docs/protocol/can.md, "Example".
 TEST(FrameWriterTest, MakesTheFrameThatTheMakerPrints) {
@@ -41,7 +24,7 @@ TEST(FrameWriterTest, MakesTheFrameThatTheMakerPrints) {
   sut.read(Resolution::kInt8, kVoltage, 3);
   sut.pad();
   EXPECT_TRUE(sut.good());
-  EXPECT_EQ(hex(frame), "01000a07206000200150ff140400130d");
+  EXPECT_EQ(hex(frame.payload()), "01000a07206000200150ff140400130d");
 }
 
 // The maker's reply; its text says what each value is.  Tolerance: half a step of an int16.
@@ -62,14 +45,14 @@ TEST(FrameWriterTest, NotANumberIsTheMostNegativeInteger) {
   Frame frame;
   FrameWriter sut(frame);
   sut.write(Resolution::kInt16, kCommandPosition, {std::nan("")});
-  EXPECT_EQ(hex(frame), "05200080");
+  EXPECT_EQ(hex(frame.payload()), "05200080");
 }
 
 TEST(FrameWriterTest, WhatIsTooLargeForItsTypeIsTheLargestOfTheType) {
   Frame frame;
   FrameWriter sut(frame);
   sut.write(Resolution::kInt16, kCommandTorque, {1e9, -1e9});
-  EXPECT_EQ(hex(frame), "0622ff7f0180");
+  EXPECT_EQ(hex(frame.payload()), "0622ff7f0180");
 }
 
 TEST(FrameWriterTest, PadsToALengthOfCanFd) {

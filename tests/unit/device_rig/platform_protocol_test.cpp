@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/emulators/platform_emulator.hpp"
+#include "tests/support/hex.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -23,28 +24,10 @@ constexpr const char* kMoogCommand =
 constexpr const char* kMoogReply =
     "0000000000000000000000130000000000000000be428f5c00000000000000003d23d70a00000000";
 
-std::string hex(const Packet& packet) {
-  std::string text;
-  for (const std::uint8_t each : packet.payload()) {
-    char digits[3];
-    std::snprintf(digits, sizeof(digits), "%02x", each);
-    text += digits;
-  }
-  return text;
-}
-
-std::vector<std::uint8_t> bytes(const std::string& digits) {
-  std::vector<std::uint8_t> out;
-  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-    out.push_back(static_cast<std::uint8_t>(std::stoul(digits.substr(i, 2), nullptr, 16)));
-  }
-  return out;
-}
-
 TEST(PlainPlatformTest, TheCommandIsTheOneOfTheTable) {
   const SetPoint point{
       .follow = true, .position_m = 0.05, .velocity_m_s = -0.25, .acceleration_m_s2 = 1.5};
-  EXPECT_EQ(hex(plain::command_packet(point, 7, 20)), kPlainCommand);
+  EXPECT_EQ(hex(plain::command_packet(point, 7, 20).payload()), kPlainCommand);
 }
 
 TEST(PlainPlatformTest, TheStateIsRead) {
@@ -84,7 +67,7 @@ TEST(PlainPlatformTest, TheEmulatorUnderstandsTheCommandAndIsUnderstood) {
 
 TEST(MoogPlatformTest, AnEngagedMachineGetsANewPosition) {
   const SetPoint point{.follow = true, .position_m = 0.05};
-  EXPECT_EQ(hex(moog::command_packet(point, 3, -0.19)), kMoogCommand);
+  EXPECT_EQ(hex(moog::command_packet(point, 3, -0.19).payload()), kMoogCommand);
 }
 
 TEST(MoogPlatformTest, TheReplyIsRead) {
@@ -99,7 +82,8 @@ TEST(MoogPlatformTest, TheReplyIsRead) {
 TEST(MoogPlatformTest, EngagesWhenAskedParksWhenNotAndNeverResetsAFault) {
   const SetPoint follow{.follow = true};
   const auto word = [](const SetPoint& point, std::uint32_t state) {
-    return std::stoul(hex(moog::command_packet(point, state, 0.0)).substr(0, 8), nullptr, 16);
+    return std::stoul(hex(moog::command_packet(point, state, 0.0).payload()).substr(0, 8), nullptr,
+                      16);
   };
   EXPECT_EQ(word(follow, 1), moog::kEngage);
   EXPECT_EQ(word(follow, 2), moog::kEngage);

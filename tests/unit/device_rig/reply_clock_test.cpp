@@ -43,7 +43,7 @@ TEST(ReplyClockTest, RepliesThatAreHeldUpAreOldUntilTheyComeInTime) {
   EXPECT_EQ(sut.step(wrapped(1150), 1150), Verdict::kYoung);
 }
 
-// A drive that starts anew must not get another torque: the first reply tells it.
+// A drive that starts again must not get another torque: the first reply shows it.
 TEST(ReplyClockTest, ACounterThatBeginsAgainIsANewStartAtOnce) {
   for (const int on_ms : {50, 5000, 30'000, 40'000, 65'000}) {
     ReplyClock sut;
