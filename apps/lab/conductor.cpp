@@ -120,13 +120,18 @@ void Conductor::look(bool with_peers) {
 // Every process is there, once.  It reports that it is ready when it knows the sources, so the
 // sample clock starts after that.
 void Conductor::name_sources() {
-  if (sources_named_) return;
+  if (named_sources_) return;
   runtime::Bus& bus = service_.bus();
   const std::vector<runtime::Source> sources = bus.sources_found();
   if (!bus.take_sources(bus.participant(), sources)) return;
-  auto message = runtime::to_idl(sources);
-  sources_.write(message);
-  sources_named_ = true;
+  named_sources_ = runtime::to_idl(sources);
+  repeat_sources();
+}
+
+// Who lost sight of this process during a pause, since it stood still, also forgot what it named.
+// DDS matches the two again and does not send the message again.
+void Conductor::repeat_sources() {
+  if (named_sources_) sources_.write(*named_sources_);
 }
 
 void Conductor::drive(Stage& stage, bool with_peers) {
@@ -146,6 +151,7 @@ void Conductor::drive(Stage& stage, bool with_peers) {
 
 void Conductor::perform(const Actions& actions) {
   if (actions.assign) {
+    repeat_sources();
     planned_->trial = *actions.assign;
     auto message = assignment_of(*planned_);
     assignment_.write(message);

@@ -79,6 +79,7 @@ class Conductor {
   void look(bool with_peers);
   /// Announces who writes for each process, once.
   void name_sources();
+  void repeat_sources();
   void perform(const Actions& actions);
   void announce(const Announcement& announcement);
   /// @throws RefusedByProcess or std::runtime_error when there is trouble.
@@ -92,7 +93,7 @@ class Conductor {
   runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
   runtime::Publisher<stillhand_msgs::AugmentedModel> control_model_;
   runtime::Publisher<stillhand_msgs::SessionSources> sources_;
-  bool sources_named_ = false;
+  std::optional<stillhand_msgs::SessionSources> named_sources_;
   runtime::EmergencyStop emergency_stop_;
   std::optional<session::PlannedTrial> planned_;  ///< the trial that runs
   stillhand_msgs::AugmentedModel given_;          ///< the model that the canceller gets

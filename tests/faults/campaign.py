@@ -25,7 +25,7 @@ import report  # noqa: E402
 from again_after_standstill import STANDSTILL_S, Clock  # noqa: E402
 from cells import DEFAULT_RUNS, plan  # noqa: E402
 from lab_process import CTEST_SKIPPED, INSPECT, STILLHAND, loose_settings, next_domain, shared_memory  # noqa: E402
-from one_run import BUSY, Run  # noqa: E402
+from one_run import BUSY, Run, next_session  # noqa: E402
 from probe import RIG_PROBE  # noqa: E402
 
 TRIES = 3
@@ -89,21 +89,30 @@ class Campaign:
             os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(1))
         except PermissionError:
             pass
+        before = None
         while time.monotonic() < self.until_s:
             try:
                 number, cell = self.todo.get_nowait()
             except queue.Empty:
-                return
+                break
             # A session that a busy machine ended before its fault shows nothing, and a machine that stood still ends
             # sessions as a fault does: such a run is made again, and is listed.
             for attempt in range(TRIES):
                 result = self.once(number, cell, domain, attempt)
+                if before:
+                    self.note(before, next_session=result)
                 stood = result["findings"] and result["standstill_s"] >= STANDSTILL_S and attempt < TRIES - 1
-                self.note(result | {"repeated": bool(stood or not result["struck"])})
+                before = result | {"repeated": bool(stood or not result["struck"])}
                 if not stood and result["struck"]:
                     break
+        if before:
+            last = next_session(cell, self.options.out / "runs" / f"after_{before['number']:04d}", domain, self.config)
+            self.note(before, next_session=last)
 
-    def note(self, result):
+    def note(self, result, next_session):
+        """Notes a run when the session after it, on the same domain, has started or not."""
+        if not next_session["started"]:
+            result["findings"].append(f"next session: {next_session['findings'][-1:]}")
         with self.lock:
             self.results.append(result)
             report.write(self.options.out, self.results, self.options)

@@ -37,6 +37,26 @@ def control_model():
             "adapts": {"mass_kg": 1.4, "damping_n_s_m": 30.0, "stiffness_n_m": 900.0, "lever_m": 0.1}}
 
 
+def next_session(cell, folder, domain, config):
+    """The session after the last run of a campaign: {"started", "findings"}. Of every other run it is the next run's."""
+    run = Run(cell, folder, domain, None, config)
+    folder.mkdir(parents=True)
+    probe = Probe(domain, folder / "probe.txt")
+    lab = run.lab(run.out, "--wait-for-start")
+    started = False
+    try:
+        run.reach(lab, "a session that waits", lambda: probe.control["state"] == "paused")
+        started = True
+        lab.interrupt()
+        lab.process.wait(timeout=LEFT_LIMIT_S)
+    except Exception as error:  # whatever it is, it is a finding of the run before it
+        run.findings.append(str(error))
+    finally:
+        lab.close()
+        probe.close()
+    return {"started": started, "findings": run.findings}
+
+
 class Run:
     def __init__(self, cell, folder, domain, rng, config):
         self.cell, self.folder, self.domain, self.rng, self.config = cell, folder, domain, rng, config
@@ -59,6 +79,9 @@ class Run:
         return LabProcess(out, *self.words(), *more, domain=self.domain,
                           environment=dict(os.environ, LD_PRELOAD=str(BUSY)))
 
+    def reach(self, lab, what, condition):
+        lab.wait_for(what, condition, START_LIMIT_S, poll_s=0.01)
+
     # -- until the moment of the fault --------------------------------------------------------------------------------
 
     def await_phase(self, lab, probe):
@@ -69,7 +92,7 @@ class Run:
             return probe.control["trial"] == number and probe.control["state"] == "running"
 
         def reach(what, condition):
-            lab.wait_for(what, condition, START_LIMIT_S, poll_s=0.01)
+            self.reach(lab, what, condition)
 
         if phase == "pause":
             reach("the pegged trial", lambda: trial(0))
@@ -137,7 +160,9 @@ class Run:
         else:
             self.result["outcome"] = "ended, not named"
             self.findings.append(f"exit status {status}, and no victim is named: {why!r}, {lab.errors()[-1:]}")
-        if self.cell.fatal and status == 0:
+        # In a pause the experiment has nothing to do: after a person woke it up the session goes on.
+        woken = self.cell.phase == "pause" and self.cell.victims == ("experiment",) and self.cell.kinds == ("stop",)
+        if self.cell.fatal and status == 0 and not woken:
             self.findings.append("the session went on to its end without its process")
         if not trials:
             self.findings.append("no summary")
@@ -173,21 +198,6 @@ class Run:
         if speed > REST_M_S:
             self.findings.append(f"the rig ended with {speed:g} m/s")
 
-    # -- the session after it -----------------------------------------------------------------------------------------
-
-    def next_session(self):
-        probe = Probe(self.domain, self.folder / "next.txt")
-        lab = self.lab(self.folder / "next", "--wait-for-start")
-        try:
-            lab.wait_for("the next session", lambda: probe.control["state"] == "paused", START_LIMIT_S)
-            lab.interrupt()
-            lab.process.wait(timeout=LEFT_LIMIT_S)
-        except Exception as error:  # whatever it is, it is a finding of this run
-            self.findings.append(f"next session: {error}")
-        finally:
-            lab.close()
-            probe.close()
-
     def __call__(self):
         shutil.rmtree(self.folder, ignore_errors=True)  # of a run that a campaign was ended in
         self.folder.mkdir(parents=True)
@@ -195,7 +205,10 @@ class Run:
         lab = self.lab(self.out)
         faults = []
         struck_ns = None
+        started = False
         try:
+            self.reach(lab, "the pegged trial", lambda: probe.control["trial"] == 0)
+            started = True
             self.await_phase(lab, probe)
             for victim, kind in zip(self.cell.victims, self.cell.kinds):
                 pid = lab.process.pid if victim == "experiment" else lab.pid_of(victim)
@@ -219,8 +232,7 @@ class Run:
             probe.close()
         if struck_ns is not None:
             self.judge_probe(probe.samples(), struck_ns)
-        self.next_session()
-        self.result |= {"findings": self.findings, "struck": struck_ns is not None}
+        self.result |= {"findings": self.findings, "struck": struck_ns is not None, "started": started}
         if not self.findings:
             shutil.rmtree(self.folder)
         return self.result

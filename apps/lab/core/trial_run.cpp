@@ -99,7 +99,11 @@ bool TrialRun::armed(const Seen& seen, const Member& member) const {
 bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
   const bool all =
       std::ranges::all_of(roster_, [&](const Member& member) { return armed(seen, member); });
-  switch (trouble_.wait(all, seen, limit_ns_, now_ns)) {
+  // The rig names what is missing; who waits for that process is not the reason.
+  if (seen.has(EventKind::kInterlockOpened)) return look_for_death(seen, now_ns);
+  // Who lost sight of the session in a pause needs the next ticks to come back.
+  const std::string stands = standstill_.look(seen, roster_, now_ns);
+  switch (trouble_.wait(all && stands.empty(), seen, limit_ns_, now_ns)) {
     case Wait::kGoesOn:
       return false;
     case Wait::kOver:
@@ -110,7 +114,7 @@ bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
       result_.aborted = trouble_.why_stopped(seen, "");
       break;
     case Wait::kTooLong:
-      result_.aborted = why_not_armed(seen);
+      result_.aborted = all ? stands : why_not_armed(seen);
       break;
   }
   return end(seen);

@@ -14,6 +14,7 @@ using ParticipantId = std::array<std::uint8_t, 12>;
 struct Source {
   std::string service;  ///< one of topics::kServices
   ParticipantId participant{};
+  bool operator==(const Source&) const = default;
 };
 
 /// 24 hexadecimal digits.

@@ -96,6 +96,8 @@ bool Sources::take(const ParticipantId& from, const std::vector<Source>& sources
         std::ranges::find(announced_, from, [](const auto& entry) { return entry.first; });
     if (known == announced_.end()) {
       announced_.emplace_back(from, sources);
+    } else if (known->second == sources) {
+      return true;  // said again, while samples of these sources arrive
     } else {
       known->second = sources;
     }

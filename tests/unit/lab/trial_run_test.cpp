@@ -187,7 +187,22 @@ TEST_F(TrialRunTest, AProcessThatIsPreparedLateButInTimeIsWaitedFor) {
   step(9 * kSecond);
   EXPECT_FALSE(sut_->over());
   arm(2);
+  rig_at(kStart);
   EXPECT_EQ(step().progress->what, "trial 2, tracking");
+}
+
+TEST_F(TrialRunTest, AProcessThatIsPreparedAndStandsStillIsWaitedForAndThenNamed) {
+  rig_at(5000);
+  step();
+  arm(2);
+  seen_.processes["cancellation"].tick = 3000;
+  step(9 * kSecond);
+  EXPECT_FALSE(sut_->over());
+  seen_.processes["rig"].tick = 15'000;
+  step(1 * kSecond + 1);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted,
+            "cancellation stands still: its newest tick is 3000, the rig's 15000");
 }
 
 TEST_F(TrialRunTest, AProcessThatIsNotOnTheBusIsNotPrepared) {
@@ -206,6 +221,18 @@ TEST_F(TrialRunTest, AProcessThatEndsWhileOthersPrepareIsTheReason) {
   end_of_process({"display (pid 7) ended: signal 9 (Killed)", false, false}, *sut_);
   ASSERT_TRUE(sut_->over());
   EXPECT_EQ(result().aborted, "display (pid 7) ended: signal 9 (Killed)");
+}
+
+TEST_F(TrialRunTest, AnInterlockThatOpensWhileOthersPrepareIsTheReason) {
+  step();
+  seen_.processes["display"].armed_trial = -1;
+  event(EventKind::kInterlockOpened, "rig", "a process is missing: sensing");
+  step();
+  EXPECT_FALSE(sut_->over());  // its end may be seen later
+  step(3 * kSecond + 1);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_FALSE(result().completed);
+  EXPECT_EQ(result().aborted, "rig: a process is missing: sensing");
 }
 
 TEST_F(TrialRunTest, AnOpenInterlockEndsTheTrialOnceTheForceIsZeroAndRecorded) {

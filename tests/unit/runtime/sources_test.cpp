@@ -126,6 +126,19 @@ TEST_F(SourcesTest, AProcessThatALabStartedListensToThatLabAlone) {
   EXPECT_FALSE(sut.admits(place_of("experiment"), handle_of(number_of("experiment"))));
 }
 
+// An experiment that stood still for longer than DDS waits is a participant that left and came
+// back.
+TEST_F(SourcesTest, AnExperimentThatComesBackNamesItsSourcesAgain) {
+  ASSERT_TRUE(sut_.take(experiment(), all_sources()));
+  sut_.forget_participant(prefix_of(number_of("experiment")));
+  EXPECT_FALSE(sut_.named());
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(sut_.take(experiment(), all_sources()));
+    EXPECT_TRUE(sut_.sound());
+    EXPECT_TRUE(motor_from(sut_, number_of("cancellation")));
+  }
+}
+
 // A lab that was killed leaves its participant behind for a while; the next one already speaks.
 TEST_F(SourcesTest, TheNextExperimentCountsOnceTheFirstOneLeft) {
   ASSERT_TRUE(sut_.take(experiment(), all_sources()));
