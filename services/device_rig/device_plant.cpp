@@ -43,6 +43,13 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
   if (parts_.needs_platform()) {
     platform_ = std::make_unique<PlatformLink>(devices.platform, parts_.platform);
   }
+  if (parts_.acceleration == Parts::Source::kIio) {
+    accelerometer_ = std::make_unique<IioLink>(devices.accelerometer, 1.0);
+  }
+  if (parts_.force == Parts::Source::kIio) {
+    constexpr double kVoltPerMillivolt = 1e-3;
+    load_cell_ = std::make_unique<IioLink>(devices.load_cell, kVoltPerMillivolt);
+  }
 }
 
 bool DevicePlant::drive_fresh() const noexcept {
@@ -79,12 +86,26 @@ void DevicePlant::take_platform() noexcept {
   if (platform_) seat_ = platform_->newest();
 }
 
+double DevicePlant::iio_value(IioLink& link, const IioConfig& config) noexcept {
+  const IioSample& newest = link.newest();
+  const bool young = is_young(newest.count, newest.at_ns, now_ns_, config.max_age_ticks);
+  return young ? static_cast<double>(config.sign) * newest.value : kUnknown;
+}
+
+void DevicePlant::take_iio() noexcept {
+  if (accelerometer_) accel_y_m_s2_ = iio_value(*accelerometer_, devices_.accelerometer);
+  if (load_cell_) load_cell_v_ = iio_value(*load_cell_, devices_.load_cell);
+  const bool known = !std::isnan(accel_y_m_s2_) && !std::isnan(load_cell_v_);
+  unknown_ticks_ = known ? 0 : unknown_ticks_ + 1;
+}
+
 void DevicePlant::wait() noexcept {
   constexpr std::int64_t kEach_ticks = 10;
   if (++tick_ % kEach_ticks != 0) return;
   now_ns_ = runtime::monotonic_ns();
   take_drive();
   take_platform();
+  take_iio();
   if (drive_) drive_->demand(Order::kQuery, 0.0);
   if (platform_) platform_->demand({.follow = false, .position_m = seat_.reply.position_m});
 }
@@ -95,6 +116,7 @@ void DevicePlant::begin(const Trial& trial, Tick tick) noexcept {
   now_ns_ = runtime::monotonic_ns();
   take_drive();
   take_platform();
+  take_iio();
   rail_ticks_ = at_rail() ? rail_ticks_ + 1 : 0;
   judge();
 }
@@ -107,9 +129,10 @@ rig::RigOutput DevicePlant::step(const rig::RigInput& input) noexcept {
 
 rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   rig::RigOutput output = simulated_.sample(input);
-  if (!drive_ && !platform_) return output;
+  if (!drive_ && !platform_ && !accelerometer_ && !load_cell_) return output;
   put_stick(output);
   put_platform(output);
+  put_iio(output);
   // What only a simulation knows is unknown as soon as a part is real.
   output.truth.feedthrough_force_n = kUnknown;
   output.truth.volitional_force_n = kUnknown;
@@ -157,6 +180,15 @@ void DevicePlant::put_platform(rig::RigOutput& output) const noexcept {
   output.truth.platform_position_m = fresh ? seat_.reply.position_m : kUnknown;
   output.truth.platform_acceleration_m_s2 = fresh ? seat_.reply.acceleration_m_s2 : kUnknown;
   if (!fresh) output.flags |= kInputStale;
+}
+
+void DevicePlant::put_iio(rig::RigOutput& output) const noexcept {
+  if (accelerometer_) {
+    output.raw.accel_x_v = output.raw.accel_z_v = 0.0;
+    output.raw.accel_y_v = accel_y_m_s2_;
+  }
+  if (load_cell_) output.raw.load_cell_v = load_cell_v_;
+  if (unknown_ticks_ > 0) output.flags |= kInputStale;
 }
 
 void DevicePlant::move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept {
@@ -209,7 +241,7 @@ bool DevicePlant::prepared() const noexcept {
   const bool stick =
       !drive_ || arming_.stage() == Stage::kChecked || arming_.stage() == Stage::kArmed;
   const bool seat = !platform_ || (platform_fresh() && seat_.reply.stage != PlatformStage::kFault);
-  return stick && seat;
+  return stick && seat && unknown_ticks_ == 0;
 }
 
 void DevicePlant::judge() noexcept {
@@ -219,8 +251,12 @@ void DevicePlant::judge() noexcept {
     std::snprintf(text_.data(), text_.size(), "the platform reports fault 0x%x", seat_.reply.fault);
     why_ = text_.data();
   }
-  if (!drive_) return;
   constexpr Tick kRail_ticks = 20;
+  if (unknown_ticks_ >= kRail_ticks) {
+    why_ = std::isnan(load_cell_v_) ? "the load cell is silent, or at its end"
+                                    : "the accelerometer is silent, or at its end";
+  }
+  if (!drive_) return;
   if (rail_ticks_ >= kRail_ticks) why_ = "an analogue input of the drive stands at its end";
   if (!drive_fresh()) why_ = text_of(Reason::kSilent);
   if (jumped_) why_ = text_of(Reason::kEncoder);

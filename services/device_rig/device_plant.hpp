@@ -10,6 +10,7 @@
 #include "services/device_rig/core/parts.hpp"
 #include "services/device_rig/core/set_point_guard.hpp"
 #include "services/device_rig/drive_link.hpp"
+#include "services/device_rig/iio_link.hpp"
 #include "services/device_rig/platform_link.hpp"
 #include "services/rig/plant.hpp"
 
@@ -36,14 +37,18 @@ class DevicePlant final : public rig::Plant {
  private:
   void take_drive() noexcept;
   void take_platform() noexcept;
+  void take_iio() noexcept;
   void put_stick(rig::RigOutput& output) const noexcept;
   void put_platform(rig::RigOutput& output) const noexcept;
+  void put_iio(rig::RigOutput& output) const noexcept;
   void move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept;
   void drive_motor(const rig::RigInput& input, rig::RigOutput& output) noexcept;
   void judge() noexcept;
   [[nodiscard]] bool at_rail() const noexcept;
   [[nodiscard]] bool drive_fresh() const noexcept;
   [[nodiscard]] bool platform_fresh() const noexcept;
+  /// NaN: no young sample, or one at an end of the converter's range (DR-12).
+  [[nodiscard]] double iio_value(IioLink& link, const IioConfig& config) noexcept;
 
   rig::RigConfig rig_config_;
   DevicesConfig devices_;
@@ -54,15 +59,20 @@ class DevicePlant final : public rig::Plant {
   Arming arming_;
   std::unique_ptr<DriveLink> drive_;  ///< null: no part is the drive's
   std::unique_ptr<PlatformLink> platform_;
+  std::unique_ptr<IioLink> accelerometer_;
+  std::unique_ptr<IioLink> load_cell_;
 
   Trial trial_;
   Tick tick_ = 0;
   std::int64_t now_ns_ = 0;
   DriveSample stick_;
   PlatformSample seat_;
-  bool jumped_ = false;   ///< the angle jumped; until this process is started again
-  Tick rail_ticks_ = 0;   ///< an analogue input stands at its end for so long
-  double force_n_ = 0.0;  ///< as the drive was ordered
+  double accel_y_m_s2_ = 0.0;  ///< of the accelerometer; NaN: unknown
+  double load_cell_v_ = 0.0;
+  Tick unknown_ticks_ = 0;  ///< one of the two is unknown for so long
+  bool jumped_ = false;     ///< the angle jumped; until this process is started again
+  Tick rail_ticks_ = 0;     ///< an analogue input stands at its end for so long
+  double force_n_ = 0.0;    ///< as the drive was ordered
   Order order_ = Order::kQuery;
   const char* why_ = nullptr;
   std::array<char, 120> text_{};

@@ -45,6 +45,7 @@ EmulatedLoop::EmulatedLoop(const LoopOptions& options, const rig::RigConfig& rig
     if (equals == std::string::npos) throw std::runtime_error("--set " + each + ": no =");
     drive_.set(each.substr(0, equals), each.substr(equals + 1));
   }
+  if (!options.accelerometer.empty()) iio_.emplace(options.accelerometer, options.bridge);
   drive_.begin(runtime::monotonic_ns());
 }
 
@@ -68,6 +69,7 @@ void EmulatedLoop::run(Person* person) {
     serial_.send_due(now_ns);
     if (now_ns < due_ns) continue;
     laboratory_.step(now_ns, person);
+    if (iio_) iio_->write(laboratory_.raw());
     if (drive_.torque_n_m() != 0.0) torque_until_ns_ = now_ns;
     worst_step_ns_ = std::max(worst_step_ns_, now_ns - stepped_ns);
     stepped_ns = now_ns;
@@ -131,7 +133,7 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     laboratory_.slip(value);
   } else if (word == "saturate") {
     laboratory_.saturate(value != 0.0);
-  } else if (!obey_drive(word, value, now_ns) && !obey_way(word, value)) {
+  } else if (!obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value)) {
     std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
   }
 }
@@ -145,6 +147,18 @@ bool EmulatedLoop::obey_drive(const std::string& word, double value, std::int64_
     drive_.forget(static_cast<std::uint32_t>(value));
   } else if (word == "nan") {
     drive_.lose_position(value != 0.0);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool EmulatedLoop::obey_iio(const std::string& word, double value) {
+  if (!iio_) return false;
+  if (word == "iio_starved") {
+    iio_->starve(value != 0.0);
+  } else if (word == "iio_saturated") {
+    iio_->saturate(value != 0.0);
   } else {
     return false;
   }

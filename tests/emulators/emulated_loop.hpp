@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/emulators/iio_side.hpp"
 #include "tests/emulators/laboratory.hpp"
 #include "tests/emulators/serial_side.hpp"
 
@@ -17,6 +19,8 @@ struct LoopOptions {
   std::uint16_t platform_port = 0;
   bool uart = false;
   std::vector<std::string> settings;  ///< NAME=VALUE
+  /// FIFOs of an IIO accelerometer and of a bridge converter; empty: neither
+  std::filesystem::path accelerometer, bridge;
 };
 
 /// Devices and physics in one thread: it answers whatever comes at once, and steps the physics each
@@ -38,6 +42,7 @@ class EmulatedLoop {
   bool hear_orders(std::int64_t now_ns);
   void obey(const std::string& line, std::int64_t now_ns);
   bool obey_drive(const std::string& word, double value, std::int64_t now_ns);
+  bool obey_iio(const std::string& word, double value);
   bool obey_way(const std::string& word, double value);
   void report(std::int64_t now_ns) const;
 
@@ -45,6 +50,7 @@ class EmulatedLoop {
   PlatformEmulator platform_;
   SerialSide serial_;
   Laboratory laboratory_;
+  std::optional<IioSide> iio_;
   int socket_ = -1;
   bool platform_silent_ = false;
   std::string orders_;

@@ -55,6 +55,7 @@ class Laboratory {
   void slip(double angle_rev) { slip_rev_ += angle_rev; }
   /// The accelerometer's amplifier sticks at its end.
   void saturate(bool saturated) { saturated_ = saturated; }
+  [[nodiscard]] const rig::RawSample& raw() const { return output_.raw; }
   [[nodiscard]] const rig::RigTruth& truth() const { return output_.truth; }
 
  private:

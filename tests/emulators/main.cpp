@@ -29,6 +29,9 @@ int main(int argc, char** argv) {
   cli.add_flag("--uart", options.uart, "the drive's own UART: lines with checksums");
   cli.add_option("--set", options.settings, "NAME=VALUE of the drive's settings")
       ->allow_extra_args(false);
+  cli.add_option("--accelerometer", options.accelerometer,
+                 "FIFO of an IIO accelerometer's samples");
+  cli.add_option("--bridge", options.bridge, "FIFO of an IIO bridge converter's samples");
   cli.add_flag("--no-real-time", ordinary, "do not ask for real-time priority");
   try {
     cli.parse(argc, argv);

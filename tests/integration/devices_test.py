@@ -44,7 +44,7 @@ FAULTS = {
 }
 
 
-class DevicesTest(LabTestCase):
+class DevicesCase(LabTestCase):
     def laboratory(self, config=None, **keywords):
         laboratory = EmulatedLaboratory(config or self.folder / "config", **keywords)
         self.addCleanup(laboratory.close)
@@ -60,11 +60,11 @@ class DevicesTest(LabTestCase):
                 self.doCleanups()
                 self.setUp()
 
-    def pushing_session(self, uart=False):
+    def pushing_session(self, **keywords):
         """A session in condition C, in which the emulated drive pushes."""
         domain = next_domain()
         arguments = quick_session(self.folder / "config")
-        laboratory = self.laboratory(domain=domain, uart=uart)
+        laboratory = self.laboratory(domain=domain, **keywords)
         lab = self.lab("--rig", "devices", *arguments, domain=domain)
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
         lab.wait_for("a torque of the drive", lambda: abs(laboratory.report()["torque_n_m"]) > PUSH_N_M, 10, 0.002)
@@ -90,6 +90,8 @@ class DevicesTest(LabTestCase):
         self.assertLessEqual(seen["most_torque_n_m"], 2.5)
         self.assertEqual(seen["first_torque_n_m"], 0.0)  # of the command that arms
 
+
+class DevicesTest(DevicesCase):
     def test_a_rig_process_that_stops_leaves_no_torque(self):
         lab, laboratory = self.pushing_session()
         pid = lab.pid_of("device_rig")

@@ -25,6 +25,17 @@ load_cell_offset_v: 1.651
 adc_range_v: 3.3
 """
 
+# The same behind IIO devices, which give m/s^2 and V (tests/emulators/iio_side.cpp).
+SENSING_IIO = f"""
+accel_sensitivity_v_m_s2: 1
+accel_x_offset_v: 0
+accel_y_offset_v: {0.01 / 0.1019716:.6f}
+accel_z_offset_v: 0
+load_cell_sensitivity_v_n: 0.02
+load_cell_offset_v: 0.001
+adc_range_v: 20
+"""
+
 
 def free_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
@@ -32,30 +43,35 @@ def free_port():
         return one.getsockname()[1]
 
 
-def devices_yaml(link, port, uart=False, **signals):
-    """Settings in which every signal is a device's, but those that are given."""
+def devices_yaml(link, port, uart=False, iio=None, **signals):
+    """Settings in which every signal is a device's, but those that are given. `iio`: uri of an IIO context."""
+    if iio:
+        signals = {"acceleration": "iio", "force": "iio"} | signals
     parts = {"acceleration": "drive", "force": "drive", "angle": "drive", "motor": "drive", "platform": "plain_udp"}
     lines = ["signals:"] + [f"  {name}: {part}" for name, part in (parts | signals).items()]
     lines += ["drive:", f"  port: {link}", f"  watchdog_s: {WATCHDOG_MS / 1000}", f"  max_age_ticks: {MAX_AGE_MS}",
               f"  checksum: {'true' if uart else 'false'}"]
     lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}"]
+    for group in ("accelerometer", "load_cell") if iio else ():
+        lines += [f"{group}:", f"  uri: {iio}", f"  max_age_ticks: {MAX_AGE_MS}"]
     return "\n".join(lines) + "\n"
 
 
 class EmulatedLaboratory:
-    """The emulator's process. `config` is a settings folder, which gets the devices' settings."""
+    """The emulator's process. `config` is a settings folder, which gets the devices' settings. `iio`: an IioContext."""
 
-    def __init__(self, config, domain=None, uart=False, settings=(), **signals):
+    def __init__(self, config, domain=None, uart=False, settings=(), iio=None, **signals):
         self.config = pathlib.Path(config)
         if not self.config.is_dir():
             shutil.copytree(SOURCE / "deploy" / "config", self.config)
         link = self.config.parent / "drive"
         port = free_port()
-        (self.config / "devices.yaml").write_text(devices_yaml(link, port, uart, **signals))
-        (self.config / "sensing.yaml").write_text(SENSING)
+        (self.config / "devices.yaml").write_text(devices_yaml(link, port, uart, iio and iio.uri, **signals))
+        (self.config / "sensing.yaml").write_text(SENSING_IIO if iio else SENSING)
         words = [str(PROGRAM), "--drive-link", str(link), "--platform-port", str(port), "--config", str(self.config)]
         words += ["--domain", str(domain), "--profiles", str(PROFILES)] if domain is not None else []
         words += ["--uart"] if uart else []
+        words += ["--accelerometer", str(iio.fifos["accelerometer"]), "--bridge", str(iio.fifos["bridge"])] if iio else []
         for each in settings:
             words += ["--set", each]
         self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)

@@ -19,9 +19,9 @@ struct SignalsConfig {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("acceleration", self.acceleration, Range{1.0, 20.0},
-          "lateral acceleration: simulated, drive (an analogue input of it) or platform");
+          "lateral acceleration: simulated, drive (an analogue input of it), platform or iio");
     visit("force", self.force, Range{1.0, 20.0},
-          "force of the hand on the stick: simulated, or drive (an analogue input of it)");
+          "force of the hand on the stick: simulated, drive (an analogue input of it) or iio");
     visit("angle", self.angle, Range{1.0, 20.0}, "angle of the stick: simulated or drive");
     visit("motor", self.motor, Range{1.0, 20.0},
           "the stick's motor: simulated, drive, or off (a drive whose power stage stays off)");
@@ -110,17 +110,41 @@ struct PlatformLinkConfig {
   }
 };
 
+/// A channel of an IIO device: an accelerometer, or the bridge converter of a load cell.
+struct IioConfig {
+  std::string uri = "local:";
+  std::string device;
+  std::string channel;
+  std::int64_t sign = 1;
+  std::int64_t max_age_ticks = 10;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("uri", self.uri, Range{4.0, 200.0},
+          "context of libiio: local:, or ip: and the address of a machine with iiod");
+    visit("device", self.device, Range{1.0, 100.0}, "name or id of the IIO device");
+    visit("channel", self.channel, Range{1.0, 100.0}, "id of its input channel");
+    visit("sign", self.sign, Range{-1.0, 1.0}, "[-] 1: positive is to the right; -1: to the left");
+    visit("max_age_ticks", self.max_age_ticks, Range{2.0, 100.0},
+          "[ticks] oldest sample that counts");
+  }
+};
+
 /// The rig made of devices: devices.yaml.
 struct DevicesConfig {
   SignalsConfig signals;
   DriveConfig drive;
   PlatformLinkConfig platform;
+  IioConfig accelerometer{.device = "accelerometer", .channel = "accel_y"};
+  IioConfig load_cell{.device = "bridge", .channel = "voltage0"};
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit.group("signals", self.signals);
     visit.group("drive", self.drive);
     visit.group("platform", self.platform);
+    visit.group("accelerometer", self.accelerometer);
+    visit.group("load_cell", self.load_cell);
   }
 };
 

@@ -22,7 +22,7 @@ Value chosen(const char* signal, const std::string& word,
 }
 
 void check_sign(const char* name, std::int64_t sign) {
-  if (sign == 0) throw ConfigError("devices.drive." + std::string(name), "0", "1 or -1");
+  if (sign == 0) throw ConfigError("devices." + std::string(name), "0", "1 or -1");
 }
 
 }  // namespace
@@ -33,9 +33,13 @@ Parts parts_of(const DevicesConfig& config) {
   using Platform = Parts::Platform;
   constexpr std::array kStick{std::pair{std::string_view("simulated"), Source::kSimulated},
                               std::pair{std::string_view("drive"), Source::kDrive}};
+  constexpr std::array kForces{std::pair{std::string_view("simulated"), Source::kSimulated},
+                               std::pair{std::string_view("drive"), Source::kDrive},
+                               std::pair{std::string_view("iio"), Source::kIio}};
   constexpr std::array kAccelerometers{std::pair{std::string_view("simulated"), Source::kSimulated},
                                        std::pair{std::string_view("drive"), Source::kDrive},
-                                       std::pair{std::string_view("platform"), Source::kPlatform}};
+                                       std::pair{std::string_view("platform"), Source::kPlatform},
+                                       std::pair{std::string_view("iio"), Source::kIio}};
   constexpr std::array kMotors{std::pair{std::string_view("simulated"), Motor::kSimulated},
                                std::pair{std::string_view("drive"), Motor::kDrive},
                                std::pair{std::string_view("off"), Motor::kOff}};
@@ -46,12 +50,14 @@ Parts parts_of(const DevicesConfig& config) {
   validate(config, "devices");
   Parts parts{};
   parts.acceleration = chosen("acceleration", signals.acceleration, kAccelerometers);
-  parts.force = chosen("force", signals.force, kStick);
+  parts.force = chosen("force", signals.force, kForces);
   parts.angle = chosen("angle", signals.angle, kStick);
   parts.motor = chosen("motor", signals.motor, kMotors);
   parts.platform = chosen("platform", signals.platform, kPlatforms);
-  check_sign("torque_sign", config.drive.torque_sign);
-  check_sign("angle_sign", config.drive.angle_sign);
+  check_sign("drive.torque_sign", config.drive.torque_sign);
+  check_sign("drive.angle_sign", config.drive.angle_sign);
+  check_sign("accelerometer.sign", config.accelerometer.sign);
+  check_sign("load_cell.sign", config.load_cell.sign);
   // Without its angle, nobody would see where a motor moves a real stick to.
   if (parts.motor == Motor::kDrive && parts.angle != Source::kDrive) {
     throw ConfigError("devices.signals.angle", signals.angle,

@@ -42,6 +42,17 @@ TEST(PartsTest, AMotorThatIsOffStillNeedsTheDriveToSaySo) {
   EXPECT_TRUE(parts_of(config).needs_drive());
 }
 
+TEST(PartsTest, AnIioDeviceServesAccelerationOrForceWithoutADrive) {
+  DevicesConfig config;
+  config.signals.acceleration = config.signals.force = "iio";
+  const Parts sut = parts_of(config);
+  EXPECT_EQ(sut.acceleration, Parts::Source::kIio);
+  EXPECT_EQ(sut.force, Parts::Source::kIio);
+  EXPECT_FALSE(sut.needs_drive());
+  config.signals.angle = "iio";
+  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.angle: got iio, want one of"));
+}
+
 TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
   DevicesConfig config;
   config.signals.force = "platform";

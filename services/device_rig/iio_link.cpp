@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/iio_link.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "services/contract/config_error.hpp"
+#include "services/device_rig/core/iio_value.hpp"
+#include "services/runtime/process/clock.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+constexpr double kTick_hz = 1000.0;
+constexpr double kNsPerMs = 1e6;
+
+}  // namespace
+
+IioLink::IioLink(const IioConfig& config, double factor)
+    : factor_(factor), device_(config.uri, config.device, config.channel) {
+  // Slower than the loop, and a sample would count twice as a new one.
+  if (device_.rate_hz() > 0.0 && device_.rate_hz() < kTick_hz) {
+    throw ConfigError("sampling_frequency of IIO device " + config.device,
+                      std::to_string(device_.rate_hz()) + " Hz",
+                      "at least 1000 Hz; `iio_attr -u " + config.uri + " -d " + config.device +
+                          " sampling_frequency` sets it");
+  }
+  thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+}
+
+IioLink::~IioLink() {
+  thread_.request_stop();
+  device_.cancel();
+}
+
+void IioLink::work(const std::stop_token& stop) {
+  constexpr std::int64_t kAgain_ns = 200'000'000;
+  while (!stop.stop_requested()) {
+    if (const auto raw = device_.read()) {
+      take(*raw);
+      continue;
+    }
+    ++sample_.opened;
+    clock_.clear();
+    number_ = 0;
+    if (!stop.stop_requested()) runtime::sleep_until_ns(runtime::monotonic_ns() + kAgain_ns);
+  }
+}
+
+void IioLink::take(std::int64_t raw) noexcept {
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  // The samples themselves count the device's time: one that waited in a buffer falls behind.
+  const double rate_hz = device_.rate_hz() > 0.0 ? device_.rate_hz() : kTick_hz;
+  const double counted_ms = 1e3 * static_cast<double>(number_++) / rate_hz;
+  const auto verdict = clock_.step(static_cast<std::int16_t>(std::llround(counted_ms)),
+                                   static_cast<double>(now_ns) / kNsPerMs);
+  if (verdict == ReplyClock::Verdict::kOld) {
+    ++sample_.old;
+    return samples_.store(sample_);
+  }
+  const runtime::IioFormat& format = device_.format();
+  sample_.value =
+      factor_ * iio_value(raw, format.offset, format.scale, format.lowest, format.highest);
+  ++sample_.count;
+  sample_.at_ns = now_ns;
+  samples_.store(sample_);
+}
+
+}  // namespace stillhand::device_rig

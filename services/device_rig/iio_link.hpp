@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <thread>
+
+#include "services/device_rig/core/devices_config.hpp"
+#include "services/device_rig/core/reply_clock.hpp"
+#include "services/runtime/process/latest_value.hpp"
+#include "services/runtime/transport/iio_device.hpp"
+
+namespace stillhand::device_rig {
+
+/// What the thread of an IIO device knows.
+struct IioSample {
+  std::uint64_t count = 0;   ///< of young samples; 0: none yet
+  std::int64_t at_ns = 0;    ///< CLOCK_MONOTONIC when the newest was read
+  double value = 0.0;        ///< [m/s^2] or [V]; NaN: at an end of the converter's range
+  std::uint64_t old = 0;     ///< samples that waited in a buffer (DR-10)
+  std::uint64_t opened = 0;  ///< times that the buffer was opened again
+};
+
+/// An IIO device, in a thread of its own: a read may wait for ever.  The loop takes the newest
+/// sample without lock or allocation and judges its age by itself.
+class IioLink {
+ public:
+  /// @param factor  of libiio's unit: 1 for an acceleration, 0.001 for mV
+  /// @throws ConfigError for a device that is not there, or that gives less than one sample a tick
+  IioLink(const IioConfig& config, double factor);
+  ~IioLink();
+  IioLink(const IioLink&) = delete;
+  IioLink& operator=(const IioLink&) = delete;
+
+  const IioSample& newest() noexcept { return samples_.load(); }
+
+ private:
+  void work(const std::stop_token& stop);
+  void take(std::int64_t raw) noexcept;
+
+  double factor_;
+  runtime::IioDevice device_;
+  runtime::LatestValue<IioSample> samples_;
+  // The thread's.
+  IioSample sample_;
+  ReplyClock clock_;
+  std::uint64_t number_ = 0;  ///< of samples since the buffer was opened
+  std::jthread thread_;       // last
+};
+
+}  // namespace stillhand::device_rig

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/transport/iio_device.hpp"
+
+#include <iio.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+constexpr unsigned kTimeout_ms = 1000;
+
+std::string listed(const std::string& list, const char* name) {
+  return list + (list.empty() ? "" : ", ") + name;
+}
+
+IioFormat format_of(const iio_channel* channel) {
+  const iio_data_format& data = *iio_channel_get_data_format(channel);
+  IioFormat format;
+  // A channel without one of the two has 0 and 1.
+  iio_channel_attr_read_double(channel, "offset", &format.offset);
+  iio_channel_attr_read_double(channel, "scale", &format.scale);
+  const unsigned bits = data.is_signed ? data.bits - 1 : data.bits;
+  format.highest = (std::int64_t{1} << bits) - 1;
+  format.lowest = data.is_signed ? -format.highest - 1 : 0;
+  return format;
+}
+
+template <typename Number>
+std::int64_t number_at(const void* bytes) {
+  Number number{};
+  std::memcpy(&number, bytes, sizeof(number));
+  return number;
+}
+
+// libiio converts within the width of a sample: byte order, shift and sign.
+std::int64_t converted(const iio_channel* channel, const void* sample) {
+  std::int64_t bytes = 0;
+  iio_channel_convert(channel, &bytes, sample);
+  const iio_data_format& data = *iio_channel_get_data_format(channel);
+  switch (data.length) {
+    case 8:
+      return data.is_signed ? number_at<std::int8_t>(&bytes) : number_at<std::uint8_t>(&bytes);
+    case 16:
+      return data.is_signed ? number_at<std::int16_t>(&bytes) : number_at<std::uint16_t>(&bytes);
+    case 32:
+      return data.is_signed ? number_at<std::int32_t>(&bytes) : number_at<std::uint32_t>(&bytes);
+    default:
+      return bytes;
+  }
+}
+
+}  // namespace
+
+IioDevice::IioDevice(std::string uri, std::string device, std::string channel)
+    : uri_(std::move(uri)), name_(std::move(device)), channel_name_(std::move(channel)) {
+  try {
+    open();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+IioDevice::~IioDevice() { close(); }
+
+iio_device* IioDevice::find_device() const {
+  iio_device* device = iio_context_find_device(context_, name_.c_str());
+  if (device != nullptr) return device;
+  std::string there;
+  for (unsigned i = 0; i < iio_context_get_devices_count(context_); ++i) {
+    const iio_device* each = iio_context_get_device(context_, i);
+    const char* name = iio_device_get_name(each);
+    there = listed(there, name != nullptr ? name : iio_device_get_id(each));
+  }
+  throw ConfigError(
+      "IIO device of " + uri_, name_,
+      there.empty() ? "a context with devices; this one has none" : "one of " + there);
+}
+
+iio_channel* IioDevice::find_channel() const {
+  iio_channel* channel = iio_device_find_channel(device_, channel_name_.c_str(), false);
+  if (channel != nullptr && iio_channel_is_scan_element(channel)) return channel;
+  std::string there;
+  for (unsigned i = 0; i < iio_device_get_channels_count(device_); ++i) {
+    const iio_channel* each = iio_device_get_channel(device_, i);
+    const bool fits = !iio_channel_is_output(each) && iio_channel_is_scan_element(each);
+    if (fits) there = listed(there, iio_channel_get_id(each));
+  }
+  throw ConfigError(
+      "IIO channel of " + name_, channel_name_,
+      there.empty() ? "a device with a buffer; this one has none" : "one of " + there);
+}
+
+void IioDevice::open() {
+  // libiio 0.24 ends an "ip:" uri at its port, in the caller's own text.
+  const std::string uri = uri_;
+  context_ = iio_create_context_from_uri(uri.c_str());
+  if (context_ == nullptr) {
+    throw ConfigError("IIO context " + uri_, std::strerror(errno),
+                      "a context that `iio_info -u " + uri_ + "` shows");
+  }
+  // A local context has no time-out of its own; the loop judges the age of a sample by itself.
+  [[maybe_unused]] const int unknown = iio_context_set_timeout(context_, kTimeout_ms);
+  device_ = find_device();
+  channel_ = find_channel();
+  iio_channel_enable(channel_);
+  format_ = format_of(channel_);
+  if (iio_device_attr_read_double(device_, "sampling_frequency", &rate_hz_) < 0) rate_hz_ = 0.0;
+  const std::lock_guard lock(mutex_);
+  if (!cancelled_) buffer_ = iio_device_create_buffer(device_, 1, false);
+  if (buffer_ == nullptr) {
+    throw ConfigError("buffer of IIO device " + name_, std::strerror(errno),
+                      "one that no other program has, with a trigger where the device needs one");
+  }
+}
+
+void IioDevice::close() noexcept {
+  {
+    const std::lock_guard lock(mutex_);
+    if (buffer_ != nullptr) iio_buffer_destroy(buffer_);
+    buffer_ = nullptr;
+  }
+  channel_ = nullptr;
+  device_ = nullptr;
+  if (context_ != nullptr) iio_context_destroy(context_);
+  context_ = nullptr;
+}
+
+std::optional<std::int64_t> IioDevice::read() {
+  try {
+    if (buffer_ == nullptr) open();
+  } catch (const ConfigError&) {
+    close();
+    return std::nullopt;
+  }
+  // A starved read fails for ever after its time-out (libiio's issue 981): all is opened again.
+  if (iio_buffer_refill(buffer_) <= 0) {
+    close();
+    return std::nullopt;
+  }
+  return converted(channel_, iio_buffer_first(buffer_, channel_));
+}
+
+void IioDevice::cancel() noexcept {
+  const std::lock_guard lock(mutex_);
+  cancelled_ = true;
+  if (buffer_ != nullptr) iio_buffer_cancel(buffer_);
+}
+
+}  // namespace stillhand::runtime
