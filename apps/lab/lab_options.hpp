@@ -7,6 +7,7 @@
 
 #include "apps/session/protocol.hpp"
 #include "services/recording/keep_options.hpp"
+#include "services/recording/of_experiment.hpp"
 
 namespace stillhand::lab {
 
@@ -39,6 +40,7 @@ struct LabOptions {
   bool wait_for_start = false;          ///< each trial waits for a start from the dashboard
   std::filesystem::path stop_key;       ///< evdev device for the emergency stop; empty: none
   recording::KeepOptions keep;          ///< of the session's recording
+  recording::OfExperiment experiment;   ///< whose participant is recorded; empty: none
 };
 
 /// Sets programs, profiles and config: those of the build tree or of an installed prefix.

@@ -7,6 +7,7 @@
 
 #include "idl/processes.hpp"
 #include "services/recording/keep_options.hpp"
+#include "services/recording/of_experiment.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -34,6 +35,8 @@ Arguments recorder_words(const LabOptions& options, const Place& place) {
   Arguments words{"--out", (place.out / "session.mcap").string()};
   const Arguments keep = recording::keep_words(options.keep);
   words.insert(words.end(), keep.begin(), keep.end());
+  const Arguments experiment = recording::experiment_words(options.experiment);
+  words.insert(words.end(), experiment.begin(), experiment.end());
   return words;
 }
 

@@ -12,19 +12,24 @@ namespace {
 
 constexpr std::int64_t kWatch_ns = 20'000'000;
 
-TapeOptions options_of(const runtime::ServiceOptions& service, const KeepOptions& keep) {
+TapeOptions options_of(const runtime::ServiceOptions& service, const KeepOptions& keep,
+                       const OfExperiment& place) {
   TapeOptions options = tape_options(keep, service.out.string());
   options.session = session_texts(service.domain, "stillhand-recorder");
   options.session["rig"] = std::to_string(service.rig);
   options.session["seed"] = std::to_string(service.seed);
+  if (!place.participant.empty()) {
+    options.first_words.push_back({kExperimentRecord, experiment_texts(place)});
+  }
   return options;
 }
 
 }  // namespace
 
-Shell::Shell(runtime::Service& service, const KeepOptions& keep) : service_(service) {
+Shell::Shell(runtime::Service& service, const KeepOptions& keep, const OfExperiment& place)
+    : service_(service) {
   for (const topics::Topic* topic : topics::kCatalogue) subscribe(*topic);
-  recording_.emplace(options_of(service.options(), keep));
+  recording_.emplace(options_of(service.options(), keep, place));
   service.on_trial([&](const Trial& trial, const auto&) { service.note_armed(trial.number); });
 }
 

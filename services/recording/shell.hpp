@@ -7,6 +7,7 @@
 
 #include "services/recording/bus_recording.hpp"
 #include "services/recording/keep_options.hpp"
+#include "services/recording/of_experiment.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::recording {
@@ -16,7 +17,7 @@ namespace stillhand::recording {
 class Shell {
  public:
   /// @throws ConfigError like Tape
-  Shell(runtime::Service& service, const KeepOptions& keep);
+  Shell(runtime::Service& service, const KeepOptions& keep, const OfExperiment& place);
   /// @throws std::runtime_error if a received message is not in the file
   void run();
 

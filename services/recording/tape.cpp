@@ -227,8 +227,11 @@ bool Tape::open_part() {
   }
   TextMap session = options_.session;
   session["part"] = std::to_string(number);
-  if (const Status status = part_->writer.add_metadata("stillhand.session", session);
-      !status.ok()) {
+  std::vector<Metadata> words{{"stillhand.session", session}};
+  words.insert(words.end(), options_.first_words.begin(), options_.first_words.end());
+  for (const Metadata& record : words) {
+    const Status status = part_->writer.add_metadata(record.name, record.texts);
+    if (status.ok()) continue;
     stop_because(status.text);
     return false;
   }

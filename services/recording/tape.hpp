@@ -32,6 +32,7 @@ struct TapeOptions {
   std::size_t max_queued_bytes = 256u
                                  << 20;  ///< [B] waiting for the disk; further messages are lost
   TextMap session;                       ///< metadata "stillhand.session" of every file
+  std::vector<Metadata> first_words;     ///< further metadata at the beginning of every file
   std::function<std::vector<Metadata>()> last_words;  ///< metadata added when a file is closed
 };
 

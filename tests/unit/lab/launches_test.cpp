@@ -101,6 +101,17 @@ TEST_F(LaunchesTest, TheRecorderGetsItsFileAndItsSettings) {
   EXPECT_THAT(of("motion").arguments, Not(Contains("--fsync")));
 }
 
+TEST_F(LaunchesTest, TheRecorderAloneGetsTheParticipantOfAnExperiment) {
+  EXPECT_THAT(of("recorder").arguments, Not(Contains("--participant")));
+  options_.experiment = {"P07", std::string(64, 'a'), "02"};
+  for (const Launch& launch : all()) {
+    const bool recorder = launch.name == "recorder";
+    EXPECT_EQ(value_of(launch, "--participant"), recorder ? "P07" : "") << launch.name;
+    EXPECT_EQ(value_of(launch, "--experiment-session"), recorder ? "02" : "") << launch.name;
+  }
+  EXPECT_EQ(value_of(of("recorder"), "--experiment-digest"), std::string(64, 'a'));
+}
+
 TEST_F(LaunchesTest, MotionGetsTheRideOrTheRoadWithEveryBitOfItsSpeed) {
   EXPECT_THAT(of("motion").arguments, Not(Contains("--ride")));
   options_.protocol.motion = session::Motion::kRide;

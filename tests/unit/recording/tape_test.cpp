@@ -66,6 +66,22 @@ class TapeTest : public testing::Test {
       std::filesystem::temp_directory_path() / ("stillhand-tape-" + std::to_string(getpid()));
 };
 
+TEST_F(TapeTest, FurtherMetadataStandsAtTheBeginningOfEveryFile) {
+  TapeOptions wanted = options();
+  wanted.first_words = {{"stillhand.experiment", {{"participant", "P07"}}}};
+  wanted.rotation.max_ns = 100'000'000;
+  Tape sut(wanted);
+  put(sut, channel(sut), 0, 250);
+  ASSERT_TRUE(sut.close().ok());
+  ASSERT_GE(sut.status().parts, 2u);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    FileSource file(entry.path().string());
+    McapReader reader(file);
+    ASSERT_NE(reader.find_metadata("stillhand.experiment"), nullptr) << entry.path();
+    EXPECT_EQ(reader.find_metadata("stillhand.experiment")->texts.at("participant"), "P07");
+  }
+}
+
 TEST_F(TapeTest, EveryMessageIsInTheFileInItsOrderAndCounted) {
   Tape sut(options());
   put(sut, channel(sut), 0, 5000);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recording/of_experiment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+namespace stillhand::recording {
+namespace {
+
+OfExperiment parsed(std::vector<std::string> words) {
+  CLI::App cli;
+  OfExperiment place;
+  add_experiment_options(cli, place);
+  std::ranges::reverse(words);  // as CLI11 takes them
+  cli.parse(words);
+  return place;
+}
+
+TEST(OfExperimentTest, AnotherProcessHearsTheSame) {
+  const OfExperiment wanted{"P07", std::string(64, 'e'), "03"};
+  EXPECT_EQ(parsed(experiment_words(wanted)), wanted);
+  EXPECT_TRUE(experiment_words({}).empty());
+  EXPECT_EQ(parsed({}), OfExperiment{});
+}
+
+TEST(OfExperimentTest, APlaceIsGivenWholeOrNotAtAll) {
+  EXPECT_THROW(parsed({"--participant", "P07"}), CLI::ParseError);
+  EXPECT_THROW(parsed({"--experiment-session", "01"}), CLI::ParseError);
+  EXPECT_THROW(parsed({"--participant", "P07", "--experiment-digest", "a"}), CLI::ParseError);
+}
+
+TEST(OfExperimentTest, TheRecordHasTheThreeKeysOfTheFormat) {
+  EXPECT_EQ(experiment_texts({"P07", "d1", "03"}),
+            (TextMap{{"participant", "P07"}, {"digest", "d1"}, {"session", "03"}}));
+}
+
+}  // namespace
+}  // namespace stillhand::recording
