@@ -5,11 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/measurement/session.hpp"
+#include "apps/measurement/written_trial.hpp"
 #include "apps/session/results.hpp"
-#include "services/contract/config_error.hpp"
-#include "services/runtime/process/clock.hpp"
-#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::close_the_loop {
 namespace {
@@ -35,37 +32,6 @@ recording::Recording without_gaps(const recording::Recording& rows, const Trial&
   return out;
 }
 
-// What the recorder has written of a trial; it may be a second behind.
-measurement::SessionRows recorded(const std::filesystem::path& file, const Trial& trial,
-                                  bool tracking) {
-  constexpr int kTries = 10;
-  constexpr std::int64_t kPatience_ns = 700'000'000;
-  constexpr double kMostMissing = 0.02;
-  const auto least =
-      static_cast<std::size_t>((1.0 - kMostMissing) * static_cast<double>(trial.duration_ticks));
-  const double end_s =
-      static_cast<double>(trial.start_tick + trial.duration_ticks - 1) / kControlRateHz;
-  const runtime::OrdinaryWhile ordinary;
-  std::string why = "the recorder has not written it";
-  for (int i = 0; i < kTries; ++i) {
-    runtime::sleep_until_ns(runtime::monotonic_ns() + kPatience_ns);
-    try {
-      measurement::SessionRows session =
-          measurement::read_session_rows(file.string(), std::to_string(trial.number));
-      const recording::Recording& rows = session.rows;
-      const bool whole = rows.row_count() >= least && rows.time_s.back() >= end_s - 0.1 &&
-                         rows.find("f_motor") != nullptr &&
-                         (!tracking || rows.find("x_p") != nullptr);
-      if (whole) return session;
-      why = std::to_string(rows.row_count()) + " of " + std::to_string(trial.duration_ticks) +
-            " ticks recorded";
-    } catch (const ConfigError& error) {
-      why = error.what();  // not there yet
-    }
-  }
-  throw std::runtime_error("trial " + std::to_string(trial.number) + ": " + why);
-}
-
 }  // namespace
 
 TrialRun LiveTrialSession::run(const session::PlannedTrial& planned, const std::string& label) {
@@ -83,7 +49,7 @@ TrialRun LiveTrialSession::run(const session::PlannedTrial& planned, const std::
   out.number = outcome.planned.trial.number;
   const bool tracking = planned.trial.phase == TrialPhase::kTracking;
   const Trial& trial = outcome.planned.trial;
-  const measurement::SessionRows session = recorded(recording_, trial, tracking);
+  const measurement::SessionRows session = measurement::written_trial(recording_, trial, tracking);
   constexpr auto kEvery = static_cast<std::size_t>(kControlRateHz / kWeightRate_hz);
   for (std::size_t n = 0; n < session.weights.size(); n += kEvery) {
     out.weights.push_back(session.weights[n]);

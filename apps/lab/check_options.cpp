@@ -74,10 +74,11 @@ motion::RideRecord ride_of(const LabOptions& options) {
 }  // namespace
 
 AskedMotions check_options(const LabOptions& options) {
-  session::plan(options.protocol);  // checks durations and road
+  const auto planned = session::plan(options.protocol);  // checks durations and road
   check_combinations(options);
   check_values(options);
-  return rehearse(options.protocol, ride_of(options), options.config);
+  return rehearse(options.trials.empty() ? planned : options.trials, options.protocol,
+                  ride_of(options), options.config);
 }
 
 }  // namespace stillhand::lab

@@ -33,6 +33,10 @@ Action action_of(stillhand_msgs::SessionAction action) {
       return Action::kEmergencyStop;
     case stillhand_msgs::SESSION_NOTE:
       return Action::kNote;
+    case stillhand_msgs::SESSION_REPEAT:
+      return Action::kRepeat;
+    case stillhand_msgs::SESSION_ABORT:
+      return Action::kAbort;
   }
   return Action::kUnknown;  // from another version
 }

@@ -61,8 +61,19 @@ const session::TrialOutcome& ConductedTrials::run(const session::PlannedTrial& p
     if (!outcomes_.back().stopped) break;
     ++stopped_;
   }
+  return finished();
+}
+
+const session::TrialOutcome& ConductedTrials::run_once(const session::PlannedTrial& planned) {
+  if (options_.wait_for_start) conductor_.pause();
+  outcomes_.push_back(conductor_.run(planned));
+  return finished();
+}
+
+const session::TrialOutcome& ConductedTrials::finished() {
   session::TrialOutcome& outcome = outcomes_.back();
-  if (outcome.completed && planned.trial.phase == TrialPhase::kPegged) take_model(outcome);
+  const bool pegged = outcome.planned.trial.phase == TrialPhase::kPegged;
+  if (outcome.completed && pegged) take_model(outcome);
   return outcome;
 }
 

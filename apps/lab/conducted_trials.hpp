@@ -35,6 +35,10 @@ class ConductedTrials final : public LiveTrials {
   [[nodiscard]] std::string recording() { return conductor_.recording(); }
 
   const session::TrialOutcome& run(const session::PlannedTrial& planned) override;
+  const session::TrialOutcome& run_once(const session::PlannedTrial& planned) override;
+  void rest(const std::string& what, double seconds) override { conductor_.rest(what, seconds); }
+  void note(const std::string& text) override { conductor_.note(text); }
+  Asked asked() override { return conductor_.asked(); }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
   std::string use(const cancellation::ControlModel& model) override {
     return conductor_.use(model);
@@ -42,6 +46,8 @@ class ConductedTrials final : public LiveTrials {
   [[nodiscard]] bool interrupted() const override { return conductor_.interrupted(); }
 
  private:
+  /// The newest outcome, once its model is there.
+  const session::TrialOutcome& finished();
   void take_model(session::TrialOutcome& outcome);
 
   const LabOptions& options_;

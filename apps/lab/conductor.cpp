@@ -10,6 +10,7 @@
 
 #include "apps/lab/codec.hpp"
 #include "apps/lab/core/model_stages.hpp"
+#include "apps/lab/core/rest.hpp"
 #include "apps/lab/core/session_begin.hpp"
 #include "apps/lab/core/trial_run.hpp"
 #include "services/cancellation/codec.hpp"
@@ -92,7 +93,12 @@ void Conductor::subscribe() {
   bus.subscribe<stillhand_msgs::SessionCommand>(
       topics::kSessionCommand, [this, stored](const auto& command, const auto&) {
         std::string reported;
-        stored([&] { reported = seen_.requests.take(from_idl(command), seen_.trial_runs); });
+        bool aborted = false;
+        stored([&] {
+          reported = seen_.requests.take(from_idl(command), seen_.trial_runs);
+          aborted = !seen_.requests.aborted().empty();
+        });
+        if (aborted) service_.stop().request();
         if (!reported.empty()) {
           service_.note_event(stillhand_msgs::EVENT_COMMAND, reported.c_str());
         }
@@ -194,6 +200,16 @@ void Conductor::begin_session() {
 void Conductor::pause() {
   const std::lock_guard lock(mutex_);
   seen_.requests.pause();
+}
+
+void Conductor::rest(const std::string& what, double seconds) {
+  Rest rest(what, seconds, trouble_);
+  drive(rest);
+}
+
+Asked Conductor::asked() {
+  const std::lock_guard lock(mutex_);
+  return seen_.requests.take_asked();
 }
 
 session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {

@@ -52,6 +52,14 @@ class Conductor {
   void begin_session();
   /// No trial begins before a request for a start.
   void pause();
+  /// Waits, at most that long; a request for a start ends it.
+  void rest(const std::string& what, double seconds);
+  /// An event of the session, for the recording.
+  void note(const std::string& text) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE, text.c_str());
+  }
+  /// What persons asked of the protocol since the last call.
+  Asked asked();
   /// Waits for the end of a pause, then runs one trial to its end, or until something breaks it.
   session::TrialOutcome run(const session::PlannedTrial& planned);
 

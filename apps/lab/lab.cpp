@@ -115,8 +115,8 @@ LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
   };
   try {
     if (options.subject != 0) {
-      write_subject_settings(asked_options.config, options.config, options.protocol.seed,
-                             options.subject);
+      write_subject_settings(asked_options.config, options.config,
+                             options.subject_seed.value_or(options.protocol.seed), options.subject);
     }
     if (options.undeclared_effect != 0) {
       live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/session/protocol.hpp"
 #include "services/recording/keep_options.hpp"
@@ -17,6 +19,8 @@ enum class Operator : std::uint8_t { kSimulated, kMouse };
 /// The command line of `stillhand lab`.
 struct LabOptions {
   session::ProtocolOptions protocol;
+  /// Trials that may run, for the rehearsal; empty: those of session::plan(protocol).
+  std::vector<session::PlannedTrial> trials;
   std::filesystem::path out;       ///< folder of the results
   std::filesystem::path ride;      ///< recorded ride, for Motion::kRide
   std::filesystem::path programs;  ///< folder of the stillhand-* executables
@@ -30,10 +34,11 @@ struct LabOptions {
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
   std::int64_t subject = 0;  ///< of the population, under the session's seed; 0: that of `config`
-  std::filesystem::path security;       ///< folder of keys; empty: none, or the inventory's
-  std::filesystem::path inventory;      ///< the lab's machines; empty: this one
-  std::filesystem::path model;          ///< control model for C; empty: the session's own
-  std::string canceller = "now";        ///< cancellation::sampling_named()
+  std::optional<std::uint64_t> subject_seed;  ///< of that draw; none: the session's
+  std::filesystem::path security;             ///< folder of keys; empty: none, or the inventory's
+  std::filesystem::path inventory;            ///< the lab's machines; empty: this one
+  std::filesystem::path model;                ///< control model for C; empty: the session's own
+  std::string canceller = "now";              ///< cancellation::sampling_named()
   std::uint64_t undeclared_effect = 0;  ///< seed of the effect that only the rig knows; 0: none
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
   bool attach = false;                  ///< use services that run already

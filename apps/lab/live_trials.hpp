@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "apps/lab/core/requests.hpp"
 #include "apps/session/trial_outcome.hpp"
 #include "services/cancellation/core/control_model.hpp"
 #include "services/identification/core/identifier.hpp"
@@ -18,6 +19,14 @@ class LiveTrials {
   /// is run again after a request for a start, under the next number: the outcome's.  A trial that
   /// is not completed ends the session: run nothing after it.
   virtual const session::TrialOutcome& run(const session::PlannedTrial& planned) = 0;
+  /// The same, without the second part: one that a request stopped is not run again.
+  virtual const session::TrialOutcome& run_once(const session::PlannedTrial& planned) = 0;
+  /// Waits between trials, until a request for a start or the end.
+  virtual void rest(const std::string& what, double seconds) = 0;
+  /// One line for the recording, as an event.
+  virtual void note(const std::string& text) = 0;
+  /// What persons asked of the protocol since the last call.
+  virtual Asked asked() = 0;
   /// The model identified last.
   [[nodiscard]] virtual const identification::FeedthroughModel& model() const = 0;
   /// Gives the canceller a model.  @return why it was refused, or empty

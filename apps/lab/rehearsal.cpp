@@ -46,7 +46,8 @@ ConfigError refusal(const session::PlannedTrial& planned, const session::Protoco
 
 }  // namespace
 
-AskedMotions rehearse(const session::ProtocolOptions& options, const motion::RideRecord& ride,
+AskedMotions rehearse(const std::vector<session::PlannedTrial>& trials,
+                      const session::ProtocolOptions& options, const motion::RideRecord& ride,
                       const std::filesystem::path& config) {
   const auto platform =
       settings::load<motion::MotionGenerator::Config>(config / "motion.yaml", "motion");
@@ -54,7 +55,7 @@ AskedMotions rehearse(const session::ProtocolOptions& options, const motion::Rid
       settings::load<display::TrackingDisplay::Config>(config / "display.yaml", "display");
   AskedMotions asked;
   std::optional<motion::MotionReport> followed_ride;
-  for (const session::PlannedTrial& planned : session::plan(options)) {
+  for (const session::PlannedTrial& planned : trials) {
     const Trial& trial = planned.trial;
     if (trial.phase == TrialPhase::kTracking) {
       display::reference_on_screen(screen, trial.duration_ticks, planned.reference_seed);

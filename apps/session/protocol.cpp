@@ -74,28 +74,6 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
   planned.rms_m_s2 = 0.0;  // a road and a ride keep their own
 }
 
-PlannedTrial identification(const ProtocolOptions& options) {
-  PlannedTrial planned{};
-  planned.trial.number = 0;
-  planned.trial.phase = TrialPhase::kPegged;
-  planned.trial.duration_ticks = ticks_in(options.identify_s);
-  planned.trial.ramp_ticks = ticks_in(options.ramp_s);
-  planned.label = 'I';
-  planned.moving = true;
-  planned.motion = Motion::kBandNoise;  // white noise whatever the trials use: paper III-A
-  planned.band_low_hz = 0.7;
-  planned.band_high_hz = 4.0;
-  // "Band-pass filtered" in the paper, whose Fig. 4 has its estimate to 10 Hz: the filter lets some
-  // power through beyond 4 Hz, or the notch at 6 Hz could not be seen.  Its order isn't given.
-  planned.band_order = 4;
-  // Peak 0.75 g (paper III-A); a random phase noise of 40 to 120 s peaks near 3.8 times its RMS, so
-  // that this RMS just fits under it.
-  planned.peak_m_s2 = 0.75 * 9.80665;
-  planned.rms_m_s2 = planned.peak_m_s2 / 3.8;
-  planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, 0);
-  return planned;
-}
-
 }  // namespace
 
 std::string check_seed(const std::string& word) {
@@ -147,6 +125,45 @@ std::vector<Condition> parse_conditions(const std::string& text, const std::stri
   return conditions;
 }
 
+PlannedTrial identification_trial(const ProtocolOptions& options) {
+  PlannedTrial planned{};
+  planned.trial.number = 0;
+  planned.trial.phase = TrialPhase::kPegged;
+  planned.trial.duration_ticks = ticks_in(options.identify_s);
+  planned.trial.ramp_ticks = ticks_in(options.ramp_s);
+  planned.label = 'I';
+  planned.moving = true;
+  planned.motion = Motion::kBandNoise;  // white noise whatever the trials use: paper III-A
+  planned.band_low_hz = 0.7;
+  planned.band_high_hz = 4.0;
+  // "Band-pass filtered" in the paper, whose Fig. 4 has its estimate to 10 Hz: the filter lets some
+  // power through beyond 4 Hz, or the notch at 6 Hz could not be seen.  Its order isn't given.
+  planned.band_order = 4;
+  // Peak 0.75 g (paper III-A); a random phase noise of 40 to 120 s peaks near 3.8 times its RMS, so
+  // that this RMS just fits under it.
+  planned.peak_m_s2 = 0.75 * 9.80665;
+  planned.rms_m_s2 = planned.peak_m_s2 / 3.8;
+  planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, 0);
+  return planned;
+}
+
+PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
+                            std::int64_t number) {
+  PlannedTrial planned{};
+  planned.trial.number = number;
+  planned.trial.phase = TrialPhase::kTracking;
+  planned.trial.duration_ticks = ticks_in(options.trial_s);
+  planned.trial.ramp_ticks = ticks_in(options.ramp_s);
+  planned.reference_seed = derived_seed(options.seed, SeedUse::kReference, number);
+  planned.label = static_cast<char>(condition);
+  planned.moving = condition != Condition::kStationary;
+  set_tracking_motion(planned, options);
+  planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
+  planned.cancellation = condition == Condition::kMovingCancelled;
+  planned.command_filter = condition == Condition::kCommandFilter;
+  return planned;
+}
+
 std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   check_duration("--trial-seconds", options.trial_s);
   check_duration("--identify-seconds", options.identify_s);
@@ -155,21 +172,10 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   std::mt19937_64 engine(derived_seed(options.seed, SeedUse::kOrder, 0));
   std::shuffle(order.begin(), order.end(), engine);
 
-  std::vector<PlannedTrial> trials{identification(options)};
+  std::vector<PlannedTrial> trials{identification_trial(options)};
   for (const Condition condition : order) {
-    PlannedTrial planned{};
-    planned.trial.number = static_cast<std::int64_t>(trials.size());
-    planned.trial.phase = TrialPhase::kTracking;
-    planned.trial.duration_ticks = ticks_in(options.trial_s);
-    planned.trial.ramp_ticks = ticks_in(options.ramp_s);
-    planned.reference_seed = derived_seed(options.seed, SeedUse::kReference, planned.trial.number);
-    planned.label = static_cast<char>(condition);
-    planned.moving = condition != Condition::kStationary;
-    set_tracking_motion(planned, options);
-    planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, planned.trial.number);
-    planned.cancellation = condition == Condition::kMovingCancelled;
-    planned.command_filter = condition == Condition::kCommandFilter;
-    trials.push_back(planned);
+    const auto number = static_cast<std::int64_t>(trials.size());
+    trials.push_back(tracking_trial(options, condition, number));
   }
   return trials;
 }

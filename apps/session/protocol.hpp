@@ -73,6 +73,13 @@ std::vector<Condition> parse_conditions(const std::string& text,
 ///         not define, or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
+/// The pegged trial, number 0.
+PlannedTrial identification_trial(const ProtocolOptions& options);
+/// One tracking trial of a condition.
+/// @param number  of the trial in its session, from 1; its seeds follow from it and the session's
+PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
+                            std::int64_t number);
+
 /// Seed of a session that repeats one with other draws.
 std::uint64_t repeat_seed(std::uint64_t seed, std::uint64_t repeat);
 

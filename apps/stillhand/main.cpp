@@ -9,6 +9,7 @@
 #include "apps/dashboard/dashboard_command.hpp"
 #include "apps/deploy/deploy_command.hpp"
 #include "apps/diagnose/diagnose_command.hpp"
+#include "apps/experiment/experiment_command.hpp"
 #include "apps/identify/identify_command.hpp"
 #include "apps/lab/conductor.hpp"
 #include "apps/lab/lab_command.hpp"
@@ -44,6 +45,7 @@ int run(int argc, char** argv) {
   int status = 0;
   try {
     stillhand::lab::add_lab_command(cli, status);
+    stillhand::experiment::add_experiment_command(cli, status);
     stillhand::study::add_study_command(cli, status);
     stillhand::identify::add_identify_command(cli, status);
     stillhand::diagnose::add_diagnose_command(cli, status);

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/rig/sealed_file.hpp"
 
-#include <openssl/evp.h>
-
-#include <array>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <stdexcept>
 
 #include "services/contract/config_error.hpp"
@@ -14,16 +10,6 @@
 namespace stillhand::rig {
 namespace {
 
-std::string hexadecimal(const unsigned char* bytes, std::size_t size) {
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string text;
-  for (std::size_t i = 0; i < size; ++i) {
-    text += kDigits[bytes[i] >> 4];
-    text += kDigits[bytes[i] & 15];
-  }
-  return text;
-}
-
 void write_whole(const std::filesystem::path& path, const std::string& text) {
   if (const auto status = recording::write_file_atomically(path.string(), text); !status.ok()) {
     throw std::runtime_error(status.text);
@@ -31,13 +17,6 @@ void write_whole(const std::filesystem::path& path, const std::string& text) {
 }
 
 }  // namespace
-
-std::string new_nonce() {
-  std::random_device source;
-  std::array<unsigned char, 16> bytes{};
-  for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(source() & 0xffu);
-  return hexadecimal(bytes.data(), bytes.size());
-}
 
 SealedSeed read_sealed_seed(std::istream& from) {
   SealedSeed sealed{};
@@ -62,19 +41,6 @@ std::string sealed_text(const OpenedEffect& effect, const std::string& nonce) {
                               {"place", effect.place}, {"nonce", nonce}};
   if (!effect.channel.empty()) json["channel"] = effect.channel;
   return json.dump(2) + "\n";
-}
-
-std::string sha256(const std::string& bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("SHA-256 failed");
-  }
-  return hexadecimal(digest.data(), size);
-}
-
-std::string digest_line(const std::string& bytes, const std::string& name) {
-  return sha256(bytes) + "  " + name + "\n";
 }
 
 void commit_effect(const std::filesystem::path& folder, const std::string& text) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "services/rig/core/undeclared/sealed_effect.hpp"
+#include "services/rig/digest.hpp"
 
 namespace stillhand::rig {
 
@@ -19,9 +20,6 @@ struct SealedSeed {
   std::string nonce;  ///< hexadecimal; prevents a search over seeds for the digest
 };
 
-/// 128 bits from the random source of the operating system, hexadecimal.
-std::string new_nonce();
-
 /// Reads one line "SEED NONCE".  @throws ConfigError for any other text.
 SealedSeed read_sealed_seed(std::istream& from);
 /// The line that read_sealed_seed() reads.
@@ -29,11 +27,6 @@ std::string text_of(const SealedSeed& sealed);
 
 /// Content of undeclared_effect.json; README, "The sealed file".
 std::string sealed_text(const OpenedEffect& effect, const std::string& nonce);
-
-/// SHA-256 (FIPS 180-4), hexadecimal.
-std::string sha256(const std::string& bytes);
-/// A line in the format of sha256sum.
-std::string digest_line(const std::string& bytes, const std::string& name);
 
 /// Writes the digest of the sealed text, before the session.
 /// @throws std::runtime_error with the file that could not be written.

@@ -15,6 +15,7 @@ std::string printable(std::string text) {
 }  // namespace
 
 std::string Requests::take(const Command& command, bool trial_runs) {
+  constexpr std::size_t kMostNotes = 1000;  // between two looks of the script
   constexpr std::size_t kMostAskers = 100;  // a stranger's names must not fill the memory
   const std::string asker = printable(command.asker);
   if (command.action == Action::kEmergencyStop) {
@@ -28,10 +29,12 @@ std::string Requests::take(const Command& command, bool trial_runs) {
   if (command.request <= newest) return "";
   newest = command.request;
   const std::string asked = ", asked by " + asker;
+  const std::string reason = printable(command.text);
   switch (command.action) {
     case Action::kStart: {
       const bool was = paused_;
       paused_ = false;
+      ++starts_;
       return "start" + asked + (was ? "" : ": nothing was paused");
     }
     case Action::kPause:
@@ -43,8 +46,20 @@ std::string Requests::take(const Command& command, bool trial_runs) {
       if (!trial_runs) return "stop" + asked + ": no trial runs, none begins before a start";
       trial_stopped_ = "stopped" + asked;
       return "stop" + asked + ": the trial ends, a start runs it again";
+    case Action::kRepeat:
+      if (!trial_runs) {
+        asked_.repeat = reason;
+        return "repeat" + asked + ": the last trial runs again: " + reason;
+      }
+      paused_ = true;
+      trial_stopped_ = "repeated" + asked + ": " + reason;
+      return "repeat" + asked + ": the trial ends, a start runs it again: " + reason;
+    case Action::kAbort:
+      asked_.aborted = "aborted" + asked + ": " + reason;
+      return "abort" + asked + ": the session ends: " + reason;
     case Action::kNote:
-      return asker + ": " + printable(command.text);
+      if (asked_.notes.size() < kMostNotes) asked_.notes.push_back(asker + ": " + reason);
+      return asker + ": " + reason;
     case Action::kEmergencyStop:
     case Action::kUnknown:
       break;

@@ -3,19 +3,38 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace stillhand::lab {
 
 /// What a dashboard can ask of a session.
-enum class Action : std::uint8_t { kStart, kPause, kStop, kEmergencyStop, kNote, kUnknown };
+enum class Action : std::uint8_t {
+  kStart,
+  kPause,
+  kStop,
+  kEmergencyStop,
+  kNote,
+  kRepeat,
+  kAbort,
+  kUnknown
+};
 
 /// One request of a dashboard, as it came from the bus.
 struct Command {
   Action action = Action::kUnknown;
   std::uint64_t request = 0;  ///< number of the request, larger than the asker's last
   std::string asker;          ///< a name for a person; any bytes
-  std::string text;           ///< of a note; any bytes
+  std::string text;           ///< of a note, or a reason; any bytes
+};
+
+/// Requests that concern the protocol of an experiment, for its script.
+struct Asked {
+  std::optional<std::string> repeat;  ///< the last trial shall run again; its reason
+  std::vector<std::string> notes;     ///< of a person, with who wrote each
+  std::string aborted;                ///< why the session has to end; empty: it goes on
 };
 
 /// The requests of dashboards and their effect on the session.  Pure; one thread at a time.
@@ -31,6 +50,12 @@ class Requests {
   void pause() noexcept { paused_ = true; }
   /// Why the trial that runs has to end now; empty: it goes on.
   [[nodiscard]] const std::string& trial_stopped() const noexcept { return trial_stopped_; }
+  /// Requests for a start so far.
+  [[nodiscard]] std::int64_t starts() const noexcept { return starts_; }
+  /// What was asked of the protocol since the last call.
+  Asked take_asked() { return std::exchange(asked_, Asked{{}, {}, asked_.aborted}); }
+  /// Why the session has to end now, in good order; empty: it goes on.
+  [[nodiscard]] const std::string& aborted() const noexcept { return asked_.aborted; }
   /// A trial begins.
   void begin_trial() noexcept { trial_stopped_.clear(); }
   /// Why the session has to end; empty: it goes on.  Never taken back.
@@ -38,6 +63,8 @@ class Requests {
 
  private:
   bool paused_ = false;
+  std::int64_t starts_ = 0;
+  Asked asked_;
   std::string trial_stopped_, emergency_;
   std::map<std::string, std::uint64_t> newest_;  // by asker; requests are written several times
 };

@@ -34,7 +34,7 @@ class RehearsalTest : public testing::Test {
   }
   [[nodiscard]] std::string refusal(const motion::RideRecord& ride = {}) const {
     try {
-      rehearse(options, ride, config);
+      rehearse(session::plan(options), options, ride, config);
     } catch (const ConfigError& error) {
       return error.what();
     }
@@ -56,7 +56,7 @@ motion::RideRecord sine(double m_s2, double hz, double seconds) {
 }
 
 TEST_F(RehearsalTest, EveryTrialThatMovesIsAskedForAndNoOther) {
-  const AskedMotions sut = rehearse(options, {}, config);
+  const AskedMotions sut = rehearse(session::plan(options), options, {}, config);
   for (const session::PlannedTrial& trial : trials()) {
     EXPECT_EQ(sut.count(trial.trial.number), trial.moving ? 1u : 0u) << trial.label;
   }
@@ -90,7 +90,7 @@ TEST_F(RehearsalTest, WhatIsRemovedOfARideIsKnownBeforehand) {
   motion::RideRecord both = sine(1.0, 2.0, kTrial_s);
   const motion::RideRecord slow = sine(1.0, 0.1, kTrial_s);
   for (std::size_t i = 0; i < both.accel_m_s2.size(); ++i) both.accel_m_s2[i] += slow.accel_m_s2[i];
-  for (const auto& [number, sut] : rehearse(options, both, config)) {
+  for (const auto& [number, sut] : rehearse(session::plan(options), options, both, config)) {
     if (number == 0) continue;  // identification
     EXPECT_NEAR(sut.removed_share, 0.5, 0.05);
     EXPECT_GT(sut.corner_hz, 0.1);

@@ -61,6 +61,40 @@ TEST(RequestsTest, AnEmergencyStopIsHeardWhateverItsNumberAndNeverTakenBack) {
   EXPECT_EQ(sut.emergency(), "emergency stop, asked by desk");
 }
 
+TEST(RequestsTest, ARepetitionBetweenTrialsIsForTheScriptOnceAndHasItsReason) {
+  Requests sut;
+  auto repeat = command(Action::kRepeat, 1);
+  repeat.text = "coughed";
+  EXPECT_THAT(sut.take(repeat, false), HasSubstr("the last trial runs again: coughed"));
+  EXPECT_FALSE(sut.paused());
+  EXPECT_EQ(sut.take_asked().repeat, "coughed");
+  EXPECT_EQ(sut.take_asked().repeat, std::nullopt);
+}
+
+TEST(RequestsTest, ARepetitionDuringATrialStopsItWithTheReason) {
+  Requests sut;
+  auto repeat = command(Action::kRepeat, 1);
+  repeat.text = "slipped";
+  EXPECT_THAT(sut.take(repeat, true), HasSubstr("a start runs it again"));
+  EXPECT_EQ(sut.trial_stopped(), "repeated, asked by desk: slipped");
+  EXPECT_TRUE(sut.paused());
+  EXPECT_EQ(sut.take_asked().repeat, std::nullopt);  // the trial that was stopped is not done
+}
+
+TEST(RequestsTest, AnAbortIsNeverTakenBackAndNotesComeOnce) {
+  Requests sut;
+  auto note = command(Action::kNote, 1);
+  note.text = "window open";
+  sut.take(note, true);
+  auto abort = command(Action::kAbort, 2);
+  abort.text = "fire alarm";
+  EXPECT_THAT(sut.take(abort, true), HasSubstr("the session ends: fire alarm"));
+  EXPECT_EQ(sut.aborted(), "aborted, asked by desk: fire alarm");
+  EXPECT_EQ(sut.take_asked().notes, std::vector<std::string>{"desk: window open"});
+  EXPECT_TRUE(sut.take_asked().notes.empty());
+  EXPECT_EQ(sut.take_asked().aborted, "aborted, asked by desk: fire alarm");
+}
+
 TEST(RequestsTest, ANoteChangesNothing) {
   Requests sut;
   auto note = command(Action::kNote, 1);

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/experiment/core/design.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr std::array<std::pair<const char*, Order>, 3> kOrders{
+    {{"random", Order::kRandom}, {"latin", Order::kLatin}, {"williams", Order::kWilliams}}};
+constexpr std::array<std::pair<const char*, Question::After>, 4> kAfters{
+    {{"practice", Question::After::kPractice},
+     {"trial", Question::After::kTrial},
+     {"block", Question::After::kBlock},
+     {"end", Question::After::kEnd}}};
+constexpr std::array<const char*, 5> kRunnable{"A", "B", "C", "C'", "C+"};
+constexpr std::array<const char*, 3> kInOneProcess{"D", "E", "F"};
+
+bool has(const std::vector<std::string>& words, const std::string& word) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+void check_conditions(const Design& design) {
+  if (design.conditions.empty()) throw ConfigError("conditions", "nothing", "[A, B, C]");
+  for (const std::string& word : design.conditions) {
+    if (std::ranges::find(kInOneProcess, word) != kInOneProcess.end()) {
+      throw ConfigError("conditions", word,
+                        fmt::format("{}: {} runs in one process alone (`stillhand study`)",
+                                    kLiveConditions, word));
+    }
+    if (std::ranges::find(kRunnable, word) == kRunnable.end()) {
+      throw ConfigError("conditions", "\"" + word + "\"", kLiveConditions);
+    }
+    if (std::ranges::count(design.conditions, word) > 1) {
+      throw ConfigError("conditions", word + " twice", "each condition once");
+    }
+  }
+  if (has(design.conditions, "C+") == design.control_model.empty()) {
+    throw ConfigError("control_model",
+                      design.control_model.empty() ? "nothing" : design.control_model,
+                      "a file with condition C+, and none without it");
+  }
+}
+
+void check_comparisons(const Design& design) {
+  for (const std::string& pair : design.comparisons) {
+    const std::size_t dash = pair.find('-');
+    const std::string first = pair.substr(0, dash);
+    const std::string second = dash == std::string::npos ? "" : pair.substr(dash + 1);
+    if (first == second || !has(design.conditions, first) || !has(design.conditions, second)) {
+      throw ConfigError("comparisons", "\"" + pair + "\"",
+                        "two conditions of this experiment, for example A-B");
+    }
+  }
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= 40 && std::ranges::all_of(text, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+void check_questions(const Design& design) {
+  for (const Question& question : design.questions) {
+    if (!is_name(question.name)) {
+      throw ConfigError("questions.name", "\"" + question.name + "\"", "letters, digits and _");
+    }
+    if (std::ranges::count(design.questions, question.name, &Question::name) > 1) {
+      throw ConfigError("questions.name", question.name + " twice", "each name once");
+    }
+    if (question.steps < 2 || question.steps > 9) {
+      throw ConfigError("questions.steps", fmt::to_string(question.steps), "2 to 9");
+    }
+    if (question.text.empty() || question.text.size() > 100) {
+      throw ConfigError("questions.text", fmt::format("{} characters", question.text.size()),
+                        "1 to 100 characters");
+    }
+  }
+}
+
+template <typename Value, std::size_t N>
+Value named(const std::array<std::pair<const char*, Value>, N>& list, const std::string& word,
+            const char* key, const char* want) {
+  for (const auto& [name, value] : list) {
+    if (word == name) return value;
+  }
+  throw ConfigError(key, "\"" + word + "\"", want);
+}
+
+}  // namespace
+
+void check(const Design& design) {
+  check_conditions(design);
+  check_comparisons(design);
+  check_questions(design);
+  if (design.who != "simulated" && design.who != "mouse") {
+    throw ConfigError("operator", "\"" + design.who + "\"", "simulated or mouse");
+  }
+  if (design.instructions.size() > 8) {
+    throw ConfigError("instructions", fmt::format("{} lines", design.instructions.size()),
+                      "at most 8 lines");
+  }
+}
+
+Order order_named(const std::string& word) {
+  return named(kOrders, word, "order", "random, latin or williams");
+}
+
+const char* name_of(Order order) { return kOrders.at(static_cast<std::size_t>(order)).first; }
+
+Question::After after_named(const std::string& word) {
+  return named(kAfters, word, "questions.after", "practice, trial, block or end");
+}
+
+const char* name_of(Question::After after) {
+  return kAfters.at(static_cast<std::size_t>(after)).first;
+}
+
+std::string participant_code(std::size_t index) { return fmt::format("P{:02}", index + 1); }
+
+std::size_t participant_index(const std::string& code, std::int64_t participants) {
+  std::int64_t number = 0;
+  const char* end = code.data() + code.size();
+  if (code.size() >= 2 && code[0] == 'P') {
+    const auto [rest, error] = std::from_chars(code.data() + 1, end, number);
+    const bool whole = error == std::errc() && rest == end && number >= 1;
+    const auto index = static_cast<std::size_t>(number - 1);
+    if (whole && number <= participants && participant_code(index) == code) return index;
+  }
+  throw ConfigError("--participant", "\"" + code + "\"",
+                    fmt::format("P01 to {}: a code, never a name",
+                                participant_code(static_cast<std::size_t>(participants - 1))));
+}
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/experiment/folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "apps/experiment/experiment_file.hpp"
+#include "apps/experiment/sealed_assignment.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_reader.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/recording/of_experiment.hpp"
+#include "services/rig/digest.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr const char* kDigestFile = "experiment.sha256";
+
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  const auto status = recording::write_file_atomically(file.string(), text);
+  if (!status.ok()) throw std::runtime_error(status.text);
+}
+
+// Why a recording does not belong where it is; empty: it does.
+std::string wrong_place(const std::filesystem::path& file,
+                        const recording::OfExperiment& expected) {
+  recording::FileSource source(file.string());
+  recording::McapReader reader(source);
+  const auto* record = reader.find_metadata(recording::kExperimentRecord);
+  if (record == nullptr) return "a recording of no experiment";
+  const auto text = [record](const char* key) {
+    const auto found = record->texts.find(key);
+    return found == record->texts.end() ? std::string() : found->second;
+  };
+  if (text("digest") != expected.digest) return "a recording of another experiment.yaml";
+  if (text("participant") != expected.participant) {
+    return "a recording of participant " + text("participant");
+  }
+  if (text("session") != expected.session) return "the recording of session " + text("session");
+  return "";
+}
+
+}  // namespace
+
+Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
+  const std::filesystem::path file = path_ / kDesignFile;
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError(path_.string(), "a folder without experiment.yaml",
+                      "a folder that `stillhand experiment new` made");
+  }
+  const std::string yaml = recording::read_file(file.string());
+  digest_ = rig::sha256(yaml);
+  const std::string registered = recording::read_file((path_ / kDigestFile).string());
+  if (!registered.starts_with(digest_) && !participants().empty()) {
+    throw ConfigError(file.string(), "SHA-256 " + digest_.substr(0, 12) + "...",
+                      registered.substr(0, 12) +
+                          "...: the pre-registration changed after the first participant; take "
+                          "the change back, or begin another experiment");
+  }
+  design_ = design_of(yaml, file.string());
+  const std::string sealed = recording::read_file((path_ / kSealedFile).string());
+  if (rig::sha256(sealed) != design_.assignment) {
+    throw ConfigError((path_ / kSealedFile).string(), "another content than at the beginning",
+                      "the file of this experiment: its SHA-256 is in experiment.yaml");
+  }
+  assignment_ = draw_assignment(design_.conditions.size(),
+                                order_seed_of(sealed, (path_ / kSealedFile).string()));
+}
+
+bool Folder::unblinded() const { return std::filesystem::exists(path_ / kOpenedFile); }
+
+std::vector<std::size_t> Folder::participants() const {
+  constexpr std::int64_t kMost = 999;
+  std::vector<std::size_t> indices;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path_ / "participants", error)) {
+    const std::string name = entry.path().filename().string();
+    try {
+      indices.push_back(participant_index(name, kMost));
+    } catch (const ConfigError&) {
+      throw ConfigError(entry.path().string(), "a folder of no participant",
+                        "P01, P02, ...: each code once, and no other name");
+    }
+  }
+  std::ranges::sort(indices);
+  return indices;
+}
+
+std::filesystem::path Folder::participant(std::size_t index) const {
+  return path_ / "participants" / participant_code(index);
+}
+
+std::filesystem::path Folder::journal(std::size_t index) const {
+  return participant(index) / "journal.jsonl";
+}
+
+std::filesystem::path Folder::session(std::size_t index, std::int64_t number) const {
+  return participant(index) / "sessions" / fmt::format("{:02}", number);
+}
+
+Plan Folder::plan(std::size_t index) const { return plan_of(design_, assignment_, index); }
+
+std::vector<std::string> Folder::findings(std::size_t index,
+                                          const std::vector<Entry>& entries) const {
+  std::vector<std::string> found;
+  std::set<std::int64_t> with_trial;
+  std::int64_t sessions = 0;
+  for (const Entry& entry : entries) {
+    if (entry.kind == EntryKind::kTrialEnded && entry.completed) with_trial.insert(entry.session);
+    if (entry.kind == EntryKind::kSessionBegan) ++sessions;
+  }
+  for (std::int64_t number = 1; number <= sessions; ++number) {
+    const std::filesystem::path file = session(index, number) / "session.mcap";
+    if (!std::filesystem::exists(file)) {
+      if (with_trial.contains(number)) {
+        found.push_back(file.string() + ": missing, but the journal has trials of it");
+      }
+      continue;
+    }
+    const std::string why =
+        wrong_place(file, {participant_code(index), digest_, fmt::format("{:02}", number)});
+    if (!why.empty()) found.push_back(file.string() + ": " + why);
+  }
+  std::error_code error;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(participant(index) / "sessions", error)) {
+    const std::string name = entry.path().filename().string();
+    const bool known = std::ranges::any_of(
+        entries, [&](const Entry& each) { return fmt::format("{:02}", each.session) == name; });
+    if (!known)
+      found.push_back(entry.path().string() + ": a session that the journal does not know");
+  }
+  return found;
+}
+
+void Folder::register_design() const {
+  write_whole(path_ / kDigestFile, digest_ + "  " + kDesignFile + "\n");
+}
+
+void make_folder(const std::filesystem::path& path, Design design, std::uint64_t order_seed) {
+  std::error_code error;
+  if (std::filesystem::exists(path) && !std::filesystem::is_empty(path, error)) {
+    throw ConfigError(path.string(), "a folder that holds something",
+                      "a new folder, or an empty one");
+  }
+  std::filesystem::create_directories(path / "participants", error);
+  if (error) throw ConfigError(path.string(), error.message(), "a folder that can be made");
+  const std::string sealed = sealed_text(order_seed);
+  design.assignment = rig::sha256(sealed);
+  const std::string yaml = yaml_of(design);
+  write_whole(path / kSealedFile, sealed);
+  write_whole(path / kDigestFile, rig::sha256(yaml) + "  " + kDesignFile + "\n");
+  write_whole(path / kDesignFile, yaml);  // last: it makes the folder an experiment
+}
+
+std::vector<Entry> read_journal(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return {};
+  return entries_of(recording::read_file(file.string()), file.string());
+}
+
+}  // namespace stillhand::experiment

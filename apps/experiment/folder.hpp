@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/experiment/core/plan.hpp"
+#include "apps/experiment/journal.hpp"
+
+namespace stillhand::experiment {
+
+/// The folder of an experiment:
+///
+///   experiment.yaml, experiment.sha256, assignment.sealed, journal.jsonl,
+///   participants/P07/journal.jsonl, participants/P07/sessions/01/session.mcap
+///
+/// The constructor reads and checks the first three; nothing is changed by reading.
+class Folder {
+ public:
+  /// @throws ConfigError for a folder that is no experiment, a changed assignment, and, once a
+  ///         participant is there, a changed experiment.yaml
+  explicit Folder(std::filesystem::path path);
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const Design& design() const noexcept { return design_; }
+  [[nodiscard]] const Assignment& assignment() const noexcept { return assignment_; }
+  /// SHA-256 of experiment.yaml.
+  [[nodiscard]] const std::string& digest() const noexcept { return digest_; }
+  [[nodiscard]] bool unblinded() const;
+
+  /// Indices of the participants that have a folder, in order.
+  /// @throws ConfigError for a folder whose name is no code of this experiment
+  [[nodiscard]] std::vector<std::size_t> participants() const;
+  [[nodiscard]] std::filesystem::path participant(std::size_t index) const;
+  [[nodiscard]] std::filesystem::path journal(std::size_t index) const;
+  /// "sessions/02" of a participant.
+  [[nodiscard]] std::filesystem::path session(std::size_t index, std::int64_t number) const;
+  [[nodiscard]] Plan plan(std::size_t index) const;
+
+  /// What a participant's folder has against its journal: a missing recording, one of another
+  /// participant, session or experiment, one that the journal does not know.  Empty: nothing.
+  [[nodiscard]] std::vector<std::string> findings(std::size_t index,
+                                                  const std::vector<Entry>& entries) const;
+
+  /// Writes the digest as it is now: before the first participant.
+  void register_design() const;
+
+ private:
+  std::filesystem::path path_;
+  Design design_;
+  Assignment assignment_;
+  std::string digest_;
+};
+
+/// Makes the folder of a new experiment.
+/// @throws ConfigError when the folder holds anything already
+void make_folder(const std::filesystem::path& path, Design design, std::uint64_t order_seed);
+
+/// The entries of a participant's journal, without a lock; none if there is no journal.
+std::vector<Entry> read_journal(const std::filesystem::path& file);
+
+}  // namespace stillhand::experiment

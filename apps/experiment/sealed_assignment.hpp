@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "apps/experiment/core/plan.hpp"
+
+namespace stillhand::experiment {
+
+inline constexpr const char* kSealedFile = "assignment.sealed";
+inline constexpr const char* kOpenedFile = "assignment.json";
+
+/// Content of assignment.sealed: the seed of the orders and a nonce as JSON, in hexadecimal digits,
+/// so that a glance does not show it.  It is no secret to a person with this program.
+std::string sealed_text(std::uint64_t order_seed);
+/// @throws ConfigError for a text that sealed_text() did not make
+std::uint64_t order_seed_of(const std::string& sealed, const std::string& origin);
+
+/// Content of assignment.json: the condition of each label, and the order of each participant.
+std::string opened_text(const Design& design, const Assignment& assignment);
+
+}  // namespace stillhand::experiment

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/experiment/session_script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "apps/close_the_loop/control_model.hpp"
+#include "apps/lab/control_model.hpp"
+#include "apps/measurement/written_trial.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr double kBoxHalfWidth_m = 0.015;  // paper III-C; Eq. ID-13
+
+// Share of a trial's recorded ticks with the cursor in the box.
+double dwell_ratio(const std::filesystem::path& recording, const Trial& trial) {
+  const auto session = measurement::written_trial(recording, trial, true);
+  const auto& target_m = session.rows.find("x_r")->values;
+  const auto& cursor_m = session.rows.find("x_p")->values;
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < target_m.size(); ++i) {
+    inside += std::abs(cursor_m[i] - target_m[i]) < kBoxHalfWidth_m ? 1 : 0;
+  }
+  return static_cast<double>(inside) / static_cast<double>(target_m.size());
+}
+
+session::Condition letter_of(const std::string& condition) {
+  return static_cast<session::Condition>(condition.front());
+}
+
+bool chooses_models(const Design& design) {
+  return std::ranges::any_of(design.conditions,
+                             [](const std::string& each) { return each.size() > 1; });
+}
+
+}  // namespace
+
+SessionScript::SessionScript(const Folder& folder, std::size_t index, Journal& journal,
+                             Progress& progress, const lab::LabOptions& lab)
+    : folder_(folder),
+      index_(index),
+      journal_(journal),
+      progress_(progress),
+      lab_(lab),
+      plan_(folder.plan(index)),
+      session_(progress.sessions()) {
+  const std::string& file = folder.design().control_model;
+  if (!file.empty()) augmented_ = lab::control_model(folder.path() / file, lab.rig, lab.config);
+}
+
+void SessionScript::add(Entry entry) {
+  entry.session = session_;
+  progress_.take(journal_.append(std::move(entry)));
+}
+
+session::PlannedTrial SessionScript::planned_of(const Step& step) const {
+  session::PlannedTrial planned =
+      session::tracking_trial(lab_.protocol, letter_of(condition_of(step)), step.place);
+  planned.motion_seed = step.motion_seed;
+  planned.reference_seed = step.target_seed;
+  return planned;
+}
+
+session::PlannedTrial SessionScript::practice_of(std::int64_t number) const {
+  session::ProtocolOptions protocol = lab_.protocol;
+  protocol.trial_s = folder_.design().practice.trial_s;
+  session::PlannedTrial planned =
+      session::tracking_trial(protocol, session::Condition::kStationary, number + 1);
+  planned.reference_seed = practice_trial(folder_.design(), index_, number).target_seed;
+  return planned;
+}
+
+session::PlannedTrial SessionScript::identification() const {
+  session::PlannedTrial planned = session::identification_trial(lab_.protocol);
+  planned.motion_seed = identification_seed(folder_.design(), index_, session_);
+  return planned;
+}
+
+std::vector<session::PlannedTrial> SessionScript::possible_trials() const {
+  std::vector<session::PlannedTrial> trials{identification()};
+  for (const Step& step : plan_) {
+    if (step.kind == StepKind::kTrial) trials.push_back(planned_of(step));
+  }
+  for (std::int64_t n = 0; n < folder_.design().practice.most_trials; ++n) {
+    trials.push_back(practice_of(n));
+  }
+  return trials;
+}
+
+void SessionScript::run(lab::LiveTrials& trials) {
+  if (!identify(trials)) return;
+  while (const auto next = progress_.next()) {
+    if (!do_step(trials, *next) || !look(trials)) return;
+  }
+}
+
+bool SessionScript::look(lab::LiveTrials& trials) {
+  const lab::Asked asked = trials.asked();
+  for (const std::string& note : asked.notes) {
+    add({.kind = EntryKind::kNote, .text = note});
+  }
+  if (asked.repeat && progress_.last_trial()) {
+    const auto step = static_cast<std::int64_t>(*progress_.last_trial());
+    add({.kind = EntryKind::kRepeatAsked, .step = step, .text = *asked.repeat});
+  }
+  if (!trials.interrupted()) return true;
+  ended_ = asked.aborted.empty() ? "interrupted" : asked.aborted;
+  return false;
+}
+
+bool SessionScript::identify(lab::LiveTrials& trials) {
+  add({.kind = EntryKind::kTrialBegan, .trial = 0, .text = "identification"});
+  const session::TrialOutcome& outcome = trials.run(identification());
+  numbers_ = outcome.planned.trial.number;
+  add({.kind = EntryKind::kTrialEnded,
+       .trial = numbers_,
+       .completed = outcome.completed,
+       .text = outcome.aborted});
+  ended_ = outcome.aborted;
+  return look(trials) && outcome.completed;
+}
+
+bool SessionScript::do_step(lab::LiveTrials& trials, std::size_t number) {
+  switch (plan_[number].kind) {
+    case StepKind::kPractice:
+      return practise(trials, number);
+    case StepKind::kTrial:
+      return track(trials, number);
+    case StepKind::kBreak:
+      return take_break(trials, number);
+    case StepKind::kQuestion:
+      return ask(trials, number);
+  }
+  return false;
+}
+
+bool SessionScript::practise(lab::LiveTrials& trials, std::size_t number) {
+  return run_trial(trials, number, practice_of(progress_.practice_trials()));
+}
+
+bool SessionScript::track(lab::LiveTrials& trials, std::size_t number) {
+  if (chooses_models(folder_.design())) give_model(trials, condition_of(plan_[number]));
+  return run_trial(trials, number, planned_of(plan_[number]));
+}
+
+// C runs the session's own model, C' the same while it follows the hand, C+ that of the file.
+void SessionScript::give_model(lab::LiveTrials& trials, const std::string& condition) {
+  if (condition.front() != 'C') return;
+  cancellation::ControlModel model =
+      condition == "C+" ? *augmented_ : cancellation::control_model(trials.model().control);
+  if (condition == "C'") model.adapts = close_the_loop::average_hand();
+  if (const std::string refused = trials.use(model); !refused.empty()) {
+    throw std::runtime_error("the canceller refused a model: " + refused);
+  }
+}
+
+bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
+                              session::PlannedTrial planned) {
+  const Step& planned_step = plan_[step];
+  const bool practice = planned_step.kind == StepKind::kPractice;
+  const std::string label = practice ? "" : folder_.assignment().labels[planned_step.condition];
+  for (;;) {
+    if (!first_) trials.rest("rest", folder_.design().rest_s);
+    first_ = false;
+    if (!look(trials)) return false;
+    if (progress_.next() != step) return true;  // during the rest, the last trial was asked again
+    planned.trial.number = ++numbers_;
+    trials.note(practice ? fmt::format("experiment: trial {}, practice", numbers_)
+                         : fmt::format("experiment: trial {}, block {}, place {}, label {}",
+                                       numbers_, planned_step.block, planned_step.place, label));
+    Entry entry{.kind = EntryKind::kTrialBegan,
+                .step = static_cast<std::int64_t>(step),
+                .trial = numbers_,
+                .label = label};
+    add(entry);
+    const session::TrialOutcome& outcome = trials.run_once(planned);
+    entry.kind = EntryKind::kTrialEnded;
+    entry.completed = outcome.completed;
+    entry.text = outcome.aborted;
+    if (practice && outcome.completed) {
+      entry.dwell_ratio = dwell_ratio(lab_.out / "session.mcap", outcome.planned.trial);
+    }
+    add(entry);
+    if (outcome.completed) return true;
+    ended_ = outcome.aborted;
+    if (!look(trials) || !outcome.stopped) return false;
+    ended_.clear();
+  }
+}
+
+bool SessionScript::take_break(lab::LiveTrials& trials, std::size_t number) {
+  trials.rest(fmt::format("break after block {}", plan_[number].block), folder_.design().break_s);
+  if (!look(trials)) return false;
+  add({.kind = EntryKind::kBreakOver, .step = static_cast<std::int64_t>(number)});
+  first_ = true;  // the break was the rest
+  return true;
+}
+
+bool SessionScript::ask(lab::LiveTrials& /*trials*/, std::size_t number) {
+  const Question& question = folder_.design().questions[plan_[number].question];
+  add({.kind = EntryKind::kQuestionAnswered,
+       .step = static_cast<std::int64_t>(number),
+       .text = question.name + ": not asked of a simulated subject"});
+  return true;
+}
+
+}  // namespace stillhand::experiment

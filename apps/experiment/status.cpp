@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/experiment/status.hpp"
+
+#include <fmt/format.h>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+std::string state_of(const Progress& progress) {
+  if (!progress.excluded().empty()) return "excluded: " + progress.excluded();
+  if (progress.complete()) return "complete";
+  if (progress.sessions() == 0) return "not begun";
+  return progress.session_open() ? "in a session, or stopped without an end" : "to be resumed";
+}
+
+std::string row_of(const std::string& code, const Progress& progress, const Plan& plan) {
+  return fmt::format("{:<12} {:>8} {:>8} {:>9} {:>8}   {}\n", code, progress.sessions(),
+                     progress.practice_trials(),
+                     fmt::format("{}/{}", progress.trials_done(), trials_of(plan)),
+                     progress.repeats(), state_of(progress));
+}
+
+}  // namespace
+
+Overview overview_of(const Folder& folder) {
+  Overview overview;
+  overview.table =
+      fmt::format("{}\nexperiment.yaml: SHA-256 {}\nconditions: {}\n\n", folder.design().title,
+                  folder.digest(), folder.unblinded() ? "unblinded" : "blinded");
+  overview.table += fmt::format("{:<12} {:>8} {:>8} {:>9} {:>8}   {}\n", "participant", "sessions",
+                                "practice", "trials", "repeats", "state");
+  for (const std::size_t index : folder.participants()) {
+    const std::vector<Entry> entries = read_journal(folder.journal(index));
+    const Plan plan = folder.plan(index);
+    Progress progress(folder.design(), plan);
+    try {
+      for (const Entry& entry : entries) progress.take(entry);
+    } catch (const ConfigError& error) {
+      overview.findings.push_back(folder.journal(index).string() + ": " + error.what());
+      continue;
+    }
+    overview.table += row_of(participant_code(index), progress, plan);
+    for (std::string& finding : folder.findings(index, entries)) {
+      overview.findings.push_back(std::move(finding));
+    }
+  }
+  return overview;
+}
+
+}  // namespace stillhand::experiment

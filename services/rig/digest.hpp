@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace stillhand::rig {
+
+/// 128 bits from the random source of the operating system, hexadecimal.
+std::string new_nonce();
+
+/// SHA-256 (FIPS 180-4), hexadecimal.
+std::string sha256(const std::string& bytes);
+/// A line in the format of sha256sum.
+std::string digest_line(const std::string& bytes, const std::string& name);
+
+}  // namespace stillhand::rig

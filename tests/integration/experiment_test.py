@@ -1,0 +1,306 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""An experiment with participants over real processes: short trials, kill -9 in the middle, resumed, complete.
+
+The campaign conducts twelve simulated participants, two of them killed and resumed, one excluded, and keeps the folder
+in STILLHAND_EXPERIMENT, if that is set.
+"""
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+
+from dashboard_test import Dashboard
+from lab_process import (STILLHAND, LabTestCase, campaign, loose_settings, main, next_domain, running, wait_for)
+
+SESSION_LIMIT_S = 300.0
+END_LIMIT_S = 60.0
+
+
+def experiment(*words, status=0):
+    """Runs `stillhand experiment` to its end; returns (standard output, standard error)."""
+    done = subprocess.run([str(STILLHAND), "experiment", *map(str, words)], capture_output=True, text=True, check=False,
+                          timeout=SESSION_LIMIT_S)
+    if done.returncode != status:
+        raise AssertionError(f"{words}: status {done.returncode}: {done.stdout}{done.stderr}")
+    return done.stdout, done.stderr
+
+
+def journal(folder, code):
+    return [json.loads(line) for line in (folder / "participants" / code / "journal.jsonl").read_text().splitlines()]
+
+
+def of_kind(entries, what):
+    return [entry for entry in entries if entry["what"] == what]
+
+
+def metadata(file):
+    """Metadata records of a recording, {name: texts}."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as info:
+        subprocess.run([str(STILLHAND), "info", str(file), "--json", info.name], capture_output=True, check=False)
+        records = json.loads(pathlib.Path(info.name).read_text())["metadata"]
+    return {record["name"]: record["texts"] for record in records}
+
+
+def tree(folder):
+    """Digest of every file, {path: SHA-256}."""
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+class ExperimentTestCase(LabTestCase):
+    def setUp(self):
+        super().setUp()
+        self.study = self.folder / "study"
+        self.settings = loose_settings(self.folder / "settings")
+
+    def new(self, *words):
+        return experiment("new", self.study, "--trial-seconds", 5, "--identify-seconds", 5, "--seed", 11, *words)
+
+    def edit(self, **values):
+        """Changes every key of these names in experiment.yaml."""
+        file = self.study / "experiment.yaml"
+        text = file.read_text()
+        for key, value in values.items():
+            text, count = re.subn(rf"(?m)^( *){key}: .*$", rf"\g<1>{key}: {value}", text)
+            self.assertGreaterEqual(count, 1, key)
+        file.write_text(text)
+
+    def start(self, *words):
+        """Starts `experiment run`; returns (process, domain)."""
+        domain = next_domain()
+        process = subprocess.Popen([str(STILLHAND), "experiment", "run", str(self.study), "--headless", "--domain",
+                                    str(domain), "--config", str(self.settings), *map(str, words)],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+
+        def end():
+            if process.poll() is None:
+                process.kill()
+            process.communicate()
+        self.addCleanup(end)
+        return process, domain
+
+    def run_to_the_end(self, *words):
+        process, _ = self.start(*words)
+        out, errors = process.communicate(timeout=SESSION_LIMIT_S)
+        self.assertEqual(process.returncode, 0, errors)
+        return out + errors
+
+    def kill_in_a_trial(self, code, ended, *words):
+        """Starts a session and kills it with signal 9 while the trial after `ended` completed ones runs."""
+        process, domain = self.start("--participant", code, *words)
+        file = self.study / "participants" / code / "journal.jsonl"
+
+        def in_a_trial():
+            entries = journal(self.study, code) if file.exists() else []
+            done = [entry for entry in of_kind(entries, "trial ended") if entry["completed"] and "step" in entry]
+            return len(done) >= ended and entries[-1]["what"] == "trial began"
+        wait_for(f"{code} in a trial", in_a_trial, SESSION_LIMIT_S, ended=lambda: process.poll() is not None and
+                 f"the session ended: {process.communicate()[1]}")
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        wait_for("the end of the processes", lambda: not running(domain), END_LIMIT_S)
+
+
+class SessionTest(ExperimentTestCase):
+    def test_a_participant_who_is_killed_in_the_middle_is_resumed_and_completed(self):
+        self.new("--conditions", "A,B,C", "--participants", 3, "--blocks", 2)
+        self.edit(rest_s=0, break_s=1, trial_s=5, most_trials=2, dwell_ratio=1)
+        self.kill_in_a_trial("P02", 3)
+        before = tree(self.study)
+        shown = self.run_to_the_end("--participant", "P02")
+        self.assertIn("6 of 6 trials", shown)
+        self.judge_journal()
+        self.judge_recordings(before)
+        self.judge_blinding(shown)
+        self.judge_bad_folders()
+
+    def judge_journal(self):
+        entries = journal(self.study, "P02")
+        self.assertEqual([entry["session"] for entry in of_kind(entries, "session began")], [1, 2])
+        first_end = of_kind(entries, "session ended")[0]
+        self.assertFalse(first_end["completed"])
+        self.assertIn("no end in the journal", first_end["text"])
+        self.assertTrue(of_kind(entries, "session ended")[1]["completed"])
+        done = [entry["step"] for entry in of_kind(entries, "trial ended") if entry["completed"] and "step" in entry]
+        # Practice (its criterion cannot be reached) twice, then every trial once and in the plan's order.
+        self.assertEqual(done[:2], [0, 0])
+        self.assertEqual(len(set(done[2:])), 6)
+        self.assertEqual(done[2:], sorted(done[2:]))
+        labels = [entry["label"] for entry in of_kind(entries, "trial ended") if entry.get("label")]
+        self.assertEqual(sorted(labels[:3]), ["X", "Y", "Z"])
+        self.assertEqual(sorted(labels[3:]), ["X", "Y", "Z"])
+        for entry in of_kind(entries, "trial ended")[1:3]:
+            self.assertIn("dwell_ratio", entry)
+
+    def judge_recordings(self, before):
+        digest = hashlib.sha256((self.study / "experiment.yaml").read_bytes()).hexdigest()
+        for session in ("01", "02"):
+            file = self.study / "participants" / "P02" / "sessions" / session / "session.mcap"
+            self.assertEqual(metadata(file)["stillhand.experiment"],
+                             {"participant": "P02", "digest": digest, "session": session})
+        # The second session changes no file of the first.
+        after = tree(self.study)
+        for path, content in before.items():
+            if "/sessions/01/" in path:
+                self.assertEqual(after[path], content, path)
+
+    def judge_blinding(self, shown):
+        """No shown line, journal, log or file name has a condition until `unblind`."""
+        word = re.compile(r"condition|cancelled|stationary|\bmoving\b|trial_label|\b[ABC]\b")
+        self.assertIsNone(word.search(shown), shown)
+        texts = [path for path in (self.study / "participants").rglob("*")
+                 if path.suffix in (".jsonl", ".log") and path.is_file()]
+        self.assertGreater(len(texts), 10)
+        for path in texts:
+            self.assertIsNone(word.search(path.read_text()), path)
+        self.assertNotIn("assignment.json", os.listdir(self.study))
+        self.assertIn("blinded", experiment("status", self.study)[0])
+        opened = json.loads(experiment("unblind", self.study, "--reason", "the end")[0])
+        self.assertEqual(sorted(opened["labels"].values()), ["A", "B", "C"])
+        trace = [json.loads(line) for line in (self.study / "journal.jsonl").read_text().splitlines()]
+        self.assertEqual(trace[0]["text"], "unblinded: the end")
+        self.judge_conditions(opened)
+
+    def judge_conditions(self, opened):
+        """The opened assignment is what ran: B and C move, and the order is the one of the journal."""
+        labels = [entry["label"] for entry in of_kind(journal(self.study, "P02"), "trial ended")
+                  if entry["completed"] and entry.get("label")]
+        self.assertEqual([opened["labels"][label] for label in labels], opened["orders"]["P02"])
+
+    def judge_bad_folders(self):
+        """Each is named in one line with status 2, and no file is changed."""
+        def refused(words, *expected):
+            before = tree(self.study)
+            _, errors = experiment(*words, status=2)
+            self.assertEqual(tree(self.study), before)
+            self.assertEqual(len(errors.splitlines()), 1, errors)
+            for word in expected:
+                self.assertIn(word, errors)
+        run = ("run", self.study, "--headless", "--config", self.settings)
+        refused((*run, "--participant", "P02"), "complete")
+        refused((*run, "--participant", "P04"), "P01 to P03")
+        refused((*run, "--participant", "Ann"), "never a name")
+        sessions = self.study / "participants" / "P02" / "sessions"
+        (sessions / "01").rename(self.folder / "away")
+        refused(("status", self.study), "sessions/01/session.mcap", "missing")
+        shutil.copytree(sessions / "02", sessions / "01")
+        refused(("status", self.study), "the recording of session 02")
+        shutil.rmtree(sessions / "01")
+        (self.folder / "away").rename(sessions / "01")
+        shutil.copytree(sessions, self.study / "participants" / "P03" / "sessions")
+        shutil.copy(sessions.parent / "journal.jsonl", self.study / "participants" / "P03")
+        _, errors = experiment("status", self.study, status=2)
+        self.assertIn("a recording of participant P02", errors)
+        shutil.rmtree(self.study / "participants" / "P03")
+        (self.study / "participants" / "p02").mkdir()
+        refused(("status", self.study), "each code once")
+        (self.study / "participants" / "p02").rmdir()
+        file = self.study / "experiment.yaml"
+        whole = file.read_text()
+        file.write_text(whole.replace("alpha: 0.05", "alpha: 0.06"))
+        refused(("status", self.study), "the pre-registration changed")
+        file.write_text(whole)
+        other = self.folder / "other"
+        experiment("new", other, "--seed", 12, "--participants", 3)
+        shutil.copytree(self.study / "participants" / "P02", other / "participants" / "P02")
+        # Its sealed file and digest are others; the recordings show it.
+        _, errors = experiment("status", other, status=2)
+        self.assertIn("another experiment", errors)
+
+
+class SteeredTest(ExperimentTestCase):
+    def test_the_dashboard_notes_repeats_and_aborts_and_the_reasons_are_in_the_journal(self):
+        self.new("--conditions", "A,C", "--participants", 1)
+        self.edit(rest_s=6, order="latin")
+        process, domain = self.start()
+        dashboard = Dashboard("--domain", domain)
+        self.addCleanup(dashboard.close)
+        file = self.study / "participants" / "P01" / "journal.jsonl"
+
+        def entries(what):
+            return of_kind(journal(self.study, "P01"), what) if file.exists() else []
+
+        def wait(what, condition):
+            wait_for(what, condition, SESSION_LIMIT_S, ended=lambda: process.poll() is not None and "it ended")
+
+        def ask(path):
+            status, answer, _ = dashboard.ask("POST", path)
+            self.assertEqual(status, 204, answer)
+
+        wait("the first trial", lambda: len(entries("trial began")) == 2)
+        self.assertEqual(dashboard.ask("POST", "/session/repeat")[0], 409)  # without a reason
+        ask("/session/note?text=window%20open")
+        wait("its end", lambda: len(entries("trial ended")) == 2)
+        ask("/session/repeat?text=coughed")  # during the rest before the next one
+        wait("the repeated trial", lambda: len(entries("trial began")) == 3)
+        wait("its measured part", lambda: dashboard.snapshot()["session"]["tick"] >
+             dashboard.snapshot()["session"]["start_tick"] + 1000)
+        ask("/session/repeat?text=slipped")
+        wait("its end", lambda: len(entries("trial ended")) == 3)
+        wait("a pause", lambda: dashboard.snapshot()["session"]["paused"])
+        ask("/session/start")
+        wait("the trial again", lambda: len(entries("trial began")) == 4)
+        ask("/session/abort?text=fire%20alarm")
+        self.assertEqual(process.wait(timeout=END_LIMIT_S), 1)
+        began = [entry["step"] for entry in entries("trial began") if "step" in entry]
+        self.assertEqual(began, [0, 0, 0])
+        self.assertEqual([entry["trial"] for entry in entries("trial began")], [0, 1, 2, 3])
+        self.assertRegex(entries("note")[0]["text"], "^dashboard on .*: window open$")
+        self.assertEqual(entries("repeat asked")[0]["text"], "coughed")
+        self.assertRegex(entries("trial ended")[2]["text"], "^repeated, asked by dashboard on .*: slipped$")
+        self.assertRegex(entries("session ended")[0]["text"], "^aborted, asked by dashboard on .*: fire alarm$")
+        self.run_to_the_end()
+
+
+class RefusalTest(ExperimentTestCase):
+    def test_what_cannot_run_is_one_line(self):
+        for words, expected in ((("--conditions", "A,D"), "in one process alone"),
+                                (("--conditions", "A,Q"), "A, B, C, C' or C+"),
+                                (("--operator", "cat"), "simulated or mouse")):
+            _, errors = experiment("new", self.study, *words, status=2)
+            self.assertEqual(len(errors.splitlines()), 1)
+            self.assertIn(expected, errors)
+            self.assertFalse(self.study.exists())
+        self.new()
+        self.assertIn("holds something", experiment("new", self.study, status=2)[1])
+        self.assertIn("without experiment.yaml", experiment("run", self.folder, status=2)[1])
+        (self.study / "assignment.sealed").write_text("00\n")
+        self.assertIn("assignment.sealed", experiment("status", self.study, status=2)[1])
+
+
+class CampaignTest(ExperimentTestCase):
+    @campaign
+    def test_twelve_participants_two_killed_and_resumed_one_excluded(self):
+        kept = os.environ.get("STILLHAND_EXPERIMENT")
+        if kept:
+            self.study = pathlib.Path(kept)
+        self.new("--participants", 12, "--conditions", "A,B,C")
+        self.edit(rest_s=0)
+        for n in range(1, 13):
+            code = f"P{n:02}"
+            if n in (3, 8):
+                self.kill_in_a_trial(code, 1)
+            self.run_to_the_end()  # without a code: the next one, who is `code`
+            self.assertTrue(of_kind(journal(self.study, code), "session ended")[-1]["completed"], code)
+        experiment("exclude", self.study, "--participant", "P05", "--reason", "felt sick")
+        out, _ = experiment("status", self.study)
+        self.assertEqual(out.count("complete"), 11)
+        self.assertIn("excluded: felt sick", out)
+        for code in ("P03", "P08"):
+            self.assertEqual(len(of_kind(journal(self.study, code), "session began")), 2)
+        opened = json.loads(experiment("unblind", self.study, "--reason", "all are complete")[0])
+        # Williams over twelve: every condition four times at each place.
+        for place in range(3):
+            at = [order[place] for order in opened["orders"].values()]
+            self.assertEqual({condition: at.count(condition) for condition in "ABC"}, {"A": 4, "B": 4, "C": 4})
+
+
+if __name__ == "__main__":
+    main()

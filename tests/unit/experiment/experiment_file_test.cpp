@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/experiment/experiment_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/experiment/sealed_assignment.hpp"
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const std::string& yaml) {
+  try {
+    design_of(yaml, "experiment.yaml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ExperimentFileTest, EveryKeyReadsBack) {
+  Design design;
+  design.title = "A \"title\": with: marks # and more";
+  design.conditions = {"C'", "A", "C+", "C"};
+  design.comparisons = {"A-C'", "C-C+"};
+  design.control_model = "control_model.json";
+  design.order = Order::kLatin;
+  design.trial_s = 20.0 / 3.0;
+  design.practice.most_trials = 4;
+  design.exclusion.most_lost_tick_share = 0.125;
+  design.instructions = {"one", "two: \"quoted\""};
+  design.questions = {{"effort", Question::After::kBlock, "How hard was it?", "easy", "hard", 7},
+                      {"sick", Question::After::kTrial, "Do you feel sick?", "no", "very", 5}};
+  design.assignment = std::string(64, 'a');
+  const std::string yaml = yaml_of(design);
+  const Design sut = design_of(yaml, "experiment.yaml");
+  EXPECT_EQ(yaml_of(sut), yaml);
+  EXPECT_EQ(sut.title, design.title);
+  EXPECT_EQ(sut.conditions, design.conditions);
+  EXPECT_EQ(sut.comparisons, design.comparisons);
+  EXPECT_EQ(sut.order, design.order);
+  EXPECT_EQ(sut.trial_s, design.trial_s);
+  EXPECT_EQ(sut.practice.most_trials, 4);
+  EXPECT_EQ(sut.exclusion.most_lost_tick_share, 0.125);
+  EXPECT_EQ(sut.instructions, design.instructions);
+  ASSERT_EQ(sut.questions.size(), 2u);
+  EXPECT_EQ(sut.questions[1].after, Question::After::kTrial);
+  EXPECT_EQ(sut.questions[1].steps, 5);
+}
+
+TEST(ExperimentFileTest, WhatNoSessionCanRunIsNamed) {
+  EXPECT_THAT(refusal("conditions: [A, D]"), HasSubstr("D runs in one process alone"));
+  EXPECT_THAT(refusal("conditions: [A, G]"), HasSubstr("\"G\""));
+  EXPECT_THAT(refusal("conditions: [A, A]"), HasSubstr("A twice"));
+  EXPECT_THAT(refusal("conditions: []"), HasSubstr("nothing"));
+  EXPECT_THAT(refusal("conditions: A"), HasSubstr("a list"));
+  EXPECT_THAT(refusal("conditions: [A, C+]\ncomparisons: []"), HasSubstr("control_model"));
+  EXPECT_THAT(refusal("comparisons: [A-D]"), HasSubstr("A-D"));
+  EXPECT_THAT(refusal("order: zigzag"), HasSubstr("random, latin or williams"));
+  EXPECT_THAT(refusal("operator: cat"), HasSubstr("simulated or mouse"));
+  EXPECT_THAT(refusal("blocks: 0"), HasSubstr("experiment.yaml:1:9"));
+  EXPECT_THAT(refusal("blokcs: 1"), HasSubstr("blokcs"));
+  EXPECT_THAT(refusal("questions: [{name: a b, text: t}]"), HasSubstr("letters"));
+}
+
+TEST(ExperimentFileTest, ACodeIsACodeAndNeverAName) {
+  EXPECT_EQ(participant_index("P07", 12), 6u);
+  EXPECT_EQ(participant_code(6), "P07");
+  EXPECT_EQ(participant_index("P100", 120), 99u);
+  for (const char* wrong : {"P7", "p07", "P007", "P13", "P00", "Ann", "", "P", "P07 ", "../P07"}) {
+    EXPECT_THROW(participant_index(wrong, 12), ConfigError) << wrong;
+  }
+}
+
+TEST(ExperimentFileTest, TheSealedFileGivesTheSeedBackAndDoesNotShowIt) {
+  const std::string sealed = sealed_text(424242);
+  EXPECT_EQ(order_seed_of(sealed, "s"), 424242u);
+  EXPECT_EQ(sealed.find("424242"), std::string::npos);
+  EXPECT_NE(sealed, sealed_text(424242));  // a nonce: equal seeds do not show
+  EXPECT_THROW(order_seed_of("zz", "s"), ConfigError);
+  EXPECT_THROW(order_seed_of("", "s"), ConfigError);
+}
+
+TEST(ExperimentFileTest, TheOpenedFileNamesTheConditionOfEveryLabelAndTrial) {
+  Design design;
+  design.participants = 2;
+  const Assignment assignment = draw_assignment(3, 5);
+  const std::string text = opened_text(design, assignment);
+  for (const char* word : {"\"X\"", "\"Y\"", "\"Z\"", "P01", "P02"}) {
+    EXPECT_THAT(text, HasSubstr(word));
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::experiment

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// A journal is cut after every line and after every byte of its last line: what remains of the
+// protocol is what the whole lines left undone.
+#include "apps/experiment/core/progress.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "apps/experiment/journal.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+using testing::HasSubstr;
+
+Design every_kind_of_step() {
+  Design design;
+  design.blocks = 2;
+  design.practice.most_trials = 3;
+  design.practice.dwell_ratio = 0.4;
+  for (const auto after : {Question::After::kPractice, Question::After::kTrial,
+                           Question::After::kBlock, Question::After::kEnd}) {
+    design.questions.push_back({name_of(after), after, "how?", "low", "high", 7});
+  }
+  return design;
+}
+
+// The entries that a participant's session writes for one step, without a crash.
+void do_step(const Plan& plan, std::size_t step, std::vector<Entry>& entries) {
+  Entry entry{.session = 1, .step = static_cast<std::int64_t>(step)};
+  const auto add = [&](EntryKind kind) {
+    entry.kind = kind;
+    entries.push_back(entry);
+  };
+  switch (plan[step].kind) {
+    case StepKind::kQuestion:
+      entry.answer = 3;
+      return add(EntryKind::kQuestionAnswered);
+    case StepKind::kBreak:
+      return add(EntryKind::kBreakOver);
+    case StepKind::kPractice:
+      for (const double dwell : {0.3, 0.5}) {
+        add(EntryKind::kTrialBegan);
+        entry.completed = true;
+        entry.dwell_ratio = dwell;
+        add(EntryKind::kTrialEnded);
+        entry.completed = false;
+        entry.dwell_ratio.reset();
+      }
+      return;
+    case StepKind::kTrial:
+      add(EntryKind::kTrialBegan);
+      entry.completed = true;
+      return add(EntryKind::kTrialEnded);
+  }
+}
+
+class ProgressTest : public testing::Test {
+ protected:
+  [[nodiscard]] Progress progress(const std::vector<Entry>& entries) const {
+    Progress sut(design_, plan_);
+    for (const Entry& entry : entries) sut.take(entry);
+    return sut;
+  }
+  [[nodiscard]] static Entry session(std::int64_t number) {
+    return {.kind = EntryKind::kSessionBegan, .session = number, .digest = "d"};
+  }
+
+  Design design_ = every_kind_of_step();
+  Assignment assignment_ = draw_assignment(design_.conditions.size(), 9);
+  Plan plan_ = plan_of(design_, assignment_, 4);
+};
+
+TEST_F(ProgressTest, ThePlanHasTheStepsInTheirOrder) {
+  EXPECT_EQ(trials_of(plan_), 6);
+  EXPECT_EQ(plan_.front().kind, StepKind::kPractice);
+  EXPECT_EQ(plan_.back().kind, StepKind::kQuestion);
+  // practice, its question, two blocks of three trials with a question each and one of the block,
+  // a break, the last question
+  EXPECT_EQ(plan_.size(), 2u + 2u * (3u * 2u + 1u) + 1u + 1u);
+}
+
+TEST_F(ProgressTest, AtEveryStepTheNextOneIsTheFirstThatIsNotDone) {
+  std::vector<Entry> entries{session(1)};
+  for (std::size_t step = 0; step < plan_.size(); ++step) {
+    ASSERT_EQ(progress(entries).next(), step);
+    do_step(plan_, step, entries);
+  }
+  EXPECT_TRUE(progress(entries).complete());
+}
+
+// The journal as a file, cut anywhere: no cut is refused, loses a whole line, or makes a step done
+// whose line is not whole.
+TEST_F(ProgressTest, AJournalThatIsCutAtAnyByteGoesOnWhereItsWholeLinesEnd) {
+  std::vector<Entry> entries{session(1)};
+  for (std::size_t step = 0; step < plan_.size(); ++step) do_step(plan_, step, entries);
+  std::string text;
+  std::vector<std::size_t> ends{0};
+  std::vector<std::optional<std::size_t>> next{progress({}).next()};
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    text += line_of(entries[i]) + "\n";
+    ends.push_back(text.size());
+    next.push_back(progress({entries.begin(), entries.begin() + static_cast<long>(i) + 1}).next());
+  }
+  std::size_t whole = 0;
+  for (std::size_t cut = 0; cut <= text.size(); ++cut) {
+    if (whole + 1 < ends.size() && cut >= ends[whole + 1]) ++whole;
+    const std::vector<Entry> sut = entries_of(text.substr(0, cut), "j");
+    ASSERT_EQ(sut.size(), whole) << "cut at byte " << cut;
+    ASSERT_EQ(progress(sut).next(), next[whole]) << "cut at byte " << cut;
+  }
+}
+
+TEST_F(ProgressTest, AFileWithACutLineIsMendedAndContinued) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("stillhand-journal-" + std::to_string(getpid()) + ".jsonl");
+  const std::string first = line_of({.kind = EntryKind::kNote, .time = "t", .text = "one"}) + "\n";
+  const std::string second = line_of({.kind = EntryKind::kNote, .time = "t", .text = "two"}) + "\n";
+  for (std::size_t cut = 0; cut < second.size(); ++cut) {
+    std::ofstream(file, std::ios::trunc) << first << second.substr(0, cut);
+    {
+      Journal sut(file);
+      ASSERT_EQ(sut.entries().size(), 1u);
+      sut.append({.kind = EntryKind::kNote, .text = "three"});
+    }
+    const auto entries = entries_of(recording::read_file(file.string()), "j");
+    ASSERT_EQ(entries.size(), 2u) << cut;
+    EXPECT_EQ(entries[0].text, "one");
+    EXPECT_EQ(entries[1].text, "three");
+  }
+  std::filesystem::remove(file);
+}
+
+TEST_F(ProgressTest, AJournalHasOneWriter) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("stillhand-journal-" + std::to_string(getpid()) + "-lock.jsonl");
+  {
+    const Journal sut(file);
+    EXPECT_THROW(Journal second(file), ConfigError);
+  }
+  EXPECT_NO_THROW(Journal third(file));
+  std::filesystem::remove(file);
+}
+
+TEST_F(ProgressTest, EveryFieldOfAnEntryReadsBack) {
+  const std::vector<Entry> entries{
+      session(2),
+      {.kind = EntryKind::kTrialBegan,
+       .time = "t",
+       .session = 2,
+       .step = 3,
+       .trial = 4,
+       .label = "X"},
+      {.kind = EntryKind::kTrialEnded,
+       .time = "t",
+       .session = 2,
+       .step = 3,
+       .trial = 4,
+       .label = "X",
+       .completed = true,
+       .dwell_ratio = 0.1 + 0.2,
+       .text = "why \"so\"\n"},
+      {.kind = EntryKind::kQuestionAnswered, .step = 1, .answer = 7, .text = "effort"},
+      {.kind = EntryKind::kSessionEnded, .session = 2, .completed = true},
+      {.kind = EntryKind::kExcluded, .text = "withdrew"}};
+  std::string text;
+  for (const Entry& entry : entries) text += line_of(entry) + "\n";
+  EXPECT_EQ(entries_of(text, "j"), entries);
+}
+
+TEST_F(ProgressTest, ATrialThatWasStoppedOrRepeatedIsToBeDoneAgain) {
+  std::vector<Entry> entries{session(1)};
+  std::size_t step = 0;
+  for (; plan_[step].kind != StepKind::kTrial; ++step) do_step(plan_, step, entries);
+  const auto number = static_cast<std::int64_t>(step);
+  entries.push_back({.kind = EntryKind::kTrialEnded, .step = number, .text = "stopped"});
+  EXPECT_EQ(progress(entries).next(), step);
+  do_step(plan_, step, entries);
+  do_step(plan_, step + 1, entries);
+  EXPECT_EQ(progress(entries).next(), step + 2);
+  entries.push_back({.kind = EntryKind::kRepeatAsked, .step = number, .text = "coughed"});
+  const Progress sut = progress(entries);
+  EXPECT_EQ(sut.next(), step);
+  EXPECT_EQ(sut.repeats(), 1);
+  do_step(plan_, step, entries);
+  EXPECT_EQ(progress(entries).next(), step + 2);  // the question after it stays answered
+}
+
+TEST_F(ProgressTest, PracticeEndsWithTheCriterionOrAfterTheMostTrials) {
+  Entry entry{.kind = EntryKind::kTrialEnded, .step = 0, .completed = true};
+  std::vector<Entry> entries;
+  for (int trial = 0; trial < 3; ++trial) {
+    EXPECT_EQ(progress(entries).next(), 0u);
+    entry.dwell_ratio = 0.39;
+    entries.push_back(entry);
+  }
+  EXPECT_EQ(progress(entries).next(), 1u);
+  EXPECT_FALSE(progress(entries).practised());
+  entry.dwell_ratio = 0.4;
+  EXPECT_EQ(progress({entry}).next(), 1u);
+  EXPECT_TRUE(progress({entry}).practised());
+}
+
+TEST_F(ProgressTest, AJournalThatWasChangedByHandIsRefused) {
+  EXPECT_THROW(progress({session(2)}), ConfigError);  // a session is missing
+  EXPECT_THROW(progress({{.kind = EntryKind::kBreakOver, .step = 0}}), ConfigError);
+  EXPECT_THROW(progress({{.kind = EntryKind::kRepeatAsked, .step = 99}}), ConfigError);
+  for (const std::string line : {"{}", "{\"time\":\"t\",\"what\":\"dance\"}", "x",
+                                 "{\"time\":\"t\",\"what\":\"note\",\"name\":\"Ann\"}"}) {
+    try {
+      entries_of(line_of(session(1)) + "\n" + line + "\n", "P07/journal.jsonl");
+      ADD_FAILURE() << line;
+    } catch (const ConfigError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("P07/journal.jsonl:2"));
+    }
+  }
+}
+
+TEST_F(ProgressTest, ParticipantsDifferInSeedsUnlessTheyShareThem) {
+  const Plan other = plan_of(design_, assignment_, 5);
+  design_.same_motion_for_all = design_.same_target_for_all = true;
+  const Plan shared = plan_of(design_, assignment_, 4), also = plan_of(design_, assignment_, 5);
+  for (std::size_t i = 0; i < plan_.size(); ++i) {
+    if (plan_[i].kind != StepKind::kTrial) continue;
+    EXPECT_NE(plan_[i].motion_seed, other[i].motion_seed);
+    EXPECT_NE(plan_[i].target_seed, other[i].target_seed);
+    EXPECT_EQ(shared[i].motion_seed, also[i].motion_seed);
+    EXPECT_EQ(shared[i].target_seed, also[i].target_seed);
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::experiment
