@@ -138,7 +138,7 @@ class Dashboard {
       timeline = [this] { return timeline_json(run_->timeline()).dump(); };
     }
     return {[this](std::optional<double> at_s) { return snapshot(at_s); }, timeline,
-            [this](std::string_view path) { return act(path); }};
+            [this](std::string_view path, const std::string& text) { return act(path, text); }};
   }
 
   void listen(const DashboardOptions& options) {
@@ -164,7 +164,7 @@ class Dashboard {
   }
 
   // The outcome of a request of the page.
-  Outcome act(std::string_view path) {
+  Outcome act(std::string_view path, const std::string& text) {
     if (path == "/acknowledge") {
       const Outcome noted = remote_ ? remote_->note("alarms acknowledged") : Outcome{};
       if (noted.kind == Outcome::Kind::kDone) feed().acknowledge();
@@ -174,7 +174,7 @@ class Dashboard {
       return {Outcome::Kind::kRefused,
               "this dashboard is read-only: it shows a recording, or was started with --read-only"};
     }
-    return remote_->ask(path);
+    return remote_->ask(path, text);
   }
 
   // Ten times a second.

@@ -16,12 +16,18 @@ namespace {
 struct SessionPath {
   std::string_view path;
   stillhand_msgs::SessionAction action;
+  bool has_text = false;  // a reason, or a note
 };
 constexpr std::array kSession{
     SessionPath{"/session/start", stillhand_msgs::SESSION_START},
     SessionPath{"/session/pause", stillhand_msgs::SESSION_PAUSE},
     SessionPath{"/session/stop", stillhand_msgs::SESSION_STOP},
+    SessionPath{"/session/repeat", stillhand_msgs::SESSION_REPEAT, true},
+    SessionPath{"/session/abort", stillhand_msgs::SESSION_ABORT, true},
+    SessionPath{"/session/note", stillhand_msgs::SESSION_NOTE, true},
     SessionPath{"/emergency-stop", stillhand_msgs::SESSION_EMERGENCY_STOP}};
+
+constexpr std::size_t kMostText = 100;  // string<100> of idl/session.idl
 
 struct RecorderPath {
   std::string_view path;
@@ -89,7 +95,7 @@ Outcome Remote::stop_at_once() {
           domain_ + ": no rig is connected; the request is repeated for 5 s"};
 }
 
-Outcome Remote::ask(std::string_view path) {
+Outcome Remote::ask(std::string_view path, const std::string& text) {
   const auto* session = std::ranges::find(kSession, path, &SessionPath::path);
   const auto* recorder = std::ranges::find(kRecorder, path, &RecorderPath::path);
   if (session != kSession.end()) {
@@ -97,8 +103,12 @@ Outcome Remote::ask(std::string_view path) {
     if (!bus_.matched_peers(topics::kSessionCommand).contains("experiment")) {
       return {Outcome::Kind::kRefused, domain_ + ": no session runs"};
     }
+    if (session->has_text && (text.empty() || text.size() > kMostText)) {
+      return {Outcome::Kind::kRefused,
+              fmt::format("want a reason or note of 1 to {} characters", kMostText)};
+    }
     if (!rate_.take(runtime::monotonic_ns())) return too_many();
-    send(session->action, "");
+    send(session->action, session->has_text ? text : "");
     return {};
   }
   if (recorder == kRecorder.end()) return {Outcome::Kind::kUnknown, ""};

@@ -21,11 +21,14 @@ class Remote {
   /// @throws as runtime::Bus does
   Remote(const LiveOptions& options, std::uint32_t rig);
 
-  /// @param path  "/session/start", "/session/pause", "/session/stop", "/emergency-stop",
+  /// @param path  "/session/start", "/session/pause", "/session/stop", "/session/repeat",
+  ///              "/session/abort", "/session/note", "/emergency-stop",
   ///              "/recorder/pause", "/recorder/resume", "/recorder/trigger", "/recorder/stop"
   /// Done means delivered: an emergency stop to a rig, other session requests to an experiment, a
   /// recorder request to a `stillhand record`.
-  Outcome ask(std::string_view path);
+  /// @param text  the reason of "/session/repeat" and "/session/abort", the words of
+  ///              "/session/note"; these three are refused without it
+  Outcome ask(std::string_view path, const std::string& text);
   /// Publishes a note among the session's events.
   Outcome note(const std::string& what);
   /// Ten times a second: an emergency stop is repeated for 5 s, so that it reaches a rig that

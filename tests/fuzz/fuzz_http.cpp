@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   bool acted = false;
   const Served served{[](std::optional<double>) { return std::string("{}"); },
                       [] { return std::string("{}"); },
-                      [&](std::string_view) {
+                      [&](std::string_view, const std::string&) {
                         acted = true;
                         return Outcome{};
                       }};

@@ -43,6 +43,27 @@ std::optional<double> finite(std::string_view text) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+// The words of "text=...", percent-encoded (RFC 3986, 2.1); empty: none; nothing: malformed.
+std::optional<std::string> text_of(std::string_view query) {
+  constexpr std::string_view kKey = "text=";
+  std::string text;
+  if (!query.starts_with(kKey)) return text;
+  for (std::size_t i = kKey.size(); i < query.size(); ++i) {
+    if (query[i] != '%') {
+      text += query[i];
+      continue;
+    }
+    unsigned value = 0;
+    if (i + 2 >= query.size()) return std::nullopt;
+    const char* first = query.data() + i + 1;
+    const auto [end, error] = std::from_chars(first, first + 2, value, 16);
+    if (error != std::errc() || end != first + 2) return std::nullopt;
+    text += static_cast<char>(value);
+    i += 2;
+  }
+  return text;
+}
+
 }  // namespace
 
 Answer answer(const Question& question, const Pages& pages, const Access& access,
@@ -66,7 +87,10 @@ Answer answer(const Question& question, const Pages& pages, const Access& access
       return refusal(403, "signed in with the token for watching, which can stop and nothing else");
     if (!(stops ? access.allows_emergency_stop(request) : access.allows_change(request)))
       return refusal(403, "requests from pages of other sites are refused");
-    return answer_to(served.act(path));
+    // Nothing behind its path keeps an emergency stop from being obeyed.
+    const std::optional<std::string> text = stops ? std::string() : text_of(query);
+    if (!text) return refusal(400, "text=: want percent-encoded characters");
+    return answer_to(served.act(path, *text));
   }
   if (question.method != "GET")
     return refusal(405, "the method must be GET, or POST for an action");

@@ -38,7 +38,8 @@ struct Served {
   std::function<std::string(std::optional<double> at_s)> snapshot;
   std::function<std::string()> timeline;  ///< of a recording, as JSON; empty on a bus
   /// Carries out the action of a path such as "/session/pause".
-  std::function<Outcome(std::string_view path)> act;
+  /// @param text  a person's words for it: a reason or a note; mostly empty
+  std::function<Outcome(std::string_view path, const std::string& text)> act;
 };
 
 /// The answer to any request, also a malformed one; uses no socket.

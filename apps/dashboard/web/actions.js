@@ -51,16 +51,24 @@ export class Actions {
     this.acknowledge.addEventListener("click", () => ask("/acknowledge", "Acknowledge"));
     this.emergency.addEventListener("click", () => emergencyStop(this.emergency));
     for (const button of document.querySelectorAll("button[data-ask]")) {
-      button.addEventListener("click", () => ask(button.dataset.ask, button.dataset.name));
+      button.addEventListener("click", () => this.press(button));
     }
     document.addEventListener("keydown", (event) => {
       if (event.key === "Escape" && !event.repeat && !this.emergency.hidden) {
         event.preventDefault();
         emergencyStop(this.emergency);
-      } else if (plain(event) && event.key.toLowerCase() === "a" && !this.acknowledge.disabled) {
+      } else if (event.target !== element("reason") && plain(event) && event.key.toLowerCase() === "a" && !this.acknowledge.disabled) {
         ask("/acknowledge", "Acknowledge");
       }
     }, { capture: true });
+  }
+
+  // Repeat, note and abort carry what stands in the field; an accepted one empties it.
+  async press(button) {
+    const field = element("reason");
+    if (button.dataset.text === undefined) return void ask(button.dataset.ask, button.dataset.name);
+    const path = `${button.dataset.ask}?text=${encodeURIComponent(field.value.trim())}`;
+    if ((await ask(path, button.dataset.name)) === "") field.value = "";
   }
 
   show({ actions, session, recorders = [] }) {

@@ -143,7 +143,7 @@ class RequestFuzzTest : public ::testing::Test {
   int acted_ = 0;
   Served served_{[](std::optional<double> /*at_s*/) { return std::string("{}"); },
                  [] { return std::string("{}"); },
-                 [this](std::string_view path) -> Outcome {
+                 [this](std::string_view path, const std::string&) -> Outcome {
                    ++acted_;
                    if (path != "/acknowledge") return {Outcome::Kind::kUnknown, ""};
                    return {};

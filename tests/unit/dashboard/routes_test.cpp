@@ -37,7 +37,8 @@ class RoutesTest : public ::testing::Test {
 
   std::filesystem::path folder_ = made(testing::TempDir() + "stillhand_pages_");
   std::optional<Pages> pages_;
-  Outcome act(std::string_view path) {
+  Outcome act(std::string_view path, const std::string& text) {
+    text_ = text;
     if (path == "/session/stop") return {Outcome::Kind::kRefused, "nobody listens"};
     if (path == "/session/start") return {Outcome::Kind::kTooMany, "not so fast"};
     if (path != "/acknowledge") return {Outcome::Kind::kUnknown, ""};
@@ -45,13 +46,15 @@ class RoutesTest : public ::testing::Test {
     return {};
   }
   int acknowledged_ = 0;
+  std::string text_;
   std::optional<double> at_s_;
-  Served served_{[this](std::optional<double> at_s) {
-                   at_s_ = at_s;
-                   return std::string("{}");
-                 },
-                 {},
-                 [this](std::string_view path) { return act(path); }};
+  Served served_{
+      [this](std::optional<double> at_s) {
+        at_s_ = at_s;
+        return std::string("{}");
+      },
+      {},
+      [this](std::string_view path, const std::string& text) { return act(path, text); }};
   Access loopback_{""}, token_{kToken};
 };
 
@@ -114,6 +117,21 @@ TEST_F(RoutesTest, AnActionThatCouldNotBeAskedSaysWhy) {
   const Answer later = ask("POST", "/session/start");
   EXPECT_EQ(later.status, 429u);
   EXPECT_EQ(later.body, "not so fast\n");
+}
+
+TEST_F(RoutesTest, AReasonArrivesAsItWasTyped) {
+  ask("POST", "/session/repeat?text=he%20coughed%2C%20100%25");
+  EXPECT_EQ(text_, "he coughed, 100%");
+  ask("POST", "/session/start");
+  EXPECT_EQ(text_, "");
+  for (const char* target : {"/session/note?text=%", "/session/note?text=%4",
+                             "/session/note?text=%zz", "/session/note?text=a%+1"}) {
+    EXPECT_EQ(ask("POST", target).status, 400u) << target;
+  }
+}
+
+TEST_F(RoutesTest, NothingBehindItsPathKeepsAnEmergencyStopFromBeingAsked) {
+  EXPECT_EQ(ask("POST", "/emergency-stop?text=%zz").status, ask("POST", "/emergency-stop").status);
 }
 
 TEST_F(RoutesTest, TheTokenGoesFromTheAddressIntoACookie) {
