@@ -74,9 +74,13 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
       ->check(session::check_seed)
       ->capture_default_str();
-  lab.add_option("--operator", words.who, "who tracks: a simulated subject, or a person's mouse")
-      ->check(CLI::IsMember({"simulated", "mouse"}))
+  lab.add_option("--operator", words.who,
+                 "who tracks: a simulated subject, or a person's mouse or gamepad")
+      ->check(CLI::IsMember({"simulated", "mouse", "gamepad"}))
       ->capture_default_str();
+  lab.add_option("--gamepad", options.gamepad,
+                 "for --operator gamepad: input device such as /dev/input/event5")
+      ->check(settings::check_name);
   lab.add_option("--subject", options.subject,
                  "number of the simulated subject that `stillhand study --seed` draws; 0: the one "
                  "in the settings")
@@ -160,7 +164,11 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
 
 void take_words(const Words& words, LabOptions& options) {
   options.protocol.conditions = session::parse_conditions(words.conditions);
-  options.who = words.who == "mouse" ? Operator::kMouse : Operator::kSimulated;
+  options.who = words.who == "simulated" ? Operator::kSimulated : Operator::kMouse;
+  if ((words.who == "gamepad") == options.gamepad.empty()) {
+    throw ConfigError("--gamepad", options.gamepad.empty() ? "nothing" : options.gamepad.string(),
+                      "a device with --operator gamepad, and none without it");
+  }
   options.protocol.motion = words.motion == "road"   ? session::Motion::kRoad
                             : words.motion == "ride" ? session::Motion::kRide
                                                      : session::Motion::kBandNoise;

@@ -33,6 +33,7 @@ struct LabOptions {
   bool video = false;     ///< headless display writes DIR/screen.avi
   bool real_time = true;  ///< ask for a real-time scheduling policy
   Operator who = Operator::kSimulated;
+  std::filesystem::path gamepad;  ///< input device in place of the mouse; empty: the mouse
   std::int64_t subject = 0;  ///< of the population, under the session's seed; 0: that of `config`
   std::optional<std::uint64_t> subject_seed;  ///< of that draw; none: the session's
   std::filesystem::path security;             ///< folder of keys; empty: none, or the inventory's

@@ -61,6 +61,9 @@ Arguments display_words(const LabOptions& options, const Place& place) {
   if (options.headless) words.push_back("--headless");
   if (options.video) words.insert(words.end(), {"--video", (place.out / "screen.avi").string()});
   if (options.who == Operator::kMouse) words.push_back("--pointer");
+  if (!options.gamepad.empty()) {
+    words.insert(words.end(), {"--gamepad", options.gamepad.string()});
+  }
   return words;
 }
 

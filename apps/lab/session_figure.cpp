@@ -57,13 +57,14 @@ report::Panel hand_panel(const session::TrialResult& trial, Colour colour) {
 
 }  // namespace
 
-void draw_session(const session::SessionResult& result, const std::filesystem::path& folder) {
+std::vector<report::Drawing> draw_session(const session::SessionResult& result,
+                                          const std::filesystem::path& folder) {
   std::vector<const session::TrialResult*> shown;
   for (const char label : {'B', 'C'}) {
     const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
     if (trial != result.trials.end()) shown.push_back(&*trial);
   }
-  if (shown.empty()) return;
+  if (shown.empty()) return {};
   report::Figure figure;
   figure.name = kSessionFigure;
   figure.columns = static_cast<int>(shown.size());
@@ -73,7 +74,7 @@ void draw_session(const session::SessionResult& result, const std::filesystem::p
     figure.panels.push_back(
         hand_panel(*trial, trial->label == 'B' ? Colour::kConditionB : Colour::kConditionC));
   }
-  report::render({{figure}}, folder);
+  return report::render({{figure}}, folder);
 }
 
 }  // namespace stillhand::lab

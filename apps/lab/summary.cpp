@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "apps/lab/session_figure.hpp"
+#include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/identification/codec.hpp"
@@ -101,7 +102,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 // A picture is worth a line, not the session's results.
 void draw(const session::SessionResult& result, const std::filesystem::path& folder) {
   try {
-    draw_session(result, folder);
+    session_page(result, draw_session(result, folder)).write(folder / kSessionPage);
   } catch (const std::exception& error) {
     std::cerr << "stillhand lab: " << kSessionFigure << ".png is not drawn: " << error.what()
               << "\n";

@@ -19,5 +19,8 @@ int main(int argc, char** argv) {
         cli.add_flag("--headless", headless, "no window");
         cli.add_option("--video", screen.video, "write the screen to this .avi or .mp4 file");
         cli.add_flag("--pointer", screen.pointer, "a person tracks with the mouse over the window");
+        cli.add_option(
+            "--gamepad", screen.gamepad,
+            "with --pointer: input device of a gamepad or joystick, in place of the mouse");
       });
 }

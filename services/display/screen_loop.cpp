@@ -71,6 +71,7 @@ ScreenLoop::ScreenLoop(Shell& shell, ScreenOptions options)
       options_(std::move(options)),
       pointer_(shell.service().bus().publisher<stillhand_msgs::Pointer>(topics::kPointer)) {
   if (!options_.window && options_.video.empty()) return;
+  if (!options_.gamepad.empty()) gamepad_.emplace(options_.gamepad);
   const runtime::OrdinaryWhile ordinary;  // OpenCV's own threads inherit it
   screen_ = std::make_unique<Screen>(shell_, options_);
 }
@@ -104,8 +105,16 @@ void ScreenLoop::run() {
     if (escape_ns_ && due_ns - *escape_ns_ < kRepeated_ns) shell_.stop_at_once();
     // This process ends, and with it the session; the experiment quotes the line.
     if (!open) throw std::runtime_error("the tracking window was closed");
-    if (options_.pointer) publish_pointer(shown.tick, screen_->pointer_m());
+    if (options_.pointer) publish_pointer(shown.tick, pointed_m());
   }
+}
+
+// The whole axis is the whole width of the screen.
+std::optional<double> ScreenLoop::pointed_m() {
+  if (!gamepad_) return screen_->pointer_m();
+  const std::optional<double> share = gamepad_->position();
+  if (!share) return std::nullopt;
+  return *share * 0.5 * shell_.config().screen.width_m;
 }
 
 void ScreenLoop::publish_pointer(Tick tick, std::optional<double> position_m) {

@@ -6,15 +6,17 @@
 #include <memory>
 #include <optional>
 
+#include "services/display/gamepad.hpp"
 #include "services/display/shell.hpp"
 
 namespace stillhand::display {
 
 /// What happens to the frames.
 struct ScreenOptions {
-  bool window = false;          ///< show them on the desktop
-  bool pointer = false;         ///< publish the mouse over the window
-  std::filesystem::path video;  ///< write them here, or empty
+  bool window = false;            ///< show them on the desktop
+  bool pointer = false;           ///< publish the mouse over the window
+  std::filesystem::path gamepad;  ///< publish this device instead; empty: none
+  std::filesystem::path video;    ///< write them here, or empty
 };
 
 /// Draws 60 frames a second from the newest data, in the calling thread, until stopped or the
@@ -36,11 +38,14 @@ class ScreenLoop {
  private:
   class Screen;
 
+  /// Of gamepad or mouse, on the screen [m].
+  [[nodiscard]] std::optional<double> pointed_m();
   void publish_pointer(Tick tick, std::optional<double> position_m);
 
   Shell& shell_;
   ScreenOptions options_;
   runtime::Publisher<stillhand_msgs::Pointer> pointer_;
+  std::optional<Gamepad> gamepad_;
   std::unique_ptr<Screen> screen_;         ///< null when nobody looks
   std::optional<std::int64_t> escape_ns_;  ///< when Escape was pressed
 };

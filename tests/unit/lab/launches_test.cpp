@@ -135,6 +135,16 @@ TEST_F(LaunchesTest, AMouseIsThePointerOfDisplayAndOperator) {
   EXPECT_THAT(of("rig").arguments, Not(Contains("--pointer")));
 }
 
+TEST_F(LaunchesTest, AGamepadIsADeviceOfTheDisplayInPlaceOfTheMouse) {
+  options_.who = Operator::kMouse;
+  EXPECT_EQ(value_of(of("display"), "--gamepad"), "");
+  options_.gamepad = "/dev/input/event5";
+  EXPECT_EQ(value_of(of("display"), "--gamepad"), "/dev/input/event5");
+  EXPECT_THAT(of("display").arguments, Contains("--pointer"));
+  EXPECT_THAT(of("human_operator").arguments, Contains("--pointer"));
+  EXPECT_THAT(of("human_operator").arguments, Not(Contains("--gamepad")));
+}
+
 TEST_F(LaunchesTest, TheDisplayAloneGetsWindowAndVideo) {
   options_.headless = options_.video = true;
   EXPECT_THAT(of("display").arguments, Contains("--headless"));

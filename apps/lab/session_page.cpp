@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/lab/session_page.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "apps/lab/summary_json.hpp"
+#include "apps/session/paper_table.hpp"
+
+namespace stillhand::lab {
+namespace {
+
+constexpr const char* kNone = "-";
+
+std::string number(std::optional<double> value) {
+  return value && std::isfinite(*value) ? fmt::format("{:.2f}", *value) : kNone;
+}
+
+std::string percent(std::optional<double> share) {
+  return share && std::isfinite(*share) ? fmt::format("{:.0f} %", 100.0 * *share) : kNone;
+}
+
+std::vector<report::Cell> own_row(const session::SessionResult& result,
+                                  const session::Metric& metric) {
+  std::vector<report::Cell> row{std::string(metric.title) + ", this session"};
+  for (const char label : {'A', 'B', 'C'}) {
+    const session::TrialResult* trial = trial_of(result, label);
+    row.emplace_back(number(trial ? std::optional(value_of(*trial, metric)) : std::nullopt),
+                     report::Emphasis::kStrong);
+  }
+  row.emplace_back(percent(restoration_of(result, metric)), report::Emphasis::kStrong);
+  return row;
+}
+
+// The paper's RMS error has no unit: its row says so.
+std::vector<report::Cell> paper_row(const session::Metric& metric) {
+  const bool unitless = metric.key == session::kMetrics.front().key;
+  return {unitless ? "RMS error [no unit], paper" : "paper, mean of 12", number(metric.paper_a),
+          number(metric.paper_b), number(metric.paper_c),
+          fmt::format("{:.0f} %", metric.paper_restored_percent)};
+}
+
+}  // namespace
+
+report::Page session_page(const session::SessionResult& result,
+                          const std::vector<report::Drawing>& drawings) {
+  report::Page page("One session",
+                    "A: the platform stands. B: it moves. C: it moves, and the motor cancels what "
+                    "the body passes on to the stick.");
+  page.section("The three figures");
+  report::Table table{"This session and the paper (Gillespie and Sövényi, Tables I and II).",
+                      {"", "A", "B", "C", "restored (B - C)/(B - A)"}};
+  for (const session::Metric& metric : session::kMetrics) {
+    table.rows.push_back(own_row(result, metric));
+    table.rows.push_back(paper_row(metric));
+  }
+  page.table(table);
+  page.paragraph(
+      "One unit of the paper's RMS error is near 5.5 mm. One trial of each condition has no "
+      "interval: another session gives other figures.");
+  if (drawings.empty()) return page;
+  page.section("Traces");
+  for (const report::Drawing& drawing : drawings) page.figure(drawing);
+  return page;
+}
+
+}  // namespace stillhand::lab

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "apps/report/page.hpp"
+#include "apps/session/results.hpp"
+
+namespace stillhand::lab {
+
+inline constexpr const char* kSessionPage = "session.html";
+
+/// One page for the person who tracked: the three figures of each condition next to the paper's,
+/// and the traces.  It needs no other file.
+/// @param drawings  of draw_session()
+report::Page session_page(const session::SessionResult& result,
+                          const std::vector<report::Drawing>& drawings);
+
+}  // namespace stillhand::lab
