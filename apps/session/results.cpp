@@ -8,36 +8,12 @@
 
 #include "apps/session/clock_line.hpp"
 #include "apps/session/in_process.hpp"
+#include "apps/session/measured_ticks.hpp"
 #include "services/identification/codec.hpp"
 #include "services/signal/reference.hpp"
 
 namespace stillhand::session {
 namespace {
-
-// A stream's samples within a trial's measured ticks, one a tick; a lost one repeats the one
-// before.
-template <typename Message, typename Value>
-std::vector<double> measured(const std::vector<Message>& stream, const Trial& trial, Value value,
-                             std::int64_t& missing) {
-  std::vector<double> samples;
-  samples.reserve(static_cast<std::size_t>(trial.duration_ticks));
-  double last = 0.0;
-  for (const Message& message : stream) {
-    if (!trial.measures(message.tick())) continue;
-    const auto place = static_cast<std::size_t>(message.tick() - trial.start_tick);
-    while (samples.size() < place) {
-      samples.push_back(last);
-      ++missing;
-    }
-    last = value(message);
-    if (samples.size() == place) samples.push_back(last);
-  }
-  while (samples.size() < static_cast<std::size_t>(trial.duration_ticks)) {
-    samples.push_back(last);
-    ++missing;
-  }
-  return samples;
-}
 
 std::optional<TrialResult::Latency> latency_of(std::vector<double> late_us, double uncertainty_us) {
   if (late_us.empty()) return std::nullopt;

@@ -109,11 +109,40 @@ CsvFile open_loop_file(const StudyRecord& record) {
   return {"open_loop.csv", out};
 }
 
+// Codes and names of sessions come from files: quoted by RFC 4180.
+std::string quoted(const std::string& word) {
+  if (word.find_first_of(",\"\r\n") == std::string::npos) return word;
+  std::string out = "\"";
+  for (const char each : word) out += each == '"' ? std::string("\"\"") : std::string(1, each);
+  return out + '"';
+}
+
+CsvFile trials_file(const RecordedSource& source) {
+  std::string out =
+      "participant,session,trial,place,condition,rms error [mm],dwell ratio [-],crossover [Hz],"
+      "crossover through reference [Hz],cancelled share [-]\n";
+  for (const RecordedTrial& trial : source.trials) {
+    const auto& metrics = trial.tracked.metrics;
+    out += row({quoted(trial.participant), quoted(trial.session), std::to_string(trial.number),
+                std::to_string(trial.place), std::string(1, trial.condition),
+                text(metrics.rms_error_mm), text(metrics.dwell_ratio), text(metrics.crossover_hz),
+                text(metrics.crossover_reference_hz), text(trial.tracked.cancelled_share)});
+  }
+  return {"trials.csv", out};
+}
+
 }  // namespace
 
 std::vector<CsvFile> csv_files(const StudyRecord& record) {
-  return {metrics_file(record), subjects_file(record), models_file(record), moving_file(record),
-          open_loop_file(record)};
+  std::vector<CsvFile> out{metrics_file(record), models_file(record), moving_file(record),
+                           open_loop_file(record)};
+  // Only a simulated subject's body is known.
+  if (record.recorded) {
+    out.push_back(trials_file(*record.recorded));
+  } else {
+    out.push_back(subjects_file(record));
+  }
+  return out;
 }
 
 }  // namespace stillhand::study

@@ -18,9 +18,10 @@ namespace {
 
 // Names of all files that a study can write.
 std::vector<std::string> every_name() {
-  std::vector<std::string> names{
-      "report.html",         "summary.json",  "metrics.csv",    "subjects.csv",       "models.csv",
-      "moving_averages.csv", "open_loop.csv", rig::kSealedFile, rig::kCommitmentFile, kShardFile};
+  std::vector<std::string> names{"report.html",        "summary.json", "metrics.csv",
+                                 "subjects.csv",       "models.csv",   "moving_averages.csv",
+                                 "open_loop.csv",      "trials.csv",   rig::kSealedFile,
+                                 rig::kCommitmentFile, kShardFile};
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
@@ -79,10 +80,14 @@ void print_study(const StudyRecord& record) {
   fmt::print("   {:>16}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
   fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,
-             is_calibrated(record.options)
-                 ? " A and B are calibrated, C is a prediction."
-                 : " A and B were calibrated with another population or other lengths.");
+             record.recorded                 ? ""
+             : is_calibrated(record.options) ? " A and B are calibrated, C is a prediction."
+                                             : " A and B were calibrated with another population "
+                                               "or other lengths.");
   for (const Comparison& comparison : analysis.comparisons) print_comparison(comparison);
+  if (record.recorded) {
+    for (const std::string& line : record.recorded->left_out) fmt::print("left out: {}\n", line);
+  }
   if (analysis.main_effects.manova) {
     const auto& manova = *analysis.main_effects.manova;
     fmt::print(

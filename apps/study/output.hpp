@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/report/staged_folder.hpp"
 #include "apps/study/analysis.hpp"
+#include "apps/study/recorded/recorded_trial.hpp"
 
 namespace stillhand::study {
 
@@ -15,6 +17,7 @@ struct StudyRecord {
   std::string command_line;
   std::string sealed;  ///< text of undeclared_effect.json; empty: there is no effect
   std::vector<SubjectResult> results;
+  std::optional<RecordedSource> recorded;  ///< none: the subjects are simulated
   Analysis analysis;
   double wall_s = 0.0;
 };

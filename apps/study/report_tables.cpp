@@ -146,6 +146,7 @@ void add_paper_tables(report::Page& page, const StudyRecord& record) {
                          "Table II: the effect of cancellation. Columns as in Table I.",
                          &session::Metric::paper_p_bc));
   page.table(restoration_table(analysis));
+  if (record.recorded) return;  // what follows explains simulated subjects
   add_outcome(page, analysis);
   page.table(calibration_table(analysis, is_calibrated(record.options)));
 }

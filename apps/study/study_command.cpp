@@ -32,6 +32,7 @@ struct Words {
   std::filesystem::path out;
   std::string shard;
   std::vector<std::filesystem::path> merge;
+  std::vector<std::filesystem::path> sessions;
   bool explain_paper = false;
   bool calibrate = false;
 };
@@ -151,8 +152,14 @@ void add_parts_options(CLI::App& study, Words& words) {
       study.add_option("--merge", words.merge,
                        "folders of all N shards of a study: the results of the whole study, the "
                        "same as of one run; all other settings are in the shards");
+  CLI::Option* sessions = study.add_option(
+      "--sessions", words.sessions,
+      "folders of recorded sessions or of experiments: the study of the people in them, from "
+      "session.mcap alone");
   for (const CLI::Option* option : study.get_options()) {
     const std::string name = option->get_name();
+    if (name != "--out" && name != "--sessions" && name != "--help") sessions->excludes(name);
+    if (name == "--sessions") continue;
     if (name == "--explain-paper" || name == "--calibrate") {
       study.get_option(name)->excludes("--shard")->excludes("--merge");
     } else if (name != "--out" && name != "--threads" && name != "--merge" && name != "--help") {
@@ -169,7 +176,8 @@ void add_study_command(CLI::App& cli, int& status) {
   record->options.protocol.identify_s = 120.0;  // paper III-A
   CLI::App* study = cli.add_subcommand(
       "study",
-      "Runs the paper's experiment with simulated subjects, in one process and as fast as it can.\n"
+      "Runs the paper's experiment with simulated subjects, in one process and as fast as it can,\n"
+      "or evaluates recorded people (--sessions).\n"
       "Each subject has a pegged identification and one trial for each condition. Tables and\n"
       "figures stand next to the paper's.\n"
       "Example: stillhand study --subjects 12 --seed 1 --out study1");
@@ -216,9 +224,10 @@ void add_study_command(CLI::App& cli, int& status) {
     record->command_line = report::command_line();
     const bool subjects_given = study->count("--subjects") > 0;
     status =
-        words->explain_paper    ? explain(*record, *words, subjects_given)
-        : words->calibrate      ? run_calibration(*record, *words, subjects_given)
-        : !words->merge.empty() ? run_merge(*record, words->merge, words->out)
+        words->explain_paper       ? explain(*record, *words, subjects_given)
+        : words->calibrate         ? run_calibration(*record, *words, subjects_given)
+        : !words->sessions.empty() ? run_recorded(*record, words->sessions, words->out)
+        : !words->merge.empty()    ? run_merge(*record, words->merge, words->out)
         : !words->shard.empty()
             ? run_shard(*record, parse_shard(words->shard, record->options.subjects), words->out)
             : run_whole(*record, words->out);

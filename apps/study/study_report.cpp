@@ -61,8 +61,29 @@ void add_open_questions(report::Page& page, const StudyRecord& record) {
   // NOLINTEND(bugprone-suspicious-missing-comma)
 }
 
+void add_recorded_facts(report::Page& page, const StudyRecord& record) {
+  const RecordedSource& source = *record.recorded;
+  std::string codes;
+  for (const std::string& code : source.participants) codes += (codes.empty() ? "" : ", ") + code;
+  page.facts({{"participants", codes},
+              {"complete tracking trials", std::to_string(source.trials.size())},
+              {"trial", short_number(record.options.protocol.trial_s) + " s"},
+              {"pegged trial", short_number(record.options.protocol.identify_s) + " s"},
+              {"pre-registration", source.digest.empty() ? "none" : source.digest},
+              {"version", kVersion},
+              {"command line", record.command_line}});
+  if (!source.left_out.empty()) {
+    page.paragraph("Left out:");
+    page.list(source.left_out);
+  }
+}
+
 void add_lead_facts(report::Page& page, const StudyRecord& record) {
   const StudyOptions& options = record.options;
+  if (record.recorded) {
+    add_recorded_facts(page, record);
+    return;
+  }
   page.facts({{"subjects", std::to_string(options.subjects)},
               {"seed", std::to_string(options.seed)},
               {"trial", short_number(options.protocol.trial_s) + " s"},
@@ -71,9 +92,12 @@ void add_lead_facts(report::Page& page, const StudyRecord& record) {
               {"computed in", number(record.wall_s, 1) + " s"},
               {"version", kVersion},
               {"command line", record.command_line}});
-  if (options.subjects == 1) {
+}
+
+void add_warnings(report::Page& page, const StudyRecord& record) {
+  if (record.options.subjects == 1) {
     page.warning("One subject: there is no deviation, no test and no box plot.");
-  } else if (options.subjects == 2) {
+  } else if (record.options.subjects == 2) {
     page.warning("Two subjects: the t-test has one degree of freedom and proves little.");
   }
 }
@@ -84,10 +108,13 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
   const Analysis& analysis = record.analysis;
   report::Page page(
       "Biodynamic feedthrough cancellation: the study",
-      "Simulated subjects track a target on a stationary platform (A), on a moving one (B), and on "
-      "a moving one where the motorised joystick cancels the biodynamic feedthrough (C), after "
-      "Gillespie and Sövényi.");
+      std::string(record.recorded ? "Participants, as recorded, track"
+                                  : "Simulated subjects track") +
+          " a target on a stationary platform (A), on a moving one (B), and on "
+          "a moving one where the motorised joystick cancels the biodynamic feedthrough (C), after "
+          "Gillespie and Sövényi.");
   add_lead_facts(page, record);
+  add_warnings(page, record);
   const bool whole = conditions_run(record, "ABC") == "ABC";
   const auto show = [&](std::string_view prefix) {
     for (const report::Drawing& drawing : drawings) {

@@ -11,6 +11,8 @@
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
 #include "apps/report/staged_folder.hpp"
+#include "apps/study/recorded/find_sessions.hpp"
+#include "apps/study/recorded/recorded_subjects.hpp"
 #include "apps/study/study.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/rig/sealed_file.hpp"
@@ -28,11 +30,11 @@ void seal(StudyRecord& record) {
 }
 
 // Runs `work(on_progress)` with a progress line and adds its time.
-void timed(StudyRecord& record, runtime::Stop& stop, const auto& work) {
+void timed(StudyRecord& record, runtime::Stop& stop, const char* what, const auto& work) {
   report::ProgressLine progress;
   const auto start = std::chrono::steady_clock::now();
   work([&](std::int64_t done, std::int64_t all) {
-    progress.show("subjects", static_cast<double>(done) / static_cast<double>(all));
+    progress.show(what, static_cast<double>(done) / static_cast<double>(all));
     return !stop.requested();
   });
   progress.finish();
@@ -49,18 +51,18 @@ void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::
   if (record.options.subjects <= 2) {
     fmt::print(stderr,
                "stillhand study: got {} subject(s), want 3 or more for a meaningful t-test; the "
-               "default is the paper's 12\n",
+               "paper has 12\n",
                record.options.subjects);
   }
   fmt::print("report and figures in {}\n", out.string());
 }
 
-// The results of a merge must not replace a shard, from which they can be made again.
-void check_place(const std::vector<fs::path>& shards, const fs::path& out) {
-  for (const fs::path& shard : shards) {
+// Results must not replace the files that they are made of.
+void check_place(const std::vector<fs::path>& inputs, const fs::path& out, const char* what) {
+  for (const fs::path& input : inputs) {
     std::error_code missing;
-    if (fs::equivalent(shard, out, missing)) {
-      throw ConfigError("--out", out.string() + ", the folder of a shard", "another folder");
+    if (fs::equivalent(input, out, missing)) {
+      throw ConfigError("--out", out.string() + ", the folder of " + what, "another folder");
     }
   }
 }
@@ -72,7 +74,7 @@ int run_whole(StudyRecord& record, const fs::path& out) {
   report::StagedFolder folder(out);
   report::require_gnuplot();
   seal(record);
-  timed(record, stop, [&](const OnProgress& on_progress) {
+  timed(record, stop, "subjects", [&](const OnProgress& on_progress) {
     record.results = run_study(record.options, on_progress);
   });
   conclude(record, folder, stop, out);
@@ -85,7 +87,7 @@ int run_shard(StudyRecord& record, const Shard& shard, const fs::path& out) {
   seal(record);
   const std::int64_t first = shard.first(record.options.subjects);
   const std::int64_t end = shard.end(record.options.subjects);
-  timed(record, stop, [&](const OnProgress& on_progress) {
+  timed(record, stop, "subjects", [&](const OnProgress& on_progress) {
     record.results = run_subjects(record.options, first, end, on_progress);
   });
   write_shard(record, shard, folder);
@@ -95,7 +97,7 @@ int run_shard(StudyRecord& record, const Shard& shard, const fs::path& out) {
 }
 
 int run_merge(StudyRecord& record, const std::vector<fs::path>& shards, const fs::path& out) {
-  check_place(shards, out);
+  check_place(shards, out, "a shard");
   runtime::Stop stop;
   report::StagedFolder folder(out);
   report::require_gnuplot();
@@ -103,9 +105,23 @@ int run_merge(StudyRecord& record, const std::vector<fs::path>& shards, const fs
   whole.options.threads = record.options.threads;
   whole.command_line = std::move(record.command_line);
   record = std::move(whole);
-  timed(record, stop, [&](const OnProgress& on_progress) {
+  timed(record, stop, "subjects", [&](const OnProgress& on_progress) {
     run_wrong_models(record.options, record.results, on_progress);
   });
+  conclude(record, folder, stop, out);
+  return 0;
+}
+
+int run_recorded(StudyRecord& record, const std::vector<fs::path>& folders, const fs::path& out) {
+  const std::vector<SessionFile> files = find_sessions(folders);
+  std::vector<fs::path> inputs = folders;
+  for (const SessionFile& file : files) inputs.push_back(file.path.parent_path());
+  check_place(inputs, out, "a recording");
+  runtime::Stop stop;
+  report::StagedFolder folder(out);
+  report::require_gnuplot();
+  timed(record, stop, "sessions",
+        [&](const OnProgress& on_progress) { read_recorded(files, record, on_progress); });
   conclude(record, folder, stop, out);
   return 0;
 }

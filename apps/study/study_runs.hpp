@@ -20,4 +20,9 @@ int run_shard(StudyRecord& record, const Shard& shard, const std::filesystem::pa
 int run_merge(StudyRecord& record, const std::vector<std::filesystem::path>& shards,
               const std::filesystem::path& out);
 
+/// The participants of recordings; `folders` as find_sessions().  Of `record`, only the command
+/// line is used.
+int run_recorded(StudyRecord& record, const std::vector<std::filesystem::path>& folders,
+                 const std::filesystem::path& out);
+
 }  // namespace stillhand::study

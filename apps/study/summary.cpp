@@ -154,10 +154,16 @@ std::string summary_json(const StudyRecord& record) {
   summary["wrong_models"] = wrong_json(record.analysis);
   summary["identification"] = identification_json(record);
   summary["subjects"] = options.subjects;
-  summary["seed"] = options.seed;
+  summary["seed"] = record.recorded ? ordered_json(nullptr) : ordered_json(options.seed);
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
-  summary["canceller"] = options.canceller;
+  summary["canceller"] = record.recorded ? ordered_json(nullptr) : ordered_json(options.canceller);
+  if (record.recorded) {
+    summary["recorded"] = {{"participants", record.recorded->participants},
+                           {"trials", record.recorded->trials.size()},
+                           {"left_out", record.recorded->left_out},
+                           {"digest", or_null(record.recorded->digest)}};
+  }
   summary["version"] = kVersion;
   // JSON has no NaN: dump() writes a number that is not finite as null.
   return summary.dump(2) + "\n";

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "apps/study/output.hpp"
+#include "apps/study/recorded/find_sessions.hpp"
+#include "apps/study/study.hpp"
+
+namespace stillhand::study {
+
+/// Fills results, source and lengths of a record from recordings.  The sessions of a participant
+/// join; of each condition the last complete trial counts, and the last complete pegged trial.  A
+/// participant who lacks the pegged trial, or a condition that most others have, is left out with
+/// the reason.
+/// @param files  find_sessions()
+/// @throws ConfigError for a recording that cannot be read or holds a control model (C+), trials of
+///         unequal lengths, and if no participant is complete; Interrupted
+void read_recorded(const std::vector<SessionFile>& files, StudyRecord& record,
+                   const OnProgress& on_progress);
+
+}  // namespace stillhand::study

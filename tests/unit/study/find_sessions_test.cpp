@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whose a recording is, in made folders.
+#include "apps/study/recorded/find_sessions.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "services/contract/config_error.hpp"
+#include "services/recording/core/mcap/mcap_writer.hpp"
+#include "services/recording/file_io.hpp"
+
+namespace stillhand::study {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class FindSessionsTest : public testing::Test {
+ protected:
+  void SetUp() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // An MCAP file without messages, in a folder of its own.
+  [[nodiscard]] fs::path session(const std::string& name, const recording::TextMap& texts) const {
+    const fs::path at = folder_ / name;
+    fs::create_directories(at);
+    recording::FileSink sink((at / "session.mcap").string());
+    recording::McapWriter writer(sink);
+    if (!texts.empty()) {
+      EXPECT_TRUE(writer.add_metadata("stillhand.experiment", texts).ok());
+    }
+    EXPECT_TRUE(writer.close().ok());
+    return at;
+  }
+  [[nodiscard]] static recording::TextMap of(const std::string& participant,
+                                             const std::string& session,
+                                             const std::string& digest = "d1") {
+    return {{"participant", participant}, {"session", session}, {"digest", digest}};
+  }
+  [[nodiscard]] static std::string refusal(const std::vector<fs::path>& folders) {
+    try {
+      find_sessions(folders);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      (std::string("sessions_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(FindSessionsTest, ASessionWithoutAnExperimentHasTheNameOfItsFolder) {
+  const auto found = find_sessions({session("anna7", {}).string() + "/"});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].participant, "anna7");
+  EXPECT_EQ(found[0].digest, "");
+}
+
+TEST_F(FindSessionsTest, AnExperimentGivesItsSessionsByParticipantThenSession) {
+  (void)session("e/participants/P02/sessions/01", of("P02", "01"));
+  (void)session("e/participants/P01/sessions/02", of("P01", "02"));
+  (void)session("e/participants/P01/sessions/01", of("P01", "01"));
+  const auto found = find_sessions({folder_ / "e"});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].participant + found[0].session, "P0101");
+  EXPECT_EQ(found[1].participant + found[1].session, "P0102");
+  EXPECT_EQ(found[2].participant + found[2].session, "P0201");
+  EXPECT_EQ(found[2].digest, "d1");
+}
+
+TEST_F(FindSessionsTest, TheRecordingStatesItsParticipantOutsideTheExperimentToo) {
+  const auto found = find_sessions({session("moved", of("P05", "03"))});
+  EXPECT_EQ(found.at(0).participant + found.at(0).session, "P0503");
+}
+
+TEST_F(FindSessionsTest, WrongFoldersAreNamed) {
+  const fs::path one = session("one", of("P01", "01"));
+  EXPECT_THAT(refusal({folder_ / "nothing"}), HasSubstr("without session.mcap"));
+  EXPECT_THAT(refusal({one, session("two", of("P01", "01"))}),
+              HasSubstr("participant P01, session 01, as in"));
+  EXPECT_THAT(refusal({one, session("three", of("P02", "01", "d2"))}),
+              HasSubstr("another experiment"));
+  EXPECT_THAT(refusal({session("four", {{"participant", "P04"}})}), HasSubstr("without its keys"));
+  (void)session("e/participants/P02/sessions/01", of("P03", "01"));
+  EXPECT_THAT(refusal({folder_ / "e"}), HasSubstr("a recording of participant P03"));
+  std::ofstream(one / "session.mcap", std::ios::trunc) << "no MCAP";
+  EXPECT_THAT(refusal({one}), HasSubstr("an MCAP recording of a session"));
+}
+
+}  // namespace
+}  // namespace stillhand::study
