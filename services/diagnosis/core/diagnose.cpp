@@ -151,13 +151,16 @@ void keep_what_helps(Diagnosis& diagnosis, const Signals& signals, const Blocks&
   }
 }
 
+// The errors of the search are those of the verdict's models.
+bool as_searched(const SearchResult& search) { return search.removed == 0 && !search.reordered; }
+
 // Errors of the models with the first effect, the first two, and so on.
 std::vector<HeldOut> chain(const Diagnosis& diagnosis, const Signals& signals,
                            const Blocks& blocks) {
   const auto& additions = diagnosis.search.additions;
   std::vector<HeldOut> errors{held_out(diagnosis.baseline.model, signals, blocks)};
   for (std::size_t e = 0; e < additions.size(); ++e) {
-    if (diagnosis.search.removed == 0) {
+    if (as_searched(diagnosis.search)) {
       errors.push_back(additions[e].after);
       continue;
     }
@@ -167,6 +170,30 @@ std::vector<HeldOut> chain(const Diagnosis& diagnosis, const Signals& signals,
     errors.push_back(held_out(model, signals, blocks));
   }
   return errors;
+}
+
+// An effect with which the error grows stays only if another one needs it, and then stands behind
+// it: so the error of the verdict falls with each effect.
+void put_in_order(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks) {
+  auto& additions = diagnosis.search.additions;
+  const double least = held_out(diagnosis.model, signals, blocks).rmse();
+  for (std::size_t e = additions.size(); e-- > 0 && additions.size() > 1;) {
+    const std::vector<HeldOut> errors = chain(diagnosis, signals, blocks);
+    if (errors[e + 1].rmse() < errors[e].rmse()) continue;
+    Model fewer = diagnosis.model;
+    const auto place = static_cast<std::ptrdiff_t>(e);
+    fewer.effects.erase(fewer.effects.begin() + place);
+    fit(fewer, signals, blocks);
+    if (held_out(fewer, signals, blocks).rmse() <= least) {
+      ++diagnosis.search.removed;
+      additions.erase(additions.begin() + place);
+      diagnosis.model = std::move(fewer);
+    } else if (e + 1 < additions.size()) {
+      diagnosis.search.reordered = true;
+      std::swap(additions[e], additions[e + 1]);
+      std::swap(diagnosis.model.effects[e], diagnosis.model.effects[e + 1]);
+    }
+  }
 }
 
 void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks,
@@ -180,7 +207,7 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
     found.channel = measured_channel(effect, signals, diagnosis.options.inputs);
     found.before = held_out_error(errors[e], variance);
     found.after = held_out_error(errors[e + 1], variance);
-    found.p = diagnosis.search.removed == 0 ? diagnosis.search.additions[e].comparison.p
+    found.p = as_searched(diagnosis.search) ? diagnosis.search.additions[e].comparison.p
                                             : compared(errors[e], errors[e + 1]).p;
     found.evidence = effect_kind(effect.kind).evidence(effect);
     found.ties = diagnosis.search.additions[e].ties;
@@ -323,6 +350,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   diagnosis.model = diagnosis.search.model;
   if (diagnosis.search.whitened) fit(diagnosis.model, signals, blocks, {});
   keep_what_helps(diagnosis, signals, blocks);
+  put_in_order(diagnosis, signals, blocks);
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
   note_refuted(diagnosis);

@@ -37,6 +37,7 @@ struct SearchResult {
   Model model;
   std::vector<Addition> additions;     ///< one an effect of the model, in its order
   std::size_t removed = 0;             ///< effects that later ones replaced
+  bool reordered = false;              ///< the additions stand in another order than they came in
   bool whitened = false;               ///< judged behind a noise model, Eq. DG-61
   std::vector<RefutedEffect> refuted;  ///< of all rounds
   std::vector<Trial> last_tried;       ///< after the last addition, best first: all were rejected
