@@ -204,7 +204,9 @@ bool SessionScript::ask(lab::LiveTrials& /*trials*/, std::size_t number) {
   const Question& question = folder_.design().questions[plan_[number].question];
   add({.kind = EntryKind::kQuestionAnswered,
        .step = static_cast<std::int64_t>(number),
-       .text = question.name + ": not asked of a simulated subject"});
+       .text = question.name + (folder_.design().who == "simulated"
+                                    ? ": not asked of a simulated subject"
+                                    : ": not asked: the screen does not ask yet")});
   return true;
 }
 

@@ -101,6 +101,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 // A picture is worth a line, not the session's results.
 void draw(const session::SessionResult& result, const std::filesystem::path& folder) {
+  if (result.trials.empty()) return;
   try {
     session_page(result, draw_session(result, folder)).write(folder / kSessionPage);
   } catch (const std::exception& error) {

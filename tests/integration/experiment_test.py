@@ -5,6 +5,7 @@
 The campaign conducts twelve simulated participants, two of them killed and resumed, one excluded, and keeps the folder
 in STILLHAND_EXPERIMENT, if that is set.
 """
+import csv
 import hashlib
 import json
 import os
@@ -161,6 +162,10 @@ class SessionTest(ExperimentTestCase):
         for path in texts:
             self.assertIsNone(word.search(path.read_text()), path)
         self.assertNotIn("assignment.json", os.listdir(self.study))
+        study = subprocess.run([str(STILLHAND), "study", "--sessions", str(self.study), "--out", str(self.folder / "report")],
+                               capture_output=True, text=True, check=False, timeout=END_LIMIT_S)
+        self.assertEqual(study.returncode, 2)
+        self.assertIn("an experiment that is still blinded", study.stderr)
         self.assertIn("blinded", experiment("status", self.study)[0])
         opened = json.loads(experiment("unblind", self.study, "--reason", "the end")[0])
         self.assertEqual(sorted(opened["labels"].values()), ["A", "B", "C"])
@@ -276,6 +281,20 @@ class RefusalTest(ExperimentTestCase):
 
 
 class CampaignTest(ExperimentTestCase):
+    def judge_study(self):
+        """The study of the recordings alone: eleven people, each with one trial of each condition."""
+        out = self.study.parent / "report"
+        done = subprocess.run([str(STILLHAND), "study", "--sessions", str(self.study), "--out", str(out)],
+                              capture_output=True, text=True, check=False, timeout=SESSION_LIMIT_S)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        print(done.stdout)
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertEqual(summary["recorded"]["left_out"], ["P05: excluded, felt sick"])
+        with open(out / "trials.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({condition: sum(row["condition"] == condition for row in rows) for condition in "ABC"},
+                         {"A": 11, "B": 11, "C": 11})  # without practice
+
     @campaign
     def test_twelve_participants_two_killed_and_resumed_one_excluded(self):
         kept = os.environ.get("STILLHAND_EXPERIMENT")
@@ -296,6 +315,7 @@ class CampaignTest(ExperimentTestCase):
         for code in ("P03", "P08"):
             self.assertEqual(len(of_kind(journal(self.study, code), "session began")), 2)
         opened = json.loads(experiment("unblind", self.study, "--reason", "all are complete")[0])
+        self.judge_study()
         # Williams over twelve: every condition four times at each place.
         for place in range(3):
             at = [order[place] for order in opened["orders"].values()]

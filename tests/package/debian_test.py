@@ -27,6 +27,8 @@ CORES = ("signal", "statistics", "motion_core", "rig_core", "sensing_core", "ide
          "diagnosis_core", "clock_core", "display_core", "human_operator_core", "recording_core")
 PROGRAMS = {"stillhand", "stillhand-permissions", "stillhand-device_rig",
             *(f"stillhand-{service}" for service in lab_process.SERVICES)}
+SUBVERBS = {"deploy-generate", "deploy-check",
+            *(f"experiment-{verb}" for verb in ("new", "run", "status", "exclude", "unblind"))}
 # Makes the copy of this system at $1 with the packages of $2, and hides $3, $4, ...; then stays until its input ends.
 INSTALL = r"""
 set -e
@@ -173,7 +175,7 @@ class ContentTest(unittest.TestCase):
         for path, place in self.files():
             self.assertRegex(str(place), r"^(usr(/(bin|include|lib|share)(/|$)|$)|etc(/security(/|$)|$))")
             mode = path.lstat().st_mode & 0o7777
-            executable = path.is_dir() or place.parts[:2] == ("usr", "bin") or place.suffix == ".sh"
+            executable = path.is_dir() or place.parts[:2] == ("usr", "bin") or place.suffix in (".sh", ".py")
             self.assertEqual(oct(mode), oct(0o755 if executable else 0o644), place)
         for package in (PACKAGES.programs, PACKAGES.development):
             for line in output_of("dpkg-deb", "--contents", package).splitlines():
@@ -191,7 +193,7 @@ class ContentTest(unittest.TestCase):
         pages = {path.name for path in (self.programs / "usr/share/man/man1").iterdir()}
         verbs = verbs_in(output_of(BUILD / "bin" / "stillhand", "--help"))
         self.assertIn("deploy", verbs)
-        names = PROGRAMS | {f"stillhand-{verb}" for verb in verbs | {"deploy-generate", "deploy-check"}}
+        names = PROGRAMS | {f"stillhand-{verb}" for verb in verbs | SUBVERBS}
         self.assertEqual(pages, {f"{name}.1.gz" for name in names})
         page = output_of("gzip", "-dc", self.programs / "usr/share/man/man1/stillhand-record.1.gz")
         self.assertIn("\n.SH NAME\nstillhand\\-record \\- Records a running bus", page)
@@ -283,7 +285,7 @@ class InstalledTest(unittest.TestCase):
         self.assertEqual(set(completed("deploy", "")), {"generate", "check"})
         self.assertEqual(completed("study", "--sub"), ["--subjects"])
         self.assertEqual(completed("deploy", "check", "lab.yaml", "--j"), ["--json"])
-        self.assertEqual(set(completed("lab", "--operator", "")), {"simulated", "mouse"})
+        self.assertEqual(set(completed("lab", "--operator", "")), {"simulated", "mouse", "gamepad"})
         self.assertEqual(completed("lab", "--out", ""), [])  # file names: readline's own
 
     @lab_process.campaign

@@ -22,6 +22,7 @@ Square developed(const std::vector<std::size_t>& first) {
   Square square;
   for (std::size_t r = 0; r < n; ++r) {
     std::vector<std::size_t> row;
+    row.reserve(n);
     for (const std::size_t entry : first) row.push_back((r + entry) % n);
     square.push_back(row);
   }

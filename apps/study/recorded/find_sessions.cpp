@@ -2,6 +2,8 @@
 #include "apps/study/recorded/find_sessions.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
 
@@ -29,6 +31,11 @@ std::vector<fs::path> folders_in(const fs::path& parent) {
 
 std::vector<fs::path> session_folders(const fs::path& folder) {
   if (!fs::is_directory(folder / "participants")) return {folder};
+  // The tables name the conditions (apps/experiment/README.md, "The folder").
+  if (fs::exists(folder / "experiment.yaml") && !fs::exists(folder / "assignment.json")) {
+    throw ConfigError("--sessions", folder.string() + ", an experiment that is still blinded",
+                      "`stillhand experiment unblind " + folder.string() + "` first");
+  }
   std::vector<fs::path> out;
   for (const fs::path& participant : folders_in(folder / "participants")) {
     std::ranges::copy(folders_in(participant / "sessions"), std::back_inserter(out));
@@ -54,7 +61,7 @@ std::string text_of(const recording::Metadata& metadata, const std::string& key)
 }
 
 SessionFile session_file(const fs::path& folder) {
-  SessionFile out{folder / kFileName, name_of(folder), "1", ""};
+  SessionFile out{folder / kFileName, name_of(folder), "1", "", ""};
   if (!fs::is_regular_file(out.path)) {
     throw ConfigError("--sessions", folder.string() + ", a folder without " + kFileName,
                       "the folder of a session, or of an experiment");
@@ -74,6 +81,20 @@ SessionFile session_file(const fs::path& folder) {
     }
   }
   return out;
+}
+
+// The reason of the journal's line "excluded" (apps/experiment/README.md, "The journal"), or empty.
+std::string exclusion_of(const fs::path& participant) {
+  std::ifstream journal(participant / "journal.jsonl");
+  std::string reason;
+  for (std::string line; std::getline(journal, line);) {
+    // A crash may have cut the last line.
+    const auto entry = nlohmann::json::parse(line, nullptr, false);
+    if (entry.is_object() && entry.value("what", "") == "excluded") {
+      reason = entry.value("text", "without a reason");
+    }
+  }
+  return reason;
 }
 
 void check_together(const SessionFile& one, const SessionFile& next) {
@@ -97,7 +118,9 @@ std::vector<SessionFile> find_sessions(const std::vector<fs::path>& folders) {
     for (const fs::path& session : session_folders(folder)) {
       out.push_back(session_file(session));
       const bool in_experiment = session != folder;
-      const std::string code = name_of(session.parent_path().parent_path());
+      const fs::path participant = session.parent_path().parent_path();
+      const std::string code = name_of(participant);
+      if (in_experiment) out.back().excluded = exclusion_of(participant);
       if (in_experiment && out.back().participant != code && !out.back().digest.empty()) {
         throw ConfigError(out.back().path.string(),
                           "a recording of participant " + out.back().participant,

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "apps/measurement/session_trials.hpp"
@@ -112,6 +115,24 @@ TrackedTrial tracked_from(const SessionRecording& recorded, const SessionTrial& 
   return evaluated(signals, planned);
 }
 
+// The trials that an experiment announced as practice, by a note before each
+// (apps/experiment/README.md).
+std::set<std::int64_t> practice_of(const SessionRecording& recorded) {
+  std::set<std::int64_t> numbers;
+  for (const auto& event : recorded.events) {
+    constexpr std::string_view kBegin = "experiment: trial ";
+    const std::string text = event.text().c_str();
+    const bool note = event.kind() == stillhand_msgs::EVENT_NOTE && event.source() == "experiment";
+    if (!note || !text.starts_with(kBegin) || !text.ends_with(", practice")) continue;
+    std::int64_t number = -1;
+    const char* digits = text.data() + kBegin.size();
+    if (std::from_chars(digits, text.data() + text.size(), number).ec == std::errc()) {
+      numbers.insert(number);
+    }
+  }
+  return numbers;
+}
+
 void read_session_of(const SessionFile& file, Participant& participant, RecordedSource& source) {
   const measurement::SessionTrials trials = trials_of(file);
   SessionRecording recorded = session::read_session(file.path.string());
@@ -120,7 +141,9 @@ void read_session_of(const SessionFile& file, Participant& participant, Recorded
                       "sessions of conditions A, B and C");
   }
   keep_valid(recorded, trials.rig);
+  const std::set<std::int64_t> practice = practice_of(recorded);
   for (const SessionTrial& trial : trials.trials) {
+    if (practice.contains(trial.trial.number)) continue;
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
     std::string why = trial.letter == '?' ? "has no condition" : incomplete(trial);
@@ -137,7 +160,7 @@ void read_session_of(const SessionFile& file, Participant& participant, Recorded
     } catch (const ConfigError& error) {
       why = error.what();
     }
-    if (!why.empty()) source.left_out.push_back(where + ": " + why);
+    if (!why.empty()) source.left_out.push_back(fmt::format("{}: {}", where, why));
   }
 }
 
@@ -207,8 +230,14 @@ void read_recorded(const std::vector<SessionFile>& files, StudyRecord& record,
   RecordedSource source;
   source.digest = files.front().digest;
   std::map<std::string, Participant> people;
+  std::set<std::string> excluded;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    read_session_of(files[i], people[files[i].participant], source);
+    const SessionFile& file = files[i];
+    if (file.excluded.empty()) {
+      read_session_of(file, people[file.participant], source);
+    } else if (excluded.insert(file.participant).second) {
+      source.left_out.push_back(file.participant + ": excluded, " + file.excluded);
+    }
     if (!on_progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()))) {
       throw Interrupted();
     }
@@ -218,7 +247,7 @@ void read_recorded(const std::vector<SessionFile>& files, StudyRecord& record,
     std::ranges::copy(participant.trials, std::back_inserter(source.trials));
     const std::string why = lacking(participant, conditions);
     if (!why.empty()) {
-      source.left_out.push_back(code + ": " + why);
+      source.left_out.push_back(fmt::format("{}: {}", code, why));
       continue;
     }
     source.participants.push_back(code);

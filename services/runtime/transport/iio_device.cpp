@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "services/contract/config_error.hpp"
@@ -29,6 +30,8 @@ IioFormat format_of(const iio_channel* channel) {
   format.lowest = data.is_signed ? -format.highest - 1 : 0;
   return format;
 }
+
+std::string error_text() { return std::generic_category().message(errno); }
 
 template <typename Number>
 std::int64_t number_at(const void* bytes) {
@@ -101,7 +104,7 @@ void IioDevice::open() {
   const std::string uri = uri_;
   context_ = iio_create_context_from_uri(uri.c_str());
   if (context_ == nullptr) {
-    throw ConfigError("IIO context " + uri_, std::strerror(errno),
+    throw ConfigError("IIO context " + uri_, error_text(),
                       "a context that `iio_info -u " + uri_ + "` shows");
   }
   // A local context has no time-out of its own; the loop judges the age of a sample by itself.
@@ -114,7 +117,7 @@ void IioDevice::open() {
   const std::lock_guard lock(mutex_);
   if (!cancelled_) buffer_ = iio_device_create_buffer(device_, 1, false);
   if (buffer_ == nullptr) {
-    throw ConfigError("buffer of IIO device " + name_, std::strerror(errno),
+    throw ConfigError("buffer of IIO device " + name_, error_text(),
                       "one that no other program has, with a trigger where the device needs one");
   }
 }

@@ -75,6 +75,24 @@ TEST_F(FindSessionsTest, AnExperimentGivesItsSessionsByParticipantThenSession) {
   EXPECT_EQ(found[2].digest, "d1");
 }
 
+TEST_F(FindSessionsTest, AnExperimentIsReadAfterItIsUnblinded) {
+  (void)session("e/participants/P01/sessions/01", of("P01", "01"));
+  std::ofstream(folder_ / "e" / "experiment.yaml") << "title: one\n";
+  EXPECT_THAT(refusal({folder_ / "e"}), HasSubstr("an experiment that is still blinded"));
+  std::ofstream(folder_ / "e" / "assignment.json") << "{}\n";
+  EXPECT_EQ(find_sessions({folder_ / "e"}).size(), 1u);
+}
+
+TEST_F(FindSessionsTest, AnExcludedParticipantHasTheReasonOfTheJournal) {
+  (void)session("e/participants/P01/sessions/01", of("P01", "01"));
+  (void)session("e/participants/P02/sessions/01", of("P02", "01"));
+  std::ofstream(folder_ / "e/participants/P02/journal.jsonl")
+      << "{\"what\":\"session began\"}\n{\"what\":\"excluded\",\"text\":\"felt sick\"}\n{\"wh";
+  const auto found = find_sessions({folder_ / "e"});
+  EXPECT_EQ(found.at(0).excluded, "");
+  EXPECT_EQ(found.at(1).excluded, "felt sick");
+}
+
 TEST_F(FindSessionsTest, TheRecordingStatesItsParticipantOutsideTheExperimentToo) {
   const auto found = find_sessions({session("moved", of("P05", "03"))});
   EXPECT_EQ(found.at(0).participant + found.at(0).session, "P0503");
