@@ -140,28 +140,39 @@ void try_to_read(const std::string& path, const std::string& bytes, Count& count
   }
 }
 
+void replace_sign(std::string& text, Random& random) {
+  text.replace(below(random, text.size()), 1, 1, ";,. \"\n#-e\0"[below(random, 11)]);
+}
+
+// One to three spoils: a byte, a cut, two lines, or `other`, which is chosen in place of each of
+// the `choices` beyond these.
+std::string spoilt(std::string text, Random& random, std::size_t choices,
+                   void (*other)(std::string&, Random&)) {
+  for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !text.empty(); --spoils) {
+    switch (below(random, choices)) {
+      case 0:
+        flip_byte(text, random);
+        break;
+      case 1:
+        cut(text, random);
+        break;
+      case 2:
+        swap_lines(text, random);
+        break;
+      default:
+        other(text, random);
+    }
+  }
+  return text;
+}
+
 TEST(ReadFuzzTest, ASpoiltTableIsReadOrRefused) {
   const std::string good = good_table();
   const std::string path = testing::TempDir() + "fuzz.csv";
   Random random(20240601);
   Count count;
   for (int run = 0; run < 4000; ++run) {
-    std::string text = good;
-    for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !text.empty(); --spoils) {
-      switch (below(random, 5)) {
-        case 0:
-          flip_byte(text, random);
-          break;
-        case 1:
-          cut(text, random);
-          break;
-        case 2:
-          swap_lines(text, random);
-          break;
-        default:
-          replace_cell(text, random);
-      }
-    }
+    const std::string text = spoilt(good, random, 5, replace_cell);
     SCOPED_TRACE("run " + std::to_string(run));
     ASSERT_NO_THROW(try_to_read(path, text, count));
   }
@@ -183,22 +194,7 @@ TEST(ReadFuzzTest, ASpoiltTableOfAnotherProgramIsReadOrRefused) {
   Random random(20241125);
   Count count;
   for (int run = 0; run < 4000; ++run) {
-    std::string text = good;
-    for (std::size_t spoils = below(random, 3) + 1; spoils > 0 && !text.empty(); --spoils) {
-      switch (below(random, 4)) {
-        case 0:
-          flip_byte(text, random);
-          break;
-        case 1:
-          cut(text, random);
-          break;
-        case 2:
-          swap_lines(text, random);
-          break;
-        default:
-          text.replace(below(random, text.size()), 1, 1, ";,. \"\n#-e\0"[below(random, 11)]);
-      }
-    }
+    const std::string text = spoilt(good, random, 4, replace_sign);
     SCOPED_TRACE("run " + std::to_string(run));
     ASSERT_NO_THROW(try_to_read(path, text, count, options));
   }
