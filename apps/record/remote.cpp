@@ -11,8 +11,6 @@
 namespace stillhand::record {
 namespace {
 
-constexpr std::int64_t kAnswer_ns = 5 * runtime::kNsPerSecond;
-
 /// @returns why the command is refused, or ""
 std::string obey_one(const stillhand_msgs::RecorderCommand& command, recording::Tape& tape,
                      bool windowed, runtime::Stop& stop) {
@@ -89,7 +87,7 @@ int run_remote(const std::string& action, const RecordOptions& options, runtime:
   command.action(known->second);
   const auto status = runtime::ask<stillhand_msgs::RecorderCommand, stillhand_msgs::RecorderStatus>(
       outsider("remote", options), topics::kRecorderCommand, topics::kRecorderStatus, command,
-      kAnswer_ns, stop);
+      runtime::kAnswerLimit_ns, stop);
   if (!status) {
     warn(fmt::format("no recorder answers on domain {}", options.domain));
     return 1;

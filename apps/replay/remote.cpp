@@ -17,8 +17,6 @@ namespace {
 
 using stillhand_msgs::ReplayAction;
 
-constexpr std::int64_t kAnswer_ns = 5 * runtime::kNsPerSecond;
-
 bool inside(double at_s, const Played& played) {
   const double length_s = static_cast<double>(played.end_ns - played.start_ns) / kNsPerS;
   return std::isfinite(at_s) && at_s >= 0.0 && at_s <= length_s;
@@ -152,7 +150,7 @@ stillhand_msgs::ReplayCommand parse_command(const std::string& text) {
 int run_remote(const std::string& text, const ReplayOptions& options, runtime::Stop& stop) {
   const auto status = runtime::ask<stillhand_msgs::ReplayCommand, stillhand_msgs::ReplayStatus>(
       runtime::outsider("remote", options.domain, options.profiles, true), topics::kReplayCommand,
-      topics::kReplayStatus, parse_command(text), kAnswer_ns, stop);
+      topics::kReplayStatus, parse_command(text), runtime::kAnswerLimit_ns, stop);
   if (!status) {
     fmt::print(stderr, "stillhand: no replay answers on domain {}\n", options.domain);
     return 1;

@@ -14,6 +14,10 @@
 
 namespace stillhand::runtime {
 
+/// How long a verb waits for the answer to a command.  On a busy machine DDS now and then takes
+/// more than 3 s to match two participants, and a command takes two matches: there and back.
+inline constexpr std::int64_t kAnswerLimit_ns = 15 * kNsPerSecond;
+
 /// Bus options of a verb that is outside of every session.  Each process has a name of its own, so
 /// that no session counts two of them as one service that runs twice.
 inline Bus::Options outsider(const std::string& verb, std::uint32_t domain,

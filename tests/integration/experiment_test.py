@@ -221,6 +221,7 @@ class SessionTest(ExperimentTestCase):
 
 
 class SteeredTest(ExperimentTestCase):
+    @campaign
     def test_the_dashboard_notes_repeats_and_aborts_and_the_reasons_are_in_the_journal(self):
         self.new("--conditions", "A,C", "--participants", 1)
         self.edit(rest_s=6, order="latin")
