@@ -56,10 +56,12 @@ Model bare_of_terms(const Model& model) {
 
 class Carrying {
  public:
-  Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks)
+  Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks,
+           const ResponsePrior& prior)
       : all_(signals),
         fitted_(without_bursts),
         blocks_(blocks),
+        prior_(prior),
         parts_(by_part(blocks, signals)),
         apart_(signals.restarted(borders_of(parts_))) {}
 
@@ -75,6 +77,7 @@ class Carrying {
       Model refitted = bare_of_terms(model);
       FitOptions options;
       options.max_iterations = kPartIterations;
+      options.prior = prior_of(model);
       options.without_fold = static_cast<int>(part);
       fit(refitted, fitted, parts_, options);
       const FreeRun run = free_run(refitted, apart_);
@@ -99,10 +102,14 @@ class Carrying {
     return errors(model, all_);
   }
 
+  // The body is drawn to the baseline's where the input excited nothing.
+  [[nodiscard]] bool has_prior(const Model& model) const { return prior_of(model) != nullptr; }
+
   // Fitted from its own numbers and from another body's, whichever ends better.
   [[nodiscard]] Model refitted(Model model, const Body& other) const {
     FitOptions options;
     options.max_iterations = kCarryIterations;
+    options.prior = prior_of(model);
     options.relative_tolerance = 1e-9;
     Model from_other = model;
     const FitResult own = fit(model, fitted_, blocks_, options);
@@ -113,9 +120,19 @@ class Carrying {
   }
 
  private:
+  // An effect that is linear in the inputs takes a part of the body's response over.
+  [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
+    const bool linear = std::ranges::any_of(model.effects, [this](const Effect& effect) {
+      const EffectKind& kind = effect_kind(effect.kind);
+      return kind.stage(effect) == Stage::kInputTime || !kind.own_poles(effect, all_).empty();
+    });
+    return linear || model.effects.empty() || prior_.empty() ? nullptr : &prior_;
+  }
+
   const Signals& all_;
   const Signals& fitted_;
   const Blocks& blocks_;
+  const ResponsePrior& prior_;
   const Blocks parts_;
   const Signals apart_;  // every part starts as a recording does
 };
@@ -197,6 +214,19 @@ void keep_stable(CarriedModel& carried, const Signals& signals, const Body& base
   }
 }
 
+// [unit of the output]
+double rms_error(const Model& model, const Signals& signals) {
+  const FreeRun run = free_run(model, signals);
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t n = 0; n < signals.size(); ++n) {
+    const double r = run.weight[n] * (signals.output().values[n] - run.prediction[n]);
+    sum += r * r;
+    weight += run.weight[n];
+  }
+  return std::sqrt(sum / std::max(weight, 1.0));
+}
+
 Signals bursts_masked(const Model& found, const Signals& signals) {
   std::vector<double> weight = signals.weight();
   for (const Effect& effect : found.effects) {
@@ -218,9 +248,11 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
   carried.model = baseline;
   if (!found.effects.empty()) {
     const Signals masked = bursts_masked(found, signals);
-    const Carrying carrying(signals, masked, blocks);
+    const ResponsePrior prior(baseline.body, carried.bands, baseline.rate_hz,
+                              rms_error(found, masked));
+    const Carrying carrying(signals, masked, blocks, prior);
     carried.model = shared_part(found, signals, blocks, carried.left_out);
-    if (!carried.left_out.empty()) {
+    if (!carried.left_out.empty() || carrying.has_prior(carried.model)) {
       carried.model = carrying.refitted(std::move(carried.model), baseline.body);
     }
     keep_stable(carried, signals, baseline.body, carrying);

@@ -37,7 +37,8 @@ class Compressed {
   Compressed(Model& model, const Signals& signals, const Blocks& blocks, const FitOptions& options)
       : model_(model), signals_(signals), blocks_(blocks), options_(options) {
     start_ = packed(model);
-    Eigen::MatrixXd gram = options.at_start != nullptr ? total(*options.at_start) : gram_at(start_);
+    Eigen::MatrixXd gram =
+        options.at_start != nullptr ? total(*options.at_start, model.body) : gram_at(start_);
     const bool finite = options.at_start != nullptr || accepted_->finite();
     before_ = finite ? squared_error(gram) : kNotFinite;
     if (const double step = offset_step(gram); step != 0.0) {
@@ -125,8 +126,10 @@ class Compressed {
     return most ? product / gram(0, 0) : 0.0;
   }
 
-  [[nodiscard]] Eigen::MatrixXd total(const Grams& grams) const {
-    return grams.total(blocks_, options_.without_fold);
+  [[nodiscard]] Eigen::MatrixXd total(const Grams& grams, const Body& body) const {
+    Eigen::MatrixXd gram = grams.total(blocks_, options_.without_fold);
+    if (options_.prior != nullptr) options_.prior->add(body, gram);
+    return gram;
   }
 
   [[nodiscard]] Point& point_at(const Eigen::VectorXd& numbers) const {
@@ -144,6 +147,7 @@ class Compressed {
       }
       tried_->error += residual.segment(n, std::min(length, residual.size() - n)).squaredNorm();
     }
+    if (options_.prior != nullptr) tried_->error += options_.prior->error(model_.body);
     return *tried_;
   }
 
@@ -161,7 +165,10 @@ class Compressed {
 
   [[nodiscard]] Eigen::MatrixXd gram_at(const Eigen::VectorXd& numbers) const {
     const Point& point = with_columns(numbers);
-    if (point.grams) return total(*point.grams);
+    if (point.grams) {
+      unpack(numbers, model_);
+      return total(*point.grams, model_.body);
+    }
     const Eigen::Index size = numbers.size() + 1;
     return Eigen::MatrixXd::Identity(size, size);
   }

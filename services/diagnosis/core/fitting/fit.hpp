@@ -6,6 +6,7 @@
 
 #include "services/diagnosis/core/fitting/blocks.hpp"
 #include "services/diagnosis/core/fitting/grams.hpp"
+#include "services/diagnosis/core/fitting/response_prior.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 
 namespace stillhand::diagnosis {
@@ -13,7 +14,8 @@ namespace stillhand::diagnosis {
 /// Result of a fit.
 struct FitResult {
   bool finite = false;
-  double rmse = 0.0;           ///< [unit of the output] over the samples it was fitted to
+  double rmse = 0.0;           ///< [unit of the output] over the samples it was fitted to, with
+                               ///< the prior's terms
   Eigen::VectorXd residual;    ///< of the fitted model over all samples, as in Linearisation
   FreeRun run;                 ///< likewise
   std::optional<Grams> grams;  ///< likewise, if they were asked for and the run is finite
@@ -21,10 +23,11 @@ struct FitResult {
 
 struct FitOptions {
   int max_iterations = 20;
-  int without_fold = -1;             ///< fold that is left out; -1: none
-  double relative_tolerance = 1e-7;  ///< of the sum of squares, between two steps
-  const Grams* at_start = nullptr;   ///< of the model as it is given, where they are known
-  bool grams_at_end = false;         ///< the result shall have those of the fitted model
+  int without_fold = -1;                 ///< fold that is left out; -1: none
+  double relative_tolerance = 1e-7;      ///< of the sum of squares, between two steps
+  const Grams* at_start = nullptr;       ///< of the model as it is given, where they are known
+  bool grams_at_end = false;             ///< the result shall have those of the fitted model
+  const ResponsePrior* prior = nullptr;  ///< where the samples do not determine the body
 };
 
 /// Minimises the free-run error of all the fitted numbers of a model together (output error, joint

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+#include "services/diagnosis/core/excited_band.hpp"
+#include "services/diagnosis/core/model/model.hpp"
+
+namespace stillhand::diagnosis {
+
+/// What is assumed of a body's response where the input did not excite it: that of another body,
+/// README Eq. DG-67.  Terms of a least-squares fit next to the samples'.
+class ResponsePrior {
+ public:
+  /// @param body     with the response that is assumed
+  /// @param bands    [inputs] where the samples alone decide
+  /// @param rate_hz  [Hz] of the model
+  /// @param noise    [unit of the output] root mean square of what the fit leaves
+  ResponsePrior(const Body& body, const std::vector<ExcitedBand>& bands, double rate_hz,
+                double noise);
+
+  /// True where the input excites every frequency: no terms.
+  [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
+  /// Sum of squares [(unit of the output)^2] of a body with as many inputs.
+  [[nodiscard]] double error(const Body& body) const;
+  /// Adds products of the terms' columns [jacobian | residual], as in Grams, of the body's numbers
+  /// in the order of packed().
+  void add(const Body& body, Eigen::MatrixXd& gram) const;
+
+ private:
+  struct Line {
+    std::size_t input;
+    std::complex<double> step;      ///< q^-1 = exp(-j 2 pi f / rate)
+    std::complex<double> response;  ///< of the body that is assumed
+    double weight;                  ///< [unit of the output / unit of the response]
+  };
+  std::vector<Line> lines_;
+};
+
+}  // namespace stillhand::diagnosis

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is assumed of the body where the input excites nothing, Eq. DG-67.
+#include "services/diagnosis/core/fitting/response_prior.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "services/diagnosis/core/fitting/fit.hpp"
+#include "services/signal/difference_model.hpp"
+#include "tests/unit/diagnosis/made_measurement.hpp"
+
+namespace stillhand::diagnosis {
+namespace {
+
+constexpr double kRate_hz = 100.0;
+const std::vector<ExcitedBand> kBands{{"u", 0.7, 2.0}};
+
+Model model_of(std::vector<double> numerator, std::vector<double> denominator) {
+  Model model;
+  model.rate_hz = kRate_hz;
+  model.inputs = {"u"};
+  model.output = "y";
+  model.body.numerators = {std::move(numerator)};
+  model.body.denominator = std::move(denominator);
+  return model;
+}
+
+double gain_at(const Model& model, double frequency_hz) {
+  return std::abs(signal::response_at({kRate_hz, model.body.numerators[0], model.body.denominator},
+                                      frequency_hz));
+}
+
+const Model kAssumed = model_of({0.5, -0.4, 0.1}, {1.0, -1.5, 0.6});
+const Model kOther = model_of({0.6, -0.3, 0.2}, {1.0, -1.4, 0.55});
+
+TEST(ResponsePriorTest, TheBodyThatIsAssumedCostsNothing) {
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3);
+  EXPECT_FALSE(sut.empty());
+  EXPECT_EQ(sut.error(kAssumed.body), 0.0);
+  EXPECT_GT(sut.error(kOther.body), 0.0);
+}
+
+TEST(ResponsePriorTest, WhereEveryFrequencyIsExcitedNothingIsAssumed) {
+  const ResponsePrior sut(kAssumed.body, {{"u", 0.0, 0.5 * kRate_hz}}, kRate_hz, 0.3);
+  EXPECT_TRUE(sut.empty());
+  EXPECT_EQ(sut.error(kOther.body), 0.0);
+}
+
+TEST(ResponsePriorTest, TheSquaresGrowWithTheNoise) {
+  const ResponsePrior once(kAssumed.body, kBands, kRate_hz, 0.3);
+  const ResponsePrior twice(kAssumed.body, kBands, kRate_hz, 0.6);
+  EXPECT_NEAR(twice.error(kOther.body), 4.0 * once.error(kOther.body),
+              1e-9 * once.error(kOther.body));
+}
+
+// A gain that is a tenth of the one in the band too high everywhere: each of the lines outside of
+// the band, of 32, adds the noise's square, by the ratio of the response there.
+TEST(ResponsePriorTest, ATenthOfTheGainCostsTheNoiseOnEachLine) {
+  const Model gain = model_of({2.0}, {1.0});
+  const Model higher = model_of({2.2}, {1.0});
+  const ResponsePrior sut(gain.body, kBands, kRate_hz, 0.3);
+  const double lines = sut.error(higher.body) / (0.3 * 0.3);
+  EXPECT_NEAR(lines, std::round(lines), 1e-9);
+  EXPECT_GT(lines, 20.0);
+  EXPECT_LT(lines, 32.0);
+}
+
+// The products are those of the squares' derivative, here by differences of them.
+TEST(ResponsePriorTest, TheColumnsAreTheDerivatives) {
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3);
+  const Eigen::VectorXd at = packed(kOther);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(at.size() + 1, at.size() + 1);
+  sut.add(kOther.body, gram);
+  EXPECT_NEAR(gram(at.size(), at.size()), sut.error(kOther.body), 1e-12 * sut.error(kOther.body));
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
+    constexpr double kStep = 1e-6;
+    const auto error_at = [&](double step) {
+      Eigen::VectorXd numbers = at;
+      numbers[i] += step;
+      Model model = kOther;
+      unpack(numbers, model);
+      return sut.error(model.body);
+    };
+    const double slope = (error_at(kStep) - error_at(-kStep)) / (2.0 * kStep);
+    // Residual = assumed - response: d error / d number = -2 jacobian^T residual.
+    EXPECT_NEAR(-2.0 * gram(i, at.size()), slope, 1e-5 * gram.diagonal().maxCoeff()) << i;
+  }
+}
+
+// Sines of 0.7 to 2 Hz alone, RMS 1, with the phases of Schroeder.
+std::vector<double> sines(std::size_t count) {
+  std::vector<double> x(count, 0.0);
+  for (int k = 7; k <= 20; ++k) {
+    for (std::size_t n = 0; n < count; ++n) {
+      x[n] += std::sin(2.0 * std::numbers::pi * 0.1 * k * static_cast<double>(n) / kRate_hz -
+                       std::numbers::pi * k * k / 14.0);
+    }
+  }
+  return made::scaled_to(std::move(x), 1.0);
+}
+
+// `factor` times the assumed response in noise as large as the input, fitted from the assumed body.
+Model fitted(double factor, const ResponsePrior* prior) {
+  constexpr std::size_t kCount = 6000;
+  Measurement measurement =
+      made::measurement_of({{"u", "V", sines(kCount)}, {"y", "N", made::white(kCount, 2)}});
+  const std::vector<double> clean = free_run(kAssumed, Signals(measurement, {"u"}, "y")).prediction;
+  std::vector<double>& y = measurement.channels.back().values;
+  for (std::size_t n = 0; n < kCount; ++n) y[n] += factor * clean[n];
+  const Signals signals(measurement, {"u"}, "y");
+  Model model = kAssumed;
+  FitOptions options;
+  options.max_iterations = 50;
+  options.prior = prior;
+  fit(model, signals, make_blocks(signals), options);
+  return model;
+}
+
+TEST(ResponsePriorTest, WhatTheSamplesDoNotDetermineStaysAsItWasAssumed) {
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 1.0);
+  EXPECT_LT(sut.error(fitted(1.0, &sut).body), 0.2 * sut.error(fitted(1.0, nullptr).body));
+}
+
+TEST(ResponsePriorTest, WhatTheSamplesDetermineIsNotHeldBack) {
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 1.0);
+  EXPECT_NEAR(gain_at(fitted(1.2, &sut), 1.2), 1.2 * gain_at(kAssumed, 1.2),
+              0.036 * gain_at(kAssumed, 1.2));
+}
+
+}  // namespace
+}  // namespace stillhand::diagnosis
