@@ -56,12 +56,10 @@ Model bare_of_terms(const Model& model) {
 
 class Carrying {
  public:
-  Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks,
-           const ResponsePrior& prior)
+  Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks)
       : all_(signals),
         fitted_(without_bursts),
         blocks_(blocks),
-        prior_(prior),
         parts_(by_part(blocks, signals)),
         apart_(signals.restarted(borders_of(parts_))) {}
 
@@ -102,7 +100,9 @@ class Carrying {
     return errors(model, all_);
   }
 
-  // The body is drawn to the baseline's where the input excited nothing.
+  // Of the body, from now on.  The prior stays with the caller.
+  void assume(const ResponsePrior& prior) { prior_ = &prior; }
+  void assume_nothing() { prior_ = nullptr; }
   [[nodiscard]] bool has_prior(const Model& model) const { return prior_of(model) != nullptr; }
 
   // Fitted from its own numbers and from another body's, whichever ends better.
@@ -126,13 +126,14 @@ class Carrying {
       const EffectKind& kind = effect_kind(effect.kind);
       return kind.stage(effect) == Stage::kInputTime || !kind.own_poles(effect, all_).empty();
     });
-    return linear || model.effects.empty() || prior_.empty() ? nullptr : &prior_;
+    return linear || model.effects.empty() || prior_ == nullptr || prior_->empty() ? nullptr
+                                                                                   : prior_;
   }
 
   const Signals& all_;
   const Signals& fitted_;
   const Blocks& blocks_;
-  const ResponsePrior& prior_;
+  const ResponsePrior* prior_ = nullptr;
   const Blocks parts_;
   const Signals apart_;  // every part starts as a recording does
 };
@@ -162,6 +163,21 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
     }
   }
   return shared;
+}
+
+// With the prior, unless that predicts parts of the recording worse from the others: then their
+// samples do determine the body there.
+// @param fitted  the shared part is the whole, as it was found
+Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
+                const ResponsePrior& prior) {
+  const Model plain = fitted ? shared : carrying.refitted(shared, baseline);
+  const double error = carrying.errors(plain).rmse;
+  carrying.assume(prior);
+  if (!carrying.has_prior(shared)) return plain;
+  Model with = carrying.refitted(shared, baseline);
+  if (carrying.errors(with).rmse * (1.0 - kHelps) <= error) return with;
+  carrying.assume_nothing();
+  return plain;
 }
 
 Model without(const Model& model, std::size_t effect) {
@@ -250,11 +266,9 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     const Signals masked = bursts_masked(found, signals);
     const ResponsePrior prior(baseline.body, carried.bands, baseline.rate_hz,
                               rms_error(found, masked));
-    const Carrying carrying(signals, masked, blocks, prior);
-    carried.model = shared_part(found, signals, blocks, carried.left_out);
-    if (!carried.left_out.empty() || carrying.has_prior(carried.model)) {
-      carried.model = carrying.refitted(std::move(carried.model), baseline.body);
-    }
+    Carrying carrying(signals, masked, blocks);
+    const Model shared = shared_part(found, signals, blocks, carried.left_out);
+    carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, prior);
     keep_stable(carried, signals, baseline.body, carrying);
     PartErrors errors = carrying.errors(carried.model);
     while (const auto effect = idle(carried.model, errors, baseline.body, carrying)) {

@@ -10,8 +10,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t kLines = 32;  // an input
-constexpr double kLowest = 0.1;     // of the band's lower edge
-constexpr double kLikely = 0.1;     // standard deviation, of the response in the band
+constexpr double kLowest = 0.1;     // of the lower edge of the band
+constexpr double kLikely = 0.1;     // standard deviation, of the RMS gain in the band
 
 Complex polynomial(const std::vector<double>& coefficients, const Complex& step) {
   Complex sum = 0.0;
