@@ -10,6 +10,7 @@
 #include "services/diagnosis/core/apart_from_time.hpp"
 #include "services/diagnosis/core/fitting/held_out.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/trials.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -52,6 +53,14 @@ Model bare_of_terms(const Model& model) {
     }
   }
   return bare;
+}
+
+// The numbers of its effects are as many as the body's order says.
+bool is_bound_to_order(const Model& model) {
+  return std::ranges::any_of(model.effects, [](const Effect& effect) {
+    const EffectKind& kind = effect_kind(effect.kind);
+    return kind.through_body(effect) || kind.stage(effect) == Stage::kFeedback;
+  });
 }
 
 class Carrying {
@@ -105,18 +114,28 @@ class Carrying {
   void assume_nothing() { prior_ = nullptr; }
   [[nodiscard]] bool has_prior(const Model& model) const { return prior_of(model) != nullptr; }
 
-  // Fitted from its own numbers and from another body's, whichever ends better.
+  // Fitted from its own numbers, from another body's and from a body estimated again; the best end.
   [[nodiscard]] Model refitted(Model model, const Body& other) const {
     FitOptions options;
     options.max_iterations = kCarryIterations;
-    options.prior = prior_of(model);
     options.relative_tolerance = 1e-9;
-    Model from_other = model;
-    const FitResult own = fit(model, fitted_, blocks_, options);
-    if (other.order() != model.body.order()) return model;
-    from_other.body = other;
-    const FitResult second = fit(from_other, fitted_, blocks_, options);
-    return second.finite && second.rmse < own.rmse ? from_other : model;
+    options.prior = prior_of(model);
+    std::vector<Model> starts(1, model);
+    if (other.order() == model.body.order() || !is_bound_to_order(model)) {
+      starts.push_back(model);
+      starts.back().body = other;
+    }
+    Model again = model;
+    start_afresh(again, fitted_, static_cast<int>(other.order()));
+    if (again.body.denominator != model.body.denominator) starts.push_back(std::move(again));
+    double least = std::numeric_limits<double>::infinity();
+    for (Model& start : starts) {
+      const FitResult result = fit(start, fitted_, blocks_, options);
+      if (!result.finite || !(result.rmse < least)) continue;
+      least = result.rmse;
+      model = start;
+    }
+    return model;
   }
 
  private:

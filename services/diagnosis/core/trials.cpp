@@ -38,34 +38,6 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
 
 namespace {
 
-// The body that was fitted without the effect may be in a local minimum.  A body estimated again
-// from what the effect leaves of the output replaces it where it is better.  The full order is
-// tried too: the effect may have hidden poles of a body whose order was reduced.
-void start_afresh(Model& model, const Signals& signals, int order) {
-  constexpr double kWorthPoles = 0.98;  // of the squared error
-  std::vector<double> left = signals.output().values;
-  std::vector<std::vector<double>> inputs;
-  if (!without_effects(model, signals, inputs, left)) return;
-  const bool bound_to_order = std::ranges::any_of(model.effects, [](const Effect& effect) {
-    return effect_kind(effect.kind).through_body(effect);
-  });
-  FreeRun run;
-  double least = residual_of(model, signals, run).squaredNorm();
-  const auto own = static_cast<int>(model.body.order());
-  for (const int p : {own, order}) {
-    if (p > own && bound_to_order) break;
-    Model other = model;
-    other.body = started_body(inputs, left, {}, signals, p);
-    if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);
-    const double square = residual_of(other, signals, run).squaredNorm();
-    if (run.finite && square < (p > own ? kWorthPoles : 1.0) * least) {
-      least = square;
-      model = std::move(other);
-    }
-    if (p == order) break;
-  }
-}
-
 bool same_shape(const Model& a, const Model& b) {
   return a.effects.back().kind == b.effects.back().kind &&
          a.effects.back().form == b.effects.back().form;
@@ -114,6 +86,31 @@ void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals
 bool passes_over_samples(const Trial& trial) {
   const Effect& effect = trial.model.effects.back();
   return effect_kind(effect.kind).stage(effect) == Stage::kWeight;
+}
+
+void start_afresh(Model& model, const Signals& signals, int order) {
+  constexpr double kWorthPoles = 0.98;  // of the squared error
+  std::vector<double> left = signals.output().values;
+  std::vector<std::vector<double>> inputs;
+  if (!without_effects(model, signals, inputs, left)) return;
+  const bool bound_to_order = std::ranges::any_of(model.effects, [](const Effect& effect) {
+    return effect_kind(effect.kind).through_body(effect);
+  });
+  FreeRun run;
+  double least = residual_of(model, signals, run).squaredNorm();
+  const auto own = static_cast<int>(model.body.order());
+  for (const int p : {own, order}) {
+    if (p > own && bound_to_order) break;
+    Model other = model;
+    other.body = started_body(inputs, left, {}, signals, p);
+    if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);
+    const double square = residual_of(other, signals, run).squaredNorm();
+    if (run.finite && square < (p > own ? kWorthPoles : 1.0) * least) {
+      least = square;
+      model = std::move(other);
+    }
+    if (p == order) break;
+  }
 }
 
 std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,

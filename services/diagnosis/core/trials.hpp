@@ -29,6 +29,11 @@ Trial judged_trial(Model model, const Signals& signals, const Blocks& blocks, in
 /// True when the last effect leaves samples out and explains none.
 bool passes_over_samples(const Trial& trial);
 
+/// The body that was fitted without the effects may be in a local minimum.  A body estimated again
+/// from what the effects leave of the output replaces it where it is better.  The full order is
+/// tried too: an effect may have hidden poles of a body whose order was reduced.
+void start_afresh(Model& model, const Signals& signals, int order);
+
 /// Everything that is proposed, fitted jointly in two passes: a few steps for all, then to the end
 /// for those near the best.  Best first.
 /// @param current_rmse  held out, of the model without any of them
