@@ -54,11 +54,16 @@ void add_poles(const Model& model, std::vector<ModelNumber>& numbers) {
 
 }  // namespace
 
+std::size_t first_number(const Model& model, std::size_t which) {
+  std::size_t place = body_count(model);
+  for (std::size_t e = 0; e < which; ++e) place += packed_count(model.effects.at(e));
+  return place;
+}
+
 std::vector<ModelNumber> effect_numbers(const Evidence& evidence, std::size_t which) {
   const Model& model = evidence.found.model;
   const Effect& effect = model.effects.at(which);
-  std::size_t place = body_count(model);
-  for (std::size_t e = 0; e < which; ++e) place += packed_count(model.effects[e]);
+  std::size_t place = first_number(model, which);
   const auto& kind = diagnosis::effect_kind(effect.kind);
   const bool named = kind.stage(effect) == diagnosis::Stage::kTerm && !kind.through_body(effect);
   std::vector<ModelNumber> numbers;

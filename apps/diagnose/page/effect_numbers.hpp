@@ -17,6 +17,9 @@ struct ModelNumber {
   std::string origin;  ///< "fitted", "searched", "given"
 };
 
+/// Place of an effect's first fitted number in packed().
+std::size_t first_number(const diagnosis::Model& model, std::size_t which);
+
 /// Coefficients of the terms, then the parameters.  Coefficients of a path through the body or of a
 /// loop are left out: a single one has no meaning.
 /// @param which  index in found.model.effects

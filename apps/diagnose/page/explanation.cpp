@@ -4,6 +4,7 @@
 
 #include "apps/diagnose/page/binned_series.hpp"
 #include "apps/diagnose/page/binning.hpp"
+#include "apps/diagnose/page/effect_numbers.hpp"
 #include "apps/diagnose/page/explaining_variable.hpp"
 #include "apps/diagnose/page/explanation_over_time.hpp"
 #include "apps/diagnose/page/figures.hpp"
@@ -22,7 +23,8 @@ using report::Scale;
 using report::Series;
 
 constexpr std::size_t kBins = 30;
-constexpr double kIsFunction = 0.5;  // of the effect's variance, that a variable explains
+constexpr double kTwoSided95 = 1.96;  // standard errors
+constexpr double kIsFunction = 0.5;   // of the effect's variance, that a variable explains
 constexpr std::size_t kFewestLines = 5;
 constexpr double kLargestError = 0.5;  // of a magnitude: a line with a larger one is not drawn
 
@@ -74,6 +76,47 @@ Explanation against_variable(const Evidence& evidence, const EffectTrace& trace,
   result.text =
       "means by bins of the variable that explains the effect, separately for rising and falling "
       "values; lines: the effect";
+  return result;
+}
+
+// The curve itself, with two standard errors on each side of the knots that were fitted.
+Explanation as_curve(const Evidence& evidence, std::size_t which, const diagnosis::Curve& curve,
+                     const EffectTrace& trace) {
+  const std::string& output = evidence.found.output_unit;
+  const std::size_t first = first_number(evidence.found.model, which);
+  Series band{.label = "95 %", .kind = Kind::kBand, .colour = report::Colour::kModel};
+  Series line{.label = "the effect",
+              .kind = Kind::kLineAndPoints,
+              .colour = report::Colour::kModel,
+              .x = curve.knots,
+              .y = curve.heights};
+  for (std::size_t k = 0; k < curve.knots.size(); ++k) {
+    const double error =
+        curve.fitted[k] ? evidence.standard_errors.at(first + *curve.fitted[k]) : 0.0;
+    band.x.push_back(curve.knots[k]);
+    band.y_low.push_back(curve.heights[k] - kTwoSided95 * error);
+    band.y_high.push_back(curve.heights[k] + kTwoSided95 * error);
+  }
+  Explanation result;
+  Panel& panel = result.panel;
+  panel.x.label = axis_label(curve.over, curve.over_unit);
+  panel.y.label = axis_label(
+      curve.of,
+      curve.pure_number ? "-" : (curve.per.empty() ? output : unit_ratio(output, curve.per)));
+  panel.series = {band, line};
+  const auto& all = evidence.signals.all();
+  const auto over = std::ranges::find(all, curve.over, &diagnosis::Signal::name);
+  if (!curve.pure_number && curve.per.empty() && over != all.end()) {
+    const std::vector<double>& weight = evidence.after.run.weight;
+    const double correlation = evidence.correlation_samples;
+    const BinAxis axis = axis_over(over->values, weight, bins_for(weight, correlation, kBins));
+    panel.series.push_back(
+        with_errors("without it", kBefore,
+                    binned_means(axis, over->values, trace.without, weight, correlation)));
+  }
+  result.text =
+      "the curve as it was fitted, with 95 % of its numbers' errors; the knot without a "
+      "band is where it is counted from";
   return result;
 }
 
@@ -130,7 +173,10 @@ Explanation as_response(const Evidence& evidence, const Effect& effect, const Ef
 
 Explanation explanation_of(const Evidence& evidence, std::size_t which, const EffectTrace& trace) {
   const Effect& effect = evidence.found.model.effects.at(which);
-  switch (diagnosis::effect_kind(effect.kind).stage(effect)) {
+  const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
+  if (const auto curve = kind.curve(effect, evidence.signals))
+    return as_curve(evidence, which, *curve, trace);
+  switch (kind.stage(effect)) {
     case Stage::kInputTime:
       return lag_over_time(evidence, effect, trace);
     case Stage::kGain:
@@ -144,7 +190,7 @@ Explanation explanation_of(const Evidence& evidence, std::size_t which, const Ef
       break;
   }
   const auto variable = explaining_variable(evidence, effect, trace);
-  const bool in_a_loop = diagnosis::effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
+  const bool in_a_loop = kind.stage(effect) == Stage::kFeedback;
   if (variable && (in_a_loop || variable->share >= kIsFunction)) {
     return against_variable(evidence, trace, *variable);
   }

@@ -30,8 +30,10 @@ std::string Standstill::look(const Seen& seen, const Roster& roster, std::int64_
   };
   const auto first = std::ranges::find_if(roster, stands);
   if (first == roster.end()) return "";
-  return fmt::format("{} stands still: its newest tick is {}, the rig's {}", first->name,
-                     seen.process(first->name).tick, now);
+  const Tick newest = seen.process(first->name).tick;
+  if (newest < 0) return fmt::format("{} has handled no tick, the rig's is {}", first->name, now);
+  return fmt::format("{} stands still: its newest tick is {}, the rig's {}", first->name, newest,
+                     now);
 }
 
 }  // namespace stillhand::lab

@@ -114,7 +114,8 @@ bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
       result_.aborted = trouble_.why_stopped(seen, "");
       break;
     case Wait::kTooLong:
-      result_.aborted = all ? stands : why_not_armed(seen);
+      // Who has no input cannot prepare: the first that stands still is the cause.
+      result_.aborted = stands.empty() ? why_not_armed(seen) : stands;
       break;
   }
   return end(seen);

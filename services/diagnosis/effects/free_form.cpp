@@ -132,6 +132,43 @@ Effect with_knots(const char* form, std::vector<std::string> channels, const std
   return effect;
 }
 
+// 1 at the centre, 1 + change at the others.
+std::vector<double> factors_of(const Effect& effect) {
+  std::vector<double> factors = named(effect, "change_");
+  for (double& factor : factors) factor += 1.0;
+  factors.insert(factors.begin() + static_cast<std::ptrdiff_t>(centre(factors.size() + 1)), 1.0);
+  return factors;
+}
+
+// @throws std::out_of_range for what no search made
+Curve shape_of(const Effect& effect) {
+  if (effect.channels.empty()) throw std::out_of_range("a channel");
+  Curve curve;
+  curve.knots = knots_of(effect);
+  curve.pure_number = is_gain(effect);
+  curve.of = curve.pure_number ? "gain" : "force";
+  curve.over = effect.channels.back();
+  if (effect.form == kFactor) curve.of = "factor on " + effect.channels.at(0);
+  if (effect.form == kSize) {
+    curve.over =
+        "the RMS of " + effect.channels.at(0) + " in the last " + with_unit(effect.value(0), "s");
+  }
+  for (const Parameter& parameter : effect.parameters) {
+    if (parameter.name == "knot_1") curve.over_unit = parameter.unit;
+  }
+  curve.heights = curve.pure_number ? factors_of(effect) : effect.coefficients;
+  for (std::size_t i = 0; i < curve.knots.size(); ++i) curve.fitted.emplace_back(i);
+  if (effect.form != kFactor) {
+    const std::size_t middle = centre(curve.knots.size());
+    if (!curve.pure_number) {
+      curve.heights.insert(curve.heights.begin() + static_cast<std::ptrdiff_t>(middle), 0.0);
+    }
+    curve.fitted.insert(curve.fitted.begin() + static_cast<std::ptrdiff_t>(middle), std::nullopt);
+    curve.fitted.pop_back();
+  }
+  return curve;
+}
+
 class FreeForm final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "free_form"; }
@@ -170,41 +207,21 @@ class FreeForm final : public EffectKind {
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override;
-
- private:
-  // 1 at the centre, 1 + change at the others.
-  static std::vector<double> factors_of(const Effect& effect) {
-    std::vector<double> factors = named(effect, "change_");
-    for (double& factor : factors) factor += 1.0;
-    factors.insert(factors.begin() + static_cast<std::ptrdiff_t>(centre(factors.size() + 1)), 1.0);
-    return factors;
+  [[nodiscard]] std::optional<Curve> curve(const Effect& effect,
+                                           const Signals& signals) const override {
+    Curve curve = shape_of(effect);
+    if (effect.form == kFactor) curve.per = signals.at(effect.channels.at(0)).unit;
+    return curve;
   }
 };
 
 std::string FreeForm::evidence(const Effect& effect) const {
-  const std::vector<double> knots = knots_of(effect);
-  std::vector<double> heights = is_gain(effect) ? factors_of(effect) : effect.coefficients;
-  if (effect.form == kForce) {
-    heights.insert(heights.begin() + static_cast<std::ptrdiff_t>(centre(knots.size())), 0.0);
-  }
-  std::string unit;
-  for (const Parameter& parameter : effect.parameters) {
-    if (parameter.name == "knot_1") unit = parameter.unit;
-  }
-  std::string text = "no named kind has this shape; the ";
-  if (effect.form == kForce) {
-    text += "force over " + effect.channels.at(0);
-  } else if (effect.form == kFactor) {
-    text += "factor on " + effect.channels.at(0) + " over " + effect.channels.at(1);
-  } else if (effect.form == kSize) {
-    text += "gain over the RMS of " + effect.channels.at(0) + " in the last " +
-            with_unit(effect.value(0), "s");
-  } else {
-    text += "gain over " + effect.channels.at(0);
-  }
-  text += " is";
-  for (std::size_t k = 0; k < std::min(knots.size(), heights.size()); ++k) {
-    text += (k == 0 ? " " : ", ") + with_unit(heights[k], "") + " at " + with_unit(knots[k], unit);
+  const Curve shape = shape_of(effect);
+  std::string text =
+      "no named kind has this shape; the " + shape.of + " over " + shape.over + " is";
+  for (std::size_t k = 0; k < std::min(shape.knots.size(), shape.heights.size()); ++k) {
+    text += (k == 0 ? " " : ", ") + with_unit(shape.heights[k], "") + " at " +
+            with_unit(shape.knots[k], shape.over_unit);
   }
   return text;
 }

@@ -101,6 +101,33 @@ TEST(ExplanationTest, ARippleIsShownOverOnePeriodOfItsPosition) {
   EXPECT_GE(share_within(bars, 4.0, [](double x) { return std::sin(2.0 * M_PI * 4.0 * x); }), 0.9);
 }
 
+// A shape without a law is shown as it was fitted: a force that no channel's sign or power gives.
+TEST(ExplanationTest, AFreeFormIsItsCurveWithABand) {
+  Effect curve{"free_form", "force over a channel", {"omega"}, {}, {0.5, -0.4}};
+  const double knots[] = {-1.0, 0.0, 1.0};
+  for (int k = 0; k < 3; ++k) {
+    curve.parameters.push_back(
+        {"knot_" + std::to_string(k + 1), "rad/s", knots[k], knots[k], knots[k], false});
+  }
+  const Shown sut(made_with(kStatic, curve, kNoise_n));
+  const report::Panel& panel = sut.explanation.panel;
+  EXPECT_EQ(panel.x.label, "omega [rad/s]");
+  EXPECT_EQ(panel.y.label, "force [N]");
+  EXPECT_THAT(series(panel, "the effect").x, testing::ElementsAre(-1.0, 0.0, 1.0));
+  EXPECT_THAT(series(panel, "the effect").y, testing::ElementsAre(0.5, 0.0, -0.4));
+  const report::Series& band = series(panel, "95 %");
+  EXPECT_EQ(band.y_low[1], 0.0) << "the curve is counted from there";
+  // 0.2 N of noise: no better than all 6000 samples allow, no worse than a twentieth of them.
+  EXPECT_GT(band.y_high[0] - band.y_low[0], 2 * 1.96 * 0.2 / std::sqrt(6000.0));
+  EXPECT_LT(band.y_high[0] - band.y_low[0], 2 * 1.96 * 0.2 / std::sqrt(300.0));
+  EXPECT_GE(share_within(series(panel, "without it"), 4.0,
+                         [](double x) {
+                           const double held = std::clamp(x, -1.0, 1.0);
+                           return held < 0.0 ? -0.5 * held : -0.4 * held;
+                         }),
+            0.9);
+}
+
 TEST(ExplanationTest, ALagIsFoundByTheTimeThatTellsMost) {
   // A low-pass of 0.2 s delays by 200 ms at 0 Hz and by atan(0.4 pi)/(2 pi) = 143 ms at 1 Hz, where
   // omega ends: of the lags that are tried 130 and 200 ms are next to that.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "services/diagnosis/core/diagnose.hpp"
@@ -36,8 +37,8 @@ struct Recorded {
 };
 
 // Numbers of a found curve: knots, and heights with that of the centre put in.
-struct Curve {
-  explicit Curve(const Effect& effect, double at_centre) {
+struct FoundCurve {
+  explicit FoundCurve(const Effect& effect, double at_centre) {
     heights = effect.coefficients;
     for (const Parameter& parameter : effect.parameters) {
       if (parameter.name.starts_with("knot_")) knots.push_back(parameter.value);
@@ -63,7 +64,7 @@ TEST(FreeFormTest, AForceOverAPosition) {
   ASSERT_EQ(effect.kind, "free_form") << effect.form;
   EXPECT_EQ(effect.form, "force over a channel");
   EXPECT_EQ(found.effects.front().channel, "theta");
-  const Curve curve(effect, 0.0);
+  const FoundCurve curve(effect, 0.0);
   const double largest = spring(curve.knots.back());
   double level = 0.0;
   for (std::size_t k = 0; k < curve.knots.size(); ++k) {
@@ -95,7 +96,7 @@ TEST(FreeFormTest, AGainThatFollowsTheVibration) {
   const Effect& effect = found.model.effects.front();
   ASSERT_EQ(effect.kind, "free_form") << effect.form;
   EXPECT_EQ(effect.form, "gain over the size of an input");
-  const Curve curve(effect, 1.0);
+  const FoundCurve curve(effect, 1.0);
   EXPECT_GT(curve.heights.front(), 1.1);
   EXPECT_LT(curve.heights.back(), 0.9);
 }
@@ -165,6 +166,30 @@ TEST(FreeFormTest, WhatNoSearchMadeIsRefused) {
                          {}},
                         signals, gain),
                std::out_of_range);
+}
+
+// The report draws it, with the errors of the numbers that were fitted.
+TEST(FreeFormTest, TheCurveNamesTheNumbersThatWereFitted) {
+  const Signals signals(made::measurement_of({{"u", "m/s^2", made::white(50, 5)},
+                                              {"theta", "rad", made::white(50, 7)},
+                                              {"y", "N", made::white(50, 6)}}),
+                        {"u"}, "y");
+  const auto force = effect_kind("free_form").curve(three_knots(), signals);
+  ASSERT_TRUE(force);
+  EXPECT_EQ(force->over, "theta");
+  EXPECT_EQ(force->over_unit, "rad");
+  EXPECT_FALSE(force->pure_number);
+  EXPECT_EQ(force->heights, (std::vector<double>{-1.0, 0.0, 2.0}));
+  EXPECT_EQ(force->fitted, (std::vector<std::optional<std::size_t>>{0, std::nullopt, 1}));
+  Effect factor = three_knots();
+  factor.form = "factor over a channel";
+  factor.channels = {"u", "theta"};
+  factor.coefficients = {-1.0, 0.5, 2.0};
+  const auto of_factor = effect_kind("free_form").curve(factor, signals);
+  EXPECT_EQ(of_factor->of, "factor on u");
+  EXPECT_EQ(of_factor->per, "m/s^2");
+  EXPECT_EQ(of_factor->fitted, (std::vector<std::optional<std::size_t>>{0, 1, 2}));
+  EXPECT_FALSE(effect_kind("delay").curve({"delay", "of the input", {}, {}, {}}, signals));
 }
 
 // A form in words, with a height for each knot.

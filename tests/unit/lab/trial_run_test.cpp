@@ -172,6 +172,7 @@ TEST_F(TrialRunTest, AProcessThatIsNotPreparedInTimeIsNamedWithItsNotes) {
   event(EventKind::kNote, "rig", "of no interest");
   step(10 * kSecond - 50 * kMs);
   EXPECT_FALSE(sut_->over());
+  rig_at(10'000);
   step(51 * kMs);
   ASSERT_TRUE(sut_->over());
   EXPECT_FALSE(result().completed);
@@ -205,15 +206,29 @@ TEST_F(TrialRunTest, AProcessThatIsPreparedAndStandsStillIsWaitedForAndThenNamed
             "cancellation stands still: its newest tick is 3000, the rig's 15000");
 }
 
+TEST_F(TrialRunTest, AProcessThatStandsStillIsNamedInThePlaceOfThoseThatWaitForItsSamples) {
+  rig_at(5000);
+  step();
+  arm(2);
+  seen_.processes["cancellation"].tick = 3000;
+  seen_.processes["human_operator"].armed_trial = 1;
+  seen_.processes["rig"].tick = 15'000;
+  step(10 * kSecond + 1);
+  ASSERT_TRUE(sut_->over());
+  EXPECT_EQ(result().aborted,
+            "cancellation stands still: its newest tick is 3000, the rig's 15000");
+}
+
 TEST_F(TrialRunTest, AProcessThatIsNotOnTheBusIsNotPrepared) {
   planned_.number = 0;
   sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_);
   step();
   arm(0);
   seen_.processes.erase("cancellation");
+  rig_at(10'000);
   step(10 * kSecond + 1);
   ASSERT_TRUE(sut_->over());
-  EXPECT_EQ(result().aborted, "cancellation was not prepared within 10 s");
+  EXPECT_EQ(result().aborted, "cancellation has handled no tick, the rig's is 10000");
 }
 
 TEST_F(TrialRunTest, AProcessThatEndsWhileOthersPrepareIsTheReason) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +60,21 @@ struct Effect {
   std::vector<SeenRange> seen = {};   ///< empty: everywhere, as while it is fitted
 
   [[nodiscard]] double value(std::size_t i) const { return parameters.at(i).value; }
+};
+
+/// What an effect without a law draws: straight between its knots, level beyond them.
+struct Curve {
+  std::string of;         ///< what it is, for example "force"
+  std::string over;       ///< for example a channel
+  std::string over_unit;  ///< of the knots
+  /// Unit by which the output's is divided; empty: by none.  A pure number has none of the two.
+  std::string per;
+  bool pure_number = false;
+  std::vector<double> knots;  ///< ascending
+  std::vector<double> heights;
+  /// Place of each height among the numbers of the effect that are fitted (coefficients, then
+  /// parameters); none: given.
+  std::vector<std::optional<std::size_t>> fitted;
 };
 
 /// A number that is given, not fitted: the mean of a channel, from which it is counted.

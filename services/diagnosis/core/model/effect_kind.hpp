@@ -54,6 +54,11 @@ class EffectKind {
   [[nodiscard]] virtual bool time_only(const Effect& /*effect*/) const { return false; }
   /// True when it takes any shape and has no law: tried apart from the others, Eq. DG-64.
   [[nodiscard]] virtual bool any_shape() const { return false; }
+  /// Its curve, where it takes any shape.
+  [[nodiscard]] virtual std::optional<Curve> curve(const Effect& /*effect*/,
+                                                   const Signals& /*signals*/) const {
+    return {};
+  }
   /// [-] times Eq. DG-62: the size at which it is found as often as not, measured (README,
   /// "Power"): 1, 1.5, 2 or 6.
   [[nodiscard]] virtual double size_found() const { return 1.0; }
