@@ -11,6 +11,7 @@
 
 #include "apps/experiment/conduct.hpp"
 #include "apps/experiment/experiment_file.hpp"
+#include "apps/experiment/export/export_command.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/experiment/status.hpp"
 #include "services/contract/config_error.hpp"
@@ -174,6 +175,7 @@ void add_experiment_command(CLI::App& cli, int& status) {
   add_new(*verb, words);
   add_run(*verb, words, status);
   add_rest(*verb, words, status);
+  add_export_command(*verb);
 }
 
 }  // namespace stillhand::experiment

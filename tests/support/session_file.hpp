@@ -6,8 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "idl/control_loop.h"
@@ -34,19 +37,28 @@ std::vector<std::byte> cdr_of(const Message& message) {
 /// A session's recording in memory, message by message, 1 ms apart.
 class SessionFile {
  public:
+  /// @param schemas  definition of a type by its name; empty: one that describes no message
   explicit SessionFile(std::size_t chunk_bytes = std::size_t{256} << 10,
-                       recording::Compression compression = recording::Compression::kZstd)
-      : writer_(sink_, {chunk_bytes, compression, "stillhand-test"}) {}
+                       recording::Compression compression = recording::Compression::kZstd,
+                       std::function<std::string_view(std::string_view)> schemas = {})
+      : writer_(sink_, {chunk_bytes, compression, "stillhand-test"}),
+        schemas_(std::move(schemas)) {}
 
   template <typename Message>
   void add(const topics::Topic& topic, const Message& message) {
     auto [channel, fresh] = channels_.try_emplace(std::string(topic.name), 0);
     if (fresh) {
-      const auto schema = writer_.add_schema(std::string(topic.type), "omgidl", "struct S {};");
+      const std::string text(schemas_ ? schemas_(topic.type) : "struct S {};");
+      const auto schema = writer_.add_schema(std::string(topic.type), "omgidl", text);
       channel->second = writer_.add_channel(std::string(topic.name), schema, "cdr");
     }
     time_ns_ += 1'000'000;
     ok_ = ok_ && writer_.write(channel->second, 0, time_ns_, time_ns_, cdr_of(message)).ok();
+  }
+
+  /// A metadata record.
+  void metadata(const std::string& name, const recording::TextMap& texts) {
+    ok_ = ok_ && writer_.add_metadata(name, texts).ok();
   }
 
   /// A trial begins; number -1: none runs any more.
@@ -105,6 +117,7 @@ class SessionFile {
  private:
   recording::MemorySink sink_;
   recording::McapWriter writer_;
+  std::function<std::string_view(std::string_view)> schemas_;
   std::map<std::string, recording::ChannelId> channels_;
   std::uint64_t time_ns_ = 0;
   bool ok_ = true;

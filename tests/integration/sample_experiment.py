@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An experiment's folder with simulated participants, made in seconds and without a bus (write_sample_experiment.cpp)."""
+import re
+import subprocess
+
+from lab_process import BUILD, STILLHAND
+
+WRITE_SAMPLE = BUILD / "tests" / "write_sample_experiment"
+LIMIT_S = 300.0
+
+
+def stillhand(*words, status=0):
+    """Runs a verb to its end; returns (standard output, standard error)."""
+    done = subprocess.run([str(STILLHAND), *map(str, words)], capture_output=True, text=True, check=False,
+                          timeout=LIMIT_S)
+    if done.returncode != status:
+        raise AssertionError(f"{words}: status {done.returncode}: {done.stdout}{done.stderr}")
+    return done.stdout, done.stderr
+
+
+def new_experiment(folder, participants, *words, **values):
+    """Makes the folder and changes keys of its experiment.yaml; trials of 5 s unless said otherwise."""
+    stillhand("experiment", "new", folder, "--participants", participants, "--trial-seconds", 5, "--identify-seconds", 5,
+              "--seed", 11, *words)
+    file = folder / "experiment.yaml"
+    text = file.read_text()
+    for key, value in values.items():
+        text, count = re.subn(rf"(?m)^( *){key}: .*$", rf"\g<1>{key}: {value}", text)
+        if count != 1:
+            raise AssertionError(f"{key}: {count} times in experiment.yaml")
+    file.write_text(text)
+
+
+def conduct(folder):
+    """Every participant, then the end of blinding."""
+    subprocess.run([str(WRITE_SAMPLE), str(folder)], check=True, timeout=LIMIT_S)
+
+
+def unblind(folder):
+    stillhand("experiment", "unblind", folder, "--reason", "Anna said so")
