@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "apps/experiment/conduct.hpp"
-#include "apps/experiment/experiment_file.hpp"
 #include "apps/experiment/export/export_command.hpp"
+#include "apps/experiment/file/experiment_file.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/experiment/status.hpp"
 #include "services/contract/config_error.hpp"

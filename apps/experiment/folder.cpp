@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "apps/experiment/experiment_file.hpp"
+#include "apps/experiment/file/experiment_file.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
@@ -135,6 +135,14 @@ std::vector<std::string> Folder::findings(std::size_t index,
       found.push_back(entry.path().string() + ": a session that the journal does not know");
   }
   return found;
+}
+
+void Folder::refuse_findings() const {
+  for (const std::size_t index : participants()) {
+    for (const std::string& finding : findings(index, read_journal(journal(index)))) {
+      throw ConfigError(participant_code(index), finding, "the folder as the sessions left it");
+    }
+  }
 }
 
 void Folder::register_design() const {

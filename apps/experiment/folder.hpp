@@ -44,6 +44,9 @@ class Folder {
   [[nodiscard]] std::vector<std::string> findings(std::size_t index,
                                                   const std::vector<Entry>& entries) const;
 
+  /// @throws ConfigError naming the first of findings() over all participants
+  void refuse_findings() const;
+
   /// Writes the digest as it is now: before the first participant.
   void register_design() const;
 

@@ -66,21 +66,28 @@ std::string unit_of(const recording::MessageColumn& column) {
 class CsvSink : public TableSink {
  public:
   CsvSink(const TopicTable& table, const std::filesystem::path& path)
-      : path_(path), file_(path, std::ios::binary) {
-    text_ = "t [s],log_time [ns],publish_time [ns],sequence [-]";
+      : path_(path), file_(path, std::ios::binary), of_messages_(table.of_messages) {
+    if (of_messages_) text_ = "t [s],log_time [ns],publish_time [ns],sequence [-]";
     for (const auto& column : table.columns) {
-      text_ += ',';
+      if (!text_.empty()) text_ += ',';
       put_text(text_, column.name + " [" + unit_of(column) + "]");
     }
     text_ += '\n';
   }
 
   void take(const TableRow& row) override {
-    put_seconds(text_, row.since_start_ns);
-    put_number(text_ += ',', row.log_time_ns);
-    put_number(text_ += ',', row.publish_time_ns);
-    put_number(text_ += ',', row.sequence);
-    for (const Cell& cell : row.cells) put_cell(text_ += ',', cell);
+    if (of_messages_) {
+      put_seconds(text_, row.since_start_ns);
+      put_number(text_ += ',', row.log_time_ns);
+      put_number(text_ += ',', row.publish_time_ns);
+      put_number(text_ += ',', row.sequence);
+    }
+    bool first = !of_messages_;
+    for (const Cell& cell : row.cells) {
+      if (!first) text_ += ',';
+      first = false;
+      put_cell(text_, cell);
+    }
     text_ += '\n';
     if (text_.size() >= kBlockBytes) write();
   }
@@ -103,6 +110,7 @@ class CsvSink : public TableSink {
 
   std::filesystem::path path_;
   std::ofstream file_;
+  bool of_messages_;
   std::string text_;
 };
 

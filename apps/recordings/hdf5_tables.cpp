@@ -129,7 +129,8 @@ class Column {
 class Hdf5Sink : public TableSink {
  public:
   Hdf5Sink(hid_t file, const TopicTable& table, const std::string& path)
-      : group_(H5Gcreate2(file, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      : of_messages_(table.of_messages),
+        group_(H5Gcreate2(file, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                H5Gclose, path) {
     put_attribute(group_, "topic", table.topic, path);
     put_attribute(group_, "type", table.type, path);
@@ -140,7 +141,7 @@ class Hdf5Sink : public TableSink {
 
   void take(const TableRow& row) override {
     auto column = columns_.begin();
-    for_each_cell(row, [&](const Cell& cell) { (column++)->take(cell); });
+    for_each_cell(row, of_messages_, [&](const Cell& cell) { (column++)->take(cell); });
   }
 
   void finish() override {
@@ -148,6 +149,7 @@ class Hdf5Sink : public TableSink {
   }
 
  private:
+  bool of_messages_;
   Id group_;
   std::vector<Column> columns_;
 };

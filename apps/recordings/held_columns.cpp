@@ -17,10 +17,12 @@ std::vector<ColumnHead> column_heads(const TopicTable& table, std::size_t longes
   const auto add = [&](const std::string& name, const std::string& unit, CellKind kind) {
     heads.push_back({plain_name(name, longest, taken), unit, kind});
   };
-  add("t", "s", CellKind::kReal);
-  add("log_time", "ns", CellKind::kUnsigned);
-  add("publish_time", "ns", CellKind::kUnsigned);
-  add("sequence", "-", CellKind::kUnsigned);
+  if (table.of_messages) {
+    add("t", "s", CellKind::kReal);
+    add("log_time", "ns", CellKind::kUnsigned);
+    add("publish_time", "ns", CellKind::kUnsigned);
+    add("sequence", "-", CellKind::kUnsigned);
+  }
   for (const auto& column : table.columns) {
     add(column.name, column.unit, kind_without_gaps(column));
   }

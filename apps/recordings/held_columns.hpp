@@ -19,18 +19,20 @@ struct ColumnHead {
   recording::CellKind kind;
 };
 
-/// All columns of a table: the four of every row, then the message's.
+/// All columns of a table: the four of every message, then its own.
 /// @param longest  most bytes of a name  @param taken  names that no column may have
 std::vector<ColumnHead> column_heads(const TopicTable& table, std::size_t longest,
                                      std::set<std::string> taken = {});
 
 /// Calls put(cell) for each column of column_heads(), in that order.
 template <typename Put>
-void for_each_cell(const TableRow& row, Put put) {
-  put(recording::Cell(static_cast<double>(row.since_start_ns) * 1e-9));
-  put(recording::Cell(row.log_time_ns));
-  put(recording::Cell(row.publish_time_ns));
-  put(recording::Cell(std::uint64_t{row.sequence}));
+void for_each_cell(const TableRow& row, bool of_messages, Put put) {
+  if (of_messages) {
+    put(recording::Cell(static_cast<double>(row.since_start_ns) * 1e-9));
+    put(recording::Cell(row.log_time_ns));
+    put(recording::Cell(row.publish_time_ns));
+    put(recording::Cell(std::uint64_t{row.sequence}));
+  }
   for (const recording::Cell& cell : row.cells) put(cell);
 }
 

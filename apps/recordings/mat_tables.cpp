@@ -155,7 +155,7 @@ class MatSink : public TableSink {
 
   void take(const TableRow& row) override {
     auto column = columns_.begin();
-    for_each_cell(row, [&](const Cell& cell) {
+    for_each_cell(row, table_.of_messages, [&](const Cell& cell) {
       column->take(cell);
       bytes_ += newest_bytes(*column++);
     });

@@ -19,6 +19,7 @@ struct TopicTable {
   std::string topic;
   std::string type;
   std::vector<recording::MessageColumn> columns;  ///< of the message, behind the four of every row
+  bool of_messages = true;  ///< false: rows have `cells` alone, and no time of a message
 };
 
 /// One message of it.

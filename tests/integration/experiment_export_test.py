@@ -6,6 +6,7 @@ The validator of BIDS (npm package bids-validator) judges it in the campaign, or
 """
 import csv
 import hashlib
+import importlib
 import json
 import pathlib
 import re
@@ -182,6 +183,7 @@ class BidsTest(ExportTestCase):
         self.refused("which holds something", self.experiment, "--out", self.set, "--bids")
         self.refused("without experiment.yaml", self.folder, "--out", self.folder / "none", "--bids")
         self.refused("--bids", self.experiment, "--out", self.folder / "none")
+        self.refused("more than one", self.experiment, "--out", self.folder / "none", "--bids", "--mat")
         copy = self.folder / "copy"
         shutil.copytree(self.experiment, copy)
         session = copy / "participants" / "P01" / "sessions" / "01"
@@ -193,6 +195,78 @@ class BidsTest(ExportTestCase):
         (copy / "participants").mkdir()
         self.refused("without a recorded trial", copy, "--out", self.folder / "none", "--bids")
         self.assertFalse((self.folder / "none").exists())
+
+
+class TablesTest(ExportTestCase):
+    """The plain tables next to the BIDS data set of the same experiment."""
+
+    def export(self, form):
+        out = self.folder / form
+        stillhand("experiment", "export", self.experiment, "--out", out, f"--{form}", "--license", "CC0-1.0")
+        done = subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd=out, check=False)
+        self.assertEqual(done.returncode, 0)
+        columns = json.loads((out / "columns.json").read_text())
+        return out, columns
+
+    def runs(self):
+        """(name of the table, samples of BIDS without lost ones, names) of every trial."""
+        for file in self.files("sub-*/ses-*/motion/*_motion.tsv"):
+            code, session, run = re.match(r"sub-(P\d\d)_ses-(\d\d)_.*_run-(\d\d)_", file.name).groups()
+            samples = motion(file)
+            kept = ~numpy.isnan(samples).any(axis=1)
+            times = numpy.arange(len(samples))[kept] / 1000
+            yield f"{code}_session_{session}_trial_{run}", times, samples[kept], channels(file)
+
+    def judge_trials(self, rms_errors):
+        """RMS errors of all trials; NaN where there is none."""
+        expected = [number for file in self.files("sub-*/ses-*/beh/*_task-tracking_beh.tsv")
+                    for number in (row["rms_error"] for row in rows(file))]
+        found = [repr(float(value)) for value in rms_errors if not numpy.isnan(value)]
+        self.assertEqual(found, [text for text in expected if text != "n/a"])
+
+    def test_csv_has_the_same_numbers_and_every_verb_reads_it(self):
+        out, columns = self.export("csv")
+        for name, times, samples, names in self.runs():
+            table = rows(out / f"{name}.csv", ",")
+            self.assertEqual([key.split(" [")[0] for key in table[0]], ["t", *names])
+            values = numpy.array([[float(cell) for cell in row.values()] for row in table])
+            numpy.testing.assert_array_equal(values, numpy.column_stack([times, samples]))
+        trials = rows(out / "trials.csv", ",")
+        self.assertEqual({key.split(" [")[0] for key in trials[0]}, set(columns["trials"]) - {"run"})
+        self.judge_trials([float(row["rms_error [mm]"] or "nan") for row in trials])
+        stillhand("identify", out / "P01_session_01_trial_00.csv", "--json", self.folder / "found.json")
+        self.assertIn("model", json.loads((self.folder / "found.json").read_text()))
+
+    def test_matlab_has_the_same_numbers(self):
+        scipy_io = self.import_or_skip("scipy.io")
+        out, _ = self.export("mat")
+        read = scipy_io.loadmat(out / "experiment.mat", squeeze_me=True)
+        for name, times, samples, names in self.runs():
+            table = read[name]
+            numpy.testing.assert_array_equal(table["t"].item(), times)
+            for column, channel in enumerate(names):
+                numpy.testing.assert_array_equal(table[channel].item(), samples[:, column])
+            self.assertEqual(table["meta"].item()["units"].item()["f"].item(), "N")
+        self.judge_trials(read["trials"]["rms_error"].item())
+
+    def test_hdf5_has_the_same_numbers(self):
+        h5py = self.import_or_skip("h5py")
+        out, _ = self.export("hdf5")
+        with h5py.File(out / "experiment.h5") as read:
+            for name, times, samples, names in self.runs():
+                numpy.testing.assert_array_equal(read[name]["t"][()], times)
+                for column, channel in enumerate(names):
+                    numpy.testing.assert_array_equal(read[name][channel][()], samples[:, column])
+                self.assertEqual(read[name]["a_y"].attrs["unit"], "m/s^2")
+            self.judge_trials(read["trials"]["rms_error"][()])
+            self.assertEqual([text.decode() for text in read["participants"]["participant"][()]],
+                             [f"P0{n}" for n in range(1, 6)])
+
+    def import_or_skip(self, name):
+        try:
+            return importlib.import_module(name)
+        except ImportError:
+            self.skipTest(f"{name} is not installed")
 
 
 class ValidatorTest(ExportTestCase):

@@ -6,42 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
-#include "apps/experiment/experiment_file.hpp"
 #include "apps/experiment/export/bids_texts.hpp"
+#include "apps/experiment/export/set_files.hpp"
+#include "apps/experiment/file/experiment_file.hpp"
 #include "apps/study/study.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
-#include "services/rig/digest.hpp"
 
 namespace stillhand::experiment {
 namespace {
 
-constexpr const char* kSums = "SHA256SUMS";
 constexpr const char* kNone = "n/a";
-
-// Writes files and remembers their checksums.
-class Files {
- public:
-  explicit Files(report::StagedFolder& out) : out_(out) {}
-
-  void write(const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((out_.path() / name).parent_path());
-    out_.write(name, text);
-    lines_.push_back({name, rig::digest_line(text, name)});
-  }
-  void write_sums() {
-    std::ranges::sort(lines_);
-    std::string text;
-    for (const auto& [name, line] : lines_) text += line;
-    out_.write(kSums, text);
-  }
-
- private:
-  report::StagedFolder& out_;
-  std::vector<std::pair<std::string, std::string>> lines_;
-};
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : kNone; }
 std::string cell(std::int64_t value) { return value > 0 ? std::to_string(value) : kNone; }
@@ -115,7 +91,7 @@ std::string participants_tsv(const DataSet& set) {
 }
 
 // One run: samples, channels, side file, event.
-void write_run(Files& files, const Folder& folder, const ExportedParticipant& participant,
+void write_run(SetFiles& files, const Folder& folder, const ExportedParticipant& participant,
                const ExportedTrial& trial, const std::string& session) {
   const recording::Recording rows = rows_of(folder, participant, trial);
   const std::string run =
@@ -130,7 +106,7 @@ void write_run(Files& files, const Folder& folder, const ExportedParticipant& pa
                           static_cast<double>(rows.row_count()) / rows.rate_hz, trial.condition));
 }
 
-void write_session(Files& files, const Folder& folder, const ExportedParticipant& participant,
+void write_session(SetFiles& files, const Folder& folder, const ExportedParticipant& participant,
                    std::int64_t session, std::vector<std::string>& left_out) {
   const std::string place = fmt::format("sub-{}/ses-{:02}", participant.code, session);
   for (const ExportedTrial& trial : participant.trials) {
@@ -154,12 +130,12 @@ void write_session(Files& files, const Folder& folder, const ExportedParticipant
   beh("questions", answers_tsv(participant, session));
 }
 
-void write_top(Files& files, const DataSet& set, const Folder& folder, const Release& release) {
+void write_top(SetFiles& files, const DataSet& set, const Folder& folder, const Release& release) {
   const Design& design = folder.design();
   files.write("dataset_description.json", dataset_description(design, release));
   files.write("README", readme(folder, set, release));
   files.write("CHANGES", changes(set));
-  files.write(".bidsignore", std::string(kSums) + "\n");
+  files.write(".bidsignore", std::string(kSumsFile) + "\n");
   files.write("participants.tsv", participants_tsv(set));
   files.write("participants.json", participants_json());
   files.write("sourcedata/experiment.yaml",
@@ -185,7 +161,7 @@ void write_top(Files& files, const DataSet& set, const Folder& folder, const Rel
 std::vector<std::string> write_bids(const DataSet& set, const Folder& folder,
                                     const Release& release, report::StagedFolder& out,
                                     const OnSession& on_participant) {
-  Files files(out);
+  SetFiles files(out);
   std::vector<std::string> left_out;
   write_top(files, set, folder, release);
   std::int64_t done = 0;

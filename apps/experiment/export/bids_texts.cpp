@@ -58,6 +58,26 @@ ordered_json condition_levels() {
   return levels("Condition of the trial", {kMeanings.begin(), kMeanings.end()});
 }
 
+// Of every table with a row a trial.
+void add_trial_columns(ordered_json& json) {
+  json["block"] = column("Block of the protocol, from 1");
+  json["place"] = column("Place in the protocol over all blocks, from 1");
+  json["condition"] = condition_levels();
+  json["completed"] = levels("The trial ran to its end", {{"yes", "it did"},
+                                                          {"no",
+                                                           "it was ended "
+                                                           "early; it runs again as another run"}});
+  json["lost_share"] = column("Lost share of the planned samples", "1");
+  json["rms_error"] = column("Root mean square of target minus cursor", "mm");
+  json["dwell_ratio"] = column("Share of the time with the cursor inside the target box", "1");
+  json["crossover"] = column(
+      "Crossover frequency of the open loop, from the line of -20 dB a decade through its "
+      "lowest eleven points",
+      "Hz");
+  json["crossover_reference"] =
+      column("Crossover frequency through the target, the remnant taken off", "Hz");
+}
+
 const char* task_description(TrialKind kind) {
   switch (kind) {
     case TrialKind::kIdentification:
@@ -70,6 +90,22 @@ const char* task_description(TrialKind kind) {
              "moves laterally";
   }
   return "";
+}
+
+// Title, task and conditions.
+std::string readme_head(const Design& design, const DataSet& set) {
+  std::string text = fmt::format(
+      "{}\n\n"
+      "Pursuit tracking with a force-reflecting stick on a platform that shakes the hand\n"
+      "(biodynamic feedthrough), after R. B. Gillespie and S. Sovenyi, Model-Based Cancellation\n"
+      "of Biodynamic Feedthrough Using a Force-Reflecting Joystick. {} participants; operator: "
+      "{}.\n\n",
+      design.title, set.participants.size(), design.who);
+  text += "Conditions\n";
+  for (const std::string& condition : design.conditions) {
+    text += fmt::format("- {}: {}\n", condition, meaning_of(condition));
+  }
+  return text;
 }
 
 }  // namespace
@@ -100,17 +136,7 @@ std::string dataset_description(const Design& design, const Release& release) {
 
 std::string readme(const Folder& folder, const DataSet& set, const Release& release) {
   const Design& design = folder.design();
-  std::string text = fmt::format(
-      "{}\n\n"
-      "Pursuit tracking with a force-reflecting stick on a platform that shakes the hand\n"
-      "(biodynamic feedthrough), after R. B. Gillespie and S. Sovenyi, Model-Based Cancellation\n"
-      "of Biodynamic Feedthrough Using a Force-Reflecting Joystick. {} participants; operator: "
-      "{}.\n\n",
-      design.title, set.participants.size(), design.who);
-  text += "Conditions\n";
-  for (const std::string& condition : design.conditions) {
-    text += fmt::format("- {}: {}\n", condition, meaning_of(condition));
-  }
+  std::string text = readme_head(design, set);
   text += fmt::format(
       "\nTasks\n"
       "- identification: pegged stick, {} s, at the begin of each session\n"
@@ -151,22 +177,7 @@ std::string participants_json() {
 std::string trials_json(TrialKind kind) {
   ordered_json json{{"TaskName", name_of(kind)}, {"TaskDescription", task_description(kind)}};
   json["run"] = column("Number of the trial in its session, the run index of its motion file");
-  json["block"] = column("Block of the protocol, from 1");
-  json["place"] = column("Place in the protocol over all blocks, from 1");
-  json["condition"] = condition_levels();
-  json["completed"] = levels("The trial ran to its end", {{"yes", "it did"},
-                                                          {"no",
-                                                           "it was ended "
-                                                           "early; it runs again as another run"}});
-  json["lost_share"] = column("Lost share of the planned samples", "1");
-  json["rms_error"] = column("Root mean square of target minus cursor", "mm");
-  json["dwell_ratio"] = column("Share of the time with the cursor inside the target box", "1");
-  json["crossover"] = column(
-      "Crossover frequency of the open loop, from the line of -20 dB a decade through its "
-      "lowest eleven points",
-      "Hz");
-  json["crossover_reference"] =
-      column("Crossover frequency through the target, the remnant taken off", "Hz");
+  add_trial_columns(json);
   return text_of(json);
 }
 
@@ -189,6 +200,51 @@ std::string events_json() {
   json["duration"] = column("Length until the end of the trial", "s");
   json["trial_type"] = condition_levels();
   return text_of(json);
+}
+
+std::string columns_json(const Design& design) {
+  ordered_json json;
+  json["participants"]["participant"] = column("Code of the participant");
+  json["participants"]["excluded"] = column("1: the experimenter excluded the participant");
+  json["participants"]["sessions"] = column("Number of recorded sessions");
+  ordered_json& trials = json["trials"];
+  trials["participant"] = column("Code of the participant");
+  trials["session"] = column("Number of the session of the participant");
+  trials["trial"] = column("Number of the trial in its session");
+  trials["task"] =
+      levels("Task of the trial", {{"identification", task_description(TrialKind::kIdentification)},
+                                   {"practice", task_description(TrialKind::kPractice)},
+                                   {"tracking", task_description(TrialKind::kTracking)}});
+  add_trial_columns(trials);
+  trials["completed"] = column("1: the trial ran to its end; 0: it was ended early");
+  if (!design.questions.empty()) {
+    json["answers"] = ordered_json::parse(answers_json(design));
+    json["answers"].erase("TaskName");
+  }
+  ordered_json& samples = json["samples"];
+  samples["t"] =
+      column("Time from the first sample of the trial; a lost sample is a missing row", "s");
+  for (const MotionChannel& channel : kChannels) {
+    samples[channel.name] = column(channel.description);
+  }
+  return text_of(json);
+}
+
+std::string tables_readme(const Folder& folder, const DataSet& set, const Release& release) {
+  std::string text = readme_head(folder.design(), set);
+  text += fmt::format(
+      "\nTables\n"
+      "- participants: codes. Names, ages, times of day, notes and reasons are not in here.\n"
+      "- trials: one row a trial with its results. answers: where questions were answered.\n"
+      "- P07_session_01_trial_02: the samples of one trial, 1 kHz.\n"
+      "columns.json has the meaning of each column; units are in the tables. experiment.yaml is\n"
+      "the pre-registration, SHA-256 {}. SHA256SUMS has the checksums of all other files.\n\n"
+      "Licence: {}\n",
+      folder.digest(), release.licence);
+  if (!release.authors.empty()) {
+    text += fmt::format("Authors: {}\n", fmt::join(release.authors, ", "));
+  }
+  return text + fmt::format("Made by stillhand {}.\n", kVersion);
 }
 
 std::string motion_json(const Design& design, const ExportedTrial& trial,

@@ -6,7 +6,7 @@
 
 #include "apps/experiment/export/bids.hpp"
 
-/// The texts of a BIDS data set that hold no samples.
+/// The texts of a data set that hold no samples.
 namespace stillhand::experiment {
 
 /// One channel of a motion file, in the words of the standard.
@@ -32,6 +32,9 @@ std::string events_json();
 std::string motion_json(const Design& design, const ExportedTrial& trial,
                         const recording::Recording& rows);
 std::string channels_tsv(const recording::Recording& rows);
+/// Meaning and unit of every column of the plain tables (export/tables.hpp), and their README.
+std::string columns_json(const Design& design);
+std::string tables_readme(const Folder& folder, const DataSet& set, const Release& release);
 /// What a condition is.
 std::string_view meaning_of(std::string_view condition);
 

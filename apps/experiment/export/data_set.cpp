@@ -136,15 +136,13 @@ DataSet data_set_of(const Folder& folder, const OnSession& on_session) {
     throw ConfigError(folder.path().string(), "an experiment that is still blinded",
                       "`stillhand experiment unblind " + folder.path().string() + "` first");
   }
+  folder.refuse_findings();
   DataSet out;
   out.released = day_of_unblinding(folder);
   const std::vector<std::size_t> indices = folder.participants();
   bool any = false;
   for (const std::size_t index : indices) {
     const std::vector<Entry> entries = read_journal(folder.journal(index));
-    for (const std::string& finding : folder.findings(index, entries)) {
-      throw ConfigError(participant_code(index), finding, "the folder as the sessions left it");
-    }
     const Plan plan = folder.plan(index);
     Progress progress(folder.design(), plan);
     for (const Entry& entry : entries) progress.take(entry);

@@ -5,11 +5,22 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "apps/experiment/export/bids.hpp"
+#include "apps/experiment/export/bids_texts.hpp"
+#include "apps/experiment/export/set_files.hpp"
+#include "apps/experiment/export/tables.hpp"
+#include "apps/experiment/file/experiment_file.hpp"
+#include "apps/recordings/csv_tables.hpp"
+#include "apps/recordings/hdf5_tables.hpp"
+#include "apps/recordings/mat_tables.hpp"
 #include "apps/report/progress.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "services/settings/check_name.hpp"
 
@@ -20,6 +31,9 @@ struct Words {
   std::filesystem::path folder;
   std::filesystem::path out;
   bool bids = false;
+  bool csv = false;
+  bool mat = false;
+  bool hdf5 = false;
   Release release;
 };
 
@@ -32,8 +46,33 @@ void check_new(const std::filesystem::path& out) {
   }
 }
 
+// Plain tables, and the texts next to them.
+std::vector<std::string> write_plain(const Words& words, const DataSet& set, const Folder& folder,
+                                     report::StagedFolder& staged, const OnSession& shown) {
+  const auto place = [&](const char* name) { return (staged.path() / name).string(); };
+  std::unique_ptr<recordings::TableFile> file =
+      words.csv   ? recordings::csv_tables(staged.path())
+      : words.mat ? recordings::mat_tables(place("experiment.mat"))
+                  : recordings::hdf5_tables(place("experiment.h5"));
+  const auto left_out = write_tables(set, folder, *file, shown);
+  file->publish();
+  file.reset();
+  SetFiles files(staged);
+  for (const auto& entry : std::filesystem::directory_iterator(staged.path())) {
+    files.add(entry.path().filename().string());
+  }
+  files.write("README", tables_readme(folder, set, words.release));
+  files.write("columns.json", columns_json(folder.design()));
+  files.write(kDesignFile, recording::read_file((folder.path() / kDesignFile).string()));
+  files.write_sums();
+  return left_out;
+}
+
 void export_set(const Words& words) {
-  if (!words.bids) throw ConfigError("export", "no form", "--bids");
+  if (int{words.bids} + int{words.csv} + int{words.mat} + int{words.hdf5} != 1) {
+    throw ConfigError("export", "no form, or more than one",
+                      "one of --bids, --csv, --mat and --hdf5");
+  }
   const Folder folder(words.folder);
   check_new(words.out);
   runtime::Stop stop;
@@ -46,8 +85,9 @@ void export_set(const Words& words) {
   };
   const DataSet set = data_set_of(folder, shown("reading participants"));
   report::StagedFolder staged(words.out);
-  const auto left_out =
-      write_bids(set, folder, words.release, staged, shown("writing participants"));
+  const auto writing = shown("writing participants");
+  const auto left_out = words.bids ? write_bids(set, folder, words.release, staged, writing)
+                                   : write_plain(words, set, folder, staged, writing);
   progress.finish();
   staged.publish({});
   for (const std::string& line : left_out) fmt::print("left out: {}\n", line);
@@ -67,6 +107,9 @@ void add_export_command(CLI::App& verb) {
   sub->add_option("--out", words->out, "new folder of the data set")->required();
   sub->add_flag("--bids", words->bids,
                 "Brain Imaging Data Structure: motion and behavioural tables with JSON side files");
+  sub->add_flag("--csv", words->csv, "a CSV file for each table and trial");
+  sub->add_flag("--mat", words->mat, "the same tables as one MATLAB file (version 5)");
+  sub->add_flag("--hdf5", words->hdf5, "the same tables as one HDF5 file");
   sub->add_option("--license", words->release.licence,
                   "licence of the data set, for example CC0-1.0 or CC-BY-4.0")
       ->check(settings::check_name)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/experiment/experiment_file.hpp"
+#include "apps/experiment/file/experiment_file.hpp"
 
 #include <fmt/format.h>
 
