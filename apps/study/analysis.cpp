@@ -32,21 +32,6 @@ std::vector<double> over_subjects(const std::vector<SubjectResult>& results, Val
   return out;
 }
 
-Comparison compared(const Analysis& analysis, char from, char to) {
-  Comparison out{from, to, {}};
-  for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const auto& before = analysis.conditions.at(from)[k].per_subject;
-    const auto& after = analysis.conditions.at(to)[k].per_subject;
-    if (before.size() < 2) continue;
-    try {
-      out.tests[k] = statistics::paired_t_test(after, before);
-    } catch (const ConfigError&) {
-      // No variance, or a crossover that was not found: no test.
-    }
-  }
-  return out;
-}
-
 MultivariateResult manova(const Eigen::MatrixXd& observations,
                           const statistics::ManovaLayout& layout) {
   try {
@@ -175,6 +160,21 @@ MetricSample summarised(std::vector<double> values) {
   out.mean = statistics::mean(known);
   if (known.size() > 1) out.standard_deviation = statistics::standard_deviation(known);
   out.box = statistics::box_plot(known);
+  return out;
+}
+
+Comparison compared(const Analysis& analysis, char from, char to) {
+  Comparison out{from, to, {}};
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    const auto& before = analysis.conditions.at(from)[k].per_subject;
+    const auto& after = analysis.conditions.at(to)[k].per_subject;
+    if (before.size() < 2) continue;
+    try {
+      out.tests[k] = statistics::paired_t_test(after, before);
+    } catch (const ConfigError&) {
+      // No variance, or a crossover that was not found: no test.
+    }
+  }
   return out;
 }
 

@@ -81,6 +81,10 @@ struct Analysis {
 /// no value is finite.
 MetricSample summarised(std::vector<double> values);
 
+/// Paired t-tests of the differences to - from.
+/// @param from, to  conditions that the analysis has
+Comparison compared(const Analysis& analysis, char from, char to);
+
 /// Eqs. SU-3 to SU-5; statistics of services/statistics.  Pure.
 /// @param results  at least one subject, all with the same conditions
 Analysis analyse(const std::vector<SubjectResult>& results);

@@ -120,13 +120,14 @@ std::string quoted(const std::string& word) {
 CsvFile trials_file(const RecordedSource& source) {
   std::string out =
       "participant,session,trial,place,condition,rms error [mm],dwell ratio [-],crossover [Hz],"
-      "crossover through reference [Hz],cancelled share [-]\n";
+      "crossover through reference [Hz],cancelled share [-],lost share [-]\n";
   for (const RecordedTrial& trial : source.trials) {
     const auto& metrics = trial.tracked.metrics;
     out += row({quoted(trial.participant), quoted(trial.session), std::to_string(trial.number),
                 std::to_string(trial.place), std::string(1, trial.condition),
                 text(metrics.rms_error_mm), text(metrics.dwell_ratio), text(metrics.crossover_hz),
-                text(metrics.crossover_reference_hz), text(trial.tracked.cancelled_share)});
+                text(metrics.crossover_reference_hz), text(trial.tracked.cancelled_share),
+                text(trial.lost_share)});
   }
   return {"trials.csv", out};
 }

@@ -54,6 +54,35 @@ void print_comparison(const Comparison& comparison) {
   fmt::print("\n");
 }
 
+// Exclusions, planned comparisons with and without the rules, and the plan.
+void print_registered(const StudyRecord& record) {
+  if (record.recorded->registered) {
+    const Registered& registered = *record.recorded->registered;
+    for (const std::string& line : registered.excluded)
+      fmt::print("excluded by a rule: {}\n", line);
+    const auto show = [](const std::vector<PlannedComparison>& all, const char* which) {
+      for (const PlannedComparison& planned : all) {
+        fmt::print("planned {}-{}, {}, p of Holm:", planned.comparison.from, planned.comparison.to,
+                   which);
+        for (const auto& p : planned.p_holm) {
+          fmt::print(" {}", p ? fmt::format("{:.3g}", *p) : std::string("-"));
+        }
+        fmt::print("\n");
+      }
+    };
+    show(registered.planned, "with the rules");
+    show(registered.planned_without, "without them");
+  }
+  for (const Needed& needed : record.needed) {
+    fmt::print("{} {}, {} effect {:.3g}:", needed.comparison,
+               session::kMetrics[needed.metric].title, needed.effect, needed.effect_dz);
+    for (const Needed::At& at : needed.at) {
+      fmt::print(" {} participants for power {:.1f}", at.participants, at.wanted_power);
+    }
+    fmt::print("{}\n", needed.at.empty() ? " more participants than a study can have" : "");
+  }
+}
+
 }  // namespace
 
 void write_study(const StudyRecord& record, report::StagedFolder& folder) {
@@ -87,6 +116,7 @@ void print_study(const StudyRecord& record) {
   for (const Comparison& comparison : analysis.comparisons) print_comparison(comparison);
   if (record.recorded) {
     for (const std::string& line : record.recorded->left_out) fmt::print("left out: {}\n", line);
+    print_registered(record);
   }
   if (analysis.main_effects.manova) {
     const auto& manova = *analysis.main_effects.manova;

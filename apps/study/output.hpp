@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/report/staged_folder.hpp"
@@ -17,10 +18,17 @@ struct StudyRecord {
   std::string command_line;
   std::string sealed;  ///< text of undeclared_effect.json; empty: there is no effect
   std::vector<SubjectResult> results;
-  std::optional<RecordedSource> recorded;  ///< none: the subjects are simulated
+  std::optional<RecordedSource> recorded;      ///< none: the subjects are simulated
+  std::optional<std::vector<double>> plan_dz;  ///< --plan: further effect sizes; none: no plan
+  std::vector<Needed> needed;                  ///< of --plan
   Analysis analysis;
   double wall_s = 0.0;
 };
+
+/// Level of one test, and the planned comparisons: those of the registration, otherwise 0.05 and
+/// A-B, B-C.
+double alpha_of(const StudyRecord& record);
+std::vector<std::pair<char, char>> planned_pairs(const StudyRecord& record);
 
 /// summary.json; README, "summary.json".
 std::string summary_json(const StudyRecord& record);

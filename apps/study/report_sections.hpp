@@ -13,6 +13,10 @@ void add_paper_tables(report::Page& page, const StudyRecord& record);
 /// MANOVA, and the number of subjects needed.
 void add_statistics(report::Page& page, const Analysis& analysis);
 
+// report_registered.cpp
+/// Exclusions and planned comparisons of an experiment; the number of participants of --plan.
+void add_registered(report::Page& page, const StudyRecord& record);
+
 // report_loop.cpp
 void add_crossover(report::Page& page, const Analysis& analysis);
 /// Open loop at the lines of the target, Eq. SU-3.

@@ -15,6 +15,7 @@
 #include "apps/report/result_files.hpp"
 #include "apps/study/explain/calibrate.hpp"
 #include "apps/study/explain/explanation_output.hpp"
+#include "apps/study/plan_options.hpp"
 #include "apps/study/study_runs.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/process/stop.hpp"
@@ -211,6 +212,8 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
   add_parts_options(*study, *words);
+  add_plan_options(*study, record->plan_dz);
+  for (const char* name : {"--plan", "--plan-effect"}) study->get_option(name)->needs("--sessions");
   study->callback([record, words, &status, study] {
     record->options.protocol.conditions =
         session::parse_conditions(words->conditions, session::kStudyConditions);

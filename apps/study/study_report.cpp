@@ -125,6 +125,7 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
     page.section("Tables I and II of the paper");
     add_paper_tables(page, record);
   }
+  add_registered(page, record);
   page.section("Identification");
   add_identification(page, record);
   show("fig04");

@@ -41,10 +41,25 @@ void timed(StudyRecord& record, runtime::Stop& stop, const char* what, const aut
   record.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// What an experiment registered, and the plan of the next study.
+void analyse_registered(StudyRecord& record) {
+  const auto pairs = planned_pairs(record);
+  if (record.recorded->registered) {
+    Registered& registered = *record.recorded->registered;
+    registered.planned = planned_comparisons(record.analysis, pairs);
+    registered.analysis_without = analyse(registered.without.results);
+    registered.planned_without = planned_comparisons(registered.analysis_without, pairs);
+  }
+  if (record.plan_dz) {
+    record.needed = participants_needed(record.analysis, pairs, *record.plan_dz, alpha_of(record));
+  }
+}
+
 // Tables, figures and report of all subjects.
 void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::Stop& stop,
               const fs::path& out) {
   record.analysis = analyse(record.results);
+  if (record.recorded) analyse_registered(record);
   if (stop.requested()) throw Interrupted();
   write_study(record, folder);
   print_study(record);
@@ -114,14 +129,16 @@ int run_merge(StudyRecord& record, const std::vector<fs::path>& shards, const fs
 
 int run_recorded(StudyRecord& record, const std::vector<fs::path>& folders, const fs::path& out) {
   const std::vector<SessionFile> files = find_sessions(folders);
+  const auto registration = registration_of(folders, files.front().digest);
   std::vector<fs::path> inputs = folders;
   for (const SessionFile& file : files) inputs.push_back(file.path.parent_path());
   check_place(inputs, out, "a recording");
   runtime::Stop stop;
   report::StagedFolder folder(out);
   report::require_gnuplot();
-  timed(record, stop, "sessions",
-        [&](const OnProgress& on_progress) { read_recorded(files, record, on_progress); });
+  timed(record, stop, "sessions", [&](const OnProgress& on_progress) {
+    read_recorded(files, registration, record, on_progress);
+  });
   conclude(record, folder, stop, out);
   return 0;
 }

@@ -21,7 +21,7 @@ int run_merge(StudyRecord& record, const std::vector<std::filesystem::path>& sha
               const std::filesystem::path& out);
 
 /// The participants of recordings; `folders` as find_sessions().  Of `record`, only the command
-/// line is used.
+/// line and the plan are used.
 int run_recorded(StudyRecord& record, const std::vector<std::filesystem::path>& folders,
                  const std::filesystem::path& out);
 

@@ -20,18 +20,17 @@ ordered_json sample_json(const MetricSample& sample) {
       {"mean", sample.mean}, {"std", or_null(sample.standard_deviation)}, {"per_subject", each}};
 }
 
-ordered_json conditions_json(const StudyRecord& record) {
+ordered_json conditions_json(const Analysis& analysis) {
   ordered_json out = ordered_json::object();
-  for (const auto& [condition, metrics] : record.analysis.conditions) {
+  for (const auto& [condition, metrics] : analysis.conditions) {
     ordered_json one;
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       one[kMetrics[k].key] = sample_json(metrics[k]);
     }
-    one["crossover_reference_hz"] =
-        sample_json(record.analysis.crossover_reference_hz.at(condition));
-    if (record.analysis.cancelled_share.contains(condition)) {
-      one["cancelled_share"] = sample_json(record.analysis.cancelled_share.at(condition));
-      one["counterforce_delay_s"] = sample_json(record.analysis.counterforce_delay_s.at(condition));
+    one["crossover_reference_hz"] = sample_json(analysis.crossover_reference_hz.at(condition));
+    if (analysis.cancelled_share.contains(condition)) {
+      one["cancelled_share"] = sample_json(analysis.cancelled_share.at(condition));
+      one["counterforce_delay_s"] = sample_json(analysis.counterforce_delay_s.at(condition));
     }
     out[std::string(1, condition)] = one;
   }
@@ -124,6 +123,62 @@ ordered_json identification_json(const StudyRecord& record) {
   return {{"refined_used", record.analysis.refined_used}, {"subjects", subjects}};
 }
 
+ordered_json planned_json(const std::vector<PlannedComparison>& all, double alpha) {
+  ordered_json out = ordered_json::object();
+  for (const PlannedComparison& planned : all) {
+    ordered_json one;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      const auto& test = planned.comparison.tests[k];
+      if (!test) continue;
+      one[kMetrics[k].key] = {
+          {"p", test->p}, {"p_holm", *planned.p_holm[k]}, {"found", *planned.p_holm[k] < alpha}};
+    }
+    out[name_of(planned.comparison)] = one;
+  }
+  return out;
+}
+
+ordered_json registered_json(const Registered& registered) {
+  const Registration& registration = registered.registration;
+  const auto& rules = registration.rules;
+  ordered_json out{{"alpha", registration.alpha},
+                   {"comparisons", planned_json(registered.planned, registration.alpha)}};
+  ordered_json& numbers = out["exclusion_rules"];
+  const auto put = [&](std::string_view name, const auto& value, Range, std::string_view) {
+    numbers[std::string(name)] = value;
+  };
+  experiment::Exclusion::fields(put, rules);
+  out["excluded"] = registered.excluded;
+  const Analysis& without = registered.analysis_without;
+  out["without_rules"] = {
+      {"participants", registered.without.participants},
+      {"conditions", conditions_json(without)},
+      {"t_tests", p_values_json(without)},
+      {"t_test_details", t_test_details_json(without)},
+      {"restoration", restoration_json(without)},
+      {"restoration_interval95", restoration_interval_json(without)},
+      {"comparisons", planned_json(registered.planned_without, registration.alpha)}};
+  return out;
+}
+
+ordered_json needed_json(const StudyRecord& record) {
+  ordered_json out{{"alpha", alpha_of(record)}, {"participants_needed", ordered_json::array()}};
+  for (const Needed& needed : record.needed) {
+    ordered_json one{{"comparison", needed.comparison},
+                     {"metric", kMetrics[needed.metric].key},
+                     {"effect", needed.effect},
+                     {"effect_dz", needed.effect_dz},
+                     {"at", ordered_json::array()}};
+    for (const Needed::At& at : needed.at) {
+      one["at"].push_back({{"wanted_power", at.wanted_power},
+                           {"participants", at.participants},
+                           {"power", at.power}});
+    }
+    out["participants_needed"].push_back(one);
+  }
+  return out;
+}
+
 ordered_json wrong_json(const Analysis& analysis) {
   ordered_json out = ordered_json::object();
   for (const auto& [which, wrong] : analysis.wrong) {
@@ -140,10 +195,22 @@ ordered_json wrong_json(const Analysis& analysis) {
 
 }  // namespace
 
+double alpha_of(const StudyRecord& record) {
+  constexpr double kAlpha = 0.05;
+  const bool registered = record.recorded && record.recorded->registered;
+  return registered ? record.recorded->registered->registration.alpha : kAlpha;
+}
+
+std::vector<std::pair<char, char>> planned_pairs(const StudyRecord& record) {
+  const bool registered = record.recorded && record.recorded->registered;
+  if (registered) return record.recorded->registered->registration.comparisons;
+  return {{'A', 'B'}, {'B', 'C'}};
+}
+
 std::string summary_json(const StudyRecord& record) {
   const StudyOptions& options = record.options;
   ordered_json summary;
-  summary["conditions"] = conditions_json(record);
+  summary["conditions"] = conditions_json(record.analysis);
   summary["t_tests"] = p_values_json(record.analysis);
   summary["manova"] = manova_json(record.analysis.main_effects, "main effects, one trial a cell");
   summary["restoration"] = restoration_json(record.analysis);
@@ -163,7 +230,11 @@ std::string summary_json(const StudyRecord& record) {
                            {"trials", record.recorded->trials.size()},
                            {"left_out", record.recorded->left_out},
                            {"digest", or_null(record.recorded->digest)}};
+    if (record.recorded->registered) {
+      summary["registered"] = registered_json(*record.recorded->registered);
+    }
   }
+  if (record.plan_dz) summary["plan"] = needed_json(record);
   summary["version"] = kVersion;
   // JSON has no NaN: dump() writes a number that is not finite as null.
   return summary.dump(2) + "\n";

@@ -38,6 +38,8 @@ struct Exclusion {
   double least_completed_share = 1.0;
   double most_lost_tick_share = 0.02;
   double least_dwell_ratio_a = 0.0;
+  double most_rms_deviations = 0.0;
+  std::int64_t most_broken_trials = 100;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
@@ -47,6 +49,11 @@ struct Exclusion {
           "[-] lost share of a trial's ticks; more exclude the trial");
     visit("least_dwell_ratio_a", self.least_dwell_ratio_a, Range{0.0, 1.0},
           "[-] mean dwell ratio in condition A; less excludes the participant");
+    visit("most_rms_deviations", self.most_rms_deviations, Range{0.0, 10.0},
+          "[-] standard deviations of the RMS error of a condition from its mean over the "
+          "participants; more exclude the participant; 0: no such rule");
+    visit("most_broken_trials", self.most_broken_trials, Range{0.0, 100.0},
+          "[-] tracking trials that were ended early; more exclude the participant");
   }
 };
 

@@ -96,7 +96,8 @@ void add_session(ExportedParticipant& participant, const Folder& folder, const P
     participant.trials.push_back(trial_of(folder, plan, file.string(), session, trial, known));
   }
   const study::RecordedSession recorded = study::read_recorded_session(
-      {file, participant.code, fmt::format("{:02}", session), folder.digest(), ""});
+      {file, participant.code, fmt::format("{:02}", session), folder.digest(), ""},
+      study::kLeastShareBeforeRules);
   add_metrics(participant, session, recorded.trials);
   add_metrics(participant, session, recorded.practice);
 }

@@ -26,20 +26,26 @@ namespace {
 using measurement::SessionTrial;
 using session::SessionRecording;
 
-// Least share of a trial's ticks that a complete one has.
-constexpr double kLeastShare = 0.99;
-
 measurement::SessionTrials trials_of(const SessionFile& file) {
   recording::FileSource source(file.path.string());
   recording::McapReader reader(source);
   return measurement::find_trials(reader, file.path.string());
 }
 
+bool ended_early(const SessionTrial& trial) {
+  return trial.end_tick < trial.trial.start_tick + trial.trial.duration_ticks;
+}
+
+double lost_share(const SessionTrial& trial) {
+  return 1.0 - static_cast<double>(trial.recorded_ticks) /
+                   static_cast<double>(trial.trial.duration_ticks);
+}
+
 // Why the trial cannot count, or empty.
-std::string incomplete(const SessionTrial& trial) {
+std::string incomplete(const SessionTrial& trial, double least_share) {
   const Tick planned = trial.trial.duration_ticks;
-  if (trial.end_tick < trial.trial.start_tick + planned) return "was ended early";
-  if (static_cast<double>(trial.recorded_ticks) < kLeastShare * static_cast<double>(planned)) {
+  if (ended_early(trial)) return "was ended early";
+  if (static_cast<double>(trial.recorded_ticks) < least_share * static_cast<double>(planned)) {
     return fmt::format("has {} of {} samples", trial.recorded_ticks, planned);
   }
   return "";
@@ -60,11 +66,11 @@ void keep_valid(SessionRecording& recorded, std::uint32_t rig) {
 
 template <typename Message, typename Value>
 std::vector<double> kept(const std::vector<Message>& stream, const Trial& trial, Tick every,
-                         Value value) {
+                         double least_share, Value value) {
   std::int64_t missing = 0;
   const std::vector<double> all = session::measured(stream, trial, value, missing);
   if (static_cast<double>(missing) >
-      (1.0 - kLeastShare) * static_cast<double>(trial.duration_ticks)) {
+      (1.0 - least_share) * static_cast<double>(trial.duration_ticks)) {
     throw ConfigError("trial " + std::to_string(trial.number),
                       fmt::format("{} of {} samples missing", missing, trial.duration_ticks),
                       "a trial without gaps");
@@ -76,18 +82,21 @@ std::vector<double> kept(const std::vector<Message>& stream, const Trial& trial,
   return out;
 }
 
-Identification identified_from(const SessionRecording& recorded, const Trial& trial) {
+Identification identified_from(const SessionRecording& recorded, const Trial& trial,
+                               double least_share) {
   identification::Record pegged;
   pegged.rate_hz = kControlRateHz;
   pegged.acceleration_m_s2 =
-      kept(recorded.sensed, trial, 1, [](const auto& m) { return m.accel_y_m_s2(); });
-  pegged.force_n = kept(recorded.sensed, trial, 1, [](const auto& m) { return m.force_n(); });
+      kept(recorded.sensed, trial, 1, least_share, [](const auto& m) { return m.accel_y_m_s2(); });
+  pegged.force_n =
+      kept(recorded.sensed, trial, 1, least_share, [](const auto& m) { return m.force_n(); });
   return identified(pegged);
 }
 
-TrackedTrial tracked_from(const SessionRecording& recorded, const SessionTrial& found) {
+TrackedTrial tracked_from(const SessionRecording& recorded, const SessionTrial& found,
+                          double least_share) {
   const auto of = [&](const auto& stream, auto value) {
-    return kept(stream, found.trial, kKeepEvery, value);
+    return kept(stream, found.trial, kKeepEvery, least_share, value);
   };
   session::TrialSignals signals;
   signals.tracking.rate_hz = kControlRateHz / static_cast<double>(kKeepEvery);
@@ -126,7 +135,7 @@ std::set<std::int64_t> practice_of(const SessionRecording& recorded) {
 
 }  // namespace
 
-RecordedSession read_recorded_session(const SessionFile& file) {
+RecordedSession read_recorded_session(const SessionFile& file, double least_share) {
   const measurement::SessionTrials trials = trials_of(file);
   SessionRecording recorded = session::read_session(file.path.string());
   RecordedSession out;
@@ -136,21 +145,22 @@ RecordedSession read_recorded_session(const SessionFile& file) {
   for (const SessionTrial& trial : trials.trials) {
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
-    std::string why = trial.letter == '?' ? "has no condition" : incomplete(trial);
+    std::string why = trial.letter == '?' ? "has no condition" : incomplete(trial, least_share);
     const bool practised = practice.contains(trial.trial.number);
     try {
       if (!why.empty()) {
       } else if (trial.letter == 'I') {
-        out.identification = identified_from(recorded, trial.trial);
+        out.identification = identified_from(recorded, trial.trial, least_share);
         out.identify_s = static_cast<double>(trial.trial.duration_ticks) * kControlPeriod_s;
       } else {
         (practised ? out.practice : out.trials)
             .push_back({file.participant, file.session, trial.trial.number, 0, trial.letter,
-                        tracked_from(recorded, trial)});
+                        tracked_from(recorded, trial, least_share), lost_share(trial)});
       }
     } catch (const ConfigError& error) {
       why = error.what();
     }
+    if (ended_early(trial) && trial.letter != 'I' && !practised) ++out.broken_trials;
     if (!why.empty() && !practised) out.left_out.push_back(fmt::format("{}: {}", where, why));
   }
   return out;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +18,17 @@ struct RecordedSession {
   std::vector<RecordedTrial> trials;    ///< complete tracking trials without practice; no place
   std::vector<RecordedTrial> practice;  ///< complete practice trials
   std::vector<std::string> left_out;    ///< one line each: trial, and why
+  std::int64_t broken_trials = 0;       ///< tracking trials that were ended early
   bool control_model = false;           ///< the motor used a control model (C' or C+)
 };
 
-/// A trial is complete if it was not ended early and has 99 % of its samples.
+/// Least share of its samples that a complete trial has: of a session on its own, and where the
+/// rules of an experiment decide how many may be lost.
+inline constexpr double kLeastShare = 0.99;
+inline constexpr double kLeastShareBeforeRules = 0.9;
+
+/// A trial is complete if it was not ended early and has `least_share` of its samples.
 /// @throws ConfigError for a recording that cannot be read
-RecordedSession read_recorded_session(const SessionFile& file);
+RecordedSession read_recorded_session(const SessionFile& file, double least_share = kLeastShare);
 
 }  // namespace stillhand::study

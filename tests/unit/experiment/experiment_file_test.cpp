@@ -31,6 +31,8 @@ TEST(ExperimentFileTest, EveryKeyReadsBack) {
   design.trial_s = 20.0 / 3.0;
   design.practice.most_trials = 4;
   design.exclusion.most_lost_tick_share = 0.125;
+  design.exclusion.most_rms_deviations = 2.5;
+  design.exclusion.most_broken_trials = 3;
   design.instructions = {"one", "two: \"quoted\""};
   design.questions = {{"effort", Question::After::kBlock, "How hard was it?", "easy", "hard", 7},
                       {"sick", Question::After::kTrial, "Do you feel sick?", "no", "very", 5}};
@@ -45,6 +47,8 @@ TEST(ExperimentFileTest, EveryKeyReadsBack) {
   EXPECT_EQ(sut.trial_s, design.trial_s);
   EXPECT_EQ(sut.practice.most_trials, 4);
   EXPECT_EQ(sut.exclusion.most_lost_tick_share, 0.125);
+  EXPECT_EQ(sut.exclusion.most_rms_deviations, 2.5);
+  EXPECT_EQ(sut.exclusion.most_broken_trials, 3);
   EXPECT_EQ(sut.instructions, design.instructions);
   ASSERT_EQ(sut.questions.size(), 2u);
   EXPECT_EQ(sut.questions[1].after, Question::After::kTrial);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/plan_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "services/settings/check_number.hpp"
+
+namespace stillhand::study {
+
+void add_plan_options(CLI::App& cli, std::optional<std::vector<double>>& effects_dz) {
+  cli.add_flag_callback(
+      "--plan", [&effects_dz] { effects_dz = effects_dz.value_or(std::vector<double>{}); },
+      "how many participants the planned comparisons need for power 0.8 and 0.9, if their effect "
+      "is that of these data, or half of it");
+  cli.add_option_function<std::vector<double>>(
+         "--plan-effect", [&effects_dz](const std::vector<double>& given) { effects_dz = given; },
+         "with --plan: further effect sizes d_z (mean difference over its standard deviation)")
+      ->check(settings::number_between(0.01, 100.0))
+      ->needs("--plan");
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/recorded/registration.hpp"
+
+#include "apps/experiment/file/experiment_file.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
+#include "services/rig/digest.hpp"
+
+namespace stillhand::study {
+
+std::optional<Registration> registration_of(const std::vector<std::filesystem::path>& folders,
+                                            const std::string& digest) {
+  std::optional<Registration> out;
+  for (const std::filesystem::path& folder : folders) {
+    const std::filesystem::path file = folder / experiment::kDesignFile;
+    if (!std::filesystem::is_regular_file(file)) continue;
+    const std::string yaml = recording::read_file(file.string());
+    if (rig::sha256(yaml) != digest) {
+      throw ConfigError(
+          file.string(), "SHA-256 " + rig::sha256(yaml).substr(0, 12) + "...",
+          digest.substr(0, 12) + "..., which the recordings state: the pre-registration changed");
+    }
+    const experiment::Design design = experiment::design_of(yaml, file.string());
+    out.emplace();
+    out->rules = design.exclusion;
+    out->trials_a_condition = design.blocks * design.trials;
+    out->alpha = design.alpha;
+    for (const std::string& condition : design.conditions) {
+      out->conditions.push_back(condition.front());
+    }
+    // C' and C+ are refused with their recordings, so a letter is a condition.
+    for (const std::string& pair : design.comparisons) {
+      out->comparisons.emplace_back(pair.front(), pair[pair.find('-') + 1]);
+    }
+  }
+  return out;
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/experiment/core/design.hpp"
+
+namespace stillhand::study {
+
+/// What an experiment registered for its analysis before the first participant.
+struct Registration {
+  experiment::Exclusion rules;
+  std::int64_t trials_a_condition = 1;             ///< planned for each participant
+  std::vector<char> conditions;                    ///< planned
+  std::vector<std::pair<char, char>> comparisons;  ///< first, second
+  double alpha = 0.05;                             ///< of all comparisons together
+};
+
+/// The registration of the one folder with an experiment.yaml among `folders`; none without one.
+/// @param digest  of the pre-registration, as the recordings state it
+/// @throws ConfigError for an experiment.yaml of another digest, and one that cannot be read
+std::optional<Registration> registration_of(const std::vector<std::filesystem::path>& folders,
+                                            const std::string& digest);
+
+}  // namespace stillhand::study

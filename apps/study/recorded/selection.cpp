@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/recorded/selection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "services/statistics/descriptive.hpp"
+
+namespace stillhand::study {
+namespace {
+
+// The conditions that most people have.
+std::string wanted_conditions(const std::vector<Person>& people) {
+  std::map<char, std::size_t> count;
+  for (const Person& person : people) {
+    std::set<char> own;
+    for (const RecordedTrial& trial : person.trials) own.insert(trial.condition);
+    for (const char condition : own) ++count[condition];
+  }
+  std::string out;
+  for (const auto& [condition, number] : count) {
+    if (2 * number > people.size()) out += condition;
+  }
+  return out;
+}
+
+SubjectResult result_of(const Person& person, const std::string& conditions) {
+  SubjectResult out;
+  out.identification = *person.identification;
+  std::map<char, const RecordedTrial*> last;
+  for (const RecordedTrial& trial : person.trials) {
+    if (conditions.find(trial.condition) != std::string::npos) last[trial.condition] = &trial;
+  }
+  std::map<std::int64_t, char> order;
+  for (const auto& [condition, trial] : last) {
+    out.trials[condition] = trial->tracked;
+    order[trial->place] = condition;
+  }
+  for (const auto& [place, condition] : order) out.order += condition;
+  return out;
+}
+
+// Why a person cannot be in the tables, or empty.
+std::string lacking(const Person& person, const std::string& conditions) {
+  if (!person.identification) return "no complete pegged trial";
+  for (const char condition : conditions) {
+    if (std::ranges::find(person.trials, condition, &RecordedTrial::condition) ==
+        person.trials.end()) {
+      return fmt::format("no complete trial of condition {}", condition);
+    }
+  }
+  return "";
+}
+
+// Completed share of the planned trials; a repetition does not stand for another condition.
+double completed_share(const Person& person, const Registration& registration) {
+  std::int64_t done = 0;
+  for (const char condition : registration.conditions) {
+    const auto own = std::ranges::count(person.trials, condition, &RecordedTrial::condition);
+    done += std::min<std::int64_t>(own, registration.trials_a_condition);
+  }
+  const auto planned = static_cast<double>(registration.conditions.size()) *
+                       static_cast<double>(registration.trials_a_condition);
+  return static_cast<double>(done) / planned;
+}
+
+std::optional<double> dwell_ratio_a(const Person& person) {
+  std::vector<double> ratios;
+  for (const RecordedTrial& trial : person.trials) {
+    if (trial.condition == 'A') ratios.push_back(trial.tracked.metrics.dwell_ratio);
+  }
+  if (ratios.empty()) return std::nullopt;
+  return statistics::mean(ratios);
+}
+
+// The rule that excludes a person for what the person alone did, or empty.
+std::string excluded_alone(const Person& person, const Registration& registration) {
+  const experiment::Exclusion& rules = registration.rules;
+  if (person.broken_trials > rules.most_broken_trials) {
+    return fmt::format("{} trials ended early, more than most_broken_trials {}",
+                       person.broken_trials, rules.most_broken_trials);
+  }
+  const double share = completed_share(person, registration);
+  if (share < rules.least_completed_share) {
+    return fmt::format("{:.4g} of the planned trials, less than least_completed_share {:.4g}",
+                       share, rules.least_completed_share);
+  }
+  const auto dwell = dwell_ratio_a(person);
+  if (dwell && *dwell < rules.least_dwell_ratio_a) {
+    return fmt::format("mean dwell ratio {:.4g} in A, less than least_dwell_ratio_a {:.4g}", *dwell,
+                       rules.least_dwell_ratio_a);
+  }
+  return "";
+}
+
+// {code: why} of those whose RMS error is too far from the others'.
+std::map<std::string, std::string> outliers(const std::vector<Person>& people, double most) {
+  std::map<std::string, std::string> out;
+  const Selection all = select(people);
+  if (!(most > 0.0) || all.results.size() < 2) return out;
+  for (const auto& [condition, unused] : all.results.front().trials) {
+    std::vector<double> errors_mm;
+    for (const SubjectResult& result : all.results) {
+      errors_mm.push_back(result.trials.at(condition).metrics.rms_error_mm);
+    }
+    const double mean_mm = statistics::mean(errors_mm);
+    const double deviation_mm = statistics::standard_deviation(errors_mm);
+    for (std::size_t i = 0; i < errors_mm.size(); ++i) {
+      const double deviations = std::abs(errors_mm[i] - mean_mm) / deviation_mm;
+      if (!(deviations > most)) continue;
+      out.emplace(all.participants[i],
+                  fmt::format("RMS error {:.4g} mm in {}, {:.3g} standard deviations from the "
+                              "mean, more than most_rms_deviations {:.4g}",
+                              errors_mm[i], condition, deviations, most));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Selection select(const std::vector<Person>& people) {
+  Selection out;
+  const std::string conditions = wanted_conditions(people);
+  for (const Person& person : people) {
+    const std::string why = conditions.empty() ? "no tracking trial" : lacking(person, conditions);
+    if (!why.empty()) {
+      out.left_out.push_back(fmt::format("{}: {}", person.code, why));
+      continue;
+    }
+    out.participants.push_back(person.code);
+    out.results.push_back(result_of(person, conditions));
+  }
+  return out;
+}
+
+std::vector<std::string> apply_rules(const Registration& registration,
+                                     std::vector<Person>& people) {
+  std::vector<std::string> lines;
+  const double most_lost = registration.rules.most_lost_tick_share;
+  for (Person& person : people) {
+    std::erase_if(person.trials, [&](const RecordedTrial& trial) {
+      if (!(trial.lost_share > most_lost)) return false;
+      lines.push_back(fmt::format(
+          "{}, session {}, trial {}: {:.4g} of its samples lost, more than most_lost_tick_share "
+          "{:.4g}",
+          person.code, trial.session, trial.number, trial.lost_share, most_lost));
+      return true;
+    });
+  }
+  std::erase_if(people, [&](const Person& person) {
+    const std::string why = excluded_alone(person, registration);
+    if (!why.empty()) lines.push_back(person.code + ": " + why);
+    return !why.empty();
+  });
+  // Once: mean and deviation are those of everybody who is left by the other rules.
+  const auto far = outliers(people, registration.rules.most_rms_deviations);
+  std::erase_if(people, [&](const Person& person) {
+    const auto found = far.find(person.code);
+    if (found == far.end()) return false;
+    lines.push_back(person.code + ": " + found->second);
+    return true;
+  });
+  return lines;
+}
+
+}  // namespace stillhand::study

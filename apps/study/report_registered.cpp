@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Report: what an experiment registered, and how many participants the next one needs.
+#include <fmt/format.h>
+
+#include "apps/report/text.hpp"
+#include "apps/study/report_cells.hpp"
+#include "apps/study/report_sections.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using report::Cell;
+using report::Emphasis;
+using report::number;
+using report::short_number;
+using session::kMetrics;
+
+// Change with its interval, and the p of Holm, of one test as two cells.
+void add_test(std::vector<Cell>& row, const PlannedComparison& planned, std::size_t metric,
+              double alpha) {
+  const auto& test = planned.comparison.tests[metric];
+  if (!test) {
+    row.insert(row.end(), 2, Cell("–"));
+    return;
+  }
+  row.emplace_back(fmt::format("{} [{}, {}]", number(test->mean_difference, decimals(metric)),
+                               number(test->ci_low, decimals(metric)),
+                               number(test->ci_high, decimals(metric))));
+  const double holm = *planned.p_holm[metric];
+  row.emplace_back(p_value(holm), holm < alpha ? Emphasis::kStrong : Emphasis::kNone);
+}
+
+report::Table comparisons_table(const Registered& registered) {
+  const double alpha = registered.registration.alpha;
+  report::Table table;
+  table.caption = fmt::format(
+      "Planned comparisons with the exclusion rules ({} participants) and without them ({}). "
+      "Holm's p is over all planned comparisons and metrics together; strong: below {}.",
+      registered.planned.empty() || !registered.planned.front().comparison.tests[0]
+          ? std::string("–")
+          : std::to_string(registered.planned.front().comparison.tests[0]->n),
+      registered.without.participants.size(), short_number(alpha));
+  table.header = {"comparison",    "metric", "change [95 % CI]", "p", "p, Holm",
+                  "without rules", "p",      "p, Holm"};
+  for (std::size_t i = 0; i < registered.planned.size(); ++i) {
+    const Comparison& comparison = registered.planned[i].comparison;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      std::vector<Cell> row{fmt::format("{}-{}", comparison.from, comparison.to),
+                            kMetrics[k].title};
+      add_test(row, registered.planned[i], k, alpha);
+      if (i < registered.planned_without.size()) {
+        add_test(row, registered.planned_without[i], k, alpha);
+      }
+      table.rows.push_back(row);
+    }
+  }
+  return table;
+}
+
+report::Table needed_table(const StudyRecord& record) {
+  report::Table table;
+  table.caption = fmt::format(
+      "Participants that a paired t-test at α = {} needs. \"Observed\" is the effect of these data "
+      "(Hedges' g_z), which is uncertain itself.",
+      short_number(alpha_of(record)));
+  table.header = {"comparison", "metric",        "change [95 % CI]",
+                  "p, Holm",    "without rules", "p, Holm"};
+  for (const Needed& needed : record.needed) {
+    std::vector<Cell> row{needed.comparison, kMetrics[needed.metric].title, needed.effect,
+                          number(needed.effect_dz, 2)};
+    for (const Needed::At& at : needed.at) row.emplace_back(std::to_string(at.participants));
+    if (needed.at.empty()) row.insert(row.end(), 2, Cell("–"));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+void add_registered(report::Page& page, const StudyRecord& record) {
+  if (record.recorded && record.recorded->registered) {
+    const Registered& registered = *record.recorded->registered;
+    page.section("Pre-registered analysis");
+    if (registered.excluded.empty()) {
+      page.paragraph("The exclusion rules of experiment.yaml exclude nobody and no trial.");
+    } else {
+      page.paragraph(
+          "The exclusion rules of experiment.yaml take the following out of all other tables and "
+          "figures.");
+      page.list(registered.excluded);
+    }
+    page.table(comparisons_table(registered));
+  }
+  if (record.plan_dz) {
+    page.section("The next study");
+    page.table(needed_table(record));
+  }
+}
+
+}  // namespace stillhand::study
