@@ -12,6 +12,7 @@
 #include "apps/experiment/conduct.hpp"
 #include "apps/experiment/export/export_command.hpp"
 #include "apps/experiment/file/experiment_file.hpp"
+#include "apps/experiment/report_command.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/experiment/status.hpp"
 #include "services/contract/config_error.hpp"
@@ -175,6 +176,7 @@ void add_experiment_command(CLI::App& cli, int& status) {
   add_new(*verb, words);
   add_run(*verb, words, status);
   add_rest(*verb, words, status);
+  add_report_command(*verb, status);
   add_export_command(*verb);
 }
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/experiment/report_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "apps/experiment/folder.hpp"
+#include "apps/report/command_line.hpp"
+#include "apps/study/plan_options.hpp"
+#include "apps/study/study_runs.hpp"
+#include "services/settings/check_name.hpp"
+
+namespace stillhand::experiment {
+namespace {
+
+constexpr const char* kReportFolder = "report";
+
+struct Words {
+  std::filesystem::path folder;
+  study::StudyRecord record;
+};
+
+// The study of the recordings: `stillhand study --sessions DIR --out DIR/report`, after the checks
+// of the folder.
+int report_on(Words& words) {
+  const Folder folder(words.folder);
+  folder.refuse_findings();
+  words.record.command_line = report::command_line();
+  return study::run_recorded(words.record, {folder.path()}, folder.path() / kReportFolder);
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& verb, int& status) {
+  const auto words = std::make_shared<Words>();
+  CLI::App* sub = verb.add_subcommand(
+      "report",
+      "Writes DIR/report: tables, figures and tests of an unblinded experiment, as\n"
+      "`stillhand study --sessions DIR` computes them.");
+  sub->add_option("DIR", words->folder, "folder of the experiment")
+      ->required()
+      ->check(settings::check_name);
+  study::add_plan_options(*sub, words->record.plan_dz);
+  sub->callback([words, &status] { status = report_on(*words); });
+}
+
+}  // namespace stillhand::experiment
