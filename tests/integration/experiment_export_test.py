@@ -180,6 +180,11 @@ class BidsTest(ExportTestCase):
         self.assertEqual(yaml, (self.experiment / "experiment.yaml").read_bytes())
         self.assertIn(hashlib.sha256(yaml).hexdigest(), (self.set / "README").read_text())
 
+    def test_authors_may_be_several_and_do_not_take_the_folder_for_one(self):
+        out = self.folder / "authors"
+        stillhand("experiment", "export", "--bids", "--out", out, "--author", "One", "--author", "Two", self.experiment)
+        self.assertEqual(json.loads((out / "dataset_description.json").read_text())["Authors"], ["One", "Two"])
+
     def refused(self, said, *words):
         _, errors = stillhand("experiment", "export", *words, status=2)
         self.assertEqual(len(errors.splitlines()), 1, errors)

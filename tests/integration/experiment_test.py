@@ -178,6 +178,32 @@ class SessionTest(ExperimentTestCase):
         labels = [entry["label"] for entry in of_kind(journal(self.study, "P02"), "trial ended")
                   if entry["completed"] and entry.get("label")]
         self.assertEqual([opened["labels"][label] for label in labels], opened["orders"]["P02"])
+        self.judge_data_set(opened)
+
+    def judge_data_set(self, opened):
+        """The data set has practice, the killed trial and its repetition; the report is about the measured trials."""
+        out = self.folder / "set"
+        experiment("export", self.study, "--out", out, "--bids")
+
+        def trials(task):
+            files = sorted(out.glob(f"sub-P02/ses-*/beh/*_task-{task}_beh.tsv"))
+            return [row for file in files for row in csv.DictReader(file.read_text().splitlines(), delimiter="\t")]
+        completed = [row["condition"] for row in trials("tracking") if row["completed"] == "yes"]
+        self.assertEqual(completed, opened["orders"]["P02"])
+        journaled = [entry["dwell_ratio"] for entry in of_kind(journal(self.study, "P02"), "trial ended")
+                     if "dwell_ratio" in entry]
+        # The journal has every tick of a trial of 5 s, the data set's result every tenth: each way into the box or out
+        # of it moves the share by at most 10 of 5000 ticks, and in 5 s there are less than 25.
+        for row, dwell_ratio in zip(trials("practice"), journaled, strict=True):
+            self.assertAlmostEqual(float(row["dwell_ratio"]), dwell_ratio, delta=0.05)
+        runs = {path.name for path in out.glob("sub-P02/ses-*/motion/*_motion.tsv")}
+        self.assertEqual(sum("task-identification" in name for name in runs), 2)
+        self.assertEqual(sum("task-tracking" in name for name in runs), len(trials("tracking")))
+        experiment("report", self.study)
+        summary = json.loads((self.study / "report" / "summary.json").read_text())
+        self.assertEqual(summary["recorded"]["participants"], ["P02"])
+        self.assertEqual(summary["recorded"]["trials"], 6)
+        self.assertEqual(summary["registered"]["excluded"], [])
 
     def judge_bad_folders(self):
         """Each is named in one line with status 2, and no file is changed."""
@@ -295,6 +321,10 @@ class CampaignTest(ExperimentTestCase):
             rows = list(csv.DictReader(file))
         self.assertEqual({condition: sum(row["condition"] == condition for row in rows) for condition in "ABC"},
                          {"A": 11, "B": 11, "C": 11})  # without practice
+        experiment("report", self.study)
+        for name in ("summary.json", "trials.csv"):
+            self.assertEqual((self.study / "report" / name).read_bytes(), (out / name).read_bytes())
+        experiment("export", self.study, "--out", self.study.parent / "set", "--bids")
 
     @campaign
     def test_twelve_participants_two_killed_and_resumed_one_excluded(self):

@@ -114,7 +114,8 @@ void add_export_command(CLI::App& verb) {
                   "licence of the data set, for example CC0-1.0 or CC-BY-4.0")
       ->check(settings::check_name)
       ->capture_default_str();
-  sub->add_option("--author", words->release.authors, "author of the data set; may be repeated");
+  sub->add_option("--author", words->release.authors, "author of the data set; may be repeated")
+      ->allow_extra_args(false);
   sub->callback([words] { export_set(*words); });
 }
 

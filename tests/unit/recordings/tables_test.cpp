@@ -115,6 +115,20 @@ TEST_F(CsvTablesTest, TimesHaveEveryNanosecondAndTheirSign) {
   for (std::size_t i = 0; i < want.size(); ++i) EXPECT_EQ(line(text, i + 1), want[i] + ",1,2,3");
 }
 
+TEST_F(CsvTablesTest, ATableOfItsOwnHasNoColumnOfAMessage) {
+  const auto sut = csv_tables(path("own"));
+  const auto sink = sut->add({"table",
+                              "title",
+                              "table",
+                              {{"t", "s", CellKind::kReal}, {"code", "-", CellKind::kText}},
+                              false});
+  sink->take({0, 0, 0, 0, std::vector<Cell>{Cell(0.25), Cell(std::string_view("P07"))}});
+  sink->finish();
+  sut->close();
+  sut->publish();
+  EXPECT_EQ(recording::read_file(path("own/table.csv")), "t [s],code [-]\n0.25,P07\n");
+}
+
 TEST_F(CsvTablesTest, ATextWithACommaAQuoteOrALineBreakIsQuotedAsRfc4180Says) {
   const std::vector<MessageColumn> columns{{"text", "", CellKind::kText}};
   const std::string text = written(
