@@ -106,7 +106,10 @@ void Page::table(const Table& table) {
       "<figure class=\"table\" id=\"table-{0}\">\n<figcaption><b>Table {0}.</b> {1}</figcaption>\n"
       "<div class=\"scroll\" tabindex=\"0\"><table>\n{2}<tbody>\n",
       ++tables_, html_escaped(table.caption), head_html(table));
-  for (const std::vector<Cell>& cells : table.rows) body_ += row_html(table, cells);
+  for (const std::vector<Cell>& cells : table.rows) {
+    STILLHAND_EXPECTS(table.header.empty() || cells.size() <= table.header.size());
+    body_ += row_html(table, cells);
+  }
   body_ += "</tbody></table></div>\n</figure>\n";
 }
 

@@ -24,7 +24,7 @@ struct Cell {
 
 enum class Align { kLeft, kRight, kCentre };
 
-/// Rows may be shorter than the header; missing cells stay empty.
+/// Rows may be shorter than the header, not longer; missing cells stay empty.
 struct Table {
   std::string caption = {};
   std::vector<std::string> header = {};

@@ -74,10 +74,11 @@ void print_registered(const StudyRecord& record) {
     show(registered.planned_without, "without them");
   }
   for (const Needed& needed : record.needed) {
-    fmt::print("{} {}, {} effect {:.3g}:", needed.comparison,
-               session::kMetrics[needed.metric].title, needed.effect, needed.effect_dz);
+    fmt::print("{} {}, d_z {:.3g} ({}):", needed.comparison, session::kMetrics[needed.metric].title,
+               needed.effect_dz, needed.effect);
     for (const Needed::At& at : needed.at) {
-      fmt::print(" {} participants for power {:.1f}", at.participants, at.wanted_power);
+      fmt::print("{} {} participants for power {:.1f}", &at == &needed.at.front() ? "" : ",",
+                 at.participants, at.wanted_power);
     }
     fmt::print("{}\n", needed.at.empty() ? " more participants than a study can have" : "");
   }

@@ -2,6 +2,8 @@
 // Report: what an experiment registered, and how many participants the next one needs.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/report/text.hpp"
 #include "apps/study/report_cells.hpp"
 #include "apps/study/report_sections.hpp"
@@ -16,17 +18,18 @@ using report::short_number;
 using session::kMetrics;
 
 // Change with its interval, and the p of Holm, of one test as two cells.
-void add_test(std::vector<Cell>& row, const PlannedComparison& planned, std::size_t metric,
+// @param planned  or nullptr
+void add_test(std::vector<Cell>& row, const PlannedComparison* planned, std::size_t metric,
               double alpha) {
-  const auto& test = planned.comparison.tests[metric];
-  if (!test) {
+  if (planned == nullptr || !planned->comparison.tests[metric]) {
     row.insert(row.end(), 2, Cell("–"));
     return;
   }
+  const auto& test = planned->comparison.tests[metric];
   row.emplace_back(fmt::format("{} [{}, {}]", number(test->mean_difference, decimals(metric)),
                                number(test->ci_low, decimals(metric)),
                                number(test->ci_high, decimals(metric))));
-  const double holm = *planned.p_holm[metric];
+  const double holm = *planned->p_holm[metric];
   row.emplace_back(p_value(holm), holm < alpha ? Emphasis::kStrong : Emphasis::kNone);
 }
 
@@ -40,17 +43,19 @@ report::Table comparisons_table(const Registered& registered) {
           ? std::string("–")
           : std::to_string(registered.planned.front().comparison.tests[0]->n),
       registered.without.participants.size(), short_number(alpha));
-  table.header = {"comparison",    "metric", "change [95 % CI]", "p", "p, Holm",
-                  "without rules", "p",      "p, Holm"};
-  for (std::size_t i = 0; i < registered.planned.size(); ++i) {
-    const Comparison& comparison = registered.planned[i].comparison;
+  table.header = {"comparison", "metric",        "change [95 % CI]",
+                  "p (Holm)",   "without rules", "p (Holm)"};
+  for (const PlannedComparison& without : registered.planned_without) {
+    const Comparison& comparison = without.comparison;
+    // The rules may leave nobody in one of the two conditions.
+    const auto with = std::ranges::find_if(registered.planned, [&](const PlannedComparison& each) {
+      return each.comparison.from == comparison.from && each.comparison.to == comparison.to;
+    });
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       std::vector<Cell> row{fmt::format("{}-{}", comparison.from, comparison.to),
                             kMetrics[k].title};
-      add_test(row, registered.planned[i], k, alpha);
-      if (i < registered.planned_without.size()) {
-        add_test(row, registered.planned_without[i], k, alpha);
-      }
+      add_test(row, with == registered.planned.end() ? nullptr : &*with, k, alpha);
+      add_test(row, &without, k, alpha);
       table.rows.push_back(row);
     }
   }
@@ -63,8 +68,7 @@ report::Table needed_table(const StudyRecord& record) {
       "Participants that a paired t-test at α = {} needs. \"Observed\" is the effect of these data "
       "(Hedges' g_z), which is uncertain itself.",
       short_number(alpha_of(record)));
-  table.header = {"comparison", "metric",        "change [95 % CI]",
-                  "p, Holm",    "without rules", "p, Holm"};
+  table.header = {"comparison", "metric", "effect", "d_z", "for power 0.8", "for power 0.9"};
   for (const Needed& needed : record.needed) {
     std::vector<Cell> row{needed.comparison, kMetrics[needed.metric].title, needed.effect,
                           number(needed.effect_dz, 2)};
