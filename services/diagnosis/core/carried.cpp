@@ -139,14 +139,16 @@ class Carrying {
   }
 
  private:
-  // An effect that is linear in the inputs takes a part of the body's response over.
+  // An effect that is linear in the inputs takes a part of the body's response over, and one that
+  // passes through the body excites it where the inputs do not.
   [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
-    const bool linear = std::ranges::any_of(model.effects, [this](const Effect& effect) {
+    if (prior_ == nullptr || prior_->empty() || model.effects.empty()) return nullptr;
+    const bool of_the_body = std::ranges::any_of(model.effects, [this](const Effect& effect) {
       const EffectKind& kind = effect_kind(effect.kind);
-      return kind.stage(effect) == Stage::kInputTime || !kind.own_poles(effect, all_).empty();
+      return kind.stage(effect) == Stage::kInputTime || kind.through_body(effect) ||
+             !kind.own_poles(effect, all_).empty();
     });
-    return linear || model.effects.empty() || prior_ == nullptr || prior_->empty() ? nullptr
-                                                                                   : prior_;
+    return of_the_body ? nullptr : prior_;
   }
 
   const Signals& all_;
