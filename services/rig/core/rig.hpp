@@ -62,7 +62,7 @@ struct RigTruth {
   double platform_position_m, platform_velocity_m_s, platform_acceleration_m_s2;
   double theta_rad, omega_rad_s;
   double feedthrough_force_n;  ///< f'_b: force of the body on a stick held at 0
-  double motor_force_n;        ///< applied, after limits and lag
+  double motor_force_n;        ///< after limits and lag; when it acts: drive(), step()
   double volitional_force_n;   ///< applied, after its bound
   double hand_force_n;         ///< through the load cell, without noise
 };
