@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/settings/section.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -15,14 +13,10 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/settings/nearest.hpp"
+#include "services/settings/yaml_document.hpp"
 
 namespace stillhand::settings {
 namespace {
-
-std::string place_of(const YAML::Mark& mark, const std::string& source_name) {
-  if (mark.is_null()) return source_name;
-  return source_name + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
-}
 
 // Settings have three levels and some tens of keys.  An alias inside its own anchor would never
 // end, and aliases can multiply a part at every level.
@@ -113,16 +107,7 @@ std::string got_of(const Entry& entry) {
 }
 
 Entry parse_text(const std::string& yaml, const std::string& source_name) {
-  YAML::Node root;
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() > 1) {
-      throw ConfigError(source_name, std::to_string(documents.size()) + " documents", "one");
-    }
-    if (!documents.empty()) root = documents.front();
-  } catch (const YAML::Exception& error) {
-    throw ConfigError(place_of(error.mark, source_name), error.msg, "well-formed YAML");
-  }
+  const YAML::Node root = one_document(yaml, source_name);
   std::size_t count = 0;
   Entry top = converted(root, source_name, 0, count);
   if (top.kind == Entry::Kind::kNull) top.kind = Entry::Kind::kMap;

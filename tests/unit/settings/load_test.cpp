@@ -131,7 +131,14 @@ TEST(LoadTest, MalformedYamlIsRefusedWithItsPlace) {
   EXPECT_THAT(message_of("mass_kg: 1\n\tname: a\n"), HasSubstr("rig.yaml:2:"));
   EXPECT_THAT(message_of("- 1\n- 2\n"), HasSubstr("got a list, want a map of settings"));
   EXPECT_THAT(message_of("just words\n"), HasSubstr("want a map of settings"));
-  EXPECT_THAT(message_of("mass_kg: 1\n---\nmass_kg: 2\n"), HasSubstr("got 2 documents, want one"));
+  EXPECT_THAT(message_of("mass_kg: 1\n---\nmass_kg: 2\n"),
+              HasSubstr("rig.yaml:2:1: got a second document, want one"));
+}
+
+// For each of these, YAML::LoadAll() takes memory and never returns.
+TEST(LoadTest, ASignThatBeginsNoValueIsRefused) {
+  EXPECT_THAT(message_of(", mass_kg: 1\n"), HasSubstr("rig.yaml:1:1: got a sign that begins no"));
+  EXPECT_THAT(message_of("mass_kg: 1\n---\n, b\n"), HasSubstr("got a second document"));
 }
 
 class LoadFileTest : public testing::Test {
