@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace stillhand::device_rig::moteus {
 namespace {
@@ -19,11 +21,24 @@ void put_query(FrameWriter& writer) noexcept {
   writer.read(Resolution::kInt16, kMilliseconds, 1);
 }
 
+// A register that counts; nothing for a number that no int holds, which a float can be.
+std::optional<int> whole_number(double value) noexcept {
+  constexpr double kMost = std::numeric_limits<int>::max();
+  if (!(std::abs(value) <= kMost)) return std::nullopt;
+  return static_cast<int>(value);
+}
+
+// The drive's mode or fault: without a number, the reply is not whole.
+void take_whole(double value, int& to, unsigned bit, unsigned& seen) noexcept {
+  const auto number = whole_number(value);
+  to = number.value_or(to);
+  if (number) seen |= bit;
+}
+
 void take(const FrameReader::Item& item, DriveReply& reply, unsigned& seen) noexcept {
   switch (item.address) {
     case kMode:
-      reply.mode = static_cast<int>(item.value);
-      seen |= 1u;
+      take_whole(item.value, reply.mode, 1u, seen);
       break;
     case kPosition:
       reply.position_rev = item.value;
@@ -44,8 +59,7 @@ void take(const FrameReader::Item& item, DriveReply& reply, unsigned& seen) noex
       reply.temperature_c = item.value;
       break;
     case kFault:
-      reply.fault = static_cast<int>(item.value);
-      seen |= 16u;
+      take_whole(item.value, reply.fault, 16u, seen);
       break;
     case kAnalog1:
       reply.analog1 = item.value;
@@ -54,7 +68,7 @@ void take(const FrameReader::Item& item, DriveReply& reply, unsigned& seen) noex
       reply.analog2 = item.value;
       break;
     case kMilliseconds:
-      reply.milliseconds = static_cast<int>(item.value);
+      reply.milliseconds = whole_number(item.value).value_or(0);
       break;
     default:
       break;

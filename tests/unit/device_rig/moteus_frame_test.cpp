@@ -41,6 +41,21 @@ TEST(FrameReaderTest, ReadsTheReplyThatTheMakerPrints) {
   EXPECT_EQ(reply.fault, 0);
 }
 
+// The same reply, its mode and its fault as floats.
+TEST(FrameReaderTest, AModeOrFaultThatIsNoNumberMakesNoWholeReply) {
+  const auto reply_with = [](const std::string& mode, const std::string& fault) {
+    return read_reply(bytes("2d00" + mode + "27015000000170ff220d18142d0f" + fault));
+  };
+  const std::string ten = "00002041";
+  const std::string none = "00000000";
+  EXPECT_TRUE(reply_with(ten, none).whole);
+  EXPECT_EQ(reply_with(ten, none).mode, 10);
+  for (const std::string wrong : {"0000c07f", "0000807f", "000080ff", "0000004f"}) {  // NaN to 2^31
+    EXPECT_FALSE(reply_with(wrong, none).whole) << wrong;
+    EXPECT_FALSE(reply_with(ten, wrong).whole) << wrong;
+  }
+}
+
 TEST(FrameWriterTest, NotANumberIsTheMostNegativeInteger) {
   Frame frame;
   FrameWriter sut(frame);
