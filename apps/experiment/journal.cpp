@@ -32,10 +32,6 @@ constexpr std::array<std::pair<const char*, EntryKind>, 9> kKinds{
      {"session ended", EntryKind::kSessionEnded},
      {"excluded", EntryKind::kExcluded}}};
 
-std::int64_t whole_number(const settings::JsonEntry& entry) {
-  return static_cast<std::int64_t>(entry.number());
-}
-
 EntryKind kind_of(const settings::JsonEntry& entry) {
   for (const auto& [name, kind] : kKinds) {
     if (entry.text() == name) return kind;
@@ -51,13 +47,13 @@ Entry entry_of(const std::string& line, const std::string& place) {
   Entry entry;
   entry.kind = kind_of(root.at("what"));
   entry.time = root.at("time").text();
-  if (root.has("session")) entry.session = whole_number(root.at("session"));
-  if (root.has("step")) entry.step = whole_number(root.at("step"));
-  if (root.has("trial")) entry.trial = whole_number(root.at("trial"));
+  if (root.has("session")) entry.session = root.at("session").whole();
+  if (root.has("step")) entry.step = root.at("step").whole();
+  if (root.has("trial")) entry.trial = root.at("trial").whole();
   if (root.has("label")) entry.label = root.at("label").text();
   if (root.has("completed")) entry.completed = root.at("completed").boolean();
   if (root.has("dwell_ratio")) entry.dwell_ratio = root.at("dwell_ratio").number();
-  if (root.has("answer")) entry.answer = whole_number(root.at("answer"));
+  if (root.has("answer")) entry.answer = root.at("answer").whole();
   if (root.has("digest")) entry.digest = root.at("digest").text();
   if (root.has("text")) entry.text = root.at("text").text();
   return entry;

@@ -43,7 +43,7 @@ std::uint64_t order_seed_of(const std::string& sealed, const std::string& origin
   while (!digits.empty() && digits.back() == '\n') digits.pop_back();
   const auto json = settings::parsed_json(bytes_of(digits, origin), origin, kWanted);
   const settings::JsonEntry root(json, origin);
-  return static_cast<std::uint64_t>(root.at("order_seed").number());
+  return root.at("order_seed").count();
 }
 
 std::string opened_text(const Design& design, const Assignment& assignment) {

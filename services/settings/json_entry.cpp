@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "services/contract/config_error.hpp"
@@ -37,6 +38,13 @@ double JsonEntry::number() const {
 std::size_t JsonEntry::count() const {
   if (!json_.is_number_unsigned()) refuse("a whole number from 0");
   return json_.get<std::size_t>();
+}
+
+std::int64_t JsonEntry::whole() const {
+  constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const bool fits = !json_.is_number_unsigned() || json_.get<std::uint64_t>() <= kLargest;
+  if (!json_.is_number_integer() || !fits) refuse("a whole number");
+  return json_.get<std::int64_t>();
 }
 
 bool JsonEntry::boolean() const {

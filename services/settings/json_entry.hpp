@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,6 +27,7 @@ class JsonEntry {
   [[nodiscard]] bool is_null() const { return json_.is_null(); }
   [[nodiscard]] double number() const;  ///< finite
   [[nodiscard]] std::size_t count() const;
+  [[nodiscard]] std::int64_t whole() const;  ///< a whole number of either sign
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;
   /// Entries of an array with `least` to `most` entries.

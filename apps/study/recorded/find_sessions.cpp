@@ -90,9 +90,12 @@ std::string exclusion_of(const fs::path& participant) {
   for (std::string line; std::getline(journal, line);) {
     // A crash may have cut the last line.
     const auto entry = nlohmann::json::parse(line, nullptr, false);
-    if (entry.is_object() && entry.value("what", "") == "excluded") {
-      reason = entry.value("text", "without a reason");
-    }
+    const auto text = [&entry](const char* key) -> std::string {
+      const auto found = entry.find(key);
+      return found != entry.end() && found->is_string() ? *found : "";
+    };
+    if (text("what") != "excluded") continue;
+    reason = text("text").empty() ? "without a reason" : text("text");
   }
   return reason;
 }

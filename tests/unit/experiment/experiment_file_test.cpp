@@ -82,10 +82,13 @@ TEST(ExperimentFileTest, ACodeIsACodeAndNeverAName) {
 TEST(ExperimentFileTest, TheSealedFileGivesTheSeedBackAndDoesNotShowIt) {
   const std::string sealed = sealed_text(424242);
   EXPECT_EQ(order_seed_of(sealed, "s"), 424242u);
+  const std::uint64_t longest = 18446744073709551557u;  // no double holds it
+  EXPECT_EQ(order_seed_of(sealed_text(longest), "s"), longest);
   EXPECT_EQ(sealed.find("424242"), std::string::npos);
   EXPECT_NE(sealed, sealed_text(424242));  // a nonce: equal seeds do not show
   EXPECT_THROW(order_seed_of("zz", "s"), ConfigError);
   EXPECT_THROW(order_seed_of("", "s"), ConfigError);
+  EXPECT_THROW(order_seed_of("7b226f726465725f73656564223a2d317d", "s"), ConfigError);  // of -1
 }
 
 TEST(ExperimentFileTest, TheOpenedFileNamesTheConditionOfEveryLabelAndTrial) {

@@ -212,7 +212,9 @@ TEST_F(ProgressTest, AJournalThatWasChangedByHandIsRefused) {
   EXPECT_THROW(progress({{.kind = EntryKind::kBreakOver, .step = 0}}), ConfigError);
   EXPECT_THROW(progress({{.kind = EntryKind::kRepeatAsked, .step = 99}}), ConfigError);
   for (const std::string line : {"{}", "{\"time\":\"t\",\"what\":\"dance\"}", "x",
-                                 "{\"time\":\"t\",\"what\":\"note\",\"name\":\"Ann\"}"}) {
+                                 "{\"time\":\"t\",\"what\":\"note\",\"name\":\"Ann\"}",
+                                 "{\"time\":\"t\",\"what\":\"note\",\"step\":1.5}",
+                                 "{\"time\":\"t\",\"what\":\"note\",\"step\":1e300}"}) {
     try {
       entries_of(line_of(session(1)) + "\n" + line + "\n", "P07/journal.jsonl");
       ADD_FAILURE() << line;

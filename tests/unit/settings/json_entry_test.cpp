@@ -32,6 +32,7 @@ class JsonEntryTest : public testing::Test {
   const JsonEntry::Json json_ = parsed_json(R"({
     "rate": 50.5, "order": 4, "minus": -4, "whole": 3.0, "name": "left", "empty": "",
     "on": true, "none": null, "list": [1, 2.5, -3], "mixed": [1, "two"], "nothing": [],
+    "largest": 9223372036854775807, "larger": 9223372036854775808,
     "body": {"modes": [{"hz": 2.5}, {"hz": "fast"}]}
   })",
                                             "model.json", "JSON of a model");
@@ -47,7 +48,9 @@ TEST_F(JsonEntryTest, EveryTypeIsReadAsItself) {
   EXPECT_EQ(sut_.at("rate").number(), 50.5);
   EXPECT_EQ(sut_.at("order").number(), 4.0);
   EXPECT_EQ(sut_.at("order").count(), 4u);
+  EXPECT_EQ(sut_.at("order").whole(), 4);
   EXPECT_EQ(sut_.at("minus").number(), -4.0);
+  EXPECT_EQ(sut_.at("minus").whole(), -4);
   EXPECT_EQ(sut_.at("name").text(), "left");
   EXPECT_EQ(sut_.at("empty").text(), "");
   EXPECT_TRUE(sut_.at("on").boolean());
@@ -60,6 +63,7 @@ TEST_F(JsonEntryTest, EveryTypeIsReadAsItself) {
 TEST_F(JsonEntryTest, AWrongTypeIsRefusedWithPathAndContent) {
   const auto number = [](const JsonEntry& e) { (void)e.number(); };
   const auto count = [](const JsonEntry& e) { (void)e.count(); };
+  const auto whole = [](const JsonEntry& e) { (void)e.whole(); };
   const auto boolean = [](const JsonEntry& e) { (void)e.boolean(); };
   const auto text = [](const JsonEntry& e) { (void)e.text(); };
   EXPECT_THAT(error_of("name", number), StartsWith("model.json.name: got \"left\", want "));
@@ -67,6 +71,9 @@ TEST_F(JsonEntryTest, AWrongTypeIsRefusedWithPathAndContent) {
   EXPECT_THAT(error_of("on", number), StartsWith("model.json.on: got true, want "));
   EXPECT_THAT(error_of("minus", count), StartsWith("model.json.minus: got -4, want "));
   EXPECT_THAT(error_of("whole", count), StartsWith("model.json.whole: got 3.0, want "));
+  EXPECT_THAT(error_of("whole", whole), StartsWith("model.json.whole: got 3.0, want "));
+  EXPECT_EQ(error_of("largest", whole), "accepted");
+  EXPECT_THAT(error_of("larger", whole), StartsWith("model.json.larger: got 9223372036854775808"));
   EXPECT_THAT(error_of("order", boolean), StartsWith("model.json.order: got 4, want "));
   EXPECT_THAT(error_of("rate", text), StartsWith("model.json.rate: got 50.5, want "));
 }

@@ -87,7 +87,8 @@ TEST_F(FindSessionsTest, AnExcludedParticipantHasTheReasonOfTheJournal) {
   (void)session("e/participants/P01/sessions/01", of("P01", "01"));
   (void)session("e/participants/P02/sessions/01", of("P02", "01"));
   std::ofstream(folder_ / "e/participants/P02/journal.jsonl")
-      << "{\"what\":\"session began\"}\n{\"what\":\"excluded\",\"text\":\"felt sick\"}\n{\"wh";
+      << "{\"what\":\"session began\"}\n{\"what\":\"excluded\",\"text\":\"felt sick\"}\n"
+         "{\"what\":7}\n[]\n{\"wh";
   const auto found = find_sessions({folder_ / "e"});
   EXPECT_EQ(found.at(0).excluded, "");
   EXPECT_EQ(found.at(1).excluded, "felt sick");
