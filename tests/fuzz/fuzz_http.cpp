@@ -30,12 +30,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   using namespace stillhand::dashboard;
   namespace http = boost::beast::http;
   static const Pages pages = empty_pages();
-  static const Access access("token");
+  static const Access access("token-to-act", "token-to-watch");
   bool acted = false;
+  bool stopped = false;
   const Served served{[](std::optional<double>) { return std::string("{}"); },
                       [] { return std::string("{}"); },
-                      [&](std::string_view, const std::string&) {
-                        acted = true;
+                      [&](std::string_view path, const std::string&) {
+                        (path == "/emergency-stop" ? stopped : acted) = true;
                         return Outcome{};
                       }};
   http::request_parser<http::string_body> parser;
@@ -51,8 +52,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
           view(request[http::field::origin]), view(request[http::field::authorization]),
           view(request[http::field::cookie])},
          pages, access, served);
-  // No request acts that does not show the token.
+  // No request acts that does not show the token for it.
   const std::string_view all(reinterpret_cast<const char*>(bytes), size);
-  if (acted && all.find("token") == std::string_view::npos) std::abort();
+  const bool may_act = all.find("token-to-act") != std::string_view::npos;
+  const bool may_stop = may_act || all.find("token-to-watch") != std::string_view::npos;
+  if ((acted && !may_act) || (stopped && !may_stop)) std::abort();
   return 0;
 }

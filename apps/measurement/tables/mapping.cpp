@@ -131,8 +131,9 @@ double check_rate_hz(double rate_hz, const std::string& place) {
   throw ConfigError(place, fmt::format("{}", rate_hz), "a rate in Hz, for example 1000");
 }
 
-Mapping read_mapping(const std::string& path) {
-  const settings::Entry top = settings::parse_file(path);
+namespace {
+
+Mapping mapping_of(const settings::Entry& top) {
   settings::SectionReader reader(top, "mapping");
   Mapping out;
   if (const settings::Entry* map = reader.find("map")) {
@@ -161,6 +162,14 @@ Mapping read_mapping(const std::string& path) {
   reader.refuse_unknown();
   return out;
 }
+
+}  // namespace
+
+Mapping parse_mapping(const std::string& yaml, const std::string& origin) {
+  return mapping_of(settings::parse_text(yaml, origin));
+}
+
+Mapping read_mapping(const std::string& path) { return mapping_of(settings::parse_file(path)); }
 
 std::string mapping_yaml(const Mapping& mapping, const std::string& recording) {
   std::string text = "# Columns of " + in_one_line(recording) + ", for --map-file.\n";

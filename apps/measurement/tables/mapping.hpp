@@ -44,8 +44,10 @@ char parse_decimal(const std::string& text, const std::string& place);
 /// @throws stillhand::ConfigError unless positive and finite
 double check_rate_hz(double rate_hz, const std::string& place);
 
-/// A mapping file: YAML with the keys map (a list of texts as above), rate_hz, separator, decimal.
+/// A mapping as YAML: the keys map (a list of texts as above), rate_hz, separator, decimal.
 /// @throws stillhand::ConfigError with its place
+Mapping parse_mapping(const std::string& yaml, const std::string& origin);
+/// parse_mapping() of a file.
 Mapping read_mapping(const std::string& path);
 /// The reverse, with a first line that names the recording.
 std::string mapping_yaml(const Mapping& mapping, const std::string& recording);

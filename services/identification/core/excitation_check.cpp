@@ -3,8 +3,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <ranges>
+#include <numeric>
 #include <sstream>
 
 #include "services/contract/config_error.hpp"
@@ -47,7 +48,9 @@ int persistent_order(const std::vector<double>& a) {
     const Eigen::VectorXd singular = signal::singular_values(r.topLeftCorner(n, n));
     return singular(n - 1) > kLeastSingularRatio * singular(0);
   };
-  const auto lags = std::views::iota(1, kMostLags + 1);
+  // Not std::views::iota: clang 14 (tests/fuzz) does not compile that of GCC 12.
+  std::array<int, kMostLags> lags{};
+  std::iota(lags.begin(), lags.end(), 1);
   return static_cast<int>(std::ranges::partition_point(lags, independent) - lags.begin());
 }
 
