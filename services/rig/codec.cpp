@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/rig/codec.hpp"
 
+#include <limits>
+
 namespace stillhand::rig {
+namespace {
+
+// Ticks since the sample that a message answers; a message can carry any number, and where the
+// difference does not fit, the end of the type is as unusable.
+Tick age_ticks(Tick now, Tick answered) noexcept {
+  Tick age = 0;
+  if (!__builtin_sub_overflow(now, answered, &age)) return age;
+  return answered < 0 ? std::numeric_limits<Tick>::max() : std::numeric_limits<Tick>::min();
+}
+
+}  // namespace
 
 stillhand_msgs::RawSample to_idl(const RigOutput& output, Tick tick) {
   stillhand_msgs::RawSample message;
@@ -52,7 +65,7 @@ RigInput make_input(Tick tick, const stillhand_msgs::PlatformCommand* command,
   put_motor(input, tick, motor, motor_permitted);
   if (volition != nullptr) {
     input.operator_valid = true;
-    input.operator_age_ticks = tick - volition->tick();
+    input.operator_age_ticks = age_ticks(tick, volition->tick());
     input.operator_force_n = volition->force_n();
   }
   input.pegged = pegged;
@@ -64,7 +77,7 @@ void put_motor(RigInput& input, Tick tick, const stillhand_msgs::MotorCommand* m
   input.motor_valid = motor != nullptr;
   input.motor_permitted = permitted;
   if (motor == nullptr) return;
-  input.motor_age_ticks = tick - motor->tick();
+  input.motor_age_ticks = age_ticks(tick, motor->tick());
   input.motor_force_n = motor->force_n();
 }
 

@@ -107,6 +107,17 @@ TEST(RigCodecTest, AnInputWithoutMessagesIsInvalidInEachPart) {
   EXPECT_TRUE(input.motor_permitted);
 }
 
+TEST(RigCodecTest, AnAgeThatDoesNotFitIsTooOld) {
+  stillhand_msgs::MotorCommand motor;
+  stillhand_msgs::OperatorForce volition;
+  motor.tick(std::numeric_limits<std::int64_t>::min());
+  volition.tick(-5);
+  constexpr Tick kLast = std::numeric_limits<Tick>::max();
+  const auto input = rig::make_input(kLast - 2, nullptr, &motor, &volition, false, true);
+  EXPECT_EQ(input.motor_age_ticks, kLast);
+  EXPECT_EQ(input.operator_age_ticks, kLast);
+}
+
 TEST(SensingCodecTest, EveryFieldOfARawSampleReachesTheCore) {
   stillhand_msgs::RawSample message;
   message.tick(7);

@@ -17,6 +17,11 @@
 /// Parts of property tests: draws that try the worst, and the shortest sequence that fails.
 namespace stillhand::support {
 
+/// A tick and some more; beyond an end of the type it goes on from the other end.
+constexpr Tick moved(Tick tick, Tick by) noexcept {
+  return static_cast<Tick>(static_cast<std::uint64_t>(tick) + static_cast<std::uint64_t>(by));
+}
+
 /// Draws for one sequence; the seed determines all of them.
 class Hostile {
  public:
@@ -56,9 +61,10 @@ class Hostile {
   Tick tick(Tick next) {
     if (!worst()) return next;
     using Limits = std::numeric_limits<Tick>;
-    const std::array ticks{next - 1,      next - 2,       next + 1,          next + 49,
-                           next + 51,     next + 100'000, Tick{0},           Limits::min(),
-                           Limits::max(), Tick{-1},       Limits::max() - 1, next / 2};
+    const std::array ticks{moved(next, -1), moved(next, -2),   moved(next, 1),
+                           moved(next, 49), moved(next, 51),   moved(next, 100'000),
+                           Tick{0},         Limits::min(),     Limits::max(),
+                           Tick{-1},        Limits::max() - 1, next / 2};
     return ticks[index(ticks.size())];
   }
   bool worst() { return worst_share_ > 0.0 && chance(worst_share_); }

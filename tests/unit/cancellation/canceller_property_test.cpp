@@ -110,7 +110,7 @@ std::vector<PropertyStep> steps_of(std::uint64_t seed) {
     // Mostly the sample clock goes on from where it is, wherever that is.
     tick = step.input.tick < std::numeric_limits<Tick>::max() && draw.chance(0.5)
                ? step.input.tick + 1
-               : tick + 1;
+               : support::moved(tick, 1);
   }
   return steps;
 }
