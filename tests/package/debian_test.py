@@ -28,7 +28,8 @@ CORES = ("signal", "statistics", "motion_core", "rig_core", "sensing_core", "ide
 PROGRAMS = {"stillhand", "stillhand-permissions", "stillhand-device_rig",
             *(f"stillhand-{service}" for service in lab_process.SERVICES)}
 SUBVERBS = {"deploy-generate", "deploy-check",
-            *(f"experiment-{verb}" for verb in ("new", "run", "status", "exclude", "unblind"))}
+            *(f"experiment-{verb}" for verb in ("new", "run", "status", "exclude", "unblind", "report",
+                                         "export"))}
 # Makes the copy of this system at $1 with the packages of $2, and hides $3, $4, ...; then stays until its input ends.
 INSTALL = r"""
 set -e
