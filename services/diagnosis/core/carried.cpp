@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kThirds = 3;  // of a single recording
 constexpr double kHelps = 0.01;     // of a recording's error, as SearchOptions::least_fall
+constexpr double kSpreads[] = {0.1, 0.3, 1.0, 3.0};  // of a prior, of the RMS gain in the band
 constexpr int kCarryIterations = 30;
 constexpr int kPartIterations = 3;
 
@@ -139,16 +140,17 @@ class Carrying {
   }
 
  private:
-  // An effect that is linear in the inputs takes a part of the body's response over, and one that
-  // passes through the body excites it where the inputs do not.
+  // Only next to terms that are added to its output is the body what the baseline is: a map or a
+  // gain scales it, a delay or a mode takes a part of its response over, and a path through it
+  // excites it where the inputs do not.
   [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
     if (prior_ == nullptr || prior_->empty() || model.effects.empty()) return nullptr;
-    const bool of_the_body = std::ranges::any_of(model.effects, [this](const Effect& effect) {
+    const bool beside = std::ranges::all_of(model.effects, [this](const Effect& effect) {
       const EffectKind& kind = effect_kind(effect.kind);
-      return kind.stage(effect) == Stage::kInputTime || kind.through_body(effect) ||
-             !kind.own_poles(effect, all_).empty();
+      return kind.stage(effect) == Stage::kTerm && !kind.through_body(effect) &&
+             kind.own_poles(effect, all_).empty();
     });
-    return of_the_body ? nullptr : prior_;
+    return beside ? prior_ : nullptr;
   }
 
   const Signals& all_;
@@ -186,18 +188,25 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
   return shared;
 }
 
-// With the prior, unless that predicts parts of the recording worse from the others: then their
-// samples do determine the body there.
+// With the narrowest prior that predicts parts of the recording as well from the others as a fit
+// without one; without one, where the samples contradict each.
 // @param fitted  the shared part is the whole, as it was found
+// @param priors  from narrow to wide; they stay as long as `carrying`
 Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
-                const ResponsePrior& prior) {
+                const std::vector<ResponsePrior>& priors) {
   const Model plain = fitted ? shared : carrying.refitted(shared, baseline);
-  const double error = carrying.errors(plain).rmse;
-  carrying.assume(prior);
-  if (!carrying.has_prior(shared)) return plain;
-  Model with = carrying.refitted(shared, baseline);
-  if (carrying.errors(with).rmse * (1.0 - kHelps) <= error) return with;
-  carrying.assume_nothing();
+  double error = std::numeric_limits<double>::quiet_NaN();
+  for (const ResponsePrior& prior : priors) {
+    carrying.assume(prior);
+    if (!carrying.has_prior(shared)) return plain;
+    Model with = carrying.refitted(shared, baseline);
+    const double error_with = carrying.errors(with).rmse;
+    carrying.assume_nothing();
+    if (std::isnan(error)) error = carrying.errors(plain).rmse;
+    if (!(error_with <= error)) continue;
+    carrying.assume(prior);
+    return with;
+  }
   return plain;
 }
 
@@ -285,11 +294,14 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
   carried.model = baseline;
   if (!found.effects.empty()) {
     const Signals masked = bursts_masked(found, signals);
-    const ResponsePrior prior(baseline.body, carried.bands, baseline.rate_hz,
-                              rms_error(found, masked));
+    std::vector<ResponsePrior> priors;
+    for (const double spread : kSpreads) {
+      priors.emplace_back(baseline.body, carried.bands, baseline.rate_hz, rms_error(found, masked),
+                          spread);
+    }
     Carrying carrying(signals, masked, blocks);
     const Model shared = shared_part(found, signals, blocks, carried.left_out);
-    carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, prior);
+    carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
     keep_stable(carried, signals, baseline.body, carrying);
     PartErrors errors = carrying.errors(carried.model);
     while (const auto effect = idle(carried.model, errors, baseline.body, carrying)) {

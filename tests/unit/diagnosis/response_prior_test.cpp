@@ -36,21 +36,21 @@ const Model kAssumed = model_of({0.5, -0.4, 0.1}, {1.0, -1.5, 0.6});
 const Model kOther = model_of({0.6, -0.3, 0.2}, {1.0, -1.4, 0.55});
 
 TEST(ResponsePriorTest, TheBodyThatIsAssumedCostsNothing) {
-  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3);
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3, 0.1);
   EXPECT_FALSE(sut.empty());
   EXPECT_EQ(sut.error(kAssumed.body), 0.0);
   EXPECT_GT(sut.error(kOther.body), 0.0);
 }
 
 TEST(ResponsePriorTest, WhereEveryFrequencyIsExcitedNothingIsAssumed) {
-  const ResponsePrior sut(kAssumed.body, {{"u", 0.0, 0.5 * kRate_hz}}, kRate_hz, 0.3);
+  const ResponsePrior sut(kAssumed.body, {{"u", 0.0, 0.5 * kRate_hz}}, kRate_hz, 0.3, 0.1);
   EXPECT_TRUE(sut.empty());
   EXPECT_EQ(sut.error(kOther.body), 0.0);
 }
 
 TEST(ResponsePriorTest, TheSquaresGrowWithTheNoise) {
-  const ResponsePrior once(kAssumed.body, kBands, kRate_hz, 0.3);
-  const ResponsePrior twice(kAssumed.body, kBands, kRate_hz, 0.6);
+  const ResponsePrior once(kAssumed.body, kBands, kRate_hz, 0.3, 0.1);
+  const ResponsePrior twice(kAssumed.body, kBands, kRate_hz, 0.6, 0.1);
   EXPECT_NEAR(twice.error(kOther.body), 4.0 * once.error(kOther.body),
               1e-9 * once.error(kOther.body));
 }
@@ -60,7 +60,7 @@ TEST(ResponsePriorTest, TheSquaresGrowWithTheNoise) {
 TEST(ResponsePriorTest, ATenthOfTheGainCostsTheNoiseOnEachLine) {
   const Model gain = model_of({2.0}, {1.0});
   const Model higher = model_of({2.2}, {1.0});
-  const ResponsePrior sut(gain.body, kBands, kRate_hz, 0.3);
+  const ResponsePrior sut(gain.body, kBands, kRate_hz, 0.3, 0.1);
   const double lines = sut.error(higher.body) / (0.3 * 0.3);
   EXPECT_NEAR(lines, std::round(lines), 1e-9);
   EXPECT_GT(lines, 20.0);
@@ -69,7 +69,7 @@ TEST(ResponsePriorTest, ATenthOfTheGainCostsTheNoiseOnEachLine) {
 
 // The products are those of the squares' derivative, here by differences of them.
 TEST(ResponsePriorTest, TheColumnsAreTheDerivatives) {
-  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3);
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 0.3, 0.1);
   const Eigen::VectorXd at = packed(kOther);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(at.size() + 1, at.size() + 1);
   sut.add(kOther.body, gram);
@@ -119,12 +119,12 @@ Model fitted(double factor, const ResponsePrior* prior) {
 }
 
 TEST(ResponsePriorTest, WhatTheSamplesDoNotDetermineStaysAsItWasAssumed) {
-  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 1.0);
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 1.0, 0.1);
   EXPECT_LT(sut.error(fitted(1.0, &sut).body), 0.2 * sut.error(fitted(1.0, nullptr).body));
 }
 
 TEST(ResponsePriorTest, WhatTheSamplesDetermineIsNotHeldBack) {
-  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 1.0);
+  const ResponsePrior sut(kAssumed.body, kBands, kRate_hz, 1.0, 0.1);
   EXPECT_NEAR(gain_at(fitted(1.2, &sut), 1.2), 1.2 * gain_at(kAssumed, 1.2),
               0.036 * gain_at(kAssumed, 1.2));
 }

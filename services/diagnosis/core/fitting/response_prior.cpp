@@ -11,7 +11,6 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t kLines = 32;  // an input
 constexpr double kLowest = 0.1;     // of the lower edge of the band
-constexpr double kLikely = 0.1;     // standard deviation, of the RMS gain in the band
 
 Complex polynomial(const std::vector<double>& coefficients, const Complex& step) {
   Complex sum = 0.0;
@@ -48,11 +47,11 @@ double gain_in_band(const Body& body, std::size_t input, const ExcitedBand& band
 }  // namespace
 
 ResponsePrior::ResponsePrior(const Body& body, const std::vector<ExcitedBand>& bands,
-                             double rate_hz, double noise) {
+                             double rate_hz, double noise, double spread) {
   for (std::size_t input = 0; input < body.numerators.size(); ++input) {
     const ExcitedBand& band = bands.at(input);
     if (!(band.low_hz < band.high_hz)) continue;
-    const double likely = kLikely * gain_in_band(body, input, band, rate_hz);
+    const double likely = spread * gain_in_band(body, input, band, rate_hz);
     if (!(likely > 0.0)) continue;
     for (std::size_t i = 0; i < kLines; ++i) {
       const double at_hz = frequency_of(i, band, rate_hz);

@@ -19,8 +19,9 @@ class ResponsePrior {
   /// @param bands    [inputs] where the samples alone decide
   /// @param rate_hz  [Hz] of the model
   /// @param noise    [unit of the output] root mean square of what the fit leaves
+  /// @param spread   [-] standard deviation of the response, of its RMS in the band
   ResponsePrior(const Body& body, const std::vector<ExcitedBand>& bands, double rate_hz,
-                double noise);
+                double noise, double spread);
 
   /// True where the input excites every frequency: no terms.
   [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
