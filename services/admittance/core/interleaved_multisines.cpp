@@ -74,6 +74,7 @@ signal::Multisine scaled(const ExcitationConfig& config, const LineShape& shape,
                          const std::vector<std::int64_t>& harmonics, std::uint64_t stream,
                          double accel_bound, double position_bound) {
   std::vector<double> amplitudes;
+  amplitudes.reserve(harmonics.size());
   for (const std::int64_t k : harmonics) {
     amplitudes.push_back(amplitude(shape, static_cast<double>(k) / config.period_s));
   }

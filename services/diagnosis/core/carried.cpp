@@ -194,7 +194,7 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
 // @param priors  from narrow to wide; they stay as long as `carrying`
 Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
                 const std::vector<ResponsePrior>& priors) {
-  const Model plain = fitted ? shared : carrying.refitted(shared, baseline);
+  Model plain = fitted ? shared : carrying.refitted(shared, baseline);
   double error = std::numeric_limits<double>::quiet_NaN();
   for (const ResponsePrior& prior : priors) {
     carrying.assume(prior);
