@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "services/contract/config_error.hpp"
@@ -13,13 +14,15 @@ namespace stillhand::study {
 namespace {
 
 constexpr double kPowers[]{0.8, 0.9};
-// Below it a paired t-test needs more than 80 000 participants: no study has them.
+// Below it a paired t-test needs more than 80,000 participants: no study has them.
 constexpr double kSmallestEffect = 0.01;
+constexpr double kLargestEffect = 100.0;  // that the noncentral t is computed for
 
 Needed needed(const std::string& comparison, std::size_t metric, const char* effect, double dz,
               double alpha) {
   Needed out{comparison, metric, effect, dz, {}};
-  if (!(std::abs(dz) >= kSmallestEffect && std::abs(dz) <= 100.0)) return out;
+  if (!(std::abs(dz) >= kSmallestEffect)) return out;
+  dz = std::clamp(dz, -kLargestEffect, kLargestEffect);
   for (const double wanted : kPowers) {
     const std::size_t n = statistics::subjects_for_power(dz, wanted, alpha);
     out.at.push_back({wanted, n, statistics::paired_t_power(dz, n, alpha)});

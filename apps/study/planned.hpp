@@ -35,7 +35,7 @@ struct Needed {
     std::size_t participants;  ///< smallest number with that power
     double power;              ///< [-] at this number, Eq. ST-11
   };
-  std::vector<At> at;  ///< empty: more than a million participants
+  std::vector<At> at;  ///< empty: more than 80,000 participants, or not a number
 };
 
 /// Number of participants of the next study for each pair and metric: for the effect of these data

@@ -14,14 +14,12 @@ import shutil
 import socket
 import subprocess
 import tarfile
-import tempfile
-import unittest
 
 import numpy
 
 import lab_process
 from lab_process import BUILD, campaign
-from sample_experiment import WRITE_SAMPLE, conduct, new_experiment, stillhand, unblind
+from sample_experiment import WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, stillhand, unblind
 
 PARTICIPANTS = 5
 VALIDATOR = "bids-validator@1.15.0"
@@ -51,13 +49,10 @@ def channels(file):
     return [row["name"] for row in rows(str(file).replace("_motion.tsv", "_channels.tsv"))]
 
 
-class ExportTestCase(unittest.TestCase):
+class ExportTestCase(SampleExperimentCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
-        cls.experiment = cls.folder / "experiment"
+        super().setUpClass()
         new_experiment(cls.experiment, PARTICIPANTS, "--title", "Five people")
         conduct(cls.experiment)
         cls.blinded = stillhand("experiment", "export", cls.experiment, "--out", cls.folder / "early", "--bids",
@@ -151,10 +146,10 @@ class BidsTest(ExportTestCase):
         self.assertEqual([row["sessions"] for row in people], ["1", "1", "2", "1", "1"])
         self.assertEqual({"".join(sorted(row["order"].split())) for row in people}, {"ABC"})
         # Journals and recordings hold "Anna", times of day and this machine's name; the set does not.
-        told = re.compile(rf"Anna|anna|sneezed|felt sick|\d\dT\d\d:|{re.escape(socket.gethostname())}")
+        personal = re.compile(rf"Anna|anna|sneezed|felt sick|\d\dT\d\d:|{re.escape(socket.gethostname())}")
         for file in self.files("**/*"):
             if file.is_file():
-                self.assertIsNone(told.search(file.read_text()), file)
+                self.assertIsNone(personal.search(file.read_text()), file)
 
     def test_the_checksums_hold_for_every_file(self):
         done = subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd=self.set, check=False,

@@ -6,17 +6,14 @@ test next to NumPy, SciPy and statsmodels on the exported tables.
 import csv
 import itertools
 import json
-import pathlib
 import shutil
-import tempfile
-import unittest
 import warnings
 
 import numpy
 from scipy import special, stats
 
 import lab_process
-from sample_experiment import WRITE_SAMPLE, conduct, new_experiment, stillhand, unblind
+from sample_experiment import WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, stillhand, unblind
 
 PARTICIPANTS = 12
 METRICS = {"rms_error_mm": "rms error [mm]", "dwell_ratio": "dwell ratio [-]", "crossover_hz": "crossover [Hz]"}
@@ -37,13 +34,10 @@ def number(text):
     return float(text) if text else numpy.nan
 
 
-class ReportTest(unittest.TestCase):
+class ReportTest(SampleExperimentCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
-        cls.experiment = cls.folder / "experiment"
+        super().setUpClass()
         # Trials of 31 s have thirds; people differ enough that a rule of 1.5 deviations finds one.
         new_experiment(cls.experiment, PARTICIPANTS, "--trial-seconds", 31, "--identify-seconds", 20,
                        most_rms_deviations=1.5, alpha=0.01)

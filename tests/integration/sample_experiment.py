@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """An experiment's folder with simulated participants, made in seconds and without a bus (write_sample_experiment.cpp)."""
+import pathlib
 import re
 import subprocess
+import tempfile
+import unittest
 
 from lab_process import BUILD, STILLHAND
 
@@ -38,3 +41,14 @@ def conduct(folder):
 
 def unblind(folder):
     stillhand("experiment", "unblind", folder, "--reason", "Anna said so")
+
+
+class SampleExperimentCase(unittest.TestCase):
+    """Cases that share a folder, and in it the place of an experiment."""
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = pathlib.Path(holder.name)
+        cls.experiment = cls.folder / "experiment"

@@ -113,8 +113,8 @@ class Past {
 
 class Stepper {
  public:
-  Stepper(const Values& arm, double step_s, double quadratic)
-      : arm_(arm), m_(matrices_of(arm)), step_s_(step_s), quadratic_(quadratic), past_(step_s) {
+  Stepper(const Values& arm, double step_s)
+      : arm_(arm), m_(matrices_of(arm)), step_s_(step_s), past_(step_s) {
     past_.add(0.0, 0.0);
   }
   // f: forces on the stick, a: acceleration; at the begin, middle and end of the step.
@@ -144,10 +144,8 @@ class Stepper {
   [[nodiscard]] State rate_at(const State& x, double force, double accel, double command) const {
     State out;
     out.q = x.v;
-    const double grip = x.q[1] - x.q[2];
-    const double extra = arm_[8] * quadratic_ * grip * grip;
     const Vector forces = -(m_.stiffness * x.q + m_.damping * x.v) - m_.carried * accel +
-                          Vector(x.muscle, -x.muscle - extra, force + extra);
+                          Vector(x.muscle, -x.muscle, force);
     out.v = forces.cwiseQuotient(m_.mass);
     out.muscle = x.muscle_rate;
     out.muscle_rate = kMuscle_rad_s * kMuscle_rad_s * (arm_[9] * command - x.muscle) -
@@ -157,33 +155,11 @@ class Stepper {
 
   Values arm_;
   Matrices m_;
-  double step_s_, quadratic_;
+  double step_s_;
   Past past_;
   State x_;
   std::int64_t count_ = 0;
 };
-
-Eigen::VectorXd scaled(const Values& arm) {
-  Eigen::VectorXd out(11);
-  for (Eigen::Index i = 0; i < 9; ++i) out[i] = std::log(arm[static_cast<std::size_t>(i)]);
-  out[9] = arm[9] / 400.0;
-  out[10] = arm[10] / 0.03;
-  return out;
-}
-
-Values values_of(const Eigen::VectorXd& numbers) {
-  Values out{};
-  for (Eigen::Index i = 0; i < 9; ++i) out[static_cast<std::size_t>(i)] = std::exp(numbers[i]);
-  out[9] = 400.0 * numbers[9];
-  out[10] = 0.03 * numbers[10];
-  return out;
-}
-
-Eigen::Vector2cd pair_at(const Values& arm, double frequency_hz, bool of_force) {
-  const Truth at = truth_at(arm, frequency_hz);
-  if (of_force) return {at.x_per_force, at.f_per_force};
-  return {at.x_per_accel, at.f_per_accel};
-}
 
 }  // namespace
 
@@ -231,7 +207,7 @@ Truth truth_at(const Values& arm, double frequency_hz) {
 }
 
 Run run(const Values& arm, const admittance::Excitation& excitation, double rate_hz,
-        std::int64_t periods, const Noise& noise, std::uint64_t seed, double quadratic_1_m) {
+        std::int64_t periods, const Noise& noise, std::uint64_t seed) {
   const auto samples = static_cast<std::size_t>(excitation.force.samples_per_period());
   const std::vector<double> force = table_of(excitation.force, 4 * samples);
   const std::vector<double> accel = table_of(excitation.motion, 4 * samples);
@@ -239,7 +215,7 @@ Run run(const Values& arm, const admittance::Excitation& excitation, double rate
   const double kept = std::exp(-kTurn * kHandCorner_hz * step_s);
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
-  Stepper stepper(arm, step_s, quadratic_1_m);
+  Stepper stepper(arm, step_s);
   Run out;
   out.record.rate_hz = rate_hz;
   out.largest_force_n = largest(force);
@@ -262,54 +238,6 @@ Run run(const Values& arm, const admittance::Excitation& excitation, double rate
     hand = kept * hand + std::sqrt(1.0 - kept * kept) * noise.hand_force_n * normal(engine);
   }
   return out;
-}
-
-Eigen::Matrix2cd covariance_at(const Values& arm, const Noise& noise, double frequency_hz,
-                               bool of_force, double amplitude, double rate_hz, double duration_s) {
-  const double step_s = 0.5 / rate_hz;
-  const double kept = std::exp(-kTurn * kHandCorner_hz * step_s);
-  const Complex delay = std::exp(Complex(0.0, -kTurn * frequency_hz * step_s));
-  // Lines are 2/N sums: white noise of variance v gives 4 v / N.
-  const double of_sensor = 4.0 / (rate_hz * duration_s);
-  const double hand = 4.0 * step_s / duration_s * noise.hand_force_n * noise.hand_force_n *
-                      (1.0 - kept * kept) / std::norm(1.0 - kept * delay);
-  const Truth at = truth_at(arm, frequency_hz);
-  const Eigen::Vector2cd by_hand(at.x_per_force, 1.0 + at.f_per_force);
-  Eigen::Matrix2cd out = hand * by_hand * by_hand.adjoint();
-  out(0, 0) += of_sensor * noise.displacement_m * noise.displacement_m;
-  out(1, 1) += of_sensor * noise.force_n * noise.force_n;
-  if (!of_force) {
-    const Eigen::Vector2cd by_input = pair_at(arm, frequency_hz, false);
-    out += of_sensor * noise.acceleration_m_s2 * noise.acceleration_m_s2 * by_input *
-           by_input.adjoint();
-  }
-  return out / (amplitude * amplitude);
-}
-
-Eigen::MatrixXd cramer_rao(const Values& arm, const admittance::Excitation& excitation,
-                           const Noise& noise, double rate_hz, std::int64_t periods) {
-  constexpr double kStep = 1e-5;
-  const Eigen::VectorXd numbers = scaled(arm);
-  const double period_s = static_cast<double>(excitation.force.samples_per_period()) / rate_hz;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(11, 11);
-  for (const bool of_force : {true, false}) {
-    const auto& sine = of_force ? excitation.force : excitation.motion;
-    for (const signal::Component& c : sine.components()) {
-      const double f_hz = static_cast<double>(c.harmonic) / period_s;
-      Eigen::Matrix2Xcd slope(2, 11);
-      for (Eigen::Index i = 0; i < 11; ++i) {
-        const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(11, i);
-        slope.col(i) = (pair_at(values_of(numbers + step), f_hz, of_force) -
-                        pair_at(values_of(numbers - step), f_hz, of_force)) /
-                       (2.0 * kStep);
-      }
-      const Eigen::Matrix2cd covariance =
-          covariance_at(arm, noise, f_hz, of_force, c.amplitude_m_s2, rate_hz,
-                        period_s * static_cast<double>(periods));
-      information += 2.0 * (slope.adjoint() * covariance.inverse() * slope).real();
-    }
-  }
-  return information.inverse();
 }
 
 }  // namespace stillhand::simulated

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <complex>
 #include <cstdint>
@@ -45,16 +44,7 @@ struct Run {
 
 /// `periods` periods after one that is left out, by fourth-order Runge and Kutta with half the
 /// sampling time.
-/// @param quadratic_1_m  q: the grip's spring pulls with k_h (d + q d^2); 0: linear
 Run run(const Values& arm, const admittance::Excitation& excitation, double rate_hz,
-        std::int64_t periods, const Noise& noise, std::uint64_t seed, double quadratic_1_m = 0.0);
-
-/// Covariance of [X/U, F/U] at a line whose input has amplitude |u|, with that noise.
-Eigen::Matrix2cd covariance_at(const Values& arm, const Noise& noise, double frequency_hz,
-                               bool of_force, double amplitude, double rate_hz, double duration_s);
-
-/// Cramer-Rao bound [11 x 11] of the scaled parameters (logarithms; k_r / 400 N/m; tau / 0.03 s).
-Eigen::MatrixXd cramer_rao(const Values& arm, const admittance::Excitation& excitation,
-                           const Noise& noise, double rate_hz, std::int64_t periods);
+        std::int64_t periods, const Noise& noise, std::uint64_t seed);
 
 }  // namespace stillhand::simulated

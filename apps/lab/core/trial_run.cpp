@@ -114,7 +114,7 @@ bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
       result_.aborted = trouble_.why_stopped(seen, "");
       break;
     case Wait::kTooLong:
-      // Who has no input cannot prepare: the first that stands still is the cause.
+      // A process without input cannot prepare: the first that stands still is the cause.
       result_.aborted = stands.empty() ? why_not_armed(seen) : stands;
       break;
   }

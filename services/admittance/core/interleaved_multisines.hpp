@@ -28,7 +28,7 @@ struct LineShape {
   }
 };
 
-/// Design of the two multisines.  README, "Settings", has the reasons of the defaults.
+/// Design of the two multisines.  The defaults are our own choice.
 struct ExcitationConfig {
   double rate_hz = 1000.0;
   double period_s = 20.0;

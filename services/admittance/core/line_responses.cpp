@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/admittance/core/line_responses.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
 
 #include "services/contract/config_error.hpp"
-#include "services/contract/units.hpp"
 #include "services/signal/spectrum.hpp"
 
 namespace stillhand::admittance {
@@ -71,12 +71,6 @@ Lines lines_at(const FreeStickRecord& record, const std::vector<double>& input,
   return out;
 }
 
-// Eq. AD-5: what a force that is held after its sample is on average, at the samples.
-Complex hold(double frequency_hz, double hold_s) {
-  const Complex angle(0.0, kTwoPi * frequency_hz * hold_s);
-  return hold_s > 0.0 ? (1.0 - std::exp(-angle)) / angle : Complex(1.0);
-}
-
 // R = a / b with noise, Eqs. AD-5 to AD-8; a and b are weighted sums of U, X and F.
 LineResponse ratio(const Lines& lines, const Eigen::RowVector3cd& above,
                    const Eigen::RowVector3cd& below) {
@@ -94,17 +88,6 @@ LineResponse ratio(const Lines& lines, const Eigen::RowVector3cd& above,
   return out;
 }
 
-JointResponse joint(const Lines& lines) {
-  JointResponse out;
-  out.frequency_hz = lines.frequency_hz;
-  const Complex input = lines.excited[0];
-  out.response = lines.excited.tail<2>() / input;
-  const Eigen::Matrix2Xcd errors =
-      (lines.noise.bottomRows<2>() - out.response * lines.noise.topRows<1>()) / input;
-  out.covariance = errors * errors.adjoint() / static_cast<double>(errors.cols());
-  return out;
-}
-
 }  // namespace
 
 LineEstimates estimate(const FreeStickRecord& record, const Excitation& excitation) {
@@ -115,17 +98,14 @@ LineEstimates estimate(const FreeStickRecord& record, const Excitation& excitati
   LineEstimates out;
   out.neighbours = 2 * (periods - 1);
   for (const signal::Component& component : excitation.force.components()) {
-    Lines lines = lines_at(record, record.motor_force_n, component.harmonic, periods);
-    lines.excited[0] *= hold(lines.frequency_hz, record.force_hold_s);
+    const Lines lines = lines_at(record, record.motor_force_n, component.harmonic, periods);
     out.admittance.push_back(ratio(lines, of_displacement, -of_force));
     out.stick_per_force.push_back(ratio(lines, of_displacement, of_input));
-    out.at_force_lines.push_back(joint(lines));
   }
   for (const signal::Component& component : excitation.motion.components()) {
     const Lines lines = lines_at(record, record.acceleration_m_s2, component.harmonic, periods);
     out.feedthrough_to_force.push_back(ratio(lines, of_force, of_input));
     out.feedthrough_to_position.push_back(ratio(lines, of_displacement, of_input));
-    out.at_motion_lines.push_back(joint(lines));
   }
   return out;
 }

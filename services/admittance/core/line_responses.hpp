@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <complex>
 #include <cstdint>
 #include <vector>
@@ -18,7 +17,6 @@ struct FreeStickRecord {
   std::vector<double> acceleration_m_s2;  ///< a [m/s^2] of the platform
   std::vector<double> displacement_m;     ///< x [m] of the stick, lever times angle
   std::vector<double> hand_force_n;       ///< f [N] of the hand on the stick (load cell)
-  double force_hold_s = 0.0;  ///< [s] 0: f_m is continuous; else held this long after its sample
 };
 
 /// A frequency response at one line with its uncertainty.
@@ -30,28 +28,19 @@ struct LineResponse {
   double coherence = 0.0;         ///< [-] of the output over one period, Eq. AD-8
 };
 
-/// Displacement and hand force per input at one line, with their joint noise.
-struct JointResponse {
-  double frequency_hz = 0.0;
-  Eigen::Vector2cd response;    ///< X/U, F/U; U = F_m [N] or A [m/s^2]
-  Eigen::Matrix2cd covariance;  ///< Eq. AD-6
-};
-
 /// What one record says at the excited lines.
 struct LineEstimates {
   std::vector<LineResponse> admittance;               ///< -X/F [m/N], the arm alone, force lines
   std::vector<LineResponse> stick_per_force;          ///< X/F_m [m/N], arm and stick, force lines
   std::vector<LineResponse> feedthrough_to_force;     ///< F/A [N s^2/m], stick free, motion lines
   std::vector<LineResponse> feedthrough_to_position;  ///< X/A [s^2], stick free, motion lines
-  std::vector<JointResponse> at_force_lines;
-  std::vector<JointResponse> at_motion_lines;
   std::int64_t neighbours = 0;  ///< nu [-] unexcited lines at each line: complex degrees of freedom
 };
 
 /// Responses at the lines of a record of P periods, Eqs. AD-4 to AD-8:
 ///
 ///   X_k = 2/N sum x[n] exp(-2 pi j k P n / N),   R = Y_k / U_k,
-///   C = 1/nu sum_j e_j e_j^H,  e_j = (Y_kj - R U_kj) / U_k,   kj = k P -+ 1 .. (P - 1)
+///   C = 1/nu sum_j |e_j|^2,  e_j = (Y_kj - R U_kj) / U_k,   kj = k P -+ 1 .. (P - 1)
 ///
 /// The lines kj of the whole record lie between the lines of the period, so no excitation and no
 /// nonlinearity that repeats with it reaches them: they hold the noise.

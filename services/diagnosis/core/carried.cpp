@@ -58,10 +58,19 @@ Model bare_of_terms(const Model& model) {
 
 // The numbers of its effects are as many as the body's order says.
 bool is_bound_to_order(const Model& model) {
-  return std::ranges::any_of(model.effects, [](const Effect& effect) {
-    const EffectKind& kind = effect_kind(effect.kind);
-    return kind.through_body(effect) || kind.stage(effect) == Stage::kFeedback;
-  });
+  return passes_through_body(model) || std::ranges::any_of(model.effects, [](const Effect& effect) {
+           return effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
+         });
+}
+
+// Only then is the body what the baseline is: a map or a gain scales it, a delay or a mode takes a
+// part of its response over, and a path through it excites it where the inputs do not.
+bool has_terms_alone(const Model& model, const Signals& signals) {
+  return !model.effects.empty() && !passes_through_body(model) &&
+         std::ranges::all_of(model.effects, [&](const Effect& effect) {
+           const EffectKind& kind = effect_kind(effect.kind);
+           return kind.stage(effect) == Stage::kTerm && kind.own_poles(effect, signals).empty();
+         });
 }
 
 class Carrying {
@@ -113,7 +122,6 @@ class Carrying {
   // Of the body, from now on.  The prior stays with the caller.
   void assume(const ResponsePrior& prior) { prior_ = &prior; }
   void assume_nothing() { prior_ = nullptr; }
-  [[nodiscard]] bool has_prior(const Model& model) const { return prior_of(model) != nullptr; }
 
   // Fitted from its own numbers, from another body's and from a body estimated again; the best end.
   [[nodiscard]] Model refitted(Model model, const Body& other) const {
@@ -140,17 +148,8 @@ class Carrying {
   }
 
  private:
-  // Only next to terms that are added to its output is the body what the baseline is: a map or a
-  // gain scales it, a delay or a mode takes a part of its response over, and a path through it
-  // excites it where the inputs do not.
   [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
-    if (prior_ == nullptr || prior_->empty() || model.effects.empty()) return nullptr;
-    const bool beside = std::ranges::all_of(model.effects, [this](const Effect& effect) {
-      const EffectKind& kind = effect_kind(effect.kind);
-      return kind.stage(effect) == Stage::kTerm && !kind.through_body(effect) &&
-             kind.own_poles(effect, all_).empty();
-    });
-    return beside ? prior_ : nullptr;
+    return prior_ != nullptr && has_terms_alone(model, all_) ? prior_ : nullptr;
   }
 
   const Signals& all_;
@@ -195,19 +194,28 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
 Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
                 const std::vector<ResponsePrior>& priors) {
   Model plain = fitted ? shared : carrying.refitted(shared, baseline);
-  double error = std::numeric_limits<double>::quiet_NaN();
+  if (priors.empty()) return plain;
+  const double error = carrying.errors(plain).rmse;
   for (const ResponsePrior& prior : priors) {
     carrying.assume(prior);
-    if (!carrying.has_prior(shared)) return plain;
     Model with = carrying.refitted(shared, baseline);
-    const double error_with = carrying.errors(with).rmse;
-    carrying.assume_nothing();
-    if (std::isnan(error)) error = carrying.errors(plain).rmse;
-    if (!(error_with <= error)) continue;
-    carrying.assume(prior);
-    return with;
+    if (carrying.errors(with).rmse <= error) return with;
   }
+  carrying.assume_nothing();
   return plain;
+}
+
+// From narrow to wide; none where they say nothing.
+std::vector<ResponsePrior> priors_of(const Model& shared, const Model& baseline, double noise,
+                                     const std::vector<ExcitedBand>& bands,
+                                     const Signals& signals) {
+  std::vector<ResponsePrior> priors;
+  if (!has_terms_alone(shared, signals)) return priors;
+  for (const double spread : kSpreads) {
+    priors.emplace_back(baseline.body, bands, baseline.rate_hz, noise, spread);
+    if (priors.back().empty()) return {};
+  }
+  return priors;
 }
 
 Model without(const Model& model, std::size_t effect) {
@@ -294,13 +302,10 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
   carried.model = baseline;
   if (!found.effects.empty()) {
     const Signals masked = bursts_masked(found, signals);
-    std::vector<ResponsePrior> priors;
-    for (const double spread : kSpreads) {
-      priors.emplace_back(baseline.body, carried.bands, baseline.rate_hz, rms_error(found, masked),
-                          spread);
-    }
     Carrying carrying(signals, masked, blocks);
     const Model shared = shared_part(found, signals, blocks, carried.left_out);
+    const std::vector<ResponsePrior> priors =
+        priors_of(shared, baseline, rms_error(found, masked), carried.bands, signals);
     carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
     keep_stable(carried, signals, baseline.body, carrying);
     PartErrors errors = carrying.errors(carried.model);

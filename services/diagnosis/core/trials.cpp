@@ -57,10 +57,8 @@ void exchange_shapes(std::vector<Trial>& all, double current_rmse, const Signals
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto best = std::ranges::find_if(all, inside);
     if (best == all.end() || best->rmse > kGains * current_rmse) return;
-    const bool bound = std::ranges::any_of(best->model.effects, [](const Effect& effect) {
-      return effect_kind(effect.kind).through_body(effect);
-    });
-    while (!bound && static_cast<int>(best->model.body.order()) < order) {
+    while (!passes_through_body(best->model) &&
+           static_cast<int>(best->model.body.order()) < order) {
       Trial richer =
           judged_trial(lifted(best->model), signals, blocks, options.fit_iterations, true);
       if (!(richer.rmse < kWorthPoles * best->rmse)) break;
@@ -93,14 +91,11 @@ void start_afresh(Model& model, const Signals& signals, int order) {
   std::vector<double> left = signals.output().values;
   std::vector<std::vector<double>> inputs;
   if (!without_effects(model, signals, inputs, left)) return;
-  const bool bound_to_order = std::ranges::any_of(model.effects, [](const Effect& effect) {
-    return effect_kind(effect.kind).through_body(effect);
-  });
   FreeRun run;
   double least = residual_of(model, signals, run).squaredNorm();
   const auto own = static_cast<int>(model.body.order());
   for (const int p : {own, order}) {
-    if (p > own && bound_to_order) break;
+    if (p > own && passes_through_body(model)) break;
     Model other = model;
     other.body = started_body(inputs, left, {}, signals, p);
     if (p == 4) other.body = with_other_mode(other.body, inputs, left, signals);

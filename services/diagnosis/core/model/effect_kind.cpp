@@ -54,6 +54,12 @@ std::vector<double> EffectKind::own_poles(const Effect& /*effect*/,
 void EffectKind::weigh(const Effect& /*effect*/, const Signals& /*signals*/,
                        std::span<double> /*weight*/) const {}
 
+bool passes_through_body(const Model& model) {
+  return std::ranges::any_of(model.effects, [](const Effect& effect) {
+    return effect_kind(effect.kind).through_body(effect);
+  });
+}
+
 const EffectKind& effect_kind(std::string_view name) {
   const auto& kinds = effect_kinds();
   const auto found =

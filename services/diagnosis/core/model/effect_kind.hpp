@@ -95,6 +95,9 @@ class EffectKind {
   virtual void weigh(const Effect& effect, const Signals& signals, std::span<double> weight) const;
 };
 
+/// True when an effect of the model passes the body's poles: the body keeps its order.
+bool passes_through_body(const Model& model);
+
 /// Every kind there is.
 const std::vector<const EffectKind*>& effect_kinds();
 /// @throws stillhand::ConfigError for a name that no kind has.
