@@ -114,56 +114,6 @@ void add_notes(const diagnosis::CarriedModel& carried, Prediction& prediction) {
   }
 }
 
-// Samples of a stretch's past.
-std::size_t past_of(const Measurement& measurement, const diagnosis::Stretch& stretch) {
-  constexpr double kPast_s = 10.0;
-  return std::min(stretch.end - stretch.first - 1,
-                  static_cast<std::size_t>(kPast_s * measurement.rate_hz));
-}
-
-// Every stretch with a past of ten seconds, its own beginning in reverse: without a jump at its
-// start, which a mode that rings near half the rate would answer.  Times move on by the pasts, so
-// that stretches don't overlap; nothing that is predicted depends on time.  Eq. DG-60.
-Measurement with_past(const Measurement& measurement) {
-  Measurement out = measurement;
-  out.stretches.clear();
-  out.weight.clear();
-  for (diagnosis::Channel& channel : out.channels) channel.values.clear();
-  std::size_t pasts = 0;
-  for (const diagnosis::Stretch& stretch : measurement.stretches) {
-    const std::size_t past = past_of(measurement, stretch);
-    const std::size_t first = out.weight.size();
-    const auto append = [&](const std::vector<double>& from, std::vector<double>& to) {
-      for (std::size_t n = past; n > 0; --n) to.push_back(from[stretch.first + n]);
-      to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(stretch.first),
-                from.begin() + static_cast<std::ptrdiff_t>(stretch.end));
-    };
-    append(measurement.weight, out.weight);
-    for (std::size_t c = 0; c < out.channels.size(); ++c) {
-      append(measurement.channels[c].values, out.channels[c].values);
-    }
-    out.stretches.push_back({first, out.weight.size(),
-                             stretch.start_s + static_cast<double>(pasts) / measurement.rate_hz,
-                             stretch.recording});
-    pasts += past;
-  }
-  return out;
-}
-
-// A run over with_past(measurement), without the pasts.
-std::vector<double> without_past(const std::vector<double>& run, const Measurement& measurement) {
-  std::vector<double> out;
-  std::size_t at = 0;
-  for (const diagnosis::Stretch& stretch : measurement.stretches) {
-    at += past_of(measurement, stretch);
-    const std::size_t length = stretch.end - stretch.first;
-    out.insert(out.end(), run.begin() + static_cast<std::ptrdiff_t>(at),
-               run.begin() + static_cast<std::ptrdiff_t>(at + length));
-    at += length;
-  }
-  return out;
-}
-
 }  // namespace
 
 Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& measurement) {
@@ -179,7 +129,8 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
     throw ConfigError(whole.source, "no stretch as long as one sample of the model",
                       std::to_string(factor) + " samples or more without a gap");
   }
-  const diagnosis::Signals signals(with_past(working), model.inputs, model.output);
+  const diagnosis::Signals measured(working, model.inputs, model.output);
+  const diagnosis::Signals signals = measured.with_pasts();
   diagnosis::FreeRun run;
   try {
     run = diagnosis::free_run(model, signals, false);
@@ -195,8 +146,8 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
   prediction.notes = measurement.notes;
   add_notes(carried, prediction);
   add_ranges(diagnosis::left_ranges(model, carried.inputs, signals, run), prediction);
-  add_bands(carried.bands, signals, prediction);
-  const auto values = spread_out(without_past(run.prediction, working), working, whole, factor);
+  add_bands(carried.bands, measured, prediction);
+  const auto values = spread_out(measured.without_pasts(run.prediction), working, whole, factor);
   const std::vector<double> time_s = whole.time_s();
   recording::Column column{model.output + "_model", model.output_unit, {}};
   std::size_t left_out = 0;

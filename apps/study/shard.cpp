@@ -23,8 +23,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kFormat = "stillhand study shard 1";
-// The last item of the file, a text of 64 characters as CBOR.
-constexpr std::size_t kDigestBytes = 66;
 
 std::string cbor(const json& value) {
   std::string bytes;
@@ -105,9 +103,9 @@ std::string checked_bytes(const std::filesystem::path& file) {
                       "a folder that `stillhand study --shard K/N --out DIR` has finished");
   }
   std::string bytes = recording::read_file(file.string());
-  if (bytes.size() < kDigestBytes) damaged(file, fmt::format("{} bytes", bytes.size()));
-  const std::string digest = bytes.substr(bytes.size() - kDigestBytes);
-  bytes.resize(bytes.size() - kDigestBytes);
+  if (bytes.size() < kShardDigestBytes) damaged(file, fmt::format("{} bytes", bytes.size()));
+  const std::string digest = bytes.substr(bytes.size() - kShardDigestBytes);
+  bytes.resize(bytes.size() - kShardDigestBytes);
   if (digest != cbor(rig::sha256(bytes))) damaged(file, "bytes that do not fit the digest");
   return bytes;
 }

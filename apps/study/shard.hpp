@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -30,6 +31,8 @@ Shard parse_shard(const std::string& word, std::int64_t subjects);
 
 /// Name of the one file of a shard's folder; README, "shard.cbor".
 inline constexpr const char* kShardFile = "shard.cbor";
+/// Its last item, a digest: a text of 64 characters as CBOR.
+inline constexpr std::size_t kShardDigestBytes = 66;
 
 /// Content of that file: header, the results of its subjects, digest.
 /// @param record  `results` holds the subjects of the shard alone; the rig's motor and the arm rest

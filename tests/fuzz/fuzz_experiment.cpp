@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/experiment/experiment_file.hpp"
+#include "apps/experiment/file/experiment_file.hpp"
 #include "apps/experiment/journal.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "services/contract/config_error.hpp"

@@ -42,6 +42,13 @@ std::vector<std::size_t> borders_of(const Blocks& parts) {
 struct PartErrors {
   std::vector<double> squares;  ///< [parts] mean squares
   double rmse = std::numeric_limits<double>::infinity();
+  /// Of the model as it is, fitted to all parts, from the past that `predict` assumes: a mode that
+  /// rings for longer than a part lasts is fitted by its start, which no other recording shares.
+  double own_rmse = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool is_below(const PartErrors& other) const {
+    return rmse < other.rmse && own_rmse < other.own_rmse;
+  }
 };
 
 // With terms that weigh nothing: what the other parts do not determine stays at 0, instead of at
@@ -73,6 +80,19 @@ bool has_terms_alone(const Model& model, const Signals& signals) {
          });
 }
 
+// [unit of the output]
+double rms_error(const Model& model, const Signals& signals) {
+  const FreeRun run = free_run(model, signals);
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t n = 0; n < signals.size(); ++n) {
+    const double r = run.weight[n] * (signals.output().values[n] - run.prediction[n]);
+    sum += r * r;
+    weight += run.weight[n];
+  }
+  return std::sqrt(sum / std::max(weight, 1.0));
+}
+
 class Carrying {
  public:
   Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks)
@@ -80,14 +100,16 @@ class Carrying {
         fitted_(without_bursts),
         blocks_(blocks),
         parts_(by_part(blocks, signals)),
-        apart_(signals.restarted(borders_of(parts_))) {}
+        apart_(signals.restarted(borders_of(parts_))),
+        with_pasts_(apart_.with_pasts()) {}
 
   [[nodiscard]] bool several() const { return all_.stretches().back().recording > 0; }
 
-  // Error of each part, by a fit to the others, from an unknown past as `predict` has it; bursts
-  // are left out of the fits alone.
+  // Error of each part, by a fit to the others, from the past that `predict` assumes; bursts are
+  // left out of the fits alone.
   [[nodiscard]] PartErrors errors(const Model& model, const Signals& fitted) const {
     PartErrors errors;
+    errors.own_rmse = rms_error(model, with_pasts_);
     double sum = 0.0;
     double weight = 0.0;
     for (std::size_t part = 0; part < parts_.folds; ++part) {
@@ -97,15 +119,17 @@ class Carrying {
       options.prior = prior_of(model);
       options.without_fold = static_cast<int>(part);
       fit(refitted, fitted, parts_, options);
-      const FreeRun run = free_run(refitted, apart_);
+      const FreeRun run = free_run(refitted, with_pasts_);
       if (!run.finite) return {};
+      const std::vector<double> prediction = apart_.without_pasts(run.prediction);
+      const std::vector<double> weight_of_run = apart_.without_pasts(run.weight);
       double of_part = 0.0;
       double weight_of_part = 0.0;
       for (std::size_t n = 0; n < all_.size(); ++n) {
         if (parts_.fold_of(n / parts_.length) != part) continue;
-        const double r = run.weight[n] * (all_.output().values[n] - run.prediction[n]);
+        const double r = weight_of_run[n] * (all_.output().values[n] - prediction[n]);
         of_part += r * r;
-        weight_of_part += run.weight[n];
+        weight_of_part += weight_of_run[n];
       }
       errors.squares.push_back(of_part / std::max(weight_of_part, 1.0));
       sum += of_part;
@@ -158,6 +182,7 @@ class Carrying {
   const ResponsePrior* prior_ = nullptr;
   const Blocks parts_;
   const Signals apart_;  // every part starts as a recording does
+  const Signals with_pasts_;
 };
 
 LeftOut left_out(const Effect& effect, std::string why) {
@@ -231,7 +256,7 @@ std::optional<std::size_t> idle(const Model& model, const PartErrors& with, cons
   if (model.effects.size() < 2 && !carrying.several()) return std::nullopt;
   for (std::size_t e = model.effects.size(); e-- > 0;) {
     const PartErrors bare = carrying.errors(carrying.refitted(without(model, e), baseline));
-    if (!(with.rmse < bare.rmse)) return e;
+    if (!with.is_below(bare)) return e;
     if (!carrying.several()) continue;
     bool helps = false;
     for (std::size_t r = 0; r < bare.squares.size(); ++r) {
@@ -266,19 +291,6 @@ void keep_stable(CarriedModel& carried, const Signals& signals, const Body& base
     drop(carried, static_cast<std::size_t>(found - effects.begin()),
          "with it the model is not stable over the range that was seen", baseline, carrying);
   }
-}
-
-// [unit of the output]
-double rms_error(const Model& model, const Signals& signals) {
-  const FreeRun run = free_run(model, signals);
-  double sum = 0.0;
-  double weight = 0.0;
-  for (std::size_t n = 0; n < signals.size(); ++n) {
-    const double r = run.weight[n] * (signals.output().values[n] - run.prediction[n]);
-    sum += r * r;
-    weight += run.weight[n];
-  }
-  return std::sqrt(sum / std::max(weight, 1.0));
 }
 
 Signals bursts_masked(const Model& found, const Signals& signals) {
@@ -321,7 +333,7 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     // the recording is excited.  Elsewhere neither is known, and the baseline is what it is
     // compared with.
     if (carried.model.effects.empty() ||
-        !(carrying.errors(carried.model).rmse < carrying.errors_of_baseline(baseline).rmse)) {
+        !carrying.errors(carried.model).is_below(carrying.errors_of_baseline(baseline))) {
       for (const Effect& effect : carried.model.effects) {
         carried.left_out.push_back(left_out(
             effect, "parts of the recording are predicted as well without it from the others"));

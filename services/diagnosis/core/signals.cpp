@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSameSignalCorrelation = 0.95;
 constexpr double kUnjudged_s = 1.0;
+constexpr double kPast_s = 10.0;        // Eq. DG-60
 constexpr double kUnjudgedShare = 0.1;  // of a stretch
 constexpr double kIntegralHighPassHz = 0.1;
 
@@ -240,6 +241,58 @@ Signals Signals::restarted(const std::vector<std::size_t>& at) const {
   }
   other.leave_starts_unjudged();
   return other;
+}
+
+// [samples]
+std::size_t Signals::past_of(const Stretch& stretch) const {
+  return std::min(stretch.end - stretch.first - 1, static_cast<std::size_t>(kPast_s * rate_hz_));
+}
+
+Signals Signals::with_pasts() const {
+  Signals other = *this;
+  other.stretches_.clear();
+  other.weight_.clear();
+  other.time_s_.clear();
+  std::vector<std::size_t> from;  // the sample that each one repeats
+  std::size_t pasts = 0;
+  for (Stretch stretch : stretches_) {
+    const std::size_t past = past_of(stretch);
+    const std::size_t first = from.size();
+    stretch.start_s += static_cast<double>(pasts) / rate_hz_;
+    pasts += past;
+    for (std::size_t n = past; n > 0; --n) from.push_back(stretch.first + n);
+    for (std::size_t n = stretch.first; n < stretch.end; ++n) from.push_back(n);
+    for (std::size_t n = first; n < from.size(); ++n) {
+      other.time_s_.push_back(stretch.start_s + static_cast<double>(n - first) / rate_hz_);
+      other.weight_.push_back(n < first + past ? 0.0 : weight_[from[n]]);
+    }
+    stretch.first = first;
+    stretch.end = from.size();
+    other.stretches_.push_back(stretch);
+  }
+  const auto repeat = [&from](Signal& signal) {
+    std::vector<double> values;
+    values.reserve(from.size());
+    for (const std::size_t n : from) values.push_back(signal.values[n]);
+    signal.values = std::move(values);
+  };
+  repeat(other.output_);
+  std::ranges::for_each(other.inputs_, repeat);
+  std::ranges::for_each(other.all_, repeat);
+  return other;
+}
+
+std::vector<double> Signals::without_pasts(const std::vector<double>& run) const {
+  std::vector<double> out;
+  out.reserve(size());
+  auto at = run.begin();
+  for (const Stretch& stretch : stretches_) {
+    at += static_cast<std::ptrdiff_t>(past_of(stretch));
+    const auto end = at + static_cast<std::ptrdiff_t>(stretch.end - stretch.first);
+    out.insert(out.end(), at, end);
+    at = end;
+  }
+  return out;
 }
 
 void Signals::whiten(Eigen::Ref<Eigen::MatrixXd> columns, const std::vector<double>& weight) const {

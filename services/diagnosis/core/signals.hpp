@@ -65,6 +65,11 @@ class Signals {
   [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
   /// The same signals, a stretch beginning at each of these samples too.
   [[nodiscard]] Signals restarted(const std::vector<std::size_t>& at) const;
+  /// The same signals, each stretch with a past, Eq. DG-60: up to 10 s of its own beginning in
+  /// reverse, which weigh nothing.  Times move on by the pasts, so that stretches don't overlap.
+  [[nodiscard]] Signals with_pasts() const;
+  /// Of a run over with_pasts(), one value a sample of these signals.
+  [[nodiscard]] std::vector<double> without_pasts(const std::vector<double>& run) const;
   /// The same signals, one of them with other values.
   [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
   /// The same signals, each held within its range; the inputs as the body sees them stay.
@@ -90,6 +95,7 @@ class Signals {
   void add_derived();
   void leave_starts_unjudged();
   void find_excited_band();
+  [[nodiscard]] std::size_t past_of(const Stretch& stretch) const;
 
   double rate_hz_;
   std::vector<Stretch> stretches_;

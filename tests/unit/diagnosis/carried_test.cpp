@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "services/diagnosis/core/apart_from_time.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
@@ -62,6 +63,12 @@ struct Sut {
 
 const Effect kOfV{"coupled_input", "static", {"v"}, {}, {0.0}};
 const Effect kOfTemp{"coupled_input", "static", {"temp"}, {}, {0.0}};
+const Effect kRinging{
+    "resonance",
+    "beside the body",
+    {},
+    {{"frequency", "Hz", 0.5, 0.15, 40.0}, {"damping_ratio", "-", 0.003, 0.003, 0.95}},
+    {0.0, 0.0}};
 const Effect kDrift{"drift", "exponential", {}, {{"time_constant", "s", 20.0, 1.0, 100.0}}, {0.0}};
 
 TEST(CarriedTest, WhereNothingWasFoundItIsTheBaseline) {
@@ -95,6 +102,37 @@ TEST(CarriedTest, WithoutAnEffectTheBodyIsTheBaselinesWhateverItsOrder) {
   const CarriedModel sut =
       carried_model(found, studied.baseline.model, studied.signals, studied.blocks);
   EXPECT_EQ(packed(sut.model), packed(studied.baseline.model));
+}
+
+// It explains a tone by a start that no other recording has: it decays in 106 s of 60.
+TEST(CarriedTest, AModeThatRingsLongerThanTheRecordIsNotCarried) {
+  const Sut sut(Made([](const Made&, std::size_t n) {
+                  return 1.0 * std::sin(2.0 * std::numbers::pi * 0.5 * time_s(n));
+                }).measurement(),
+                {kRinging});
+  EXPECT_EQ(packed(sut.carried.model), packed(sut.studied.baseline.model));
+  ASSERT_THAT(sut.carried.left_out, SizeIs(1));
+  EXPECT_EQ(sut.carried.left_out[0].kind, "resonance");
+}
+
+// One that the input excites all the time.
+TEST(CarriedTest, AModeThatDecaysIsCarried) {
+  double y[2] = {0.0, 0.0};
+  const Sut sut(Made([&](const Made& made, std::size_t n) {
+                  // A pair of poles at 2 Hz that decays in 0.8 s.
+                  const double next =
+                      2.0 * 0.9875 * std::cos(2.0 * std::numbers::pi * 0.02) * y[0] -
+                      0.9875 * 0.9875 * y[1] + made.u[n];
+                  y[1] = y[0];
+                  y[0] = next;
+                  return 0.1 * next;
+                }).measurement(),
+                {{"resonance",
+                  "beside the body",
+                  {},
+                  {{"frequency", "Hz", 1.9, 0.15, 40.0}, {"damping_ratio", "-", 0.1, 0.003, 0.95}},
+                  {0.0, 0.0}}});
+  EXPECT_THAT(sut.carried.model.effects, SizeIs(1));
 }
 
 TEST(CarriedTest, TheBandOfTheInputIsKept) {
