@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/excited_band.hpp"
+#include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/signal/butterworth.hpp"
 
 namespace stillhand::diagnosis {
@@ -14,9 +16,15 @@ namespace {
 
 constexpr double kSameSignalCorrelation = 0.95;
 constexpr double kUnjudged_s = 1.0;
-constexpr double kPast_s = 10.0;        // Eq. DG-60
+constexpr double kPast_s = 10.0;  // Eq. DG-60
+constexpr double kFade_s = 1.0;
 constexpr double kUnjudgedShare = 0.1;  // of a stretch
 constexpr double kIntegralHighPassHz = 0.1;
+
+// Share of a past's swing that is left so long before a stretch.
+double faded(double before_s) {
+  return before_s < kFade_s ? 0.5 + 0.5 * std::cos(std::numbers::pi * before_s / kFade_s) : 0.0;
+}
 
 std::vector<double> central_difference(const std::vector<double>& x, double rate_hz,
                                        const std::vector<Stretch>& stretches) {
@@ -270,10 +278,18 @@ Signals Signals::with_pasts() const {
     stretch.end = from.size();
     other.stretches_.push_back(stretch);
   }
-  const auto repeat = [&from](Signal& signal) {
+  const auto repeat = [&](Signal& signal) {
+    const std::vector<double> levels = start_levels(signal.values, *this);
     std::vector<double> values;
     values.reserve(from.size());
     for (const std::size_t n : from) values.push_back(signal.values[n]);
+    for (std::size_t i = 0; i < stretches_.size(); ++i) {
+      const std::size_t past = past_of(stretches_[i]);
+      for (std::size_t n = 1; n <= past; ++n) {
+        double& x = values[other.stretches_[i].first + past - n];
+        x = levels[i] + faded(static_cast<double>(n) / rate_hz_) * (x - levels[i]);
+      }
+    }
     signal.values = std::move(values);
   };
   repeat(other.output_);

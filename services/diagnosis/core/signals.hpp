@@ -65,8 +65,9 @@ class Signals {
   [[nodiscard]] bool slow_poles() const noexcept { return slow_poles_; }
   /// The same signals, a stretch beginning at each of these samples too.
   [[nodiscard]] Signals restarted(const std::vector<std::size_t>& at) const;
-  /// The same signals, each stretch with a past, Eq. DG-60: up to 10 s of its own beginning in
-  /// reverse, which weigh nothing.  Times move on by the pasts, so that stretches don't overlap.
+  /// The same signals, each stretch with a past of up to 10 s, Eq. DG-60: its own beginning in
+  /// reverse, whose swing fades within 1 s to the level of Eq. DG-54.  It weighs nothing.  Times
+  /// move on by the pasts, so that stretches don't overlap.
   [[nodiscard]] Signals with_pasts() const;
   /// Of a run over with_pasts(), one value a sample of these signals.
   [[nodiscard]] std::vector<double> without_pasts(const std::vector<double>& run) const;

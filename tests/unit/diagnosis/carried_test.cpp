@@ -63,12 +63,6 @@ struct Sut {
 
 const Effect kOfV{"coupled_input", "static", {"v"}, {}, {0.0}};
 const Effect kOfTemp{"coupled_input", "static", {"temp"}, {}, {0.0}};
-const Effect kRinging{
-    "resonance",
-    "beside the body",
-    {},
-    {{"frequency", "Hz", 0.5, 0.15, 40.0}, {"damping_ratio", "-", 0.003, 0.003, 0.95}},
-    {0.0, 0.0}};
 const Effect kDrift{"drift", "exponential", {}, {{"time_constant", "s", 20.0, 1.0, 100.0}}, {0.0}};
 
 TEST(CarriedTest, WhereNothingWasFoundItIsTheBaseline) {
@@ -102,17 +96,6 @@ TEST(CarriedTest, WithoutAnEffectTheBodyIsTheBaselinesWhateverItsOrder) {
   const CarriedModel sut =
       carried_model(found, studied.baseline.model, studied.signals, studied.blocks);
   EXPECT_EQ(packed(sut.model), packed(studied.baseline.model));
-}
-
-// It explains a tone by a start that no other recording has: it decays in 106 s of 60.
-TEST(CarriedTest, AModeThatRingsLongerThanTheRecordIsNotCarried) {
-  const Sut sut(Made([](const Made&, std::size_t n) {
-                  return 1.0 * std::sin(2.0 * std::numbers::pi * 0.5 * time_s(n));
-                }).measurement(),
-                {kRinging});
-  EXPECT_EQ(packed(sut.carried.model), packed(sut.studied.baseline.model));
-  ASSERT_THAT(sut.carried.left_out, SizeIs(1));
-  EXPECT_EQ(sut.carried.left_out[0].kind, "resonance");
 }
 
 // One that the input excites all the time.

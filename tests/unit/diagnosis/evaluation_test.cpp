@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
@@ -83,6 +84,33 @@ TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
   const double taken = as_column(noise).squaredNorm() - touched.squaredNorm();
   EXPECT_GT(taken, 0.5);
   EXPECT_LT(taken, 24.0);
+}
+
+// Of a mode next to a body without poles, at 0.5 Hz.
+TEST(EvaluationTest, AModeThatRingsForAnEighthOfTheRecordHasNoInitialState) {
+  const Signals signals = made::signals_of(made::white(kCount, 1), made::white(kCount, 2));
+  const double duration_s = 0.01 * static_cast<double>(kCount);
+  const auto left_of = [&](double decay_s) {
+    const double ratio = 1.0 / (decay_s * 2.0 * std::numbers::pi * 0.5);
+    Model model = made::model_of({{{1.0}}, {1.0}, 0.0});
+    model.effects = {
+        {"resonance",
+         "beside the body",
+         {},
+         {{"frequency", "Hz", 0.5, 0.1, 40.0}, {"damping_ratio", "-", ratio, 0.001, 1.0}},
+         {0.0, 0.0}}};
+    Eigen::MatrixXd column(static_cast<Eigen::Index>(kCount), 1);
+    for (std::size_t n = 0; n < kCount; ++n) {
+      const double t_s = 0.01 * static_cast<double>(n);
+      column(static_cast<Eigen::Index>(n), 0) =
+          std::exp(-t_s / decay_s) * std::cos(2.0 * std::numbers::pi * 0.5 * t_s);
+    }
+    const double before = column.norm();
+    InitialStates(model, signals, signals.weight()).remove_from(column);
+    return column.norm() / before;
+  };
+  EXPECT_LT(left_of(0.05 * duration_s), 0.5);
+  EXPECT_EQ(left_of(0.2 * duration_s), 1.0);
 }
 
 TEST(EvaluationTest, InitialStatesAreAProjection) {

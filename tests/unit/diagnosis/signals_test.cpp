@@ -195,22 +195,23 @@ TEST(SignalsTest, ARestartBeginsAStretchThatIsNotJudgedAtFirst) {
 }
 
 // Eq. DG-60: ten seconds, or what a short stretch has.
-TEST(SignalsTest, APastIsTheBeginningOfItsStretchInReverse) {
-  const auto measurement = made::measurement_of({{"u", "V", made::ride(kCount, 1)},
-                                                 {"v", "V", made::ride(kCount, 3)},
-                                                 {"y", "N", made::ride(kCount, 2)}});
+TEST(SignalsTest, APastIsTheBeginningOfItsStretchInReverseAndFades) {
+  std::vector<double> offset = made::ride(kCount, 3);
+  for (double& x : offset) x = 7.0 + 0.01 * x;
+  const auto measurement = made::measurement_of(
+      {{"u", "V", made::ride(kCount, 1)}, {"v", "V", offset}, {"y", "N", made::ride(kCount, 2)}});
   const Signals signals(made::cut_in_two(measurement, 400, 5.0), {"u"}, "y");
   const Signals sut = signals.with_pasts();
   ASSERT_EQ(sut.stretches().size(), 2);
   EXPECT_EQ(sut.stretches()[0].end, 399 + 400);
   EXPECT_EQ(sut.stretches()[1].first, 799);
   EXPECT_EQ(sut.size(), 399 + 1000 + kCount);
-  const std::vector<double>& u = signals.inputs()[0].values;
-  for (std::size_t n = 0; n < 400; ++n) {
-    EXPECT_EQ(sut.inputs()[0].values[399 - n], u[n]);
-    EXPECT_EQ(sut.inputs()[0].values[399 + n], u[n]);
-  }
-  EXPECT_EQ(sut.at("v").values[799], signals.at("v").values[1400]);
+  const std::vector<double>& u = signals.inputs()[0].values;  // it swings about 0
+  const double half = sut.inputs()[0].values[399 - 50];
+  EXPECT_NEAR(half, 0.5 * u[50], 1e-12);
+  for (std::size_t n = 100; n < 400; ++n) EXPECT_EQ(sut.inputs()[0].values[399 - n], 0.0);
+  for (std::size_t n = 0; n < 400; ++n) EXPECT_EQ(sut.inputs()[0].values[399 + n], u[n]);
+  EXPECT_NEAR(sut.at("v").values[799], 7.0, 0.01);  // an offset is the level before
   EXPECT_EQ(sut.weight()[399 + 100], signals.weight()[100]);
   for (std::size_t n = 0; n < 399; ++n) EXPECT_EQ(sut.weight()[n], 0.0);
   for (std::size_t n = 1; n < sut.size(); ++n) EXPECT_GT(sut.time_s()[n], sut.time_s()[n - 1]);

@@ -59,9 +59,14 @@ std::vector<double> ramp(std::size_t count) {
   return u;
 }
 
-// The past of Eq. DG-60 and the signal: the signal's beginning in reverse before it.
+// The past of Eq. DG-60 and the signal, which swings about 0 at 100 Hz: its beginning in reverse
+// fades before it within 100 samples.
 std::vector<double> with_past(const std::vector<double>& u) {
-  std::vector<double> out(u.rbegin(), u.rend() - 1);
+  std::vector<double> out(u.size() - 1, 0.0);
+  for (std::size_t n = 1; n < 100; ++n) {
+    out[u.size() - 1 - n] =
+        u[n] * (0.5 + 0.5 * std::cos(std::numbers::pi * 0.01 * static_cast<double>(n)));
+  }
   out.insert(out.end(), u.begin(), u.end());
   return out;
 }
@@ -76,7 +81,7 @@ TEST(PredictTest, AModeNearHalfTheRateDoesNotRingAtTheStart) {
   for (std::size_t n = 0; n < 100; ++n) EXPECT_NEAR(values_of(sut)[n], u[n] / 1.99, 0.01) << n;
 }
 
-TEST(PredictTest, IsTheDifferenceEquationAfterItsReflectedPast) {
+TEST(PredictTest, IsTheDifferenceEquationAfterItsFadedPast) {
   const auto u = made::white(400, 1);
   const Prediction sut =
       predict(made::model_of(made::two_pole_body()), made::measurement_of({{"u", "V", u}}));

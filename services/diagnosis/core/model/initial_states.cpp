@@ -16,12 +16,11 @@ constexpr double kDecayed = 1e-3;
 constexpr double kLongestStart_s = 10.0;
 constexpr double kLongestShare = 0.25;  // of the record
 // A pole that decays within more than this has no fitted free response: it would be a tone's or a
-// drift's.  Without slow poles (Eq. DG-66) no pole does.
+// drift's.
 constexpr double kLongestDecay = 0.125;  // of the record
 
-// The poles of a body that decay soon enough.
+// The poles that decay soon enough.
 std::vector<double> quick_poles(const std::vector<double>& denominator, const Signals& signals) {
-  if (!signals.slow_poles()) return denominator;
   const double largest =
       std::exp(-1.0 / (kLongestDecay * signals.duration_s() * signals.rate_hz()));
   std::vector<std::complex<double>> polynomial{1.0};
@@ -35,11 +34,16 @@ std::vector<double> quick_poles(const std::vector<double>& denominator, const Si
   return quick;
 }
 
+// Without slow poles (Eq. DG-66) each is quick.
+std::vector<double> quick_poles(const Body& body, const Signals& signals) {
+  return signals.slow_poles() ? quick_poles(body.denominator, signals) : body.denominator;
+}
+
 std::vector<double> all_poles(const Model& model, const Signals& signals) {
-  std::vector<double> denominator = quick_poles(model.body.denominator, signals);
+  std::vector<double> denominator = quick_poles(model.body, signals);
   for (const Effect& effect : model.effects) {
     const std::vector<double> own = effect_kind(effect.kind).own_poles(effect, signals);
-    if (!own.empty()) denominator = product(denominator, own);
+    if (!own.empty()) denominator = product(denominator, quick_poles(own, signals));
   }
   return denominator;
 }
@@ -48,7 +52,7 @@ std::vector<double> all_poles(const Model& model, const Signals& signals) {
 
 InitialStates::InitialStates(const Body& body, const Signals& signals,
                              const std::vector<double>& weight)
-    : InitialStates(quick_poles(body.denominator, signals), signals, weight) {}
+    : InitialStates(quick_poles(body, signals), signals, weight) {}
 
 InitialStates::InitialStates(const Model& model, const Signals& signals,
                              const std::vector<double>& weight)
