@@ -88,7 +88,9 @@ TEST(EvaluationTest, InitialStatesRemoveAFreeResponseAndNothingElse) {
 
 // Of a mode next to a body without poles, at 0.5 Hz.
 TEST(EvaluationTest, AModeThatRingsForAnEighthOfTheRecordHasNoInitialState) {
-  const Signals signals = made::signals_of(made::white(kCount, 1), made::white(kCount, 2));
+  const Signals signals(made::measurement_of({{"u", "V", made::white(kCount, 1)},
+                                              {"y", "N", made::white(kCount, 2)}}),
+                        {"u"}, "y");
   const double duration_s = 0.01 * static_cast<double>(kCount);
   const auto left_of = [&](double decay_s) {
     const double ratio = 1.0 / (decay_s * 2.0 * std::numbers::pi * 0.5);
@@ -106,7 +108,7 @@ TEST(EvaluationTest, AModeThatRingsForAnEighthOfTheRecordHasNoInitialState) {
           std::exp(-t_s / decay_s) * std::cos(2.0 * std::numbers::pi * 0.5 * t_s);
     }
     const double before = column.norm();
-    InitialStates(model, signals, signals.weight()).remove_from(column);
+    InitialStates(model, signals, std::vector<double>(kCount, 1.0)).remove_from(column);
     return column.norm() / before;
   };
   EXPECT_LT(left_of(0.05 * duration_s), 0.5);
