@@ -138,8 +138,19 @@ rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   output.truth.volitional_force_n = kUnknown;
   output.truth.hand_force_n = kUnknown;
   if (parts_.motor != Parts::Motor::kSimulated) output.truth.motor_force_n = force_n_;
+  watch_numbers(input, output);
   move_platform(input, output);
   return output;
+}
+
+void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept {
+  // A platform that is simulated moves no sensor.
+  if (!platform_ || !input.command_valid) return;
+  const double motion = input.command_acceleration_m_s2;
+  if (parts_.acceleration != Parts::Source::kSimulated) {
+    acceleration_.step(output.raw.accel_y_v, motion);
+  }
+  if (parts_.force != Parts::Source::kSimulated) force_.step(output.raw.load_cell_v, motion);
 }
 
 void DevicePlant::put_stick(rig::RigOutput& output) const noexcept {
@@ -256,6 +267,8 @@ void DevicePlant::judge() noexcept {
     why_ = std::isnan(load_cell_v_) ? "the load cell is silent, or at its end"
                                     : "the accelerometer is silent, or at its end";
   }
+  if (acceleration_.repeats()) why_ = "the accelerometer repeats one number while the seat moves";
+  if (force_.repeats()) why_ = "the load cell repeats one number while the seat moves";
   if (!drive_) return;
   if (rail_ticks_ >= kRail_ticks) why_ = "an analogue input of the drive stands at its end";
   if (!drive_fresh()) why_ = text_of(Reason::kSilent);

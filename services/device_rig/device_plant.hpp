@@ -8,6 +8,7 @@
 
 #include "services/device_rig/core/arming.hpp"
 #include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/core/repeated_number.hpp"
 #include "services/device_rig/core/set_point_guard.hpp"
 #include "services/device_rig/drive_link.hpp"
 #include "services/device_rig/iio_link.hpp"
@@ -43,6 +44,7 @@ class DevicePlant final : public rig::Plant {
   void put_iio(rig::RigOutput& output) const noexcept;
   void move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept;
   void drive_motor(const rig::RigInput& input, rig::RigOutput& output) noexcept;
+  void watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept;
   void judge() noexcept;
   [[nodiscard]] bool at_rail() const noexcept;
   [[nodiscard]] bool drive_fresh() const noexcept;
@@ -69,10 +71,12 @@ class DevicePlant final : public rig::Plant {
   PlatformSample seat_;
   double accel_y_m_s2_ = 0.0;  ///< of the accelerometer; NaN: unknown
   double load_cell_v_ = 0.0;
-  Tick unknown_ticks_ = 0;  ///< one of the two is unknown for so long
-  bool jumped_ = false;     ///< the angle jumped; until this process is started again
-  Tick rail_ticks_ = 0;     ///< an analogue input stands at its end for so long
-  double force_n_ = 0.0;    ///< as the drive was ordered
+  RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
+  RepeatedNumber force_{2.0};         ///< a free stick moves a load cell by its own 0.2 kg, 0.4 N
+  Tick unknown_ticks_ = 0;            ///< one of the two is unknown for so long
+  bool jumped_ = false;               ///< the angle jumped; until this process is started again
+  Tick rail_ticks_ = 0;               ///< an analogue input stands at its end for so long
+  double force_n_ = 0.0;              ///< as the drive was ordered
   Order order_ = Order::kQuery;
   const char* why_ = nullptr;
   std::array<char, 120> text_{};

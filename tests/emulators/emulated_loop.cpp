@@ -133,6 +133,8 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     laboratory_.slip(value);
   } else if (word == "saturate") {
     laboratory_.saturate(value != 0.0);
+  } else if (word == "hold") {
+    laboratory_.hold_acceleration(value != 0.0);
   } else if (!obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value)) {
     std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
   }

@@ -92,12 +92,12 @@ void Laboratory::step(std::int64_t now_ns, Person* person) {
   const rig::RigTruth& truth = output_.truth;
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   constexpr double kCounts = 4096.0;  // rig.yaml
-  const double accel_v = saturated_ ? kSupply_v : kMiddle_v + kAccelGain * output_.raw.accel_y_v;
+  if (!held_) accel_v_ = saturated_ ? kSupply_v : kMiddle_v + kAccelGain * output_.raw.accel_y_v;
   drive_.sense(
       {.position_rev = static_cast<double>(output_.raw.encoder_counts) / kCounts + slip_rev_,
        .velocity_rev_s = truth.omega_rad_s / kTurn_rad,
        .analog1 = (kMiddle_v + kForceGain * output_.raw.load_cell_v) / kSupply_v,
-       .analog2 = accel_v / kSupply_v});
+       .analog2 = accel_v_ / kSupply_v});
   platform_.stand({.position_m = truth.platform_position_m,
                    .velocity_m_s = truth.platform_velocity_m_s,
                    .acceleration_m_s2 = truth.platform_acceleration_m_s2});

@@ -55,6 +55,8 @@ class Laboratory {
   void slip(double angle_rev) { slip_rev_ += angle_rev; }
   /// The accelerometer's amplifier sticks at its end.
   void saturate(bool saturated) { saturated_ = saturated; }
+  /// The accelerometer's input gives the number that it gave last.
+  void hold_acceleration(bool held) { held_ = held; }
   [[nodiscard]] const rig::RawSample& raw() const { return output_.raw; }
   [[nodiscard]] const rig::RigTruth& truth() const { return output_.truth; }
 
@@ -66,6 +68,8 @@ class Laboratory {
   rig::RigOutput output_{};
   double slip_rev_ = 0.0;
   bool saturated_ = false;
+  bool held_ = false;
+  double accel_v_ = 0.0;
 };
 
 }  // namespace stillhand::emulators
