@@ -143,7 +143,7 @@ cancellation::ControlModel every_part() {
 std::string shard() {
   study::StudyRecord record;
   record.options.subjects = 1;
-  record.options.protocol.conditions = session::parse_conditions("A,B,C");
+  record.options.protocol.conditions = stillhand::session::parse_conditions("A,B,C");
   record.results = study::made::random_results(1, "ABC", 1);
   std::string bytes = study::shard_file(record, {1, 1});
   bytes.resize(bytes.size() - study::kShardDigestBytes);

@@ -70,13 +70,21 @@ bool is_bound_to_order(const Model& model) {
          });
 }
 
-// Only then is the body what the baseline is: a map or a gain scales it, a delay or a mode takes a
-// part of its response over, and a path through it excites it where the inputs do not.
-bool has_terms_alone(const Model& model, const Signals& signals) {
+// A map, or a factor on the body's output.
+bool scales_body(const Effect& effect) {
+  const Stage stage = effect_kind(effect.kind).stage(effect);
+  return stage == Stage::kInputValue || stage == Stage::kOutputValue || stage == Stage::kGain;
+}
+
+// Only then is the body what the baseline is, or, next to a map or a gain, a multiple of it: a
+// delay or a mode takes a part of its response over, and a path through it excites it where the
+// inputs do not.
+bool has_body_of_baseline(const Model& model, const Signals& signals) {
   return !model.effects.empty() && !passes_through_body(model) &&
          std::ranges::all_of(model.effects, [&](const Effect& effect) {
            const EffectKind& kind = effect_kind(effect.kind);
-           return kind.stage(effect) == Stage::kTerm && kind.own_poles(effect, signals).empty();
+           return scales_body(effect) ||
+                  (kind.stage(effect) == Stage::kTerm && kind.own_poles(effect, signals).empty());
          });
 }
 
@@ -145,7 +153,6 @@ class Carrying {
 
   // Of the body, from now on.  The prior stays with the caller.
   void assume(const ResponsePrior& prior) { prior_ = &prior; }
-  void assume_nothing() { prior_ = nullptr; }
 
   // Fitted from its own numbers, from another body's and from a body estimated again; the best end.
   [[nodiscard]] Model refitted(Model model, const Body& other) const {
@@ -173,7 +180,7 @@ class Carrying {
 
  private:
   [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
-    return prior_ != nullptr && has_terms_alone(model, all_) ? prior_ : nullptr;
+    return prior_ != nullptr && has_body_of_baseline(model, all_) ? prior_ : nullptr;
   }
 
   const Signals& all_;
@@ -187,6 +194,10 @@ class Carrying {
 
 LeftOut left_out(const Effect& effect, std::string why) {
   return {effect.kind, effect.form, effect.channels, std::move(why)};
+}
+
+void leave_all(const Model& model, const std::string& why, std::vector<LeftOut>& out) {
+  for (const Effect& effect : model.effects) out.push_back(left_out(effect, why));
 }
 
 // The part of a model that another recording can share; the rest goes to `out`.
@@ -213,21 +224,21 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
 }
 
 // With the narrowest prior that predicts parts of the recording as well from the others as a fit
-// without one; without one, where the samples contradict each.
+// without one.  If the samples contradict each, the body has a response outside of the band that
+// the baseline's does not have, and neither is known: nothing is carried.
 // @param fitted  the shared part is the whole, as it was found
 // @param priors  from narrow to wide; they stay as long as `carrying`
-Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
-                const std::vector<ResponsePrior>& priors) {
+std::optional<Model> first_fit(const Model& shared, bool fitted, const Body& baseline,
+                               Carrying& carrying, const std::vector<ResponsePrior>& priors) {
   Model plain = fitted ? shared : carrying.refitted(shared, baseline);
   if (priors.empty()) return plain;
   const double error = carrying.errors(plain).rmse;
   for (const ResponsePrior& prior : priors) {
     carrying.assume(prior);
     Model with = carrying.refitted(shared, baseline);
-    if (carrying.errors(with).rmse <= error) return with;
+    if (carrying.errors(with).rmse <= (1.0 + kHelps) * error) return with;
   }
-  carrying.assume_nothing();
-  return plain;
+  return std::nullopt;
 }
 
 // From narrow to wide; none where they say nothing.
@@ -235,9 +246,12 @@ std::vector<ResponsePrior> priors_of(const Model& shared, const Model& baseline,
                                      const std::vector<ExcitedBand>& bands,
                                      const Signals& signals) {
   std::vector<ResponsePrior> priors;
-  if (!has_terms_alone(shared, signals)) return priors;
+  if (!has_body_of_baseline(shared, signals)) return priors;
+  const Body assumed = std::ranges::any_of(shared.effects, scales_body)
+                           ? scaled_to(shared.body, baseline.body, bands, baseline.rate_hz)
+                           : baseline.body;
   for (const double spread : kSpreads) {
-    priors.emplace_back(baseline.body, bands, baseline.rate_hz, noise, spread);
+    priors.emplace_back(assumed, bands, baseline.rate_hz, noise, spread);
     if (priors.back().empty()) return {};
   }
   return priors;
@@ -318,7 +332,13 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     const Model shared = shared_part(found, signals, blocks, carried.left_out);
     const std::vector<ResponsePrior> priors =
         priors_of(shared, baseline, rms_error(found, masked), carried.bands, signals);
-    carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
+    const auto first = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
+    carried.model = first.value_or(baseline);
+    if (!first) {
+      leave_all(shared,
+                "next to it the body differs from the linear model's where nothing excited it",
+                carried.left_out);
+    }
     keep_stable(carried, signals, baseline.body, carrying);
     PartErrors errors = carrying.errors(carried.model);
     while (const auto effect = idle(carried.model, errors, baseline.body, carrying)) {
@@ -334,10 +354,9 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     // compared with.
     if (carried.model.effects.empty() ||
         !carrying.errors(carried.model).is_below(carrying.errors_of_baseline(baseline))) {
-      for (const Effect& effect : carried.model.effects) {
-        carried.left_out.push_back(left_out(
-            effect, "parts of the recording are predicted as well without it from the others"));
-      }
+      leave_all(carried.model,
+                "parts of the recording are predicted as well without it from the others",
+                carried.left_out);
       carried.model = baseline;
     }
   }

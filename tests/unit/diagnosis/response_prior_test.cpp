@@ -42,6 +42,31 @@ TEST(ResponsePriorTest, TheBodyThatIsAssumedCostsNothing) {
   EXPECT_GT(sut.error(kOther.body), 0.0);
 }
 
+// Next to a map the body is a multiple of the baseline's.
+TEST(ResponsePriorTest, ABodyIsScaledToAnotherWithinTheBand) {
+  Body times = kAssumed.body;
+  for (double& b : times.numerators[0]) b *= -1.7;
+  EXPECT_NEAR(scaled_to(times, kAssumed.body, kBands, kRate_hz).numerators[0][0],
+              times.numerators[0][0], 1e-12);
+  // Of another one the part in phase: no other factor comes nearer.
+  const Body nearest = scaled_to(kOther.body, kAssumed.body, kBands, kRate_hz);
+  const double factor = nearest.numerators[0][0] / kAssumed.body.numerators[0][0];
+  const auto distance = [&](double times_of) {
+    double sum = 0.0;
+    for (int i = 0; i < 32; ++i) {
+      const double at_hz = 0.7 + 1.3 * i / 31;
+      const auto response = [&](const Model& model) {
+        return signal::response_at({kRate_hz, model.body.numerators[0], model.body.denominator},
+                                   at_hz);
+      };
+      sum += std::norm(response(kOther) - times_of * response(kAssumed));
+    }
+    return sum;
+  };
+  EXPECT_LT(distance(factor), distance(factor + 0.01));
+  EXPECT_LT(distance(factor), distance(factor - 0.01));
+}
+
 TEST(ResponsePriorTest, WhereEveryFrequencyIsExcitedNothingIsAssumed) {
   const ResponsePrior sut(kAssumed.body, {{"u", 0.0, 0.5 * kRate_hz}}, kRate_hz, 0.3, 0.1);
   EXPECT_TRUE(sut.empty());

@@ -33,18 +33,40 @@ Complex step_of(double frequency_hz, double rate_hz) {
   return std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz / rate_hz);
 }
 
+// Evenly over the band.
+double line_in(const ExcitedBand& band, std::size_t line) {
+  return band.low_hz + static_cast<double>(line) / (kLines - 1) * (band.high_hz - band.low_hz);
+}
+
 // Root mean square over lines within the band.
 double gain_in_band(const Body& body, std::size_t input, const ExcitedBand& band, double rate_hz) {
   double sum = 0.0;
   for (std::size_t i = 0; i < kLines; ++i) {
-    const double share = static_cast<double>(i) / (kLines - 1);
-    const double at_hz = band.low_hz + share * (band.high_hz - band.low_hz);
-    sum += std::norm(response_at(body, input, step_of(at_hz, rate_hz)));
+    sum += std::norm(response_at(body, input, step_of(line_in(band, i), rate_hz)));
   }
   return std::sqrt(sum / kLines);
 }
 
 }  // namespace
+
+Body scaled_to(const Body& other, const Body& body, const std::vector<ExcitedBand>& bands,
+               double rate_hz) {
+  Body scaled = body;
+  for (std::size_t input = 0; input < body.numerators.size(); ++input) {
+    const ExcitedBand& band = bands.at(input);
+    double product = 0.0;
+    double square = 0.0;
+    for (std::size_t i = 0; i < kLines; ++i) {
+      const Complex step = step_of(line_in(band, i), rate_hz);
+      const Complex response = response_at(body, input, step);
+      product += (std::conj(response) * response_at(other, input, step)).real();
+      square += std::norm(response);
+    }
+    if (!(square > 0.0)) continue;
+    for (double& b : scaled.numerators[input]) b *= product / square;
+  }
+  return scaled;
+}
 
 ResponsePrior::ResponsePrior(const Body& body, const std::vector<ExcitedBand>& bands,
                              double rate_hz, double noise, double spread) {

@@ -11,6 +11,11 @@
 
 namespace stillhand::diagnosis {
 
+/// The body, each input's response times the number that brings it next to the other body's within
+/// the band (least squares).
+Body scaled_to(const Body& other, const Body& body, const std::vector<ExcitedBand>& bands,
+               double rate_hz);
+
 /// What is assumed of a body's response where the input did not excite it: that of another body,
 /// README Eq. DG-67.  Terms of a least-squares fit next to the samples'.
 class ResponsePrior {
