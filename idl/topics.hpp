@@ -81,6 +81,7 @@ inline constexpr std::string_view kAugmentedModelReaders[]{"cancellation", "reco
 inline constexpr std::string_view kCommandWriters[]{kDashboard, "display", "experiment"};
 inline constexpr std::string_view kCommandReaders[]{"rig", "experiment", "recorder"};
 inline constexpr std::string_view kEventReaders[]{"experiment", "recorder"};
+inline constexpr std::string_view kPromptReaders[]{"display", "recorder"};
 inline constexpr std::string_view kStatusReaders[]{"rig", "cancellation", "display", "recorder",
                                                    "experiment"};
 }  // namespace who
@@ -171,12 +172,19 @@ inline constexpr Topic kSessionCommand{
     Pattern::kCommand,           0.0,
     who::kCommandWriters,        who::kCommandReaders};
 
+inline constexpr Topic kPrompt{"stillhand/prompt",     "stillhand_msgs::Prompt",
+                               Pattern::kStateLatched, 0.0,
+                               who::kExperiment,       who::kPromptReaders};
+inline constexpr Topic kAnswer{"stillhand/answer", "stillhand_msgs::Answer", Pattern::kEvent, 0.0,
+                               who::kDisplay,      who::kEventReaders};
+
 /// The whole catalogue; idl/README.md holds the same rows (tests/interface compares them).
-inline constexpr std::array<const Topic*, 20> kCatalogue{
+inline constexpr std::array<const Topic*, 22> kCatalogue{
     &kPlatformCommand,  &kRawSample,      &kRigTruth,   &kSensed,         &kMotorCommand,
     &kTrackingSample,   &kOperatorForce,  &kPointer,    &kTrialControl,   &kTrialAssignment,
     &kFeedthroughModel, &kAugmentedModel, &kEvent,      &kServiceStatus,  &kClockQuestion,
-    &kClockAnswer,      &kClockOffset,    &kHostStatus, &kSessionCommand, &kSessionSources};
+    &kClockAnswer,      &kClockOffset,    &kHostStatus, &kSessionCommand, &kSessionSources,
+    &kPrompt,           &kAnswer};
 
 /// Remote control of `stillhand record` and `stillhand replay`, outside of every session; no
 /// process waits for these topics.

@@ -35,7 +35,7 @@ void set_session(const Folder& folder, std::size_t index, std::int64_t session,
   lab.protocol.trial_s = design.trial_s;
   lab.protocol.identify_s = design.identify_s;
   lab.protocol.seed = session_seed(design, index, session);
-  lab.who = design.who == "mouse" ? lab::Operator::kMouse : lab::Operator::kSimulated;
+  lab.who = design.who == "simulated" ? lab::Operator::kSimulated : lab::Operator::kMouse;
   if (lab.who == lab::Operator::kSimulated) {
     lab.subject = static_cast<std::int64_t>(index) + 1;
     lab.subject_seed = static_cast<std::uint64_t>(design.subject_seed);
@@ -71,6 +71,10 @@ std::size_t next_participant(const Folder& folder) {
 }
 
 int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtime::Stop& stop) {
+  if ((folder.design().who == "gamepad") == lab.gamepad.empty()) {
+    throw ConfigError("--gamepad", lab.gamepad.empty() ? "nothing" : lab.gamepad.string(),
+                      "a device where experiment.yaml has operator: gamepad, and none elsewhere");
+  }
   if (folder.participants().empty()) folder.register_design();
   std::filesystem::create_directories(folder.participant(index));
   Journal journal(folder.journal(index));

@@ -15,6 +15,7 @@
 #include "apps/experiment/report_command.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/experiment/status.hpp"
+#include "apps/session/instructions.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/settings/check_name.hpp"
@@ -28,6 +29,7 @@ struct Words {
   std::string reason;
   std::string conditions = "A,B,C";
   std::string order = "williams";
+  std::filesystem::path control_model;  // of condition C+, copied into the folder
   std::optional<std::uint64_t> seed;
   Design design;
   lab::LabOptions lab;
@@ -53,10 +55,17 @@ void make(Words words) {
   for (std::string word; std::getline(list, word, ',');) words.design.conditions.push_back(word);
   words.design.order = order_named(words.order);
   if (words.conditions != "A,B,C") words.design.comparisons.clear();
-  words.design.instructions = {"Keep the cross in the box.", "Hold the stick with your whole hand.",
-                               "Escape stops everything at once."};
+  words.design.instructions = session::instructions(words.design.who);
+  const bool has_model = !words.control_model.empty();
+  if (has_model && !std::filesystem::is_regular_file(words.control_model)) {
+    throw ConfigError("--control-model", words.control_model.string(), "a file");
+  }
+  if (has_model) words.design.control_model = "control_model.json";
   check(words.design);
   make_folder(words.folder, words.design, words.seed ? *words.seed : random_seed());
+  if (has_model) {
+    std::filesystem::copy_file(words.control_model, words.folder / words.design.control_model);
+  }
   std::printf("%s: read it, change it, then `stillhand experiment run %s`\n",
               (words.folder / kDesignFile).c_str(), words.folder.c_str());
 }
@@ -116,7 +125,11 @@ void add_new(CLI::App& verb, const std::shared_ptr<Words>& words) {
       ->capture_default_str();
   sub->add_option("--identify-seconds", design.identify_s, "length of the pegged trial [s]")
       ->capture_default_str();
-  sub->add_option("--operator", design.who, "simulated or mouse")->capture_default_str();
+  sub->add_option("--operator", design.who, "simulated, mouse or gamepad")->capture_default_str();
+  sub->add_option("--control-model", words->control_model,
+                  "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
+                  "`stillhand control-model` write such a file")
+      ->check(settings::check_name);
   sub->add_option("--seed", words->seed,
                   "seed of the orders, for a folder that can be made again; without: from the "
                   "system's random source");
@@ -137,6 +150,9 @@ void add_run(CLI::App& verb, const std::shared_ptr<Words>& words, int& status) {
   sub->add_option("--match-seconds", lab.match_s,
                   "longest wait until every endpoint has matched [s]")
       ->capture_default_str();
+  sub->add_option("--gamepad", lab.gamepad,
+                  "of operator: gamepad: input device, for example /dev/input/event5")
+      ->check(settings::check_name);
   sub->add_option("--stop-key", lab.stop_key,
                   "input device, for example /dev/input/event3: each of its keys is an emergency "
                   "stop")

@@ -10,10 +10,15 @@
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/lab/control_model.hpp"
 #include "apps/measurement/written_trial.hpp"
+#include "apps/session/instructions.hpp"
 
 namespace stillhand::experiment {
 namespace {
 
+static_assert(kMostInstructions * (kMostLine + 1) <= lab::kMostPromptText);
+static_assert(kMostWord == lab::kMostPromptWord);
+
+constexpr double kEndShown_s = 20.0;
 constexpr double kBoxHalfWidth_m = 0.015;  // paper III-C; Eq. ID-13
 
 // Share of a trial's recorded ticks with the cursor in the box.
@@ -92,10 +97,44 @@ std::vector<session::PlannedTrial> SessionScript::possible_trials() const {
 }
 
 void SessionScript::run(lab::LiveTrials& trials) {
-  if (!identify(trials)) return;
+  if (!instruct(trials) || !identify(trials)) return;
   while (const auto next = progress_.next()) {
     if (!do_step(trials, *next) || !look(trials)) return;
   }
+  show_end(trials);
+}
+
+lab::Prompt SessionScript::prompt_of(lab::PromptKind kind, const Step& step) const {
+  lab::Prompt prompt{.kind = kind,
+                     .participant = participant_code(index_),
+                     .block = step.block,
+                     .blocks = folder_.design().blocks,
+                     .trial = step.place,
+                     .trials = trials_of(plan_)};
+  if (kind == lab::PromptKind::kPractice) {
+    prompt.trial = progress_.practice_trials() + 1;
+    prompt.trials = folder_.design().practice.most_trials;
+  }
+  return prompt;
+}
+
+bool SessionScript::instruct(lab::LiveTrials& trials) {
+  const std::vector<std::string>& lines = folder_.design().instructions;
+  if (!with_person() || lines.empty()) return look(trials);
+  lab::Prompt prompt = prompt_of(lab::PromptKind::kInstructions, {});
+  prompt.text = session::text_of(lines);
+  prompt.steps = 1;
+  trials.ask(prompt, "instructions");
+  return look(trials);
+}
+
+// The processes end when the script does, and with them the screen: a person reads it first.
+void SessionScript::show_end(lab::LiveTrials& trials) {
+  lab::Prompt prompt = prompt_of(lab::PromptKind::kEnd, {});
+  if (!with_person()) return trials.show(prompt);
+  prompt.steps = 1;
+  prompt.wait_s = kEndShown_s;
+  trials.ask(prompt, "the end");
 }
 
 bool SessionScript::look(lab::LiveTrials& trials) {
@@ -113,6 +152,9 @@ bool SessionScript::look(lab::LiveTrials& trials) {
 }
 
 bool SessionScript::identify(lab::LiveTrials& trials) {
+  lab::Prompt prompt = prompt_of(lab::PromptKind::kIdentification, {});
+  if (with_person()) prompt.text = "The simulated arm is measured.\nThere is nothing to do.\n";
+  trials.show(prompt);
   add({.kind = EntryKind::kTrialBegan, .trial = 0, .text = "identification"});
   const session::TrialOutcome& outcome = trials.run(identification());
   numbers_ = outcome.planned.trial.number;
@@ -164,7 +206,13 @@ bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
   const bool practice = planned_step.kind == StepKind::kPractice;
   const std::string label = practice ? "" : folder_.assignment().labels[planned_step.condition];
   for (;;) {
-    if (!first_) trials.rest("rest", folder_.design().rest_s);
+    const double rest_s = first_ ? 0.0 : folder_.design().rest_s;
+    lab::Prompt prompt =
+        prompt_of(practice ? lab::PromptKind::kPractice : lab::PromptKind::kTrial, planned_step);
+    prompt.wait_s = rest_s + lab::kTrialLead_s +
+                    static_cast<double>(planned.trial.ramp_ticks) * kControlPeriod_s;
+    trials.show(prompt);
+    if (rest_s > 0.0) trials.rest("rest", rest_s);
     first_ = false;
     if (!look(trials)) return false;
     if (progress_.next() != step) return true;  // during the rest, the last trial was asked again
@@ -193,6 +241,12 @@ bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
 }
 
 bool SessionScript::take_break(lab::LiveTrials& trials, std::size_t number) {
+  lab::Prompt prompt = prompt_of(lab::PromptKind::kBreak, plan_[number]);
+  for (std::size_t step = number; step < plan_.size() && prompt.trial == 0; ++step) {
+    prompt.trial = plan_[step].place;  // what comes after it
+  }
+  prompt.wait_s = folder_.design().break_s;
+  trials.show(prompt);
   trials.rest(fmt::format("break after block {}", plan_[number].block), folder_.design().break_s);
   if (!look(trials)) return false;
   add({.kind = EntryKind::kBreakOver, .step = static_cast<std::int64_t>(number)});
@@ -200,13 +254,27 @@ bool SessionScript::take_break(lab::LiveTrials& trials, std::size_t number) {
   return true;
 }
 
-bool SessionScript::ask(lab::LiveTrials& /*trials*/, std::size_t number) {
+bool SessionScript::ask(lab::LiveTrials& trials, std::size_t number) {
   const Question& question = folder_.design().questions[plan_[number].question];
-  add({.kind = EntryKind::kQuestionAnswered,
-       .step = static_cast<std::int64_t>(number),
-       .text = question.name + (folder_.design().who == "simulated"
-                                    ? ": not asked of a simulated subject"
-                                    : ": not asked: the screen does not ask yet")});
+  Entry entry{.kind = EntryKind::kQuestionAnswered, .step = static_cast<std::int64_t>(number)};
+  if (with_person()) {
+    lab::Prompt prompt = prompt_of(lab::PromptKind::kQuestion, plan_[number]);
+    for (std::size_t step = number; step > 0 && prompt.trial == 0; --step) {
+      prompt.trial = plan_[step - 1].place;  // the trial that it follows
+    }
+    prompt.text = question.text + "\n";
+    prompt.lowest = question.lowest;
+    prompt.highest = question.highest;
+    prompt.steps = question.steps;
+    const auto answer = trials.ask(prompt, "question " + question.name);
+    // One that was not answered when the session ended is asked again.
+    if (!answer && !look(trials)) return false;
+    entry.answer = answer.value_or(0);
+    entry.text = question.name + (answer ? "" : ": passed over by the experimenter");
+  } else {
+    entry.text = question.name + ": not asked of a simulated subject";
+  }
+  add(entry);
   return true;
 }
 

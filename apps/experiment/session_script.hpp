@@ -41,6 +41,12 @@ class SessionScript {
   bool track(lab::LiveTrials& trials, std::size_t number);
   bool take_break(lab::LiveTrials& trials, std::size_t number);
   bool ask(lab::LiveTrials& trials, std::size_t number);
+  /// Shows what a person has to know, until the person goes on.  @return false: the session ends
+  bool instruct(lab::LiveTrials& trials);
+  void show_end(lab::LiveTrials& trials);
+  /// What the screen shows before and during a step.
+  [[nodiscard]] lab::Prompt prompt_of(lab::PromptKind kind, const Step& step) const;
+  [[nodiscard]] bool with_person() const { return folder_.design().who != "simulated"; }
   /// Runs a trial until it is completed, again after each stop, unless an earlier one is asked for
   /// again before it begins.  @return false: the session ends
   bool run_trial(lab::LiveTrials& trials, std::size_t step, session::PlannedTrial planned);

@@ -41,6 +41,28 @@ Action action_of(stillhand_msgs::SessionAction action) {
   return Action::kUnknown;  // from another version
 }
 
+stillhand_msgs::PromptKind kind_of(PromptKind kind) {
+  switch (kind) {
+    case PromptKind::kNothing:
+      break;
+    case PromptKind::kInstructions:
+      return stillhand_msgs::PROMPT_INSTRUCTIONS;
+    case PromptKind::kIdentification:
+      return stillhand_msgs::PROMPT_IDENTIFICATION;
+    case PromptKind::kPractice:
+      return stillhand_msgs::PROMPT_PRACTICE;
+    case PromptKind::kTrial:
+      return stillhand_msgs::PROMPT_TRIAL;
+    case PromptKind::kBreak:
+      return stillhand_msgs::PROMPT_BREAK;
+    case PromptKind::kQuestion:
+      return stillhand_msgs::PROMPT_QUESTION;
+    case PromptKind::kEnd:
+      return stillhand_msgs::PROMPT_END;
+  }
+  return stillhand_msgs::PROMPT_NOTHING;
+}
+
 stillhand_msgs::MotionKind motion_of(const session::PlannedTrial& planned) {
   if (!planned.moving) return stillhand_msgs::MOTION_STILL;
   switch (planned.motion) {
@@ -89,6 +111,27 @@ Command from_idl(const stillhand_msgs::SessionCommand& command) {
 
 ModelSeen from_idl(const stillhand_msgs::FeedthroughModel& model) {
   return {model.trial(), model.usable(), model.text().c_str()};
+}
+
+AnswerSeen from_idl(const stillhand_msgs::Answer& answer) {
+  return {answer.prompt_number(), answer.value()};
+}
+
+stillhand_msgs::Prompt to_idl(const Prompt& prompt, std::uint64_t number, Tick now) {
+  stillhand_msgs::Prompt message;
+  message.number(number);
+  message.kind(kind_of(prompt.kind));
+  message.participant(prompt.participant);
+  message.block(static_cast<std::int32_t>(prompt.block));
+  message.blocks(static_cast<std::int32_t>(prompt.blocks));
+  message.trial(static_cast<std::int32_t>(prompt.trial));
+  message.trials(static_cast<std::int32_t>(prompt.trials));
+  message.end_tick(prompt.wait_s && now >= 0 ? now + ticks_in(*prompt.wait_s) : -1);
+  message.text(prompt.text);
+  message.lowest(prompt.lowest);
+  message.highest(prompt.highest);
+  message.steps(static_cast<std::int32_t>(prompt.steps));
+  return message;
 }
 
 stillhand_msgs::SessionState to_idl(SessionState state) {

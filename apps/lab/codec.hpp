@@ -17,6 +17,9 @@ ProcessSeen from_idl(const stillhand_msgs::ServiceStatus& status);
 EventSeen from_idl(const stillhand_msgs::Event& event);
 Command from_idl(const stillhand_msgs::SessionCommand& command);
 ModelSeen from_idl(const stillhand_msgs::FeedthroughModel& model);
+AnswerSeen from_idl(const stillhand_msgs::Answer& answer);
+/// @param now  newest tick, from which the prompt's wait counts; -1: none yet
+stillhand_msgs::Prompt to_idl(const Prompt& prompt, std::uint64_t number, Tick now);
 session::Mark mark_of(const EventSeen& event);
 
 stillhand_msgs::SessionState to_idl(SessionState state);

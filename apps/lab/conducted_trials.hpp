@@ -36,6 +36,10 @@ class ConductedTrials final : public LiveTrials {
 
   const session::TrialOutcome& run(const session::PlannedTrial& planned) override;
   const session::TrialOutcome& run_once(const session::PlannedTrial& planned) override;
+  void show(const Prompt& prompt) override { conductor_.show(prompt); }
+  std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what) override {
+    return conductor_.ask(prompt, what);
+  }
   void rest(const std::string& what, double seconds) override { conductor_.rest(what, seconds); }
   void note(const std::string& text) override { conductor_.note(text); }
   Asked asked() override { return conductor_.asked(); }

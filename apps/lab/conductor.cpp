@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/lab/codec.hpp"
+#include "apps/lab/core/asking.hpp"
 #include "apps/lab/core/model_stages.hpp"
 #include "apps/lab/core/rest.hpp"
 #include "apps/lab/core/session_begin.hpp"
@@ -23,6 +24,8 @@ namespace {
 constexpr std::chrono::milliseconds kPollPeriod{50};
 // A session of hours has fewer; made-up events must not fill the memory.
 constexpr std::size_t kMostEvents = 100'000;
+// Between two looks of a prompt; the display repeats its answer.
+constexpr std::size_t kMostAnswers = 16;
 
 // In the order of the launches, which is that of the data flow.
 Roster roster() {
@@ -52,6 +55,7 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Show show)
       control_model_(
           service.bus().publisher<stillhand_msgs::AugmentedModel>(topics::kAugmentedModel)),
       sources_(service.bus().publisher<stillhand_msgs::SessionSources>(topics::kSessionSources)),
+      prompts_(service.bus().publisher<stillhand_msgs::Prompt>(topics::kPrompt)),
       emergency_stop_(service.bus(), "the stop key") {
   subscribe();
 }
@@ -89,6 +93,13 @@ void Conductor::subscribe() {
                                                       seen_.model = from_idl(model);
                                                     });
                                                   });
+  bus.subscribe<stillhand_msgs::Answer>(topics::kAnswer,
+                                        [this, stored](const auto& answer, const auto&) {
+                                          stored([&] {
+                                            if (seen_.answers.size() < kMostAnswers)
+                                              seen_.answers.push_back(from_idl(answer));
+                                          });
+                                        });
   // Every request leaves an event, whether it is obeyed or not.
   bus.subscribe<stillhand_msgs::SessionCommand>(
       topics::kSessionCommand, [this, stored](const auto& command, const auto&) {
@@ -168,6 +179,7 @@ void Conductor::perform(const Actions& actions) {
     control_model_.write(given_);
   }
   if (actions.progress) show_(*actions.progress);
+  if (actions.note) note(*actions.note);
 }
 
 void Conductor::announce(const Announcement& announcement) {
@@ -205,6 +217,28 @@ void Conductor::pause() {
 void Conductor::rest(const std::string& what, double seconds) {
   Rest rest(what, seconds, trouble_);
   drive(rest);
+}
+
+void Conductor::show(const Prompt& prompt) {
+  Tick now = -1;
+  {
+    const std::lock_guard lock(mutex_);
+    now = seen_.newest_tick();
+  }
+  auto message = to_idl(prompt, ++shown_, now);
+  prompts_.write(message);
+}
+
+std::optional<std::int64_t> Conductor::ask(const Prompt& prompt, const std::string& what) {
+  {
+    const std::lock_guard lock(mutex_);
+    seen_.answers.clear();
+  }
+  show(prompt);
+  Asking asking(what, shown_, prompt.steps, prompt.wait_s, trouble_);
+  drive(asking);
+  if (!asking.answer()) throw_trouble();
+  return asking.answer();
 }
 
 Asked Conductor::asked() {

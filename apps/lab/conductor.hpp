@@ -52,6 +52,11 @@ class Conductor {
   void begin_session();
   /// No trial begins before a request for a start.
   void pause();
+  /// What the participant's screen shows from now on.
+  void show(const Prompt& prompt);
+  /// Shows it and waits for the answer.  @return nothing: none came
+  /// @throws std::runtime_error, RefusedByProcess
+  std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what);
   /// Waits, at most that long; a request for a start ends it.
   void rest(const std::string& what, double seconds);
   /// An event of the session, for the recording.
@@ -102,6 +107,8 @@ class Conductor {
   runtime::Publisher<stillhand_msgs::AugmentedModel> control_model_;
   runtime::Publisher<stillhand_msgs::SessionSources> sources_;
   std::optional<stillhand_msgs::SessionSources> named_sources_;
+  runtime::Publisher<stillhand_msgs::Prompt> prompts_;
+  std::uint64_t shown_ = 0;  ///< prompts so far; the number of the newest
   runtime::EmergencyStop emergency_stop_;
   std::optional<session::PlannedTrial> planned_;  ///< the trial that runs
   stillhand_msgs::AugmentedModel given_;          ///< the model that the canceller gets

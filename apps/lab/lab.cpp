@@ -19,6 +19,7 @@
 #include "apps/lab/subject_settings.hpp"
 #include "apps/lab/summary.hpp"
 #include "apps/lab/undeclared_effect.hpp"
+#include "apps/session/instructions.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/clock.hpp"
@@ -89,6 +90,16 @@ void run_processes(const LabOptions& options, const AskedMotions& asked, const H
   });
 }
 
+// A person at a mouse or gamepad reads the instructions while the stick is pegged.
+Prompt before_trials(const LabOptions& options) {
+  Prompt prompt{.kind = PromptKind::kIdentification};
+  if (options.who == Operator::kSimulated) return prompt;
+  prompt.kind = PromptKind::kInstructions;
+  prompt.text =
+      session::text_of(session::instructions(options.gamepad.empty() ? "mouse" : "gamepad"));
+  return prompt;
+}
+
 }  // namespace
 
 LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
@@ -142,7 +153,15 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
   std::optional<cancellation::ControlModel> model;
   if (!options.model.empty()) model = control_model(options.model, options.rig, options.config);
   const LiveSession live = run_session(options, stop, [&](LiveTrials& trials) {
-    for (const session::PlannedTrial& planned : session::plan(options.protocol)) {
+    const std::vector<session::PlannedTrial> plan = session::plan(options.protocol);
+    for (std::size_t place = 0; place < plan.size(); ++place) {
+      const session::PlannedTrial& planned = plan[place];
+      const double lead_s = kTrialLead_s + options.protocol.ramp_s;
+      trials.show(place == 0 ? before_trials(options)
+                             : Prompt{.kind = PromptKind::kTrial,
+                                      .trial = static_cast<std::int64_t>(place),
+                                      .trials = static_cast<std::int64_t>(plan.size()) - 1,
+                                      .wait_s = lead_s});
       if (trials.interrupted() || !trials.run(planned).completed) break;
       if (!model || planned.trial.phase != TrialPhase::kPegged) continue;
       if (const std::string refused = trials.use(*model); !refused.empty()) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "apps/lab/core/prompt.hpp"
 #include "apps/lab/core/requests.hpp"
 #include "apps/session/trial_outcome.hpp"
 #include "services/cancellation/core/control_model.hpp"
@@ -21,6 +24,13 @@ class LiveTrials {
   virtual const session::TrialOutcome& run(const session::PlannedTrial& planned) = 0;
   /// The same, without the second part: one that a request stopped is not run again.
   virtual const session::TrialOutcome& run_once(const session::PlannedTrial& planned) = 0;
+  /// What the tracking screen shows the participant from now on.
+  virtual void show(const Prompt& prompt) = 0;
+  /// Shows a prompt with steps and waits for its answer, at most `wait_s` of the prompt.
+  /// @param what  for the person at the terminal
+  /// @return nothing: its time is over, or a request for a start went on without an answer, or the
+  ///         session is interrupted.  @throws std::runtime_error when a process is lost
+  virtual std::optional<std::int64_t> ask(const Prompt& prompt, const std::string& what) = 0;
   /// Waits between trials, until a request for a start or the end.
   virtual void rest(const std::string& what, double seconds) = 0;
   /// One line for the recording, as an event.

@@ -73,7 +73,9 @@ SessionRecording read_session(const std::string& path) {
       {topics::kClockOffset.name, into(session.clock_offsets)},
       {topics::kHostStatus.name, counted<stillhand_msgs::HostStatus>()},
       {topics::kSessionCommand.name, counted<stillhand_msgs::SessionCommand>()},
-      {topics::kSessionSources.name, counted<stillhand_msgs::SessionSources>()}};
+      {topics::kSessionSources.name, counted<stillhand_msgs::SessionSources>()},
+      {topics::kPrompt.name, counted<stillhand_msgs::Prompt>()},
+      {topics::kAnswer.name, counted<stillhand_msgs::Answer>()}};
   const recording::Status status =
       reader.for_each_message({}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);

@@ -2,11 +2,17 @@
 #pragma once
 
 #include "idl/control_loop.h"
+#include "idl/session.h"
+#include "services/display/core/answering.hpp"
+#include "services/display/core/prompt.hpp"
 #include "services/display/core/tracking_display.hpp"
 
 namespace stillhand::display {
 
 TrackingInput from_idl(const stillhand_msgs::Sensed& sensed);
 stillhand_msgs::TrackingSample to_idl(const TrackingSample& sample, Tick tick, std::int64_t trial);
+/// A kind that this version does not know is kNothing; steps out of range take no answer.
+Prompt from_idl(const stillhand_msgs::Prompt& prompt);
+stillhand_msgs::Answer to_idl(const Answering::Answer& answer);
 
 }  // namespace stillhand::display

@@ -2,6 +2,7 @@
 #include "services/display/screen_loop.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -21,16 +22,11 @@ constexpr std::int64_t kLinkLost_ns = 100'000'000;
 // An emergency stop is repeated with every frame for this long.
 constexpr std::int64_t kRepeated_ns = 1'000'000'000;
 
-ViewStatus status_of(const Shown& shown, bool fresh) {
-  ViewStatus status;
-  status.trial_number = shown.trial.number;
-  const Trial& trial = shown.trial;
-  const Tick left =
-      trial.start_tick + trial.duration_ticks - std::max(shown.tick, trial.start_tick);
-  status.time_left_s = static_cast<double>(std::max<Tick>(left, 0)) * kControlPeriod_s;
-  const bool tracking = trial.phase == TrialPhase::kTracking && trial.covers(shown.tick);
-  status.notice = !fresh ? Notice::kLinkLost : tracking ? Notice::kNone : Notice::kHold;
-  return status;
+// An answer is repeated this often until the next prompt.
+constexpr std::int64_t kAnswerPeriod_ns = 300'000'000;
+
+Moment moment_of(const Shown& shown, bool fresh) {
+  return {shown.tick, shown.trial, shown.paused, fresh};
 }
 
 }  // namespace
@@ -46,13 +42,21 @@ class ScreenLoop::Screen {
 
   /// @return false once the window was closed.
   bool show(const Shown& shown, bool fresh) {
-    const cv::Mat& frame = view_.draw(shown.sample, status_of(shown, fresh));
+    take_prompt();
+    const Page page = page_of(prompt_, moment_of(shown, fresh), answering_);
+    const cv::Mat& frame = view_.draw(shown.sample, page);
     // Frames of a session that has not begun, or of a disk that is full, are not kept.
     if (file_ && shown.tick >= 0 && !file_->write(frame)) {
       shell_.service().note_event(stillhand_msgs::EVENT_NOTE, "the video cannot be written");
       file_.reset();
     }
-    return !window_ || window_->show(frame);
+    if (!window_) return true;
+    const bool open = window_->show(frame);
+    take_acts();
+    return open;
+  }
+  [[nodiscard]] const std::optional<Answering::Answer>& answer() const noexcept {
+    return answering_.answer();
   }
   [[nodiscard]] bool escape_pressed() { return window_ && window_->escape_pressed(); }
   [[nodiscard]] std::optional<double> pointer_m() const {
@@ -60,8 +64,28 @@ class ScreenLoop::Screen {
   }
 
  private:
+  void take_prompt() {
+    const stillhand_msgs::Prompt& newest = shell_.prompt();
+    if (newest.number() != prompt_.number) prompt_ = from_idl(newest);
+    answering_.show(prompt_);
+  }
+  // What the participant did to the frame that is shown.
+  void take_acts() {
+    for (const char key : window_->keys()) {
+      if (key >= '1' && key <= '9') answering_.choose(key - '0');
+      if (key == kEnterKey || key == ' ') answering_.confirm();
+    }
+    const auto click = window_->click();
+    if (!click) return;
+    const auto box = view_.box_at(click->x_m, click->y_m);
+    if (box == kButton) answering_.confirm();
+    if (box) answering_.choose(*box);
+  }
+
   Shell& shell_;
   TrackingView view_;
+  Prompt prompt_;
+  Answering answering_;
   std::optional<FrameFile> file_;
   std::optional<ScreenWindow> window_;
 };
@@ -103,6 +127,10 @@ void ScreenLoop::run() {
     // The window stays: the session ends by itself, and the subject sees why.
     if (screen_->escape_pressed()) escape_ns_ = due_ns;
     if (escape_ns_ && due_ns - *escape_ns_ < kRepeated_ns) shell_.stop_at_once();
+    if (screen_->answer() && due_ns - answered_ns_ >= kAnswerPeriod_ns) {
+      shell_.answer(*screen_->answer());
+      answered_ns_ = due_ns;
+    }
     // This process ends, and with it the session; the experiment quotes the line.
     if (!open) throw std::runtime_error("the tracking window was closed");
     if (options_.pointer) publish_pointer(shown.tick, pointed_m());

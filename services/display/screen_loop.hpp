@@ -47,6 +47,7 @@ class ScreenLoop {
   runtime::Publisher<stillhand_msgs::Pointer> pointer_;
   std::optional<Gamepad> gamepad_;
   std::unique_ptr<Screen> screen_;         ///< null when nobody looks
+  std::int64_t answered_ns_ = 0;           ///< when an answer was last written
   std::optional<std::int64_t> escape_ns_;  ///< when Escape was pressed
 };
 

@@ -10,18 +10,28 @@ Shell::Shell(runtime::Service& service)
       config_(service.config<TrackingDisplay::Config>()),
       core_(config_),
       tracking_(service.bus().publisher<stillhand_msgs::TrackingSample>(topics::kTrackingSample)),
+      answers_(service.bus().publisher<stillhand_msgs::Answer>(topics::kAnswer)),
       emergency_stop_(service.bus(), "Escape on the tracking screen") {
   service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
+    paused_ = message.session() == stillhand_msgs::SESSION_PAUSED;
     if (trial.number >= 0) prepare(trial, message.reference_seed());
   });
   // The catalogue gives the display the others' status; a stale picture shows by its tick.
   service.bus().subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
                                                          [](const auto&, const auto&) {});
+  // Texts of bounded length: copying one does not allocate.
+  service.bus().subscribe<stillhand_msgs::Prompt>(
+      topics::kPrompt, [this](const auto& message, const auto&) { prompt_.store(message); });
   service.bus().subscribe<stillhand_msgs::Sensed>(
       topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message); });
 }
 
 void Shell::stop_at_once() { emergency_stop_.ask(); }
+
+void Shell::answer(const Answering::Answer& answer) {
+  auto message = to_idl(answer);
+  answers_.write(message);
+}
 
 void Shell::prepare(const Trial& trial, std::uint64_t reference_seed) {
   handover_.prepare([this, trial, reference_seed]() -> std::unique_ptr<Prepared> {
@@ -51,7 +61,7 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   const TrackingSample sample = core_.step(from_idl(sensed));
   auto message = to_idl(sample, sensed.tick(), armed_ == nullptr ? -1 : armed_->trial.number);
   tracking_.write(message);
-  shown_.store({sensed.tick(), sample, service_.trial()});
+  shown_.store({sensed.tick(), sample, service_.trial(), paused_});
   service_.note_tick(sensed.tick());
 }
 

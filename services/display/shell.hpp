@@ -15,6 +15,7 @@ struct Shown {
   Tick tick = -1;
   TrackingSample sample{};
   Trial trial;
+  bool paused = false;  ///< no trial begins before the experimenter starts it
 };
 
 /// The display's process.  Target and cursor are computed in the receiving thread, one pair for
@@ -25,6 +26,9 @@ class Shell {
 
   /// Newest pair, for one drawing thread.
   const Shown& shown() noexcept { return shown_.load(); }
+  /// Newest prompt, for the same thread.
+  const stillhand_msgs::Prompt& prompt() noexcept { return prompt_.load(); }
+  void answer(const Answering::Answer& answer);
   [[nodiscard]] runtime::Service& service() noexcept { return service_; }
   [[nodiscard]] const TrackingDisplay::Config& config() const noexcept { return config_; }
   /// A person at the screen asks for an emergency stop.
@@ -43,8 +47,11 @@ class Shell {
   TrackingDisplay core_;
   runtime::Handover<Prepared> handover_;
   const Prepared* armed_ = nullptr;
+  bool paused_ = false;
   runtime::LatestValue<Shown> shown_;
+  runtime::LatestValue<stillhand_msgs::Prompt> prompt_;
   runtime::Publisher<stillhand_msgs::TrackingSample> tracking_;
+  runtime::Publisher<stillhand_msgs::Answer> answers_;
   runtime::EmergencyStop emergency_stop_;
 };
 

@@ -3,37 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
 namespace stillhand::display {
 namespace {
 
 constexpr double kWhite = 255.0;
-constexpr double kMargin_m = 0.008;
+constexpr double kFrame_m = 0.0006;  // of a box
 
 /// Share of pixel [i, i + 1) that lies in [from, to).
 double covered(int i, double from, double to) {
   return std::clamp(std::min(to, i + 1.0) - std::max(from, static_cast<double>(i)), 0.0, 1.0);
-}
-
-std::string clock_text(double seconds) {
-  const auto whole = static_cast<long>(std::ceil(std::clamp(seconds, 0.0, 359999.0)));
-  char text[32];
-  std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
-  return text;
-}
-
-const char* notice_text(Notice notice) {
-  switch (notice) {
-    case Notice::kHold:
-      return "HOLD";
-    case Notice::kLinkLost:
-      return "LINK LOST";
-    case Notice::kNone:
-      break;
-  }
-  return "";
 }
 
 }  // namespace
@@ -42,11 +22,13 @@ TrackingView::TrackingView(const TrackingDisplay::Config& config, int columns, i
     : screen_(config.screen),
       layout_(config.screen, config.box_width_m),
       projection_(config.screen, columns, rows),
+      words_(rows, columns, CV_8UC3, cv::Scalar::all(0)),
       image_(rows, columns, CV_8UC3, cv::Scalar::all(0)) {}
 
-const cv::Mat& TrackingView::draw(const TrackingSample& sample, const ViewStatus& status) {
-  image_.setTo(cv::Scalar::all(0));
-  write_status(status);
+const cv::Mat& TrackingView::draw(const TrackingSample& sample, const Page& page) {
+  if (!page_ || *page_ != page) draw_words(page);
+  words_.copyTo(image_);
+  if (!page.task) return image_;
   if (std::isfinite(sample.target_m)) {
     for (const Bar& bar : layout_.box(sample.target_m)) paint(bar);
   }
@@ -54,6 +36,17 @@ const cv::Mat& TrackingView::draw(const TrackingSample& sample, const ViewStatus
     for (const Bar& bar : layout_.cross(sample.cursor_m)) paint(bar);
   }
   return image_;
+}
+
+void TrackingView::draw_words(const Page& page) {
+  page_layout_ = lay_out(page, screen_, [this](const std::string& text, double em_m, bool bold) {
+    const double scale = projection_.pixels_per_metre();
+    return typeface_.width(text, em_m * scale, bold) / scale;
+  });
+  words_.setTo(cv::Scalar::all(0));
+  for (const PlacedBox& box : page_layout_.boxes) paint(box);
+  for (const PlacedText& text : page_layout_.texts) write(text);
+  page_ = page;
 }
 
 void TrackingView::paint(const Bar& bar) {
@@ -81,35 +74,25 @@ void TrackingView::paint(const Bar& bar) {
   }
 }
 
-void TrackingView::write(const std::string& text, double x_m, double share, double baseline_y_m,
-                         const TextStyle& style) {
-  const double height_px = style.height_m * projection_.pixels_per_metre();
-  const int stroke_px = std::max(1, static_cast<int>(height_px / 12.0));
-  constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-  const double scale =
-      cv::getFontScaleFromHeight(kFont, std::max(1, static_cast<int>(height_px)), stroke_px);
-  int below_px = 0;
-  const cv::Size size = cv::getTextSize(text, kFont, scale, stroke_px, &below_px);
-  const double left = projection_.column_of(x_m) - share * size.width;
-  const double baseline = projection_.row_of(baseline_y_m);
-  cv::putText(image_, text,
-              {static_cast<int>(std::lround(left)), static_cast<int>(std::lround(baseline))}, kFont,
-              scale, cv::Scalar::all(style.grey), stroke_px, cv::LINE_AA);
+void TrackingView::paint(const PlacedBox& box) {
+  constexpr int kFractions = 8;  // OpenCV's fixed point: 1/256 px
+  const auto at = [&](double x_m, double y_m) {
+    constexpr double kScale = 1 << kFractions;
+    return cv::Point(static_cast<int>(std::lround((projection_.column_of(x_m) - 0.5) * kScale)),
+                     static_cast<int>(std::lround((projection_.row_of(y_m) - 0.5) * kScale)));
+  };
+  const int frame_px =
+      std::max(1, static_cast<int>(std::lround(kFrame_m * projection_.pixels_per_metre())));
+  cv::rectangle(words_, at(box.area.left_m, box.area.top_m),
+                at(box.area.right_m, box.area.bottom_m), cv::Scalar::all(box.grey),
+                box.filled ? cv::FILLED : frame_px, cv::LINE_AA, kFractions);
 }
 
-void TrackingView::write_status(const ViewStatus& status) {
-  // Dimmer than the task, so that it does not draw the eye.
-  constexpr TextStyle kQuiet{.height_m = 0.0040, .grey = 120.0};
-  constexpr TextStyle kLoud{.height_m = 0.0080, .grey = 220.0};
-  if (status.trial_number >= 0) {
-    const double edge_m = screen_.width_m / 2.0 - kMargin_m;
-    const double line_y_m = screen_.height_m / 2.0 - kMargin_m - kQuiet.height_m;
-    write("TRIAL " + std::to_string(status.trial_number + 1), -edge_m, 0.0, line_y_m, kQuiet);
-    write(clock_text(status.time_left_s), edge_m, 1.0, line_y_m, kQuiet);
-  }
-  if (status.notice != Notice::kNone) {
-    write(notice_text(status.notice), 0.0, 0.5, screen_.height_m * 0.15, kLoud);
-  }
+void TrackingView::write(const PlacedText& text) {
+  const double em_px = text.em_m * projection_.pixels_per_metre();
+  const double length_px = typeface_.width(text.text, em_px, text.bold);
+  typeface_.write(words_, text.text, projection_.column_of(text.x_m) - text.share * length_px,
+                  projection_.row_of(text.baseline_m), em_px, text.bold, text.grey);
 }
 
 }  // namespace stillhand::display

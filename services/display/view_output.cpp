@@ -168,19 +168,26 @@ bool ScreenWindow::show(const cv::Mat& frame) {
     if (!sized_) cv::resizeWindow(title_, frame.cols, frame.rows);
     sized_ = true;
     cv::imshow(title_, frame);
-    const int key = cv::waitKey(1);
-    if (key == kEscapeKey) escape_ = true;
-    if (key == 'q') return false;
+    // A key a call; a person presses few between two frames.
+    for (int key = cv::waitKey(1); key >= 0; key = cv::pollKey()) {
+      if (key == kEscapeKey) escape_ = true;
+      if (key == 'q') return false;
+      if (key == '\r' || key == '\n') keys_.push_back(kEnterKey);
+      if (key >= ' ' && key <= '~') keys_.push_back(static_cast<char>(key));
+    }
     return cv::getWindowProperty(title_, cv::WND_PROP_VISIBLE) > 0.0;
   } catch (const cv::Exception&) {
     return false;
   }
 }
 
-void ScreenWindow::on_mouse(int /*event*/, int column, int /*row*/, int /*flags*/, void* window) {
+void ScreenWindow::on_mouse(int event, int column, int row, int /*flags*/, void* window) {
   auto& self = *static_cast<ScreenWindow*>(window);
   // A pixel's centre.
   self.pointer_m_ = self.projection_.x_of(column + 0.5);
+  if (event == cv::EVENT_LBUTTONDOWN) {
+    self.click_ = {self.projection_.x_of(column + 0.5), self.projection_.y_of(row + 0.5)};
+  }
 }
 
 }  // namespace stillhand::display

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "services/display/core/projection.hpp"
 
@@ -43,6 +44,13 @@ class FrameFile {
   std::int64_t frames_ = 0;
 };
 
+/// A place on the screen [m]: x right of its centre, y up from it.
+struct ScreenPlace {
+  double x_m, y_m;
+};
+
+inline constexpr char kEnterKey = '\n';
+
 /// A window on the desktop that shows frames and knows where the pointer is over it.
 /// One thread: the one that makes it also shows, since the window system asks so.
 class ScreenWindow {
@@ -61,6 +69,11 @@ class ScreenWindow {
   /// Pointer on the screen, right of its centre [m]; nothing before it first moved over the window.
   [[nodiscard]] std::optional<double> pointer_m() const noexcept { return pointer_m_; }
 
+  /// Keys pressed since the last call, in their order: printable ones, and kEnterKey.
+  [[nodiscard]] std::vector<char> keys() { return std::exchange(keys_, {}); }
+  /// Where the left button was pressed since the last call, the last one; on the screen [m].
+  [[nodiscard]] std::optional<ScreenPlace> click() { return std::exchange(click_, std::nullopt); }
+
   /// Escape was pressed since the last call.
   [[nodiscard]] bool escape_pressed() noexcept { return std::exchange(escape_, false); }
 
@@ -70,6 +83,8 @@ class ScreenWindow {
   std::string title_;
   Projection projection_;
   std::optional<double> pointer_m_;
+  std::vector<char> keys_;
+  std::optional<ScreenPlace> click_;
   bool escape_ = false;
   bool sized_;  ///< the window has its size: full screen, or the first frame's
 };

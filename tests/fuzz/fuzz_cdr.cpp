@@ -54,7 +54,9 @@ constexpr std::array kTypes{TopicType{"MotorCommand", read<MotorCommand>},
                             TopicType{"TrialAssignment", read<TrialAssignment>},
                             TopicType{"SessionCommand", read<SessionCommand>},
                             TopicType{"ClockQuestion", read<ClockQuestion>},
-                            TopicType{"ClockAnswer", read<ClockAnswer>}};
+                            TopicType{"ClockAnswer", read<ClockAnswer>},
+                            TopicType{"Prompt", read<Prompt>},
+                            TopicType{"Answer", read<Answer>}};
 
 }  // namespace
 

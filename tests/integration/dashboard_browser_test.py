@@ -86,6 +86,7 @@ class SessionTest(BrowserCase):
         lab.wait_for("a person's third second on the page", lambda: self.tracking(dashboard), TRIAL_LIMIT_S)
         self.assertRegex(page.text("session"), r"phase\s+tracking")
         self.assertIn("hidden", page.text("session"))
+        self.assertRegex(page.text("protocol"), r"trial 1 of 1\s*runs, left \d:\d\d")
         self.assert_everything_moves(page, lab)
         page.keep("running")
         self.assert_fits(page, "running")

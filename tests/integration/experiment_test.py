@@ -17,7 +17,7 @@ import subprocess
 import tempfile
 
 from dashboard_test import Dashboard
-from lab_process import (STILLHAND, LabTestCase, campaign, loose_settings, main, next_domain, running, wait_for)
+from lab_process import (INSPECT, STILLHAND, LabTestCase, campaign, loose_settings, main, next_domain, running, wait_for)
 
 SESSION_LIMIT_S = 300.0
 END_LIMIT_S = 60.0
@@ -291,11 +291,58 @@ class SteeredTest(ExperimentTestCase):
         self.run_to_the_end()
 
 
+class ChosenModelTest(ExperimentTestCase):
+    def cancelled_shares(self):
+        """Of each trial of the only session, by its number: Eq. SN-1, from the rig's truth."""
+        file = self.study / "participants" / "P01" / "sessions" / "01" / "session.mcap"
+        seen = json.loads(subprocess.run([str(INSPECT), str(file), str(10**9), "signals"], capture_output=True,
+                                         text=True, check=True).stdout)
+        motor = dict(zip(seen["rig"]["tick"], seen["rig"]["motor_force_n"]))
+        feedthrough = {row[0]: row[3] for row in seen["signals"]["truth"]}
+        shares = {}
+        for trial in seen["trials"]:
+            ticks = range(trial["start_tick"], trial["start_tick"] + trial["duration_ticks"])
+            pairs = [(feedthrough[tick], motor[tick]) for tick in ticks if tick in motor and tick in feedthrough]
+            moved = sum(force ** 2 for force, _ in pairs)
+            left = sum((force + push) ** 2 for force, push in pairs)
+            shares[trial["number"]] = 1 - (left / moved) ** 0.5 if moved > 0 else None
+        return shares
+
+    @campaign
+    def test_the_model_of_the_folder_runs_in_c_plus_and_in_no_other_trial(self):
+        loop = self.folder / "loop"
+        closed = subprocess.run([str(STILLHAND), "close-the-loop", "--undeclared-effect", "9", "--seed", "3",
+                                 "--trial-seconds", "5", "--identify-seconds", "30", "--out", str(loop)],
+                                capture_output=True, text=True, check=False, timeout=SESSION_LIMIT_S)
+        self.assertEqual(closed.returncode, 0, closed.stderr)
+        self.new("--conditions", "B,C,C',C+", "--participants", 1, "--control-model", loop / "control_model.json")
+        self.edit(rest_s=0, identify_s=20)
+        shown = self.run_to_the_end()
+        self.assertIn("4 of 4 trials", shown)
+        self.assertNotIn("C+", shown)
+        opened = json.loads(experiment("unblind", self.study, "--reason", "the test's end")[0])
+        ran = [entry["trial"] for entry in of_kind(journal(self.study, "P01"), "trial ended")
+               if entry["completed"] and "step" in entry]
+        shares = self.cancelled_shares()
+        by_condition = {condition: shares[trial] for condition, trial in zip(opened["orders"]["P01"], ran)}
+        print("cancelled share:", {name: round(share, 3) for name, share in by_condition.items()}, flush=True)
+        self.assertEqual(by_condition["B"], 0.0)
+        for condition in ("C", "C'", "C+"):
+            self.assertGreater(by_condition[condition], 0.4, condition)
+        self.assertEqual(len(set(by_condition.values())), 4)  # a model of its own in each
+        experiment("export", self.study, "--out", self.folder / "set", "--csv")
+        with open(self.folder / "set" / "trials.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([next(value for key, value in row.items() if key.startswith("condition"))
+                          for row in rows if row["task"] == "tracking" or "tracking" in row.values()],
+                         opened["orders"]["P01"])
+
+
 class RefusalTest(ExperimentTestCase):
     def test_what_cannot_run_is_one_line(self):
         for words, expected in ((("--conditions", "A,D"), "in one process alone"),
                                 (("--conditions", "A,Q"), "A, B, C, C' or C+"),
-                                (("--operator", "cat"), "simulated or mouse")):
+                                (("--operator", "cat"), "simulated, mouse or gamepad")):
             _, errors = experiment("new", self.study, *words, status=2)
             self.assertEqual(len(errors.splitlines()), 1)
             self.assertIn(expected, errors)

@@ -10,9 +10,11 @@ import socket
 import struct
 import subprocess
 import tempfile
+import zlib
 
 TOOLS = ("Xvfb", "xdotool")
 COLUMNS, ROWS = 1280, 1024
+KEPT = os.environ.get("STILLHAND_SCREENSHOTS")  # folder for pictures of the screen
 # Of the X protocol, version 11.
 INTERN_ATOM, SEND_EVENT, CLIENT_MESSAGE = 16, 25, 33
 
@@ -63,11 +65,36 @@ class VirtualDisplay:
     def pixels(self, row):
         """Brightness of a row of the screen, 0 to 255: the green of each pixel."""
         with self._framebuffer.open("rb") as file:
-            header = struct.unpack(">25I", file.read(100))
-            header_size, bits_per_pixel, bytes_per_line, colours = header[0], header[11], header[12], header[19]
-            assert bits_per_pixel == 32
-            file.seek(header_size + 12 * colours + row * bytes_per_line)
+            first, bytes_per_line = self._rows(file)
+            file.seek(first + row * bytes_per_line)
             return file.read(4 * COLUMNS)[1::4]  # blue, green, red, nothing
+
+    @staticmethod
+    def _rows(file):
+        """Where the first row begins, and the length of each [bytes]."""
+        header = struct.unpack(">25I", file.read(100))
+        header_size, bits_per_pixel, bytes_per_line, colours = header[0], header[11], header[12], header[19]
+        assert bits_per_pixel == 32
+        return header_size + 12 * colours, bytes_per_line
+
+    def keep(self, name, columns, rows):
+        """Saves the upper left part of the screen as a picture (PNG), if STILLHAND_SCREENSHOTS is set."""
+        if not KEPT:
+            return
+        folder = pathlib.Path(KEPT)
+        folder.mkdir(parents=True, exist_ok=True)
+        with self._framebuffer.open("rb") as file:
+            first, line = self._rows(file)
+            file.seek(first)
+            pixels = file.read(rows * line)  # at once, so that it is mostly one frame
+        # The first byte of each row: no filter.
+        grey = b"".join(b"\0" + pixels[row * line:row * line + 4 * columns][1::4] for row in range(rows))
+
+        def part(kind, content):
+            return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+        header = struct.pack(">IIBBBBB", columns, rows, 8, 0, 0, 0, 0)
+        (folder / f"{name}.png").write_bytes(b"\x89PNG\r\n\x1a\n" + part(b"IHDR", header) +
+                                             part(b"IDAT", zlib.compress(grey)) + part(b"IEND", b""))
 
     def press_close_button(self, window):
         """Asks a window to close, as a window manager does when its button is pressed (ICCCM, WM_DELETE_WINDOW)."""

@@ -73,6 +73,8 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
   expect_delivery<HostStatus>(topics::kHostStatus);
   expect_delivery<SessionCommand>(topics::kSessionCommand);
   expect_delivery<SessionSources>(topics::kSessionSources);
+  expect_delivery<Prompt>(topics::kPrompt);
+  expect_delivery<Answer>(topics::kAnswer);
   expect_delivery<RecorderCommand>(topics::kRecorderCommand);
 }
 

@@ -298,6 +298,34 @@ TEST(DisplayCodecTest, EveryFieldOfATrackingSampleIsSet) {
                                                                            {"flags", "2"}}));
 }
 
+TEST(DisplayCodecTest, EveryFieldOfAPromptReachesTheScreen) {
+  stillhand_msgs::Prompt message;
+  message.number(5);
+  message.kind(stillhand_msgs::PROMPT_QUESTION);
+  message.trial(4);
+  message.trials(12);
+  message.end_tick(170'000);
+  message.text("first\nsecond\n");
+  message.lowest("not at all");
+  message.highest("very");
+  message.steps(7);
+  const auto [number, kind, trial, trials, end_tick, lines, lowest, highest, steps] =
+      display::from_idl(message);
+  EXPECT_EQ(
+      std::tuple(number, kind, trial, trials, end_tick, lowest, highest, steps),
+      std::tuple(5u, display::PromptKind::kQuestion, 4, 12, 170'000, "not at all", "very", 7));
+  EXPECT_EQ(lines, (std::vector<std::string>{"first", "second"}));
+  for (const int bad : {-1, 10, 1'000'000}) {
+    message.steps(bad);
+    EXPECT_EQ(display::from_idl(message).steps, 0) << bad;
+  }
+}
+
+TEST(DisplayCodecTest, EveryFieldOfAnAnswerIsSet) {
+  EXPECT_EQ(fields_of(display::to_idl(display::Answering::Answer{5, 7})),
+            (Fields{{"rig", "0"}, {"stamp_ns", "0"}, {"prompt_number", "5"}, {"value", "7"}}));
+}
+
 TEST(HumanOperatorCodecTest, EveryFieldOfATrackingSampleReachesTheCore) {
   stillhand_msgs::TrackingSample message;
   message.tick(7);

@@ -161,6 +161,8 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
   } else if (known.row == &topics::kTrialControl) {
     decode<stillhand_msgs::TrialControl>(
         message, [&](const auto& control) { take_control(control, at_ns); });
+  } else if (known.row == &topics::kPrompt) {
+    decode<stillhand_msgs::Prompt>(message, [this](const auto& prompt) { prompt_ = prompt; });
   } else if (known.row == &topics::kTrialAssignment) {
     decode<stillhand_msgs::TrialAssignment>(
         message, [this](const auto& assignment) { condition_ = text_of(assignment); });

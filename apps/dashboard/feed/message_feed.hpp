@@ -96,6 +96,10 @@ class MessageFeed {
   [[nodiscard]] const std::optional<stillhand_msgs::TrialControl>& control() const noexcept {
     return control_;
   }
+  /// What the participant's screen shows; it does not hold the condition.
+  [[nodiscard]] const std::optional<stillhand_msgs::Prompt>& prompt() const noexcept {
+    return prompt_;
+  }
   /// Empty while blinded.
   [[nodiscard]] const std::string& condition() const noexcept { return condition_; }
   [[nodiscard]] const std::array<ServiceView, topics::kServices.size()>& services() const noexcept {
@@ -146,6 +150,7 @@ class MessageFeed {
   BusHealth health_;
   std::vector<Known> sources_;
   std::optional<stillhand_msgs::TrialControl> control_;
+  std::optional<stillhand_msgs::Prompt> prompt_;
   std::string condition_;
   std::array<ServiceView, topics::kServices.size()> services_;
   std::map<std::string, stillhand_msgs::ClockOffset> clocks_;

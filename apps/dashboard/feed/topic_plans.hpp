@@ -18,7 +18,8 @@ inline constexpr std::array kFeedTopics{
     &topics::kTrialControl,   &topics::kTrialAssignment, &topics::kFeedthroughModel,
     &topics::kAugmentedModel, &topics::kEvent,           &topics::kClockQuestion,
     &topics::kClockAnswer,    &topics::kClockOffset,     &topics::kHostStatus,
-    &topics::kSessionCommand, &topics::kSessionSources};
+    &topics::kSessionCommand, &topics::kSessionSources,  &topics::kPrompt,
+    &topics::kAnswer};
 static_assert(kFeedTopics.size() == topics::kCatalogue.size(),
               "a topic of the catalogue is missing in kFeedTopics: add it here");
 

@@ -9,6 +9,7 @@
 #include "apps/dashboard/view/processes_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
 #include "apps/dashboard/view/words.hpp"
+#include "services/runtime/trial_codec.hpp"
 
 namespace stillhand::dashboard {
 
@@ -27,6 +28,42 @@ Json rigs_json(const std::vector<RigSummary>& rigs) {
                    {"worst", each.worst}});
   }
   return all;
+}
+
+// What the session waits for: "start" of the experimenter, "participant", "break", "rest", "trial"
+// (one runs), or nothing; and how long that lasts by the sample clock.
+Json protocol_json(const MessageFeed& feed) {
+  constexpr std::array kKinds{"nothing", "instructions", "identification", "practice",
+                              "trial",   "break",        "question",       "end"};
+  const auto& prompt = feed.prompt();
+  const auto& control = feed.control();
+  if (!prompt || !control || prompt->number() == 0) return {};
+  const auto kind = static_cast<std::size_t>(prompt->kind());
+  Json protocol{{"kind", kind < kKinds.size() ? kKinds[kind] : "unknown"},
+                {"participant", prompt->participant().to_string()},
+                {"block", prompt->block()},
+                {"blocks", prompt->blocks()},
+                {"trial", prompt->trial()},
+                {"trials", prompt->trials()},
+                {"waits_for", ""},
+                {"left_s", nullptr}};
+  const Tick now = feed.newest_tick();
+  const Trial trial = runtime::from_idl(*control);
+  const Tick end_tick = trial.start_tick + trial.duration_ticks;
+  const auto wait = [&](const char* what, Tick until) {
+    protocol["waits_for"] = what;
+    if (until > now) protocol["left_s"] = static_cast<double>(until - now) * kControlPeriod_s;
+  };
+  if (control->session() == stillhand_msgs::SESSION_PAUSED) {
+    wait("start", -1);
+  } else if (trial.phase != TrialPhase::kIdle && now < end_tick + trial.ramp_ticks) {
+    wait("trial", end_tick);
+  } else if (prompt->steps() > 0) {
+    wait("participant", prompt->end_tick());
+  } else if (prompt->end_tick() > now) {
+    wait(prompt->kind() == stillhand_msgs::PROMPT_BREAK ? "break" : "rest", prompt->end_tick());
+  }
+  return protocol;
 }
 
 Json session_json(const MessageFeed& feed) {
@@ -49,6 +86,7 @@ Json session_json(const MessageFeed& feed) {
   session["trial"] = control->trial();
   session["start_tick"] = control->start_tick();
   session["duration_ticks"] = control->duration_ticks();
+  session["protocol"] = protocol_json(feed);
   if (!feed.condition().empty()) session["condition"] = feed.condition();
   return session;
 }

@@ -13,6 +13,11 @@ function spread(times) {
   return `${us(times.p50_us)} / ${us(times.p99_us)} / ${us(times.p999_us)} / ${us(times.max_us)}`;
 }
 
+function minutes(seconds) {
+  const whole = Math.ceil(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+}
+
 function late(lateness) {
   return lateness.count === 0 ? "0" : `${lateness.count} · ${(lateness.worst_us / 1000).toFixed(3)}`;
 }
@@ -115,6 +120,7 @@ export class Tables {
   }
 
   show(snapshot) {
+    this.showProtocol(snapshot.session);
     this.showSession(snapshot);
     this.showAlarms(snapshot.alarms);
     for (const topic of snapshot.topics) this.showTopic(topic, snapshot);
@@ -138,6 +144,27 @@ export class Tables {
     const trouble = own.trouble.length > 0 ? ` · ${own.trouble.join("; ")}` : "";
     write(element("own"), `This dashboard: ${(100 * own.cpu_share).toFixed(1)} % of one core, ${own.clients} client${own.clients === 1 ? "" : "s"}, ` +
       `${own.dropped} messages dropped, ${own.malformed} malformed${trouble}`);
+  }
+
+  // Participant, place in the protocol, and what the session waits for; read by the experimenter from the stick.
+  showProtocol({ protocol, state }) {
+    const node = element("protocol");
+    const there = state !== "none" && protocol !== null && protocol !== undefined && (protocol.participant !== "" || protocol.trials > 0);
+    node.hidden = !there;
+    if (!there) return;
+    const place = (name, at, all) => (at > 0 ? `${name} ${at}${all > 0 ? ` of ${all}` : ""}` : "");
+    const left = protocol.left_s === null ? "" : ` ${minutes(protocol.left_s)}`;
+    const asks = protocol.kind === "question" ? "waits for the participant's answer" : "waits for the participant to go on";
+    const waits = { start: "waits for Start", participant: asks, break: "break, next one in", rest: "rest, begins in", trial: "runs, left" }[protocol.waits_for] ?? "";
+    const step = protocol.kind === "practice" ? place("practice", protocol.trial, protocol.trials)
+      : protocol.kind === "identification" || protocol.kind === "instructions" || protocol.kind === "end" ? protocol.kind : place("trial", protocol.trial, protocol.trials);
+    const parts = [protocol.participant, place("block", protocol.block, protocol.blocks), step, state === "ending" ? "over" : waits + left];
+    const texts = parts.filter((part) => part !== "");
+    while (node.children.length > texts.length) node.lastChild.remove();
+    texts.forEach((text, i) => {
+      if (!node.children[i]) node.append(create("span"));
+      write(node.children[i], text);
+    });
   }
 
   showSession({ session, mode, domain, rig, file, now_ms: now }) {

@@ -67,6 +67,17 @@ bool is_name(const std::string& text) {
   });
 }
 
+// A line for the tracking screen.
+void check_line(const char* key, const std::string& text, std::size_t least, std::size_t most) {
+  if (text.size() < least || text.size() > most) {
+    throw ConfigError(key, fmt::format("{} bytes", text.size()),
+                      fmt::format("{} to {} bytes of UTF-8", least, most));
+  }
+  if (std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < ' '; })) {
+    throw ConfigError(key, "a control character", "one line of text");
+  }
+}
+
 void check_questions(const Design& design) {
   for (const Question& question : design.questions) {
     if (!is_name(question.name)) {
@@ -78,10 +89,9 @@ void check_questions(const Design& design) {
     if (question.steps < 2 || question.steps > 9) {
       throw ConfigError("questions.steps", fmt::to_string(question.steps), "2 to 9");
     }
-    if (question.text.empty() || question.text.size() > 100) {
-      throw ConfigError("questions.text", fmt::format("{} characters", question.text.size()),
-                        "1 to 100 characters");
-    }
+    check_line("questions.text", question.text, 1, kMostLine);
+    check_line("questions.lowest", question.lowest, 0, kMostWord);
+    check_line("questions.highest", question.highest, 0, kMostWord);
   }
 }
 
@@ -100,13 +110,15 @@ void check(const Design& design) {
   check_conditions(design);
   check_comparisons(design);
   check_questions(design);
-  if (design.who != "simulated" && design.who != "mouse") {
-    throw ConfigError("operator", "\"" + design.who + "\"", "simulated or mouse");
+  if (design.who != "simulated" && design.who != "mouse" && design.who != "gamepad") {
+    throw ConfigError("operator", "\"" + design.who + "\"", "simulated, mouse or gamepad");
   }
-  if (design.instructions.size() > 8) {
+  if (design.instructions.size() > kMostInstructions) {
     throw ConfigError("instructions", fmt::format("{} lines", design.instructions.size()),
-                      "at most 8 lines");
+                      fmt::format("at most {} lines", kMostInstructions));
   }
+  for (const std::string& line : design.instructions)
+    check_line("instructions", line, 0, kMostLine);
 }
 
 Order order_named(const std::string& word) {

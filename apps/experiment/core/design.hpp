@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -57,13 +58,18 @@ struct Exclusion {
   }
 };
 
+/// Bounds of what the tracking screen shows, which its topic keeps too.
+inline constexpr std::size_t kMostInstructions = 8;  ///< [-] lines
+inline constexpr std::size_t kMostLine = 100;        ///< [bytes] a line or a question
+inline constexpr std::size_t kMostWord = 40;         ///< [bytes] a word at the end of a scale
+
 /// A question that the tracking screen asks; the answer is a whole number.
 struct Question {
   enum class After : std::uint8_t { kPractice, kTrial, kBlock, kEnd };
 
   std::string name;  ///< in the journal: letters, digits, _
   After after = After::kBlock;
-  std::string text;             ///< at most 100 characters
+  std::string text;             ///< at most 100 bytes of UTF-8
   std::string lowest, highest;  ///< words at the ends of the scale
   std::int64_t steps = 7;       ///< answers are 1 to this number, 2 to 9
 };

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/lab/core/prompt.hpp"
 #include "apps/lab/core/requests.hpp"
 #include "services/contract/tick.hpp"
 
@@ -84,8 +85,9 @@ struct Seen {
   std::vector<std::string> missing_peers;    ///< of the conductor's own endpoints
   std::vector<std::string> duplicate_peers;  ///< processes that are on the bus twice
   Requests requests;
-  bool trial_runs = false;   ///< a request for a stop stops the trial
-  bool interrupted = false;  ///< the user asked for the end
+  std::vector<AnswerSeen> answers;  ///< of the participant, until a prompt takes them
+  bool trial_runs = false;          ///< a request for a stop stops the trial
+  bool interrupted = false;         ///< the user asked for the end
 
   [[nodiscard]] const ProcessSeen& process(std::string_view name) const;
   /// Newest tick of the sample clock; -1: none yet.

@@ -30,6 +30,7 @@ struct Actions {
   std::optional<Announcement> announce;
   std::optional<Tick> give_model_from;  ///< give the canceller the model, to be used from this tick
   std::optional<Progress> progress;
+  std::optional<std::string> note = {};  ///< an event of the session
 };
 
 /// One stage of a session, from its first step until it is over.  Pure: no clock, bus or thread;

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "apps/lab/core/prompt.hpp"
+
 namespace stillhand::lab {
 namespace {
 
-// From the announcement to the first tick of the ramp: time to compute a trial's motion and target.
-constexpr double kLead_s = 1.0;
 constexpr std::int64_t kArmLimit_ns = 10'000'000'000;
 constexpr std::int64_t kNsPerTick = 1'000'000;
 constexpr std::int64_t kForEver_ns = std::numeric_limits<std::int64_t>::max();
@@ -86,7 +86,7 @@ void TrialRun::begin(Seen& seen, std::int64_t now_ns, Actions& actions) {
   seen.trial_runs = true;
   before_ = seen.misses();
   Trial& trial = result_.trial;
-  trial.start_tick = seen.newest_tick() + ticks_in(kLead_s) + trial.ramp_ticks;
+  trial.start_tick = seen.newest_tick() + ticks_in(kTrialLead_s) + trial.ramp_ticks;
   actions.assign = trial;
   actions.announce = {SessionState::kRunning, trial};
   move_on(At::kArming, now_ns + kArmLimit_ns);

@@ -85,6 +85,8 @@ STILLHAND_MESSAGE(ServiceStatus)
 STILLHAND_MESSAGE(HostStatus)
 STILLHAND_MESSAGE(SessionCommand)
 STILLHAND_MESSAGE(SessionSources)
+STILLHAND_MESSAGE(Prompt)
+STILLHAND_MESSAGE(Answer)
 STILLHAND_MESSAGE(ClockQuestion)
 STILLHAND_MESSAGE(ClockAnswer)
 STILLHAND_MESSAGE(ClockOffset)
@@ -97,15 +99,32 @@ STILLHAND_MESSAGE(ReplayStatus)
 
 const TypeTag* find_type(std::string_view type_name) {
   using namespace stillhand_msgs;  // NOLINT(google-build-using-namespace): the list below
-  const std::array tags{
-      &type_tag<PlatformCommand>(), &type_tag<RawSample>(),        &type_tag<RigTruth>(),
-      &type_tag<Sensed>(),          &type_tag<MotorCommand>(),     &type_tag<TrackingSample>(),
-      &type_tag<OperatorForce>(),   &type_tag<Pointer>(),          &type_tag<TrialControl>(),
-      &type_tag<TrialAssignment>(), &type_tag<FeedthroughModel>(), &type_tag<AugmentedModel>(),
-      &type_tag<Event>(),           &type_tag<ServiceStatus>(),    &type_tag<ClockQuestion>(),
-      &type_tag<ClockAnswer>(),     &type_tag<ClockOffset>(),      &type_tag<RecorderCommand>(),
-      &type_tag<RecorderStatus>(),  &type_tag<ReplayCommand>(),    &type_tag<ReplayStatus>(),
-      &type_tag<HostStatus>(),      &type_tag<SessionCommand>(),   &type_tag<SessionSources>()};
+  const std::array tags{&type_tag<PlatformCommand>(),
+                        &type_tag<RawSample>(),
+                        &type_tag<RigTruth>(),
+                        &type_tag<Sensed>(),
+                        &type_tag<MotorCommand>(),
+                        &type_tag<TrackingSample>(),
+                        &type_tag<OperatorForce>(),
+                        &type_tag<Pointer>(),
+                        &type_tag<TrialControl>(),
+                        &type_tag<TrialAssignment>(),
+                        &type_tag<FeedthroughModel>(),
+                        &type_tag<AugmentedModel>(),
+                        &type_tag<Event>(),
+                        &type_tag<ServiceStatus>(),
+                        &type_tag<ClockQuestion>(),
+                        &type_tag<ClockAnswer>(),
+                        &type_tag<ClockOffset>(),
+                        &type_tag<RecorderCommand>(),
+                        &type_tag<RecorderStatus>(),
+                        &type_tag<ReplayCommand>(),
+                        &type_tag<ReplayStatus>(),
+                        &type_tag<HostStatus>(),
+                        &type_tag<SessionCommand>(),
+                        &type_tag<SessionSources>(),
+                        &type_tag<Prompt>(),
+                        &type_tag<Answer>()};
   for (const TypeTag* tag : tags) {
     if (tag->support.get_type_name() == type_name) return tag;
   }

@@ -165,6 +165,53 @@ TEST_F(MessageFeedTest, TheConditionIsToldToTheUnblindedAlone) {
   EXPECT_EQ(snapshot_json(sut_, {}, kBegin, -1).find("trial_assignment"), std::string::npos);
 }
 
+class ProtocolTest : public MessageFeedTest {
+ protected:
+  void show(stillhand_msgs::PromptKind kind, Tick end_tick, int steps = 0) {
+    stillhand_msgs::Prompt prompt;
+    prompt.rig(1);
+    prompt.number(++number_);
+    prompt.kind(kind);
+    prompt.participant("P07");
+    prompt.block(1);
+    prompt.blocks(2);
+    prompt.trial(4);
+    prompt.trials(12);
+    prompt.end_tick(end_tick);
+    prompt.steps(steps);
+    take(sut_, add(topics::kPrompt), prompt, 0);
+  }
+  nlohmann::json protocol() {
+    return nlohmann::json::parse(snapshot_json(sut_, {}, kBegin, -1)).at("session").at("protocol");
+  }
+  void expect(const char* waits_for, const nlohmann::json& left_s) {
+    EXPECT_EQ(protocol().at("waits_for"), waits_for);
+    EXPECT_EQ(protocol().at("left_s"), left_s);
+  }
+  std::uint64_t number_ = 0;
+};
+
+TEST_F(ProtocolTest, PlaceAndWaitOfTheSessionAreShownAndNoCondition) {
+  control(sut_, stillhand_msgs::PHASE_TRACKING, 100);  // measured up to tick 10100
+  const std::uint32_t rig = add(topics::kRigTruth);
+  truth(rig, 4100);
+  EXPECT_TRUE(protocol().is_null());
+  show(stillhand_msgs::PROMPT_TRIAL, 100);
+  expect("trial", 6.0);
+  EXPECT_EQ(protocol().at("participant"), "P07");
+  EXPECT_EQ(protocol().at("trial"), 4);
+  EXPECT_EQ(protocol().at("trials"), 12);
+  EXPECT_EQ(protocol().size(), 8u);  // kind, participant, places and the wait
+  truth(rig, 20'000);
+  expect("", nullptr);
+  show(stillhand_msgs::PROMPT_TRIAL, 25'000);
+  expect("rest", 5.0);
+  show(stillhand_msgs::PROMPT_BREAK, 140'000);
+  expect("break", 120.0);
+  show(stillhand_msgs::PROMPT_QUESTION, -1, 7);
+  expect("participant", nullptr);
+}
+
 TEST_F(MessageFeedTest, AnotherHostsClockIsTakenOffItsLatencies) {
   stillhand_msgs::ClockOffset offset;
   offset.rig(1);

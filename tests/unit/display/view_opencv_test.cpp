@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
+#include <iostream>
 #include <limits>
 #include <opencv2/core.hpp>
+#include <set>
 
 #include "services/contract/config_error.hpp"
 
@@ -15,6 +18,14 @@ namespace {
 constexpr int kColumns = 1024;
 constexpr int kRows = 768;
 const TrackingDisplay::Config kConfig;
+
+Page page_with(const std::string& heading, const std::string& time) {
+  Page page;
+  page.corner_left = "Trial 4 of 12";
+  page.corner_right = time;
+  page.heading = heading;
+  return page;
+}
 
 TrackingSample sample(double target_m, double cursor_m) {
   return {target_m, cursor_m, false, kGood};
@@ -93,7 +104,7 @@ TEST(TrackingViewTest, TenMicrometresOfMotionAreSeen) {
 
 TEST(TrackingViewTest, OnlyWhiteOnBlackIsUsed) {
   TrackingView sut(kConfig, kColumns, kRows);
-  const cv::Mat& image = sut.draw(sample(0.03, 0.02), {3, 12.0, Notice::kHold});
+  const cv::Mat& image = sut.draw(sample(0.03, 0.02), page_with("Hold", "0:12"));
   int brightest = 0;
   for (int y = 0; y < kRows; ++y) {
     for (int x = 0; x < kColumns; ++x) {
@@ -107,22 +118,74 @@ TEST(TrackingViewTest, OnlyWhiteOnBlackIsUsed) {
   EXPECT_EQ(level(image, 5, 5), 0);
 }
 
-TEST(TrackingViewTest, TheStatusIsOnTheUpperHalfAndTellsWhatItShould) {
+TEST(TrackingViewTest, WordsNextToTheTaskAreAboveItAndChangeNothingOfIt) {
   TrackingView sut(kConfig, kColumns, kRows);
   const auto s = sample(0.0, 0.0);
   const cv::Rect upper(0, 0, kColumns, kRows / 2);
-  const auto text = [&](const ViewStatus& status) { return sut.draw(s, status).clone(); };
-  const cv::Mat none = text({});
+  const cv::Rect lower(0, 2 * kRows / 3, kColumns, kRows / 3);
+  const auto drawn = [&](const Page& page) { return sut.draw(s, page).clone(); };
+  const cv::Mat none = drawn({});
   EXPECT_EQ(cv::sum(none(upper))[0], 0.0);
-  const cv::Mat first = text({0, 60.0, Notice::kNone});
+  const cv::Mat first = drawn(page_with("Hold", "0:12"));
+  EXPECT_GT(cv::norm(none, first, cv::NORM_L1), 0.0);
   for (const cv::Mat& other :
-       {text({1, 60.0, Notice::kNone}), text({0, 59.0, Notice::kNone}),
-        text({0, 60.0, Notice::kHold}), text({0, 60.0, Notice::kLinkLost})}) {
+       {drawn(page_with("Hold", "0:11")), drawn(page_with("Please wait", "0:12")), drawn({})}) {
     EXPECT_GT(cv::norm(first, other, cv::NORM_L1), 0.0);
-    // The task below is untouched.
-    const cv::Rect lower(0, kRows / 2, kColumns, kRows / 2);
     EXPECT_EQ(cv::norm(none(lower), other(lower), cv::NORM_L1), 0.0);
   }
+}
+
+TEST(TrackingViewTest, APageWithoutTheTaskHidesBoxAndCross) {
+  TrackingView sut(kConfig, kColumns, kRows);
+  Page page;
+  page.task = false;
+  EXPECT_EQ(cv::sum(sut.draw(sample(0.0, 0.05), page))[0], 0.0);
+}
+
+TEST(TrackingViewTest, TheBoxesOfAScaleAreFoundWhereTheyAreSeen) {
+  TrackingView sut(kConfig, kColumns, kRows);
+  Page page;
+  page.task = false;
+  page.steps = 7;
+  page.chosen = 3;
+  page.button = "OK";
+  const cv::Mat image = sut.draw(sample(0.0, 0.0), page);
+  std::set<std::int64_t> found;
+  int filled = 0;
+  for (int row = 4; row < kRows; row += 4) {
+    for (int column = 4; column < kColumns; column += 4) {
+      const auto box =
+          sut.box_at(sut.projection().x_of(column + 0.5), sut.projection().y_of(row + 0.5));
+      if (!box) continue;
+      found.insert(*box);
+      filled += *box == 3 && level(image, row, column) > 200 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(found, (std::set<std::int64_t>{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_GT(filled, 100);  // of about 250 points: the rest is the number
+}
+
+// A frame every 16.7 ms.  Drawing words takes some milliseconds, so they are drawn when they change
+// alone, at most about once a second.
+TEST(TrackingViewTest, TheSameWordsAreNotDrawnTwice) {
+  TrackingView sut(kConfig, kColumns, kRows);
+  Page page = page_with("Hold", "0:12");
+  page.lines.assign(8, std::string(99, 'm'));
+  const cv::Mat first = sut.draw(sample(0.0, 0.0), page).clone();
+  const cv::Mat again = sut.draw(sample(0.0, 0.0), page).clone();
+  EXPECT_EQ(cv::norm(first, again, cv::NORM_L1), 0.0);
+  const auto begin = std::clock();
+  constexpr int kFrames = 50;
+  for (int i = 0; i < kFrames; ++i) sut.draw(sample(0.001 * i, 0.0), page);
+  const double frame_ms =
+      1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / kFrames;
+  page.corner_right = "0:11";
+  const auto middle = std::clock();
+  sut.draw(sample(0.0, 0.0), page);
+  const double words_ms = 1e3 * static_cast<double>(std::clock() - middle) / CLOCKS_PER_SEC;
+  std::cout << "a frame takes " << frame_ms << " ms of processor time, with new words " << words_ms
+            << " ms\n";
+  EXPECT_LT(frame_ms, words_ms);
 }
 
 TEST(TrackingViewTest, WhatIsOffTheScreenOrNotFiniteIsNotDrawn) {

@@ -64,10 +64,15 @@ TEST(ExperimentFileTest, WhatNoSessionCanRunIsNamed) {
   EXPECT_THAT(refusal("conditions: [A, C+]\ncomparisons: []"), HasSubstr("control_model"));
   EXPECT_THAT(refusal("comparisons: [A-D]"), HasSubstr("A-D"));
   EXPECT_THAT(refusal("order: zigzag"), HasSubstr("random, latin or williams"));
-  EXPECT_THAT(refusal("operator: cat"), HasSubstr("simulated or mouse"));
+  EXPECT_THAT(refusal("operator: cat"), HasSubstr("simulated, mouse or gamepad"));
   EXPECT_THAT(refusal("blocks: 0"), HasSubstr("experiment.yaml:1:9"));
   EXPECT_THAT(refusal("blokcs: 1"), HasSubstr("blokcs"));
   EXPECT_THAT(refusal("questions: [{name: a b, text: t}]"), HasSubstr("letters"));
+  // What the topic cannot carry, and what would be several lines on the screen.
+  const std::string hundred_and_one(101, 'm');
+  EXPECT_THAT(refusal("instructions: [" + hundred_and_one + "]"), HasSubstr("100 bytes"));
+  EXPECT_THAT(refusal("instructions: [a, b, c, d, e, f, g, h, i]"), HasSubstr("8 lines"));
+  EXPECT_THAT(refusal("questions: [{name: a, text: \"one\\ntwo\"}]"), HasSubstr("one line"));
 }
 
 TEST(ExperimentFileTest, ACodeIsACodeAndNeverAName) {

@@ -56,6 +56,43 @@ TEST(LabCodecTest, AnEventBecomesTheSameMarkAndLineAsInARecording) {
   EXPECT_EQ(mark.worst_us, 12.5);
 }
 
+TEST(LabCodecTest, EveryFieldOfAPromptIsSetAndItsWaitBecomesATick) {
+  const Prompt prompt{.kind = PromptKind::kQuestion,
+                      .participant = "P07",
+                      .block = 1,
+                      .blocks = 2,
+                      .trial = 4,
+                      .trials = 12,
+                      .wait_s = 1.5,
+                      .text = "How hard?\n",
+                      .lowest = "not",
+                      .highest = "very",
+                      .steps = 7};
+  const stillhand_msgs::Prompt message = to_idl(prompt, 9, 20'000);
+  EXPECT_EQ(message.number(), 9u);
+  EXPECT_EQ(message.kind(), stillhand_msgs::PROMPT_QUESTION);
+  EXPECT_STREQ(message.participant().c_str(), "P07");
+  EXPECT_EQ(message.block(), 1);
+  EXPECT_EQ(message.blocks(), 2);
+  EXPECT_EQ(message.trial(), 4);
+  EXPECT_EQ(message.trials(), 12);
+  EXPECT_EQ(message.end_tick(), 21'500);
+  EXPECT_STREQ(message.text().c_str(), "How hard?\n");
+  EXPECT_STREQ(message.lowest().c_str(), "not");
+  EXPECT_STREQ(message.highest().c_str(), "very");
+  EXPECT_EQ(message.steps(), 7);
+  EXPECT_EQ(to_idl(prompt, 9, -1).end_tick(), -1);
+  EXPECT_EQ(to_idl({}, 1, 20'000).end_tick(), -1);
+}
+
+TEST(LabCodecTest, AnAnswerNamesItsPrompt) {
+  stillhand_msgs::Answer message;
+  message.prompt_number(9);
+  message.value(-3);
+  EXPECT_EQ(from_idl(message).prompt, 9u);
+  EXPECT_EQ(from_idl(message).value, -3);
+}
+
 TEST(LabCodecTest, AnActionOfAnotherVersionIsUnknown) {
   stillhand_msgs::SessionCommand command;
   command.action(static_cast<stillhand_msgs::SessionAction>(99));
