@@ -17,7 +17,8 @@ import subprocess
 import tempfile
 
 from dashboard_test import Dashboard
-from lab_process import (INSPECT, STILLHAND, LabTestCase, campaign, loose_settings, main, next_domain, running, wait_for)
+from lab_process import (INSPECT, STILLHAND, LabTestCase, campaign, loose_settings, main, next_domain, running,
+                         wait_for)
 
 SESSION_LIMIT_S = 300.0
 END_LIMIT_S = 60.0
@@ -333,8 +334,7 @@ class ChosenModelTest(ExperimentTestCase):
         experiment("export", self.study, "--out", self.folder / "set", "--csv")
         with open(self.folder / "set" / "trials.csv", encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual([next(value for key, value in row.items() if key.startswith("condition"))
-                          for row in rows if row["task"] == "tracking" or "tracking" in row.values()],
+        self.assertEqual([row["condition [-]"] for row in rows if row["task [-]"] == "tracking"],
                          opened["orders"]["P01"])
 
 

@@ -73,17 +73,18 @@ class Participant:
         return next((row + 4 for row in range(WINDOW[1] - 8) if all(white[row:row + 8])), None)
 
     def boxes(self):
-        """Columns of the left edges of what is white over 40 rows, and a row in them; None if these are no boxes.
+        """Left edges of the boxes of a scale, and a row in them, or None.
 
-        Each box has two white sides that are higher than a letter.
+        The upper sides of the boxes are white lines of one length in one row, and a white line hangs from the left end
+        of each: no text has that.
         """
-        rows = [self.display.pixels(row)[:WINDOW[0]] for row in range(150, 700)]
-        for top in range(0, len(rows) - 40, 4):
-            band = rows[top:top + 40]
-            white = [all(row[column] > 200 for row in band) for column in range(WINDOW[0])]
-            edges = [column for column in range(1, WINDOW[0]) if white[column] and not white[column - 1]]
-            if len(edges) >= 4:
-                return edges, 150 + top + 20
+        white = [bytes(level > 200 for level in self.display.pixels(row)[:WINDOW[0]]) for row in range(150, 700)]
+        for row, pixels in enumerate(white[:-40]):
+            runs = [(match.start(), len(match[0])) for match in re.finditer(rb"\x01+", pixels)]
+            lengths = [length for _, length in runs]
+            if (len(runs) >= 2 and 50 <= min(lengths) and max(lengths) <= min(min(lengths) + 4, 90) and
+                    all(white[row + down][start + 1] for start, _ in runs for down in range(40))):
+                return [start for start, _ in runs], 150 + row + 20
         return None
 
 
@@ -95,8 +96,8 @@ class ParticipantTestCase(ExperimentTestCase):
         self.person = Participant(self.display)
         self.file = self.study / "participants" / "P01" / "journal.jsonl"
 
-    def make(self, questions, **values):
-        self.new("--conditions", "A,B", "--participants", 1, "--operator", "mouse")
+    def make(self, questions, *words, **values):
+        self.new(*words, "--participants", 1, "--operator", "mouse")
         self.edit(**{"rest_s": 0, "order": "latin", **values})
         file = self.study / "experiment.yaml"
         file.write_text(re.sub(r"questions: \[\]\n", questions, file.read_text()))
@@ -120,7 +121,11 @@ class ParticipantTestCase(ExperimentTestCase):
         return self.process.poll() is not None and f"the session ended: {self.process.communicate()[1]}"
 
     def wait(self, what, condition):
-        return wait_for(what, condition, STEP_LIMIT_S, ended=self.ended)
+        try:
+            return wait_for(what, condition, STEP_LIMIT_S, ended=self.ended)
+        except AssertionError:
+            self.display.keep("failure", *WINDOW)
+            raise
 
     def entries(self, what):
         return of_kind(journal(self.study, "P01"), what) if self.file.exists() else []
@@ -145,7 +150,12 @@ class ParticipantTestCase(ExperimentTestCase):
         self.wait("the button's end", lambda: self.person.button_row() is None)
 
     def answer(self, name, act):
-        """Waits for a question's boxes, and acts."""
+        """Waits for a question's boxes, and acts. By the journal, a tracking trial is over, and none runs."""
+        def next_is_a_question():
+            entries = journal(self.study, "P01")
+            return entries[-1]["what"] in ("trial ended", "question answered") and any(
+                "step" in entry for entry in of_kind(entries, "trial ended"))
+        self.wait(f"the step before {name}", next_is_a_question)
         self.wait(f"the scale of {name}", self.person.boxes)
         hold(READS_S, lambda: None)  # the page of the question before it is gone, too
         edges, row = self.wait(f"the scale of {name}", self.person.boxes)
@@ -163,7 +173,7 @@ class ParticipantTestCase(ExperimentTestCase):
 
 class AnswersTest(ParticipantTestCase):
     def test_answers_by_keys_and_clicks_are_in_the_journal_and_in_the_tables(self):
-        self.make(QUESTIONS)
+        self.make(QUESTIONS, "--conditions", "A", "--blocks", 2, break_s=6)
         self.begin()
         self.dashboard = Dashboard("--domain", self.domain)
         self.addCleanup(self.dashboard.close)
@@ -179,6 +189,10 @@ class AnswersTest(ParticipantTestCase):
         self.display.keep("tracking", *WINDOW)
         self.answer("question", self.by_keys)
         self.wait("the first answer", lambda: len(self.entries("question answered")) == 1)
+        protocol = self.judge_page("break", "break")
+        self.assertTrue(0 < protocol["left_s"] <= 6 and protocol["trial"] == 2, protocol)
+        self.display.keep("break", *WINDOW)
+        self.wait("the second trial's end", lambda: len(self.entries("trial ended")) == 3)
         self.answer("question-2", self.by_clicks)
         self.wait("the second answer", lambda: len(self.entries("question answered")) == 2)
         self.answer("question-end", self.choose("9"))
@@ -213,19 +227,20 @@ class AnswersTest(ParticipantTestCase):
             return protocol if protocol and protocol["kind"] == kind else None
         protocol = self.wait(f"{kind} on the page", shown)
         self.assertEqual((protocol["participant"], protocol["waits_for"], protocol["trials"], protocol["blocks"]),
-                         ("P01", waits_for, 2, 1))
+                         ("P01", waits_for, 2, 2))
         self.assertEqual(set(protocol), {"kind", "participant", "block", "blocks", "trial", "trials", "waits_for",
                                          "left_s"})
-        if browser.KEPT:
+        if browser.KEPT and kind == "question":  # it waits for as long as the pictures take
             page = browser.Browser(f"http://127.0.0.1:{self.dashboard.port}/")
             hold(2.0, lambda: None)
             page.keep(f"protocol-{kind}")
             page.close()
+        return protocol
 
     def by_clicks(self, edges, row):
         """The second box from the left, then the button, which stands in the middle below the words."""
-        self.assertEqual(len(edges), 14)  # both sides of 7 boxes
-        self.person.click(edges[2] + 15, row)
+        self.assertEqual(len(edges), 7)
+        self.person.click(edges[1] + 15, row)
         button = self.wait("a button that works", self.person.button_row)
         self.display.keep("question-clicked", *WINDOW)
         self.person.click(WINDOW[0] // 2, button)
@@ -233,8 +248,8 @@ class AnswersTest(ParticipantTestCase):
     def judge_prompts(self):
         rows = self.prompts()
         print("prompts:", [(row["kind"], row["trial"], row["steps"]) for row in rows], flush=True)
-        # Instructions, the measurement, both trials with their question, the last question, the end.
-        self.assertEqual(len({row["number"] for row in rows}), 8)
+        # Instructions, the measurement, both trials with their question, the break, the last question, the end.
+        self.assertEqual(len({row["number"] for row in rows}), 9)
         # A condition is in none of them, and no field is named like one.
         for row in rows:
             self.assertNotIn("condition", " ".join([*row.keys(), *row.values()]))
@@ -252,7 +267,7 @@ class AnswersTest(ParticipantTestCase):
 
 class KilledTest(ParticipantTestCase):
     def test_a_question_that_a_kill_cut_is_asked_again_and_nothing_twice(self):
-        self.make(QUESTIONS.replace('after: "end"', 'after: "trial"'))
+        self.make(QUESTIONS.replace('after: "end"', 'after: "trial"'), "--conditions", "A,B")
         self.begin()
         self.go_on("again-instructions")
         self.answer("again-question", self.choose("4"))

@@ -9,8 +9,11 @@ const PITCH_X = 134;
 const PITCH_Y = 66;
 const BOX = { service: { w: 116, h: 42 }, topic: { w: 88, h: 36 } };
 const MARGIN = 14;
-const RAIL_H = 58;
+const RAIL_H = 58; // the first row of the rail
+const RAIL_ROW_H = 50; // each further one
+const MOST_IN_A_RAIL = 11;
 const SIGNS = { healthy: "", warning: "!", critical: "✕" };
+const railRows = (topics) => Math.ceil((topics.length + 2) / MOST_IN_A_RAIL);
 const worse = (one, other) => (LEVELS.indexOf(one) > LEVELS.indexOf(other) ? one : other);
 
 const worstOf = (faults) => faults.reduce((worst, { level }) => worse(worst, level), "healthy");
@@ -83,7 +86,7 @@ export class Graph {
     const chain = layout.lastRow * PITCH_Y + BOX.service.h + 2 * MARGIN;
     const x = (column) => MARGIN + BOX.service.w / 2 + column * PITCH_X;
     const y = (row) => MARGIN + BOX.service.h / 2 + row * PITCH_Y;
-    const svg = draw("svg", { viewBox: `0 0 ${width} ${chain + RAIL_H}`, role: "img", "aria-label": "Graph" });
+    const svg = draw("svg", { viewBox: `0 0 ${width} ${chain + RAIL_H + RAIL_ROW_H * (railRows(layout.aside) - 1)}`, role: "img", "aria-label": "Graph" });
     const arrow = draw("marker", { id: "arrow", viewBox: "0 0 8 8", refX: 4, refY: 4, markerWidth: 7, markerHeight: 7, markerUnits: "userSpaceOnUse", orient: "auto" });
     arrow.append(draw("path", { d: "M0 0L8 4L0 8z", class: "head" }));
     const defs = draw("defs");
@@ -100,16 +103,19 @@ export class Graph {
   // Topics that nearly every process writes or reads, and experiment and recorder: a line that connects all.
   rail(topics, top, width) {
     const group = draw("g", { class: "rail" });
-    const y = top + 26;
-    group.append(draw("path", { d: `M${MARGIN} ${y}H${width - MARGIN}` }), draw("text", { x: MARGIN, y: top - 2, class: "told start" }, "to and from all processes"));
+    const rows = railRows(topics);
+    const y = (row) => top + 26 + RAIL_ROW_H * row;
+    for (let row = 0; row < rows; ++row) group.append(draw("path", { d: `M${MARGIN} ${y(row)}H${width - MARGIN}` }));
+    group.append(draw("text", { x: MARGIN, y: top - 2, class: "told start" }, "to and from all processes"));
     const space = { w: 92, h: 36 };
     const names = ["experiment", ...topics, "recorder"];
     const first = MARGIN + space.w / 2;
-    const pitch = (width - 2 * first) / (names.length - 1);
+    const inRow = Math.ceil(names.length / rows);
+    const pitch = (width - 2 * first) / (inRow - 1);
     names.forEach((name, i) => {
       const kind = i === 0 || i === names.length - 1 ? "service" : "topic";
       const size = { w: Math.min(kind === "service" ? 96 : 90, pitch - 4), h: kind === "service" ? BOX.service.h : space.h };
-      const node = new Node({ kind, name }, first + i * pitch, y, size);
+      const node = new Node({ kind, name }, first + (i % inRow) * pitch, y(Math.floor(i / inRow)), size);
       this.nodes.push(node);
       group.append(node.group);
     });

@@ -4,7 +4,12 @@
 const FIRST = "rig";
 const ASIDE = ["experiment", "recorder", "dashboard"]; // they use nearly every topic, or may be absent
 
-const inChain = ({ writers }) => writers.length === 1 && !ASIDE.includes(writers[0]);
+// A topic that goes to the experiment alone, as a participant's answers do, is no part of it. The recorder reads all.
+const toAside = ({ readers }) => {
+  const users = readers.filter(({ service }) => service !== "recorder");
+  return users.length > 0 && users.every(({ service }) => ASIDE.includes(service));
+};
+const inChain = (topic) => topic.writers.length === 1 && !ASIDE.includes(topic.writers[0]) && !toAside(topic);
 
 // Distance from the first process, counted in processes.
 function layersOf(chain) {

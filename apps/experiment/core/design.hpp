@@ -120,7 +120,8 @@ struct Design {
           "[-] participants share the motion of each trial; false: each has its own");
     visit("same_target_for_all", self.same_target_for_all, Range{0.0, 1.0},
           "[-] participants share the target of each trial; false: each has its own");
-    visit("operator", self.who, Range{1.0, 20.0}, "who tracks: simulated or mouse");
+    visit("operator", self.who, Range{1.0, 20.0},
+          "who tracks: simulated, mouse or gamepad (`run --gamepad` names its device)");
     visit("subject_seed", self.subject_seed, Range{0.0, 4294967295.0},
           "[-] of the simulated subjects: participant N is subject N of this seed");
     visit("control_model", self.control_model, Range{0.0, 1000.0},

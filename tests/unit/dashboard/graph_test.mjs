@@ -17,6 +17,7 @@ const TOPICS = [
   topic("operator_force", ["human_operator"], ["rig", "recorder"]),
   topic("pointer", ["display"], ["human_operator", "recorder"]),
   topic("feedthrough_model", ["identification"], ["cancellation", "experiment", "recorder"]),
+  topic("answer", ["display"], ["experiment", "recorder"]),
   topic("trial_control", ["experiment"], ALL.filter((name) => name !== "experiment")),
   topic("event", ALL, ["experiment", "recorder"]),
   topic("session_command", ["dashboard"], ["rig", "experiment"])];
@@ -49,7 +50,7 @@ test("every edge of the chain is drawn once, and the rest stands aside", () => {
   for (const wanted of ["rig>raw_sample", "sensed>motion", "identification>feedthrough_model", "feedthrough_model>cancellation", "operator_force>rig"]) {
     assert.ok(names.includes(wanted), wanted);
   }
-  assert.deepEqual(aside, ["trial_control", "event", "session_command"]);
+  assert.deepEqual(aside, ["answer", "trial_control", "event", "session_command"]);
   for (const { from, to } of edges) {
     for (const name of [from, to]) assert.ok(nodes.some((node) => node.name === name), name);
   }

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// A session's script without a bus: what the participant is shown, and what is left after a kill at
+// every point of it.
+#include "apps/experiment/session_script.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace stillhand::experiment {
+namespace {
+
+using lab::PromptKind;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct Killed {};
+
+/// Processes that complete every trial, and a participant who always gives the largest answer.
+class FakeTrials final : public lab::LiveTrials {
+ public:
+  /// @param kill_at  number of the call, from 1, in which the program is killed; 0: in none
+  explicit FakeTrials(int kill_at = 0) : kill_at_(kill_at) {}
+
+  const session::TrialOutcome& run(const session::PlannedTrial& planned) override {
+    return run_once(planned);
+  }
+  const session::TrialOutcome& run_once(const session::PlannedTrial& planned) override {
+    count();
+    outcome_.planned = planned;
+    outcome_.completed = true;
+    return outcome_;
+  }
+  void show(const lab::Prompt& prompt) override {
+    count();
+    shown.push_back(prompt);
+  }
+  std::optional<std::int64_t> ask(const lab::Prompt& prompt, const std::string& /*what*/) override {
+    show(prompt);
+    ++asked_prompts;
+    count();
+    if (prompt.kind == PromptKind::kQuestion && passes_over) return std::nullopt;
+    return prompt.steps;
+  }
+  void rest(const std::string& /*what*/, double /*seconds*/) override { count(); }
+  void note(const std::string& /*text*/) override {}
+  lab::Asked asked() override { return {}; }
+  [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
+  std::string use(const cancellation::ControlModel& /*model*/) override { return ""; }
+  [[nodiscard]] bool interrupted() const override { return false; }
+
+  std::vector<lab::Prompt> shown;
+  int asked_prompts = 0;
+  bool passes_over = false;
+
+ private:
+  void count() {
+    if (++calls_ == kill_at_) throw Killed{};
+  }
+  int kill_at_;
+  int calls_ = 0;
+  session::TrialOutcome outcome_;
+  identification::FeedthroughModel model_;
+};
+
+class SessionScriptTest : public testing::Test {
+ protected:
+  SessionScriptTest() {
+    design_.participants = 6;
+    design_.blocks = 2;
+    design_.rest_s = 10.0;
+    design_.break_s = 60.0;
+    design_.who = "mouse";
+    design_.instructions = {"Keep the cross in the box.", "Any time."};
+    design_.questions = {
+        {"effort", Question::After::kTrial, "How hard was it?", "not at all", "very", 7},
+        {"sick", Question::After::kEnd, "How do you feel?", "well", "sick", 9}};
+  }
+  ~SessionScriptTest() override { std::filesystem::remove_all(root_); }
+
+  /// A new folder with the orders of a seed.
+  void make(std::uint64_t order_seed) {
+    const std::filesystem::path path = root_ / std::to_string(++folders_);
+    make_folder(path, design_, order_seed);
+    folder_ = std::make_unique<Folder>(path);
+    std::filesystem::create_directories(folder_->participant(0));
+  }
+  /// One session of the first participant.  @return false: it was killed
+  bool run(FakeTrials& trials) {
+    Journal journal(folder_->journal(0));
+    const Plan plan = folder_->plan(0);
+    Progress progress(folder_->design(), plan);
+    for (const Entry& entry : journal.entries()) progress.take(entry);
+    const std::int64_t session = progress.sessions() + 1;
+    progress.take(journal.append({.kind = EntryKind::kSessionBegan, .session = session}));
+    const lab::LabOptions lab;
+    SessionScript script(*folder_, 0, journal, progress, lab);
+    try {
+      script.run(trials);
+    } catch (const Killed&) {
+      return false;
+    }
+    EXPECT_TRUE(progress.complete());
+    return true;
+  }
+  /// How often each step of the plan was completed, by the journal.
+  std::map<std::int64_t, int> completed() {
+    std::map<std::int64_t, int> counts;
+    for (const Entry& entry : read_journal(folder_->journal(0))) {
+      const bool done = (entry.kind == EntryKind::kTrialEnded && entry.completed) ||
+                        entry.kind == EntryKind::kQuestionAnswered ||
+                        entry.kind == EntryKind::kBreakOver;
+      if (done && entry.step >= 0) ++counts[entry.step];
+    }
+    return counts;
+  }
+
+  Design design_;
+  std::unique_ptr<Folder> folder_;
+
+ private:
+  std::filesystem::path root_ =
+      std::filesystem::temp_directory_path() / ("stillhand-script-" + std::to_string(getpid()));
+  int folders_ = 0;
+};
+
+TEST_F(SessionScriptTest, TheParticipantSeesThePlaceInTheProtocol) {
+  make(3);
+  FakeTrials trials;
+  ASSERT_TRUE(run(trials));
+  std::vector<std::string> seen;
+  for (const lab::Prompt& prompt : trials.shown) {
+    EXPECT_EQ(prompt.participant, "P01");
+    EXPECT_EQ(prompt.trials, 6);
+    seen.push_back(std::to_string(static_cast<int>(prompt.kind)) + ":" +
+                   std::to_string(prompt.trial));
+  }
+  // 1 instructions, 2 identification, 4 trial, 6 question, 5 break, 7 end; and the trial of each.
+  EXPECT_THAT(seen, ElementsAre("1:0", "2:0", "4:1", "6:1", "4:2", "6:2", "4:3", "6:3", "5:4",
+                                "4:4", "6:4", "4:5", "6:5", "4:6", "6:6", "6:6", "7:0"));
+  EXPECT_EQ(trials.shown[0].text, "Keep the cross in the box.\nAny time.\n");
+  EXPECT_EQ(trials.shown[2].wait_s, 3.0);   // of the first trial: lead and ramp
+  EXPECT_EQ(trials.shown[4].wait_s, 13.0);  // the rest before them
+  EXPECT_EQ(trials.shown[8].wait_s, 60.0);
+  EXPECT_EQ(trials.shown[3].steps, 7);
+  EXPECT_EQ(trials.shown[3].lowest, "not at all");
+}
+
+// Every seed is another order of the conditions and other labels.
+TEST_F(SessionScriptTest, NothingThatIsShownDependsOnTheConditions) {
+  std::vector<std::vector<std::string>> all;
+  std::set<std::vector<std::size_t>> orders;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    make(seed);
+    FakeTrials trials;
+    ASSERT_TRUE(run(trials));
+    std::vector<std::string> texts;
+    for (const lab::Prompt& each : trials.shown) {
+      std::string text = each.text + "|" + each.lowest + "|" + each.highest;
+      for (const std::int64_t number : {static_cast<std::int64_t>(each.kind), each.block,
+                                        each.blocks, each.trial, each.trials, each.steps}) {
+        text += "|" + std::to_string(number);
+      }
+      texts.push_back(text + "|" + std::to_string(each.wait_s.value_or(-1.0)));
+    }
+    all.push_back(texts);
+    std::vector<std::size_t> order;
+    for (const Step& step : folder_->plan(0)) {
+      if (step.kind == StepKind::kTrial) order.push_back(step.condition);
+    }
+    orders.insert(order);
+    EXPECT_EQ(all.front(), texts) << seed;
+  }
+  EXPECT_GT(orders.size(), 1u);
+}
+
+TEST_F(SessionScriptTest, AKillAtAnyPointAsksAgainWhatWasNotAnsweredAndNothingTwice) {
+  make(3);
+  const std::size_t steps = folder_->plan(0).size();
+  int kill_at = 0;
+  for (bool whole = false; !whole; ++kill_at) {
+    make(3);
+    FakeTrials first(kill_at + 1);
+    whole = run(first);
+    if (!whole) {
+      FakeTrials second;
+      ASSERT_TRUE(run(second)) << "killed in call " << kill_at + 1;
+    }
+    const auto counts = completed();
+    EXPECT_EQ(counts.size(), steps) << "killed in call " << kill_at + 1;
+    for (const auto& [step, count] : counts) EXPECT_EQ(count, 1) << "step " << step;
+  }
+  EXPECT_GT(kill_at, 30);  // every call of the script
+}
+
+TEST_F(SessionScriptTest, AnAnswerIsInTheJournalAndOneThatIsPassedOverHasNone) {
+  for (const bool passes_over : {false, true}) {
+    make(3);
+    FakeTrials trials;
+    trials.passes_over = passes_over;
+    ASSERT_TRUE(run(trials));
+    int questions = 0;
+    for (const Entry& entry : read_journal(folder_->journal(0))) {
+      if (entry.kind != EntryKind::kQuestionAnswered) continue;
+      ++questions;
+      const bool effort = entry.text.starts_with("effort");
+      EXPECT_EQ(entry.answer, passes_over ? 0 : effort ? 7 : 9);
+      if (passes_over) {
+        EXPECT_THAT(entry.text, HasSubstr("passed over"));
+      }
+    }
+    EXPECT_EQ(questions, 7);
+  }
+}
+
+TEST_F(SessionScriptTest, ASimulatedSubjectIsAskedNothing) {
+  design_.who = "simulated";
+  make(3);
+  FakeTrials trials;
+  ASSERT_TRUE(run(trials));
+  EXPECT_EQ(trials.asked_prompts, 0);
+}
+
+}  // namespace
+}  // namespace stillhand::experiment
