@@ -42,6 +42,10 @@ void add_report_command(CLI::App& verb, int& status) {
       ->required()
       ->check(settings::check_name);
   study::add_plan_options(*sub, words->record.plan_dz);
+  study::add_people_options(*sub, words->record);
+  sub->add_option("--threads", words->record.options.threads,
+                  "number of threads, 0: one per core; the results do not depend on it")
+      ->check(CLI::Range(0, 256));
   sub->callback([words, &status] { status = report_on(*words); });
 }
 

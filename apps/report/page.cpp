@@ -45,13 +45,33 @@ const char* class_of(const Table& table, std::size_t column) {
   return align == Align::kRight ? "r" : "c";
 }
 
+// A name of a file as a relative reference, RFC 3986: "./" so that no colon makes a scheme of it.
+std::string reference_to(std::string_view file) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
+  std::string out = "./";
+  for (const char each : file) {
+    if (kPlain.find(each) != std::string_view::npos) {
+      out += each;
+    } else {
+      out += fmt::format("%{:02X}", static_cast<unsigned char>(each));
+    }
+  }
+  return out;
+}
+
+std::string anchor(std::string_view href, std::string_view escaped_text) {
+  return fmt::format(R"(<a href="{}">{}</a>)", href, escaped_text);
+}
+
 std::string row_html(const Table& table, const std::vector<Cell>& cells) {
   const std::size_t columns = std::max(cells.size(), table.header.size());
   std::string html = "<tr>";
   for (std::size_t i = 0; i < columns; ++i) {
     const Cell cell = i < cells.size() ? cells[i] : Cell();
+    const std::string text = html_escaped(cell.text);
     html += fmt::format(R"(<td class="{}{}">{}</td>)", class_of(table, i), class_of(cell.emphasis),
-                        html_escaped(cell.text));
+                        cell.href.empty() ? text : anchor(cell.href, text));
   }
   return html + "</tr>\n";
 }
@@ -67,6 +87,12 @@ std::string head_html(const Table& table) {
 }
 
 }  // namespace
+
+Cell linked(std::string text, std::string_view file) {
+  Cell out(std::move(text));
+  out.href = reference_to(file);
+  return out;
+}
 
 Page::Page(std::string title, std::string lead)
     : title_(std::move(title)), lead_(std::move(lead)) {}
@@ -89,6 +115,10 @@ void Page::section(std::string_view heading, int level) {
 }
 
 void Page::paragraph(std::string_view text) { body_ += element("p", text); }
+
+void Page::link(std::string_view text, std::string_view file) {
+  body_ += fmt::format("<p>{}</p>\n", anchor(reference_to(file), html_escaped(text)));
+}
 
 void Page::list(const std::vector<std::string>& items) {
   body_ += "<ul>\n";

@@ -20,7 +20,12 @@ struct Cell {
 
   std::string text;
   Emphasis emphasis = Emphasis::kNone;
+  std::string href = {};  ///< a page next to this one, or empty
 };
+
+/// A cell that leads to another file of the same folder.
+/// @param file  its name, not encoded
+Cell linked(std::string text, std::string_view file);
 
 enum class Align { kLeft, kRight, kCentre };
 
@@ -33,7 +38,7 @@ struct Table {
 };
 
 /// One HTML page that needs no other file: it contains its style and figures, has no script and
-/// loads nothing.  It follows the reader's light or dark scheme, and is readable on a phone and on
+/// loads nothing.  Its links lead to other pages of its folder.  It follows the reader's light or dark scheme, and is readable on a phone and on
 /// paper.  Every text is plain text and escaped.  Tables and figures are numbered in order.
 ///
 ///   report::Page page("Study", "Twelve subjects ...");
@@ -52,6 +57,8 @@ class Page {
   /// A heading, listed in the table of contents.  `level` is 2 or 3.
   void section(std::string_view heading, int level = 2);
   void paragraph(std::string_view text);
+  /// A line that is a link.  @param file  as linked()
+  void link(std::string_view text, std::string_view file);
   void list(const std::vector<std::string>& items);
   /// A highlighted box.
   void warning(std::string_view text);

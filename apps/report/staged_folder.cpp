@@ -98,6 +98,16 @@ void StagedFolder::write(const std::string& name, const std::string& text) const
   if (!status.ok()) throw std::runtime_error((out_ / name).string() + ": " + status.text);
 }
 
+std::vector<std::string> StagedFolder::in_place(const std::string& begin,
+                                                const std::string& end) const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& file : fs::directory_iterator(out_)) {
+    const std::string name = file.path().filename().string();
+    if (name.starts_with(begin) && name.ends_with(end)) names.push_back(name);
+  }
+  return names;
+}
+
 void StagedFolder::check() const {
   for (const fs::directory_entry& file : fs::directory_iterator(staging_)) {
     const fs::path target = out_ / file.path().filename();

@@ -92,8 +92,9 @@ std::vector<PooledLine> pooled_lines(const std::vector<SubjectResult>& results, 
       out[line].frequency_hz = at.frequency_hz;
       out[line].paper_db += 20.0 * std::log10(std::abs(at.gain));
       // Eq. SU-3.  X_r = X_p + X_e, so X_p/X_r = G/(1 + G) and X_e/X_r = 1/(1 + G).
-      cursor += at.gain / (1.0 + at.gain);
-      error += 1.0 / (1.0 + at.gain);
+      const auto& closed = result.trials.at(condition).closed_loop;
+      cursor += closed.empty() ? at.gain / (1.0 + at.gain) : closed[line];
+      error += closed.empty() ? 1.0 / (1.0 + at.gain) : 1.0 - closed[line];
       remnant.push_back(std::min(1.0, 1.0 / at.error_snr));
     }
     const auto n = static_cast<double>(results.size());
@@ -123,11 +124,12 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
 }
 
 // Eq. SU-5, over the subjects whose metric was found in all three conditions.
-void add_restoration(Analysis& analysis) {
+Restoration restoration_by(const Analysis& analysis, char cancelled) {
+  Restoration out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     const auto& a = analysis.conditions.at('A')[k].per_subject;
     const auto& b = analysis.conditions.at('B')[k].per_subject;
-    const auto& c = analysis.conditions.at('C')[k].per_subject;
+    const auto& c = analysis.conditions.at(cancelled)[k].per_subject;
     std::vector<double> gained;
     std::vector<double> lost;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -137,11 +139,10 @@ void add_restoration(Analysis& analysis) {
     }
     if (gained.empty()) continue;
     const double all = statistics::mean(lost);
-    if (all != 0.0) analysis.restoration[k] = statistics::mean(gained) / all;
-    if (gained.size() > 1) {
-      analysis.restoration_interval[k] = statistics::ratio_interval(gained, lost);
-    }
+    if (all != 0.0) out.share[k] = statistics::mean(gained) / all;
+    if (gained.size() > 1) out.interval[k] = statistics::ratio_interval(gained, lost);
   }
+  return out;
 }
 
 }  // namespace
@@ -178,6 +179,20 @@ Comparison compared(const Analysis& analysis, char from, char to) {
   return out;
 }
 
+namespace {
+
+void add_comparisons(Analysis& analysis) {
+  const auto add = [&analysis](char from, char to) {
+    if (!has(analysis, from) || !has(analysis, to)) return;
+    analysis.comparisons.push_back(compared(analysis, from, to));
+  };
+  add('A', 'B');
+  for (const char to : {'C', kFollowing, kAugmented, 'D', 'E', 'F'}) add('B', to);
+  for (const auto& [from, to] : kCancellerSteps) add(from, to);
+}
+
+}  // namespace
+
 Analysis analyse(const std::vector<SubjectResult>& results) {
   Analysis out;
   for (const auto& entry : results.front().trials) {
@@ -194,20 +209,24 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
         }));
     out.open_loop[condition] = pooled_lines(results, condition);
   }
-  if (has(out, 'C')) {
-    out.cancelled_share['C'] = summarised(over_subjects(
-        results, [](const SubjectResult& r) { return r.trials.at('C').cancelled_share; }));
-    out.counterforce_delay_s['C'] = summarised(over_subjects(
-        results, [](const SubjectResult& r) { return r.trials.at('C').counterforce_delay_s; }));
+  for (const char condition : {'C', kFollowing, kAugmented}) {
+    if (!has(out, condition)) continue;
+    out.cancelled_share[condition] =
+        summarised(over_subjects(results, [condition](const SubjectResult& r) {
+          return r.trials.at(condition).cancelled_share;
+        }));
+    out.counterforce_delay_s[condition] =
+        summarised(over_subjects(results, [condition](const SubjectResult& r) {
+          return r.trials.at(condition).counterforce_delay_s;
+        }));
+    if (has(out, 'A') && has(out, 'B')) {
+      out.restoration[condition] = restoration_by(out, condition);
+    }
   }
-  if (has(out, 'A') && has(out, 'B')) out.comparisons.push_back(compared(out, 'A', 'B'));
-  for (const char to : {'C', 'D', 'E', 'F'}) {
-    if (has(out, 'B') && has(out, to)) out.comparisons.push_back(compared(out, 'B', to));
-  }
+  add_comparisons(out);
   if (has(out, 'A') && has(out, 'B') && has(out, 'C')) {
     out.main_effects = main_effects(out, static_cast<Eigen::Index>(results.size()));
     out.thirds = thirds(results);
-    add_restoration(out);
   } else {
     out.main_effects.reason = out.thirds.reason = "needs conditions A, B and C";
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/session/paper_table.hpp"
+#include "apps/study/conditions.hpp"
 #include "apps/study/subject_session.hpp"
 #include "services/statistics/descriptive.hpp"
 #include "services/statistics/manova.hpp"
@@ -60,6 +61,13 @@ struct WrongModel {
   std::vector<double> surviving_share;
 };
 
+/// Eq. SU-5, of each metric.
+struct Restoration {
+  std::array<std::optional<double>, kMetricCount> share;
+  /// 95 % interval over the subjects; none for one subject, or where B may equal A.
+  std::array<std::optional<statistics::RatioInterval>, kMetricCount> interval;
+};
+
 /// All numbers of the report and the summary.
 struct Analysis {
   std::map<char, std::array<MetricSample, kMetricCount>> conditions;
@@ -70,9 +78,8 @@ struct Analysis {
   std::vector<Comparison> comparisons;
   MultivariateResult main_effects;  ///< A, B, C with one trial a cell: no interaction
   MultivariateResult thirds;        ///< RMS error and dwell, thirds of a trial as replicates
-  std::array<std::optional<double>, kMetricCount> restoration;  ///< Eq. SU-5
-  /// Its 95 % interval over the subjects; none for one subject, or where B may equal A.
-  std::array<std::optional<statistics::RatioInterval>, kMetricCount> restoration_interval;
+  /// Eq. SU-5 of C, C' and C+, as far as they were run next to A and B.
+  std::map<char, Restoration> restoration;
   std::map<char, WrongModel> wrong;
   std::int64_t refined_used = 0;  ///< subjects whose paper's fit could not cancel
 };

@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <charconv>
 #include <cmath>
 
+#include "apps/study/csv_cells.hpp"
+#include "apps/study/diagnoses_output.hpp"
 #include "apps/study/output.hpp"
 
 namespace stillhand::study {
 namespace {
 
-// Shortest text that reads back as the same number; empty for a value that is not finite.
-std::string text(double value) {
-  if (!std::isfinite(value)) return "";
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
+using csv::quoted;
+using csv::row;
+using csv::text;
 
-std::string row(std::initializer_list<std::string> cells) {
-  std::string out;
-  for (const std::string& cell : cells) out += (out.empty() ? "" : ",") + cell;
-  return out + "\n";
+// The participant's code, or the number of a simulated subject.
+std::string subject_key(const StudyRecord& record, std::size_t index) {
+  return record.recorded ? quoted(record.recorded->participants[index])
+                         : std::to_string(index + 1);
 }
 
 CsvFile metrics_file(const StudyRecord& record) {
@@ -28,7 +24,7 @@ CsvFile metrics_file(const StudyRecord& record) {
       "crossover through reference [Hz],cancelled share [-],feedthrough rms [N]\n";
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     for (const auto& [condition, trial] : record.results[i].trials) {
-      out += row({std::to_string(i + 1), std::string(1, condition),
+      out += row({subject_key(record, i), condition_word(condition),
                   std::to_string(record.results[i].order.find(condition) + 1),
                   text(trial.metrics.rms_error_mm), text(trial.metrics.dwell_ratio),
                   text(trial.metrics.crossover_hz), text(trial.metrics.crossover_reference_hz),
@@ -66,7 +62,7 @@ CsvFile models_file(const StudyRecord& record) {
   out += '\n';
   const auto line = [&](std::size_t subject, const char* which,
                         const signal::DifferenceModel& model) {
-    out += std::to_string(subject) + "," + which + "," + text(model.rate_hz);
+    out += subject_key(record, subject) + "," + which + "," + text(model.rate_hz);
     for (const double c : model.numerator) out += "," + text(c);
     for (std::size_t i = 1; i < model.denominator.size(); ++i) {
       out += "," + text(model.denominator[i]);
@@ -74,9 +70,9 @@ CsvFile models_file(const StudyRecord& record) {
     out += '\n';
   };
   for (std::size_t i = 0; i < record.results.size(); ++i) {
-    line(i + 1, "paper", record.results[i].identification.paper.model);
-    line(i + 1, "refined", record.results[i].identification.refined.model);
-    line(i + 1, "1 kHz filter", record.results[i].identification.control.model);
+    line(i, "paper", record.results[i].identification.paper.model);
+    line(i, "refined", record.results[i].identification.refined.model);
+    line(i, "1 kHz filter", record.results[i].identification.control.model);
   }
   return {"models.csv", out};
 }
@@ -86,7 +82,7 @@ CsvFile moving_file(const StudyRecord& record) {
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     for (const auto& [condition, trial] : record.results[i].trials) {
       for (std::size_t s = 0; s < trial.metrics.moving_rms_mm.size(); ++s) {
-        out += row({std::to_string(i + 1), std::string(1, condition), std::to_string(s),
+        out += row({subject_key(record, i), condition_word(condition), std::to_string(s),
                     text(trial.metrics.moving_rms_mm[s]), text(trial.metrics.moving_dwell[s])});
       }
     }
@@ -100,7 +96,7 @@ CsvFile open_loop_file(const StudyRecord& record) {
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     for (const auto& [condition, trial] : record.results[i].trials) {
       for (const auto& line : trial.metrics.lines) {
-        out += row({std::to_string(i + 1), std::string(1, condition), text(line.frequency_hz),
+        out += row({subject_key(record, i), condition_word(condition), text(line.frequency_hz),
                     text(std::abs(line.gain)), text(std::arg(line.gain)),
                     text(std::min(1.0, 1.0 / line.error_snr))});
       }
@@ -109,27 +105,40 @@ CsvFile open_loop_file(const StudyRecord& record) {
   return {"open_loop.csv", out};
 }
 
-// Codes and names of sessions come from files: quoted by RFC 4180.
-std::string quoted(const std::string& word) {
-  if (word.find_first_of(",\"\r\n") == std::string::npos) return word;
-  std::string out = "\"";
-  for (const char each : word) out += each == '"' ? std::string("\"\"") : std::string(1, each);
-  return out + '"';
+// Empty outside an experiment.
+std::string planned_number(std::int64_t number) {
+  return number > 0 ? std::to_string(number) : std::string();
 }
 
 CsvFile trials_file(const RecordedSource& source) {
   std::string out =
       "participant,session,trial,place,condition,rms error [mm],dwell ratio [-],crossover [Hz],"
-      "crossover through reference [Hz],cancelled share [-],lost share [-]\n";
+      "crossover through reference [Hz],cancelled share [-],lost share [-],block,place in plan,"
+      "in tables\n";
   for (const RecordedTrial& trial : source.trials) {
     const auto& metrics = trial.tracked.metrics;
     out += row({quoted(trial.participant), quoted(trial.session), std::to_string(trial.number),
-                std::to_string(trial.place), std::string(1, trial.condition),
+                std::to_string(trial.place), condition_word(trial.condition),
                 text(metrics.rms_error_mm), text(metrics.dwell_ratio), text(metrics.crossover_hz),
                 text(metrics.crossover_reference_hz), text(trial.tracked.cancelled_share),
-                text(trial.lost_share)});
+                text(trial.lost_share), planned_number(trial.block), planned_number(trial.step),
+                source.used.contains(id_of(trial)) ? "1" : "0"});
   }
   return {"trials.csv", out};
+}
+
+// The same metrics of the simulated subjects, in their order.
+CsvFile simulated_file(const SimulatedSide& simulated) {
+  std::string out = "subject,condition,rms error [mm],dwell ratio [-],crossover [Hz]\n";
+  for (std::size_t i = 0; i < simulated.results.size(); ++i) {
+    for (const auto& [condition, trial] : simulated.results[i].trials) {
+      const auto& metrics = trial.metrics;
+      out += row({simulated.same_people ? quoted(simulated.participants[i]) : std::to_string(i + 1),
+                  condition_word(condition), text(metrics.rms_error_mm), text(metrics.dwell_ratio),
+                  text(metrics.crossover_hz)});
+    }
+  }
+  return {"simulated.csv", out};
 }
 
 }  // namespace
@@ -140,6 +149,10 @@ std::vector<CsvFile> csv_files(const StudyRecord& record) {
   // Only a simulated subject's body is known.
   if (record.recorded) {
     out.push_back(trials_file(*record.recorded));
+    if (record.simulated) out.push_back(simulated_file(*record.simulated));
+    if (record.diagnoses) {
+      for (CsvFile& file : diagnoses_csv(*record.diagnoses)) out.push_back(std::move(file));
+    }
   } else {
     out.push_back(subjects_file(record));
   }

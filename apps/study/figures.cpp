@@ -6,6 +6,8 @@
 
 #include "apps/session/protocol.hpp"
 #include "apps/study/analysis.hpp"
+#include "apps/study/diagnoses_output.hpp"
+#include "apps/study/report_sections.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -16,7 +18,7 @@ using report::Colour;
 
 std::vector<report::Figure> study_figures(const StudyRecord& record) {
   std::vector<report::Figure> figures{figure_estimate(record), figure_models(record)};
-  if (!conditions_run(record, kPaperConditions).empty()) {
+  if (!conditions_run(record, kFigureConditions).empty()) {
     figures.push_back(figure_traces(record));
     const auto& first = *record.results.front().trials.begin();
     if (!first.second.metrics.moving_rms_mm.empty()) {
@@ -27,11 +29,17 @@ std::vector<report::Figure> study_figures(const StudyRecord& record) {
   for (const std::size_t metric : {std::size_t{0}, std::size_t{1}}) {
     figures.push_back(figure_box(record, metric));
   }
-  if (!conditions_run(record, kPaperConditions).empty()) {
+  if (!conditions_run(record, kFigureConditions).empty()) {
     figures.push_back(figure_open_loop(record));
   }
   figures.push_back(figure_box(record, 2));
   if (!record.analysis.wrong.empty()) figures.push_back(figure_wrong_models(record));
+  if (record.simulated && !record.simulated->results.empty()) {
+    figures.push_back(figure_simulated(record));
+  }
+  if (record.diagnoses && !record.diagnoses->people.empty()) {
+    figures.push_back(figure_gain(*record.diagnoses));
+  }
   return figures;
 }
 
@@ -67,14 +75,25 @@ report::Colour colour_of(char condition) {
       return Colour::kConditionE;
     case 'F':
       return Colour::kConditionF;
+    case kFollowing:
+      return Colour::kConditionCPrime;
+    case kAugmented:
+      return Colour::kConditionCPlus;
     default:
       return Colour::kNeutral;
   }
 }
 
 std::string label_of(char condition) {
+  if (condition == kFollowing) return "C' following";
+  if (condition == kAugmented) return "C+ augmented";
   return std::string(1, condition) + " " +
          session::condition_name(static_cast<session::Condition>(condition));
+}
+
+std::string subject_name(const StudyRecord& record, std::size_t index) {
+  return record.recorded ? record.recorded->participants[index]
+                         : "subject " + std::to_string(index + 1);
 }
 
 std::string conditions_run(const StudyRecord& record, const std::string& among) {

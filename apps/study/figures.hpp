@@ -3,6 +3,7 @@
 
 #include <array>
 #include <complex>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,11 @@ namespace stillhand::study {
 /// were not run is left out.
 std::vector<report::Figure> study_figures(const StudyRecord& record);
 
+inline constexpr const char* kGainFigure = "diagnosis_gain";
+inline constexpr const char* kSimulatedFigure = "simulated_next_to_recorded";
+
 /// Names of all figures that study_figures() can make.
-inline constexpr std::array<const char*, 10> kFigureNames{"fig04_feedthrough_estimate",
+inline constexpr std::array<const char*, 12> kFigureNames{"fig04_feedthrough_estimate",
                                                           "fig06_feedthrough_models",
                                                           "fig07_traces",
                                                           "fig08_moving_rms",
@@ -27,7 +31,16 @@ inline constexpr std::array<const char*, 10> kFigureNames{"fig04_feedthrough_est
                                                           "fig11_dwell_ratio",
                                                           "fig12_open_loop",
                                                           "fig13_crossover",
-                                                          "wrong_models"};
+                                                          "wrong_models",
+                                                          kGainFigure,
+                                                          kSimulatedFigure};
+
+/// Figures of one subject; the caption says whose.
+report::Figure estimate_figure(const Identification& found, const std::string& name,
+                               const std::string& caption);
+/// A panel for each condition.
+report::Figure traces_figure(const std::map<char, const TrackedTrial*>& trials,
+                             const std::string& name, const std::string& caption);
 
 /// Parts of study_figures().
 report::Figure figure_estimate(const StudyRecord& record);                 ///< Fig. 4
@@ -50,7 +63,11 @@ double phase_up_to_deg(std::complex<double> response, double highest_deg);
 report::Colour colour_of(char condition);
 /// "A stationary"
 std::string label_of(char condition);
-/// The letters in `among` whose conditions were run.
+/// The conditions in `among` that were run.
 std::string conditions_run(const StudyRecord& record, const std::string& among);
+/// Those that the paper's figures show: A, B, C, and C' and C+ where a session ran them.
+inline constexpr const char kFigureConditions[]{'A', 'B', 'C', kFollowing, kAugmented, '\0'};
+/// "subject 3", or a participant's code.
+std::string subject_name(const StudyRecord& record, std::size_t index);
 
 }  // namespace stillhand::study

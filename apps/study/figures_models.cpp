@@ -103,9 +103,8 @@ const signal::DifferenceModel& cancelling_model(const SubjectResult& result) {
 
 }  // namespace
 
-report::Figure figure_estimate(const StudyRecord& record) {
-  const std::size_t typical = typical_subject(record);
-  const Identification& found = record.results[typical].identification;
+report::Figure estimate_figure(const Identification& found, const std::string& name,
+                               const std::string& caption) {
   Panel magnitude = bode_panel("", "|F'/A| [dB re 1 N per m/s²]", Scale::kLinear);
   Panel phase = bode_panel("", "phase [°]", Scale::kDegrees);
   Panel coherence = bode_panel("", "coherence [-]", Scale::kLinear);
@@ -122,17 +121,22 @@ report::Figure figure_estimate(const StudyRecord& record) {
   add_model(magnitude, phase, found.refined.model, "output-error fit", Colour::kAccent,
             Kind::kDashedLine);
   phase.legend = coherence.legend = report::Legend::kNone;
-  return {
-      .name = "fig04_feedthrough_estimate",
-      .caption = fmt::format(
-          "The paper's Fig. 4: feedthrough of subject {} by cross-spectrum over spectrum, with "
-          "its 95 % band and coherence, and the fitted models. The motion is strongest from 0.7 "
-          "to 4 Hz and ends at 12.6 Hz.",
-          typical + 1),
-      .panels = {magnitude, phase, coherence},
-      .columns = 1,
-      .width_px = 860,
-      .height_px = 760};
+  return {.name = name,
+          .caption = caption,
+          .panels = {magnitude, phase, coherence},
+          .columns = 1,
+          .width_px = 860,
+          .height_px = 760};
+}
+
+report::Figure figure_estimate(const StudyRecord& record) {
+  const std::size_t typical = typical_subject(record);
+  return estimate_figure(
+      record.results[typical].identification, "fig04_feedthrough_estimate",
+      fmt::format("The paper's Fig. 4: feedthrough of {} by cross-spectrum over spectrum, with "
+                  "its 95 % band and coherence, and the fitted models. The motion is strongest "
+                  "from 0.7 to 4 Hz and ends at 12.6 Hz.",
+                  subject_name(record, typical)));
 }
 
 report::Figure figure_models(const StudyRecord& record) {
@@ -154,7 +158,7 @@ report::Figure figure_models(const StudyRecord& record) {
     for (std::size_t i = first; i < first + columns; ++i) {
       Panel magnitude = bode_panel("", i == first ? "|F'/A| [dB]" : "", Scale::kLinear);
       Panel phase = bode_panel("", i == first ? "phase [°]" : "", Scale::kDegrees);
-      if (i < shown) magnitude.title = "subject " + std::to_string(i + 1);
+      if (i < shown) magnitude.title = subject_name(record, i);
       magnitude.blank = phase.blank = i >= shown;
       magnitude.legend = phase.legend = report::Legend::kNone;
       magnitude.x.label = "";

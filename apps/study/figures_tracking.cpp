@@ -79,7 +79,7 @@ report::Figure moving_figure(const StudyRecord& record, const char* name, const 
                         .width_px = 1180,
                         .height_px = 330};
   double highest = 0.0;
-  for (const char condition : conditions_run(record, kPaperConditions)) {
+  for (const char condition : conditions_run(record, kFigureConditions)) {
     figure.panels.push_back(moving_panel(record, condition, series_of));
     for (const double y : figure.panels.back().series.front().y_high) {
       highest = std::max(highest, y);
@@ -89,6 +89,8 @@ report::Figure moving_figure(const StudyRecord& record, const char* name, const 
     panel.y.low = 0.0;
     panel.y.high = 1.08 * highest;
   }
+  const std::size_t rows = (figure.panels.size() + 2) / 3;
+  figure.height_px = static_cast<int>(330 * std::max<std::size_t>(1, rows));
   if (!figure.panels.empty()) figure.panels.front().y.label = quantity;
   return figure;
 }
@@ -115,20 +117,17 @@ void add_open_loop(Panel& magnitude, Panel& phase, const identification::Trackin
 
 }  // namespace
 
-report::Figure figure_traces(const StudyRecord& record) {
-  const std::size_t typical = typical_subject(record);
-  report::Figure figure{
-      .name = "fig07_traces",
-      .caption = fmt::format(
-          "The paper's Fig. 7: up to twenty seconds from the middle of the trials of subject {}.",
-          typical + 1),
-      .panels = {},
-      .columns = 1,
-      .width_px = 980,
-      .height_px = 780};
+report::Figure traces_figure(const std::map<char, const TrackedTrial*>& trials,
+                             const std::string& name, const std::string& caption) {
+  report::Figure figure{.name = name,
+                        .caption = caption,
+                        .panels = {},
+                        .columns = 1,
+                        .width_px = 980,
+                        .height_px = static_cast<int>(260 * trials.size())};
   double farthest_mm = 0.0;
-  for (const char condition : conditions_run(record, kPaperConditions)) {
-    figure.panels.push_back(trace_panel(record.results[typical].trials.at(condition), condition));
+  for (const auto& [condition, trial] : trials) {
+    figure.panels.push_back(trace_panel(*trial, condition));
     for (const Series& series : figure.panels.back().series) {
       for (const double y : series.y) farthest_mm = std::max(farthest_mm, std::abs(y));
     }
@@ -137,6 +136,21 @@ report::Figure figure_traces(const StudyRecord& record) {
     panel.y.low = -1.05 * farthest_mm;
     panel.y.high = 1.05 * farthest_mm;
   }
+  return figure;
+}
+
+report::Figure figure_traces(const StudyRecord& record) {
+  const std::size_t typical = typical_subject(record);
+  std::map<char, const TrackedTrial*> trials;
+  for (const char condition : conditions_run(record, kFigureConditions)) {
+    trials[condition] = &record.results[typical].trials.at(condition);
+  }
+  report::Figure figure = traces_figure(
+      trials, "fig07_traces",
+      fmt::format("The paper's Fig. 7: up to twenty seconds from the middle of the trials of {}{}.",
+                  subject_name(record, typical),
+                  record.recorded ? "; of several trials of a condition, the last" : ""));
+  figure.height_px = std::max(figure.height_px, 780);
   return figure;
 }
 
@@ -159,16 +173,16 @@ report::Figure figure_open_loop(const StudyRecord& record) {
   report::Figure figure{
       .name = "fig12_open_loop",
       .caption = fmt::format(
-          "The paper's Fig. 12: open loop X_p/X_e of subject {} at the fifteen frequencies of the "
+          "The paper's Fig. 12: open loop X_p/X_e of {} at the fifteen frequencies of the "
           "target, with a line of −20 dB/decade fitted to the lowest eleven. The line crosses 0 dB "
           "at the crossover frequency.",
-          typical + 1),
+          subject_name(record, typical)),
       .panels = {},
       .columns = 3,
       .width_px = 1180,
       .height_px = 560};
   std::vector<Panel> phases;
-  for (const char condition : conditions_run(record, kPaperConditions)) {
+  for (const char condition : conditions_run(record, kFigureConditions)) {
     Panel magnitude;
     Panel phase;
     const auto& metrics = record.results[typical].trials.at(condition).metrics;

@@ -8,7 +8,9 @@
 
 #include "apps/report/plot/draw.hpp"
 #include "apps/study/figures.hpp"
+#include "apps/study/participants.hpp"
 #include "apps/study/report_cells.hpp"
+#include "apps/study/report_sections.hpp"
 #include "apps/study/shard.hpp"
 #include "apps/study/study_report.hpp"
 #include "services/rig/sealed_file.hpp"
@@ -17,15 +19,28 @@ namespace stillhand::study {
 namespace {
 
 // Names of all files that a study can write.
-std::vector<std::string> every_name() {
+std::vector<std::string> every_name(const report::StagedFolder& folder) {
   std::vector<std::string> names{"report.html",        "summary.json", "metrics.csv",
                                  "subjects.csv",       "models.csv",   "moving_averages.csv",
                                  "open_loop.csv",      "trials.csv",   rig::kSealedFile,
-                                 rig::kCommitmentFile, kShardFile};
+                                 rig::kCommitmentFile, kShardFile,
+                                 "diagnoses.csv",      "findings.csv", "simulated.csv"};
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
+  for (const std::string& page : folder.in_place(kParticipantPage, kPageEnding)) {
+    names.push_back(page);
+  }
   return names;
+}
+
+// The figures of the pages are in the pages alone.
+void write_participants(const StudyRecord& record, const report::StagedFolder& folder) {
+  for (const auto& [code, file] : participant_files(*record.recorded)) {
+    const std::string name = file.substr(0, file.size() - std::string(kPageEnding).size());
+    const auto drawings = report::draw(participant_figures(record, code, name));
+    participant_page(record, code, drawings).write(folder.path() / file);
+  }
 }
 
 // Means under each condition, restoration, and the paper's values.
@@ -38,10 +53,15 @@ void print_metric(const Analysis& analysis, std::size_t k) {
   fmt::print("   {:>16}", restored_text(analysis, k));
   fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, 'A'), paper_value(k, 'B'),
              paper_value(k, 'C'), metric.paper_restored_percent);
+  for (const auto& entry : analysis.restoration) {
+    if (entry.first == 'C') continue;
+    fmt::print("{:>22} {}\n", "restored by " + condition_word(entry.first),
+               restored_text(analysis, k, entry.first));
+  }
 }
 
 void print_comparison(const Comparison& comparison) {
-  fmt::print("paired t-test {}-{}, p:", comparison.from, comparison.to);
+  fmt::print("paired t-test {}, p:", pair_word(comparison.from, comparison.to));
   for (const auto& test : comparison.tests) {
     if (!test) {
       fmt::print(" -");
@@ -62,8 +82,8 @@ void print_registered(const StudyRecord& record) {
       fmt::print("excluded by a rule: {}\n", line);
     const auto show = [](const std::vector<PlannedComparison>& all, const char* which) {
       for (const PlannedComparison& planned : all) {
-        fmt::print("planned {}-{}, {}, p of Holm:", planned.comparison.from, planned.comparison.to,
-                   which);
+        fmt::print("planned {}, {}, p of Holm:",
+                   pair_word(planned.comparison.from, planned.comparison.to), which);
         for (const auto& p : planned.p_holm) {
           fmt::print(" {}", p ? fmt::format("{:.3g}", *p) : std::string("-"));
         }
@@ -84,29 +104,49 @@ void print_registered(const StudyRecord& record) {
   }
 }
 
+// Of --diagnose and --simulated.
+void print_people(const StudyRecord& record) {
+  if (record.diagnoses) {
+    for (const RecurringEffect& effect : record.diagnoses->recurring) {
+      fmt::print("lacking: {}{}, {}: {} of {} people, {:.2f} N\n", effect.kind,
+                 effect.channel.empty() ? "" : " (" + effect.channel + ")", effect.where,
+                 effect.participants.size(), record.diagnoses->people.size(), effect.explained_n);
+    }
+    for (const auto& [code, why] : record.diagnoses->failed) {
+      fmt::print("not diagnosed: {}: {}\n", code, why);
+    }
+  }
+  if (!record.simulated) return;
+  for (const auto& [code, why] : record.simulated->failed) {
+    fmt::print("not simulated: {}: {}\n", code, why);
+  }
+  if (record.simulated->same_people) fmt::print("{}\n", chance_sentence(*record.simulated));
+}
+
 }  // namespace
 
 void write_study(const StudyRecord& record, report::StagedFolder& folder) {
   for (const CsvFile& file : csv_files(record)) folder.write(file.name, file.text);
   const auto drawings = report::render(study_figures(record), folder.path());
   study_report(record, drawings).write(folder.path() / "report.html");
+  if (record.recorded) write_participants(record, folder);
   folder.write("summary.json", summary_json(record));
   if (!record.sealed.empty()) {
     folder.write(rig::kCommitmentFile, rig::digest_line(record.sealed, rig::kSealedFile));
     folder.write(rig::kSealedFile, record.sealed);
   }
-  folder.publish(every_name());
+  folder.publish(every_name(folder));
 }
 
 void write_shard(const StudyRecord& record, const Shard& shard, report::StagedFolder& folder) {
   folder.write(kShardFile, shard_file(record, shard));
-  folder.publish(every_name());
+  folder.publish(every_name(folder));
 }
 
 void print_study(const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
   fmt::print("\n{:<22}", "mean of the subjects");
-  for (const auto& entry : analysis.conditions) fmt::print(" {:>9}", entry.first);
+  for (const auto& entry : analysis.conditions) fmt::print(" {:>9}", condition_word(entry.first));
   fmt::print("   {:>16}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
   fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,
@@ -118,6 +158,7 @@ void print_study(const StudyRecord& record) {
   if (record.recorded) {
     for (const std::string& line : record.recorded->left_out) fmt::print("left out: {}\n", line);
     print_registered(record);
+    print_people(record);
   }
   if (analysis.main_effects.manova) {
     const auto& manova = *analysis.main_effects.manova;

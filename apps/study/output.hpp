@@ -8,7 +8,9 @@
 
 #include "apps/report/staged_folder.hpp"
 #include "apps/study/analysis.hpp"
+#include "apps/study/recorded/diagnoses.hpp"
 #include "apps/study/recorded/recorded_trial.hpp"
+#include "apps/study/recorded/simulated_people.hpp"
 
 namespace stillhand::study {
 
@@ -21,6 +23,10 @@ struct StudyRecord {
   std::optional<RecordedSource> recorded;      ///< none: the subjects are simulated
   std::optional<std::vector<double>> plan_dz;  ///< --plan: further effect sizes; none: no plan
   std::vector<Needed> needed;                  ///< of --plan
+  bool diagnose = false;                       ///< --diagnose
+  std::optional<Diagnoses> diagnoses;          ///< of --diagnose
+  bool simulate = false;                       ///< --simulated
+  std::optional<SimulatedSide> simulated;      ///< of --simulated
   Analysis analysis;
   double wall_s = 0.0;
 };

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apps/study/output.hpp"
 #include "services/settings/check_number.hpp"
 
 namespace stillhand::study {
@@ -18,6 +19,15 @@ void add_plan_options(CLI::App& cli, std::optional<std::vector<double>>& effects
          "with --plan: further effect sizes d_z (mean difference over its standard deviation)")
       ->check(settings::number_between(0.01, 100.0))
       ->needs("--plan");
+}
+
+void add_people_options(CLI::App& cli, StudyRecord& record) {
+  cli.add_flag("--diagnose", record.diagnose,
+               "what the model lacks in each person, and what C+ would have gained");
+  cli.add_flag("--simulated", record.simulate,
+               "simulated subjects next to the participants: the same people, with a paired test, "
+               "where an experiment's participants are simulated; otherwise as many of the "
+               "population");
 }
 
 }  // namespace stillhand::study

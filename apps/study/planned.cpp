@@ -60,7 +60,7 @@ std::vector<Needed> participants_needed(const Analysis& analysis,
   std::vector<Needed> out;
   for (const PlannedComparison& planned : planned_comparisons(analysis, pairs)) {
     const Comparison& comparison = planned.comparison;
-    const std::string name = fmt::format("{}-{}", comparison.from, comparison.to);
+    const std::string name = pair_word(comparison.from, comparison.to);
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       const auto& test = comparison.tests[k];
       if (!test) continue;

@@ -24,10 +24,11 @@ std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰
 
 std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 
-std::string restored_text(const Analysis& analysis, std::size_t metric) {
-  if (!analysis.restoration[metric]) return "-";
-  std::string out = percent(*analysis.restoration[metric]);
-  if (const auto& interval = analysis.restoration_interval[metric]) {
+std::string restored_text(const Analysis& analysis, std::size_t metric, char condition) {
+  const auto found = analysis.restoration.find(condition);
+  if (found == analysis.restoration.end() || !found->second.share[metric]) return "–";
+  std::string out = percent(*found->second.share[metric]);
+  if (const auto& interval = found->second.interval[metric]) {
     out += fmt::format(" [{:.0f}, {:.0f}]", 100.0 * interval->low, 100.0 * interval->high);
   }
   return out;

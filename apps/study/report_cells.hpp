@@ -24,8 +24,8 @@ std::string percent(double share);
 /// "23.1 ± 4.0", with the number of subjects if the metric was not found in all.
 std::string mean_and_deviation(const MetricSample& sample, std::size_t metric);
 
-/// "89 % [84, 93]": the restoration of a metric with its interval, as far as they are known.
-std::string restored_text(const Analysis& analysis, std::size_t metric);
+/// "89 % [84, 93]": the restoration of a metric by C, C' or C+ with its interval, as far as known.
+std::string restored_text(const Analysis& analysis, std::size_t metric, char condition = 'C');
 
 /// The comparison of two conditions, or nullptr.
 const Comparison* find_comparison(const Analysis& analysis, char from, char to);

@@ -31,9 +31,9 @@ void add_open_loop(report::Page& page, const Analysis& analysis) {
   table.header = {"f [Hz]"};
   std::map<char, std::vector<PooledLine>> shown;
   for (const auto& [condition, lines] : analysis.open_loop) {
-    if (condition > 'C') continue;  // the others are in open_loop.csv
+    if (condition > 'C' && !cancels(condition)) continue;  // the others are in open_loop.csv
     shown[condition] = lines;
-    const std::string letter(1, condition);
+    const std::string letter = condition_word(condition);
     table.header.insert(table.header.end(),
                         {letter + " paper", letter + " ref.", letter + " rem."});
   }
@@ -63,18 +63,9 @@ void add_crossover(report::Page& page, const Analysis& analysis) {
   page.table(table);
 }
 
-void add_mitigations(report::Page& page, const StudyRecord& record) {
-  const Analysis& analysis = record.analysis;
-  if (conditions_run(record, "DEF").empty() || !analysis.conditions.contains('B')) return;
-  page.section("Other mitigations");
-  page.paragraph(fmt::format(
-      "The paper names these as future work; all run with the motor off. D subtracts the "
-      "predicted displacement from the command instead of pushing the hand, and uses an average "
-      "person's arm. E adds {} N s/m to the stick. F rests the forearm on a pad of {} N/m and {} "
-      "N s/m (assumed values) that moves with the platform.",
-      short_number(record.options.damped_stick_n_s_m),
-      number(record.options.arm_rest_stiffness_n_m, 0),
-      number(record.options.arm_rest_damping_n_s_m, 0)));
+namespace {
+
+report::Table mitigations_table(const Analysis& analysis) {
   report::Table table;
   table.caption = "Comparison with B, mean ± SD; the restoration is (B − X)/(B − A).";
   table.header = {"condition", "RMS error [mm]", "dwell ratio",
@@ -92,7 +83,83 @@ void add_mitigations(report::Page& page, const StudyRecord& record) {
          mean_and_deviation(metrics[2], 2), restored,
          test != nullptr && test->tests[0] ? p_value(test->tests[0]->p) : std::string("–")});
   }
-  page.table(table);
+  return table;
+}
+
+// Restoration of each metric, by each canceller.
+report::Table restorations_table(const Analysis& analysis) {
+  report::Table table;
+  table.caption =
+      "Restoration (B − X)/(B − A) of the means, with its 95 % interval over the participants.";
+  table.header = {"metric"};
+  for (const auto& entry : analysis.restoration) {
+    table.header.push_back(condition_word(entry.first));
+  }
+  for (std::size_t k = 0; k < kMetricCount; ++k) {
+    std::vector<Cell> row{session::kMetrics[k].title};
+    for (const auto& entry : analysis.restoration) {
+      row.emplace_back(restored_text(analysis, k, entry.first));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+// From one canceller to the next.
+report::Table steps_table(const Analysis& analysis) {
+  report::Table table;
+  table.caption =
+      "From one canceller to the next: paired t-tests of the participants' differences; p is not "
+      "adjusted.";
+  table.header = {"step", "metric", "change [95 % CI]", "p", "g_z"};
+  for (const auto& [from, to] : kCancellerSteps) {
+    const Comparison* found = find_comparison(analysis, from, to);
+    if (found == nullptr) continue;
+    for (std::size_t k = 0; k < kMetricCount; ++k) {
+      const auto& test = found->tests[k];
+      std::vector<Cell> row{pair_word(from, to), session::kMetrics[k].title};
+      if (test) {
+        row.emplace_back(fmt::format("{} [{}, {}]", number(test->mean_difference, decimals(k)),
+                                     number(test->ci_low, decimals(k)),
+                                     number(test->ci_high, decimals(k))));
+        row.emplace_back(p_value(test->p));
+        row.emplace_back(test->hedges_gz ? number(*test->hedges_gz, 2) : "–");
+      }
+      table.rows.push_back(row);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+void add_mitigations(report::Page& page, const StudyRecord& record) {
+  const Analysis& analysis = record.analysis;
+  if (conditions_run(record, "DEF").empty() || !analysis.conditions.contains('B')) return;
+  page.section("Other mitigations");
+  page.paragraph(fmt::format(
+      "The paper names these as future work; all run with the motor off. D subtracts the "
+      "predicted displacement from the command instead of pushing the hand, and uses an average "
+      "person's arm. E adds {} N s/m to the stick. F rests the forearm on a pad of {} N/m and {} "
+      "N s/m (assumed values) that moves with the platform.",
+      short_number(record.options.damped_stick_n_s_m),
+      number(record.options.arm_rest_stiffness_n_m, 0),
+      number(record.options.arm_rest_damping_n_s_m, 0)));
+  page.table(mitigations_table(analysis));
+}
+
+void add_cancellers(report::Page& page, const Analysis& analysis) {
+  if (!analysis.conditions.contains(kFollowing) && !analysis.conditions.contains(kAugmented)) {
+    return;
+  }
+  page.section("Cancellers that go beyond the paper's");
+  page.paragraph(
+      "C cancels with the model of the session's pegged trial, as the paper does. C' uses the same "
+      "model, whose gain and phase follow the hand. C+ uses an augmented model, which "
+      "the experiment registered.");
+  page.table(mitigations_table(analysis));
+  page.table(restorations_table(analysis));
+  page.table(steps_table(analysis));
 }
 
 void add_wrong_models(report::Page& page, const Analysis& analysis) {

@@ -17,12 +17,22 @@ void add_statistics(report::Page& page, const Analysis& analysis);
 /// Exclusions and planned comparisons of an experiment; the number of participants of --plan.
 void add_registered(report::Page& page, const StudyRecord& record);
 
+// report_simulated.cpp
+/// Simulated subjects next to the participants, and the paired comparison of the same people.
+/// @param drawing  of figure_simulated(), or nullptr
+void add_simulated(report::Page& page, const StudyRecord& record, const report::Drawing* drawing);
+report::Figure figure_simulated(const StudyRecord& record);
+/// Whether recorded and simulated people differ by more than chance.
+std::string chance_sentence(const SimulatedSide& simulated);
+
 // report_loop.cpp
 void add_crossover(report::Page& page, const Analysis& analysis);
 /// Open loop at the lines of the target, Eq. SU-3.
 void add_open_loop(report::Page& page, const Analysis& analysis);
 /// Conditions D, E and F against B.
 void add_mitigations(report::Page& page, const StudyRecord& record);
+/// C, C' and C+ next to each other, where a session ran C' or C+.
+void add_cancellers(report::Page& page, const Analysis& analysis);
 /// Surviving shares, Eq. SU-4.
 void add_wrong_models(report::Page& page, const Analysis& analysis);
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -159,7 +160,9 @@ void add_parts_options(CLI::App& study, Words& words) {
       "session.mcap alone");
   for (const CLI::Option* option : study.get_options()) {
     const std::string name = option->get_name();
-    if (name != "--out" && name != "--sessions" && name != "--help") sessions->excludes(name);
+    constexpr std::array kWithSessions{"--out", "--sessions", "--threads", "--population",
+                                       "--help"};
+    if (std::ranges::find(kWithSessions, name) == kWithSessions.end()) sessions->excludes(name);
     if (name == "--sessions") continue;
     if (name == "--explain-paper" || name == "--calibrate") {
       study.get_option(name)->excludes("--shard")->excludes("--merge");
@@ -213,7 +216,10 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--undeclared-effect");
   add_parts_options(*study, *words);
   add_plan_options(*study, record->plan_dz);
-  for (const char* name : {"--plan", "--plan-effect"}) study->get_option(name)->needs("--sessions");
+  add_people_options(*study, *record);
+  for (const char* name : {"--plan", "--plan-effect", "--diagnose", "--simulated"}) {
+    study->get_option(name)->needs("--sessions");
+  }
   study->callback([record, words, &status, study] {
     record->options.protocol.conditions =
         session::parse_conditions(words->conditions, session::kStudyConditions);
@@ -225,6 +231,10 @@ void add_study_command(CLI::App& cli, int& status) {
           settings::load<population::Population>(words->population, "population");
     }
     record->command_line = report::command_line();
+    if (!words->sessions.empty() && !words->population.empty() && !record->simulate) {
+      throw ConfigError("--population", words->population.string(),
+                        "--simulated with it: recorded people have no population");
+    }
     const bool subjects_given = study->count("--subjects") > 0;
     status =
         words->explain_paper       ? explain(*record, *words, subjects_given)

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/report/text.hpp"
+#include "apps/study/diagnoses_output.hpp"
 #include "apps/study/figures.hpp"
+#include "apps/study/participants.hpp"
 #include "apps/study/report_sections.hpp"
 #include "version.hpp"
 
@@ -67,11 +71,17 @@ void add_recorded_facts(report::Page& page, const StudyRecord& record) {
   for (const std::string& code : source.participants) codes += (codes.empty() ? "" : ", ") + code;
   page.facts({{"participants", codes},
               {"complete tracking trials", std::to_string(source.trials.size())},
+              {"of them in the tables", std::to_string(source.used.size())},
               {"trial", short_number(record.options.protocol.trial_s) + " s"},
               {"pegged trial", short_number(record.options.protocol.identify_s) + " s"},
               {"pre-registration", source.digest.empty() ? "none" : source.digest},
               {"version", kVersion},
               {"command line", record.command_line}});
+  if (source.used.size() > source.participants.size() * record.analysis.conditions.size()) {
+    page.paragraph(
+        "Several trials of one participant in one condition are averaged, each metric by itself: "
+        "trials are excluded first, then the mean is taken, then people are compared.");
+  }
   if (!source.left_out.empty()) {
     page.paragraph("Left out:");
     page.list(source.left_out);
@@ -126,6 +136,7 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
     add_paper_tables(page, record);
   }
   add_registered(page, record);
+  add_participants(page, record);
   page.section("Identification");
   add_identification(page, record);
   show("fig04");
@@ -143,8 +154,15 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
   add_open_loop(page, analysis);
   add_statistics(page, analysis);
   add_mitigations(page, record);
+  add_cancellers(page, analysis);
   add_wrong_models(page, analysis);
   show("wrong_models");
+  const auto drawing = [&drawings](const char* name) {
+    const auto found = std::ranges::find(drawings, name, &report::Drawing::name);
+    return found == drawings.end() ? nullptr : &*found;
+  };
+  add_simulated(page, record, drawing(kSimulatedFigure));
+  add_diagnoses(page, record, drawing(kGainFigure));
   add_open_questions(page, record);
   return page;
 }

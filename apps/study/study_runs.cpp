@@ -60,6 +60,11 @@ void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::
               const fs::path& out) {
   record.analysis = analyse(record.results);
   if (record.recorded) analyse_registered(record);
+  if (record.simulated && record.simulated->same_people) {
+    record.simulated->paired =
+        paired_checks(record.recorded->participants, record.analysis,
+                      record.simulated->participants, record.simulated->analysis);
+  }
   if (stop.requested()) throw Interrupted();
   write_study(record, folder);
   print_study(record);
@@ -70,6 +75,26 @@ void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::
                record.options.subjects);
   }
   fmt::print("report and figures in {}\n", out.string());
+}
+
+bool has_simulated_people(const StudyRecord& record) {
+  const auto& registered = record.recorded->registered;
+  return registered && registered->registration.design.who == "simulated";
+}
+
+// The same people, where an experiment's are simulated; otherwise as many of the population.
+SimulatedSide simulated_next_to(const StudyRecord& record, const OnProgress& on_progress) {
+  if (has_simulated_people(record)) {
+    return simulate_people(*record.recorded, record.options.threads, on_progress);
+  }
+  StudyOptions options = record.options;
+  options.protocol.conditions.clear();
+  for (const char condition : std::string(kPaperConditions)) {
+    if (record.results.front().trials.contains(condition)) {
+      options.protocol.conditions.push_back(static_cast<session::Condition>(condition));
+    }
+  }
+  return simulate_population(options, on_progress);
 }
 
 // Results must not replace the files that they are made of.
@@ -139,6 +164,17 @@ int run_recorded(StudyRecord& record, const std::vector<fs::path>& folders, cons
   timed(record, stop, "sessions", [&](const OnProgress& on_progress) {
     read_recorded(files, registration, record, on_progress);
   });
+  if (record.simulate) {
+    timed(record, stop, "simulated people", [&](const OnProgress& on_progress) {
+      record.simulated = simulated_next_to(record, on_progress);
+    });
+  }
+  if (record.diagnose) {
+    timed(record, stop, "diagnoses", [&](const OnProgress& on_progress) {
+      record.diagnoses =
+          diagnose_people(files, *record.recorded, record.options.threads, on_progress);
+    });
+  }
   conclude(record, folder, stop, out);
   return 0;
 }

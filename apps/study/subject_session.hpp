@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <complex>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -55,6 +56,8 @@ struct TrackedTrial {
   double counterforce_delay_s = 0.0;  ///< session::counterforce_delay_s(); 0 without a motor
   std::vector<double> target_m;       ///< 20 s from the middle, 20 Hz
   std::vector<double> cursor_m;
+  /// X_p/X_r at the lines, of the mean of several trials (Eq. SU-14); empty: that of the gains.
+  std::vector<std::complex<double>> closed_loop;
 };
 
 /// Everything of one subject.

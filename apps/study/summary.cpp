@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/report/or_null.hpp"
+#include "apps/study/diagnoses_output.hpp"
 #include "apps/study/output.hpp"
 #include "version.hpp"
 
@@ -32,12 +33,14 @@ ordered_json conditions_json(const Analysis& analysis) {
       one["cancelled_share"] = sample_json(analysis.cancelled_share.at(condition));
       one["counterforce_delay_s"] = sample_json(analysis.counterforce_delay_s.at(condition));
     }
-    out[std::string(1, condition)] = one;
+    out[condition_word(condition)] = one;
   }
   return out;
 }
 
-std::string name_of(const Comparison& comparison) { return {comparison.from, '-', comparison.to}; }
+std::string name_of(const Comparison& comparison) {
+  return pair_word(comparison.from, comparison.to);
+}
 
 ordered_json p_values_json(const Analysis& analysis) {
   ordered_json out = ordered_json::object();
@@ -91,22 +94,39 @@ ordered_json manova_json(const MultivariateResult& result, const char* design) {
   return out;
 }
 
-ordered_json restoration_interval_json(const Analysis& analysis) {
+ordered_json restoration_interval_json(const Restoration& restoration) {
   ordered_json out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const auto& interval = analysis.restoration_interval[k];
+    const auto& interval = restoration.interval[k];
     out[kMetrics[k].restoration_key] =
         interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
   }
   return out;
 }
 
-ordered_json restoration_json(const Analysis& analysis) {
+ordered_json restoration_json(const Restoration& restoration) {
   ordered_json out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    out[kMetrics[k].restoration_key] = or_null(analysis.restoration[k]);
+    out[kMetrics[k].restoration_key] = or_null(restoration.share[k]);
   }
   return out;
+}
+
+// By C; null values where it was not run.
+Restoration restoration_of(const Analysis& analysis) {
+  const auto found = analysis.restoration.find('C');
+  return found == analysis.restoration.end() ? Restoration{} : found->second;
+}
+
+// By C' and C+, where they were run; the keys are those of close-the-loop.
+void add_other_restorations(const Analysis& analysis, ordered_json& summary) {
+  for (const auto& [condition, restoration] : analysis.restoration) {
+    if (condition == 'C') continue;
+    const std::string key =
+        condition == kFollowing ? "restoration_c_prime" : "restoration_c_plus";
+    summary[key] = restoration_json(restoration);
+    summary[key + "_interval95"] = restoration_interval_json(restoration);
+  }
 }
 
 ordered_json identification_json(const StudyRecord& record) {
@@ -155,8 +175,8 @@ ordered_json registered_json(const Registered& registered) {
       {"conditions", conditions_json(without)},
       {"t_tests", p_values_json(without)},
       {"t_test_details", t_test_details_json(without)},
-      {"restoration", restoration_json(without)},
-      {"restoration_interval95", restoration_interval_json(without)},
+      {"restoration", restoration_json(restoration_of(without))},
+      {"restoration_interval95", restoration_interval_json(restoration_of(without))},
       {"comparisons", planned_json(registered.planned_without, registration.alpha)}};
   return out;
 }
@@ -193,6 +213,41 @@ ordered_json wrong_json(const Analysis& analysis) {
   return out;
 }
 
+ordered_json paired_json(const PairedCheck& check) {
+  ordered_json out{{"people", check.n},
+                   {"mean_difference", check.mean_difference},
+                   {"ci95", nullptr},
+                   {"t", nullptr},
+                   {"p", nullptr},
+                   {"p_holm", or_null(check.p_holm)},
+                   {"p_signed_rank", check.p_signed_rank}};
+  if (check.test) {
+    out["ci95"] = {check.test->ci_low, check.test->ci_high};
+    out["t"] = check.test->t;
+    out["p"] = check.test->p;
+  }
+  return out;
+}
+
+ordered_json simulated_json(const SimulatedSide& simulated) {
+  ordered_json out{{"same_people", simulated.same_people},
+                   {"seed", simulated.seed},
+                   {"subjects", simulated.results.size()},
+                   {"participants", simulated.participants},
+                   {"failed", ordered_json::object()},
+                   {"conditions", conditions_json(simulated.analysis)},
+                   {"restoration", restoration_json(restoration_of(simulated.analysis))}};
+  for (const auto& [code, why] : simulated.failed) out["failed"][code] = why;
+  if (!simulated.same_people) return out;
+  out["paired"] = ordered_json::object();
+  for (const PairedCheck& check : simulated.paired) {
+    out["paired"][condition_word(check.condition)][kMetrics[check.metric].key] = paired_json(check);
+  }
+  out["alpha"] = SimulatedSide::kAlpha;
+  out["more_than_chance"] = simulated.more_than_chance();
+  return out;
+}
+
 }  // namespace
 
 double alpha_of(const StudyRecord& record) {
@@ -213,8 +268,9 @@ std::string summary_json(const StudyRecord& record) {
   summary["conditions"] = conditions_json(record.analysis);
   summary["t_tests"] = p_values_json(record.analysis);
   summary["manova"] = manova_json(record.analysis.main_effects, "main effects, one trial a cell");
-  summary["restoration"] = restoration_json(record.analysis);
-  summary["restoration_interval95"] = restoration_interval_json(record.analysis);
+  summary["restoration"] = restoration_json(restoration_of(record.analysis));
+  summary["restoration_interval95"] = restoration_interval_json(restoration_of(record.analysis));
+  add_other_restorations(record.analysis, summary);
   summary["t_test_details"] = t_test_details_json(record.analysis);
   summary["manova_thirds"] =
       manova_json(record.analysis.thirds, "thirds of a trial as replicates; RMS error and dwell");
@@ -235,6 +291,8 @@ std::string summary_json(const StudyRecord& record) {
     }
   }
   if (record.plan_dz) summary["plan"] = needed_json(record);
+  if (record.simulated) summary["simulated"] = simulated_json(*record.simulated);
+  if (record.diagnoses) summary["diagnoses"] = diagnoses_json(*record.diagnoses);
   summary["version"] = kVersion;
   // JSON has no NaN: dump() writes a number that is not finite as null.
   return summary.dump(2) + "\n";

@@ -22,8 +22,8 @@ function(stillhand_use_precompiled target kind)
 endfunction()
 
 # stillhand_library(<target> <folder> [FILES <file>...] [EXCEPT <folder>] [PCH <kind>] [LINK ...] [PRIVATE ...]):
-# the .cpp files of a folder and of the folders in it, but not those in <folder>/EXCEPT; or the files
-# named.  Paths are relative to the caller.  A new file needs no edit.
+# the .cpp files of a folder and of the folders in it, but not those in <folder>/EXCEPT nor
+# <folder>/EXCEPT.cpp, a regular expression; or the files named.  Paths are relative to the caller.  A new file needs no edit.
 function(stillhand_library target folder)
   cmake_parse_arguments(arg "" "PCH;EXCEPT" "FILES;LINK;PRIVATE" ${ARGN})
   set(here ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
@@ -32,7 +32,7 @@ function(stillhand_library target folder)
   else()
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${here}/*.cpp)
     if(arg_EXCEPT)
-      list(FILTER sources EXCLUDE REGEX "^${here}/${arg_EXCEPT}/")
+      list(FILTER sources EXCLUDE REGEX "^${here}/${arg_EXCEPT}(/|[.]cpp$)")
     endif()
   endif()
   add_library(${target} STATIC ${sources})

@@ -57,4 +57,10 @@ double signed_rank_p(const std::vector<double>& differences) {
   return boost::math::cdf(boost::math::complement(boost::math::normal(), z));
 }
 
+double signed_rank_two_sided_p(const std::vector<double>& differences) {
+  std::vector<double> negated = differences;
+  for (double& d : negated) d = -d;
+  return std::min(1.0, 2.0 * std::min(signed_rank_p(differences), signed_rank_p(negated)));
+}
+
 }  // namespace stillhand::statistics

@@ -14,4 +14,8 @@ namespace stillhand::statistics {
 /// @throws stillhand::ConfigError for no difference or one that isn't finite.
 double signed_rank_p(const std::vector<double>& differences);
 
+/// The same, two-sided: twice the smaller of both one-sided p, at most 1, README Eq. ST-17.
+/// @throws as signed_rank_p()
+double signed_rank_two_sided_p(const std::vector<double>& differences);
+
 }  // namespace stillhand::statistics

@@ -34,9 +34,9 @@ def new_experiment(folder, participants, *words, **values):
     file.write_text(text)
 
 
-def conduct(folder):
-    """Every participant, then the end of blinding."""
-    subprocess.run([str(WRITE_SAMPLE), str(folder)], check=True, timeout=LIMIT_S)
+def conduct(folder, *otherwise):
+    """Every participant.  `otherwise`: arguments of write_sample_experiment."""
+    subprocess.run([str(WRITE_SAMPLE), str(folder), *map(str, otherwise)], check=True, timeout=LIMIT_S)
 
 
 def unblind(folder):

@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// write_sample_experiment DIR: conducts every participant of an experiment of conditions A, B, C
-// that `stillhand experiment new` made, with simulated subjects and without a bus: the cores in one
-// process, then journals and recordings as a session over the bus leaves them.  Four participants
+// write_sample_experiment DIR [REMNANT [GAIN]]: conducts every participant of an experiment that
+// `stillhand experiment new` made, with simulated subjects and without a bus: the cores in one
+// process, then journals and recordings as a session over the bus leaves them.  Five participants
 // are special, where there are so many:
 //
 //   P02  the first trial is ended after half its length and runs again
 //   P03  the session is killed after the first trial; a second session goes on
 //   P04  every fiftieth sample of the first trial is lost, and one more
 //   P05  is excluded by the experimenter
+//   P06  repeats the first trial on request, although it was complete
+//
+// REMNANT is added to the seeds of remnant and sensor noise, so that a simulation of the same people
+// meets other noise; GAIN is that of the motor, so that it meets another rig.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "apps/close_the_loop/control_model.hpp"
 #include "apps/experiment/folder.hpp"
 #include "apps/session/in_process.hpp"
 #include "apps/study/trial_analysis.hpp"
 #include "idl/idl_text.hpp"
+#include "services/cancellation/codec.hpp"
+#include "services/cancellation/control_model_file.hpp"
+#include "services/identification/codec.hpp"
 #include "services/population/population.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/recording/of_experiment.hpp"
@@ -33,10 +42,18 @@ using experiment::EntryKind;
 using session::PlannedTrial;
 using session::TrialSignals;
 
-constexpr std::size_t kBrokenOff = 1, kKilled = 2, kLossy = 3, kExcluded = 4;
+constexpr std::size_t kBrokenOff = 1, kKilled = 2, kLossy = 3, kExcluded = 4,
+                      kRepeated = 5;
 
-session::CoreConfigs configs_of(const experiment::Design& design, std::size_t index) {
+struct Otherwise {
+  std::uint64_t remnant = 0;
+  double motor_gain = 1.0;
+};
+
+session::CoreConfigs configs_of(const experiment::Design& design, std::size_t index,
+                                const Otherwise& otherwise) {
   session::CoreConfigs configs;
+  configs.rig.motor.gain = otherwise.motor_gain;
   const auto subject = population::draw_subject({}, static_cast<std::uint64_t>(design.subject_seed),
                                                 static_cast<std::int64_t>(index));
   configs.rig.body = subject.body;
@@ -49,13 +66,13 @@ session::CoreConfigs configs_of(const experiment::Design& design, std::size_t in
 class SampleSession {
  public:
   SampleSession(const experiment::Folder& folder, std::size_t index, std::int64_t number,
-                experiment::Journal& journal)
+                experiment::Journal& journal, const Otherwise& otherwise)
       : folder_(folder),
         index_(index),
         number_(number),
         journal_(journal),
-        loop_(configs_of(folder.design(), index),
-              experiment::session_seed(folder.design(), index, number)) {
+        loop_(configs_of(folder.design(), index, otherwise),
+              experiment::session_seed(folder.design(), index, number) + otherwise.remnant) {
     loop_.keep_measured();
     protocol_.trial_s = folder.design().trial_s;
     protocol_.identify_s = folder.design().identify_s;
@@ -79,6 +96,11 @@ class SampleSession {
       throw std::runtime_error("the canceller refused the model of " +
                                experiment::participant_code(index_));
     }
+    auto message = identification::to_idl(model, 0, 0);
+    message.from_tick(last_tick_ + 1);
+    message.usable(true);
+    file_.add(topics::kFeedthroughModel, message);
+    identified_ = model.control;
     add({.kind = EntryKind::kTrialEnded, .trial = 0, .completed = true});
   }
 
@@ -92,11 +114,16 @@ class SampleSession {
     planned.motion_seed = at.motion_seed;
     planned.reference_seed = at.target_seed;
     planned.trial.number = ++trials_;
+    given_ = model_for(condition);
+    if (given_) use(*given_);
     Entry entry{.kind = EntryKind::kTrialBegan,
                 .step = static_cast<std::int64_t>(step),
                 .trial = trials_,
                 .label = folder_.assignment().labels[at.condition]};
     add(entry);
+    announce("experiment: trial " + std::to_string(trials_) + ", block " +
+             std::to_string(at.block) + ", place " + std::to_string(at.place) + ", label " +
+             entry.label);
     run(planned, share, lose_every);
     entry.kind = EntryKind::kTrialEnded;
     entry.completed = share == 1.0;
@@ -114,7 +141,43 @@ class SampleSession {
     add({.kind = EntryKind::kSessionEnded, .completed = completed});
   }
 
+  void ask_again(std::size_t step) {
+    add({.kind = EntryKind::kRepeatAsked,
+         .step = static_cast<std::int64_t>(step),
+         .text = "Anna looked away"});
+  }
+
  private:
+  void use(const cancellation::ControlModel& model) {
+    if (loop_.use_model(model) == cancellation::Refusal::kNone) return;
+    throw std::runtime_error("the canceller refused a model of " +
+                             experiment::participant_code(index_));
+  }
+
+  // As SessionScript::give_model(): none where the identified model is used as it is.
+  std::optional<cancellation::ControlModel> model_for(const std::string& condition) const {
+    const auto& design = folder_.design();
+    const bool chooses = std::ranges::any_of(
+        design.conditions, [](const std::string& each) { return each.size() > 1; });
+    if (!chooses || condition.front() != 'C') return std::nullopt;
+    if (condition == "C+") {
+      const std::string file = (folder_.path() / design.control_model).string();
+      return cancellation::parse_control_model(recording::read_file(file), file, 0);
+    }
+    cancellation::ControlModel model = cancellation::control_model(identified_);
+    if (condition == "C'") model.adapts = close_the_loop::average_hand();
+    return model;
+  }
+
+  // What the experiment says before a tracking trial.
+  void announce(const std::string& text) {
+    stillhand_msgs::Event note;
+    note.kind(stillhand_msgs::EVENT_NOTE);
+    note.source("experiment");
+    note.text(text.c_str());
+    file_.add(topics::kEvent, note);
+  }
+
   void add(Entry entry) {
     entry.session = number_;
     journal_.append(std::move(entry));
@@ -124,6 +187,11 @@ class SampleSession {
     TrialSignals signals = loop_.run(planned);
     const auto first = static_cast<Tick>(signals.measured.time_s.front() * kControlRateHz + 0.5);
     const bool pegged = planned.trial.phase == TrialPhase::kPegged;
+    if (given_ && !pegged) {
+      auto message = cancellation::to_idl(*given_, cancellation::kFirstControlModel + models_++);
+      message.from_tick(first - 1000);
+      file_.add(topics::kAugmentedModel, message);
+    }
     const auto number = static_cast<std::int32_t>(planned.trial.number);
     file_.control(number, pegged ? stillhand_msgs::PHASE_PEGGED : stillhand_msgs::PHASE_TRACKING,
                   first, planned.trial.duration_ticks);
@@ -139,6 +207,7 @@ class SampleSession {
       if (!lost) write(signals, row, tick, pegged);
     }
     file_.control(-1);
+    last_tick_ = first + static_cast<Tick>(signals.measured.row_count());
     return signals;
   }
 
@@ -180,22 +249,30 @@ class SampleSession {
   session::InProcessLoop loop_;
   SessionFile file_{std::size_t{1} << 20, recording::Compression::kZstd, topics::idl_of};
   std::int64_t trials_ = 0;
+  signal::DifferenceModel identified_;
+  std::optional<cancellation::ControlModel> given_;  ///< for the next trial
+  std::int32_t models_ = 0;
+  Tick last_tick_ = 0;
 };
 
-void conduct(const experiment::Folder& folder, std::size_t index) {
+void conduct(const experiment::Folder& folder, std::size_t index, const Otherwise& otherwise) {
   std::filesystem::create_directories(folder.participant(index));
   experiment::Journal journal(folder.journal(index));
   const experiment::Plan plan = folder.plan(index);
-  auto session = std::make_unique<SampleSession>(folder, index, 1, journal);
+  auto session = std::make_unique<SampleSession>(folder, index, 1, journal, otherwise);
   session->identify();
   for (std::size_t step = 0; step < plan.size(); ++step) {
     if (plan[step].kind != experiment::StepKind::kTrial) continue;
     const bool first = plan[step].place == 1;
     if (first && index == kBrokenOff) session->track(plan, step, 0.5);
     session->track(plan, step, 1.0, first && index == kLossy ? 50 : 0);
+    if (first && index == kRepeated) {
+      session->ask_again(step);
+      session->track(plan, step);
+    }
     if (!first || index != kKilled) continue;
     session->close(false);
-    session = std::make_unique<SampleSession>(folder, index, 2, journal);
+    session = std::make_unique<SampleSession>(folder, index, 2, journal, otherwise);
     session->identify();
   }
   session->close(true);
@@ -208,15 +285,18 @@ void conduct(const experiment::Folder& folder, std::size_t index) {
 }  // namespace stillhand::tests
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fputs("usage: write_sample_experiment DIR\n", stderr);
+  if (argc < 2 || argc > 4) {
+    std::fputs("usage: write_sample_experiment DIR [REMNANT [GAIN]]\n", stderr);
     return 2;
   }
   try {
+    stillhand::tests::Otherwise otherwise;
+    if (argc > 2) otherwise.remnant = std::stoull(argv[2]);
+    if (argc > 3) otherwise.motor_gain = std::stod(argv[3]);
     const stillhand::experiment::Folder folder(argv[1]);
     folder.register_design();
     for (std::int64_t n = 0; n < folder.design().participants; ++n) {
-      stillhand::tests::conduct(folder, static_cast<std::size_t>(n));
+      stillhand::tests::conduct(folder, static_cast<std::size_t>(n), otherwise);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "write_sample_experiment: %s\n", error.what());

@@ -21,7 +21,7 @@ constexpr double kKeptApart = 0.3;
 // A rate that differs by more is not the control rate.
 constexpr double kRateTolerance = 1e-3;
 
-diagnosis::Measurement read(const std::string& path, const char* trial,
+diagnosis::Measurement read(const std::string& path, const std::string& trial,
                             measurement::ReadOptions options) {
   options.session_trial = trial;
   return measurement::read_measurement(path, options);
@@ -29,7 +29,7 @@ diagnosis::Measurement read(const std::string& path, const char* trial,
 
 // The stick's own signals, at 1 kHz: the longest stretch without a long gap, whose short gaps are
 // filled in.
-recording::Recording read_stick(const std::string& path, const char* trial,
+recording::Recording read_stick(const std::string& path, const std::string& trial,
                                 const measurement::ReadOptions& options,
                                 std::vector<std::string>& notes) {
   const diagnosis::Measurement measured = read(path, trial, options);
@@ -84,6 +84,12 @@ std::string refused(const cancellation::ControlModel& model) {
   return "the canceller refuses it: " + std::string(cancellation::describe(check.refusal));
 }
 
+// What the caller chose, or the condition's letter.
+std::string trial_at(const std::vector<std::string>& trials, std::size_t index,
+                     const char* letter) {
+  return index < trials.size() ? trials[index] : std::string(letter);
+}
+
 class RecordedLoopRun {
  public:
   explicit RecordedLoopRun(const RecordedOptions& options) : options_(options) {}
@@ -91,14 +97,8 @@ class RecordedLoopRun {
   RecordedLoop run() {
     step("reading");
     read_pegged();
-    for (const std::string& path : options_.moving) {
-      moving_.push_back(read_stick(path, "B", options_.read, out_.notes));
-      want_channels(moving_.back(), path);
-    }
-    for (const std::string& path : options_.cancelled) {
-      cancelled_.push_back(read_stick(path, "C", options_.read, out_.notes));
-      want_channels(cancelled_.back(), path);
-    }
+    read_sticks(options_.moving, options_.moving_trials, "B", moving_);
+    read_sticks(options_.cancelled, options_.cancelled_trials, "C", cancelled_);
     diagnose();
     convert_linear();
     if (out_.verdict.not_carried.empty()) {
@@ -120,9 +120,21 @@ class RecordedLoopRun {
     if (!options_.progress(name)) throw diagnosis::Interrupted();
   }
 
+  void read_sticks(const std::vector<std::string>& paths, const std::vector<std::string>& trials,
+                   const char* letter, std::vector<recording::Recording>& into) {
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      into.push_back(
+          read_stick(paths[i], trial_at(trials, i, letter), options_.read, out_.notes));
+      want_channels(into.back(), paths[i]);
+    }
+  }
+
   void read_pegged() {
     std::vector<diagnosis::Measurement> parts;
-    for (const std::string& path : options_.pegged) parts.push_back(read(path, "I", options_.read));
+    for (std::size_t i = 0; i < options_.pegged.size(); ++i) {
+      parts.push_back(
+          read(options_.pegged[i], trial_at(options_.pegged_trials, i, "I"), options_.read));
+    }
     for (const std::string& path : options_.unseen)
       unseen_.push_back(read(path, "I", options_.read));
     if (unseen_.empty() && parts.size() > 1) {

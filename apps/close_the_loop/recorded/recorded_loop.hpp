@@ -19,6 +19,9 @@ struct RecordedOptions {
   std::vector<std::string> moving;     ///< condition B: the stick's own equation
   std::vector<std::string> cancelled;  ///< condition C: the latency of motor and load cell
   std::vector<std::string> unseen;     ///< pegged, for judging; empty: kept apart from `pegged`
+  /// Trial of each file of `pegged`, `moving` and `cancelled`, as ReadOptions::session_trial; where
+  /// there is none, the last trial I, B or C.
+  std::vector<std::string> pegged_trials = {}, moving_trials = {}, cancelled_trials = {};
   std::vector<std::string> inputs{"a_y"};
   std::string output = "f";
   measurement::ReadOptions read;  ///< columns of files of other programs, for all of them

@@ -80,6 +80,13 @@ Plan plan_of(const Design& design, const Assignment& assignment, std::size_t par
   return plan;
 }
 
+Step trial_at_place(const Design& design, std::size_t participant, std::int64_t place) {
+  Step step;
+  step.place = place;
+  set_seeds(step, design, participant, static_cast<std::uint64_t>(place));
+  return step;
+}
+
 Step practice_trial(const Design& design, std::size_t participant, std::int64_t number) {
   Step step;
   step.kind = StepKind::kPractice;

@@ -41,6 +41,9 @@ using Plan = std::vector<Step>;
 /// @param participant  from 0
 Plan plan_of(const Design& design, const Assignment& assignment, std::size_t participant);
 
+/// Block 0, and the seeds, of the trial at a place of a participant's plan.  @param place  from 1
+Step trial_at_place(const Design& design, std::size_t participant, std::int64_t place);
+
 /// Seeds of the nth practice trial (from 0) of a participant, in the fields of a step.
 Step practice_trial(const Design& design, std::size_t participant, std::int64_t number);
 

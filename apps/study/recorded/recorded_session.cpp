@@ -4,17 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <set>
+#include <cstdio>
+#include <map>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "apps/measurement/session_trials.hpp"
 #include "apps/session/measured_ticks.hpp"
 #include "apps/session/session_recording.hpp"
+#include "apps/study/conditions.hpp"
 #include "apps/study/trial_analysis.hpp"
+#include "services/cancellation/codec.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/flag.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
@@ -115,22 +116,58 @@ TrackedTrial tracked_from(const SessionRecording& recorded, const SessionTrial& 
   return evaluated(signals, planned);
 }
 
-// The trials that an experiment announced as practice, by a note before each
-// (apps/experiment/README.md).
-std::set<std::int64_t> practice_of(const SessionRecording& recorded) {
-  std::set<std::int64_t> numbers;
+// What an experiment announces before a trial (apps/experiment/README.md).
+struct Announced {
+  bool practice = false;
+  std::int64_t block = 0;
+  std::int64_t place = 0;
+};
+
+// "experiment: trial 4, practice" or "experiment: trial 4, block 1, place 2, label X", by number.
+std::map<std::int64_t, Announced> announced_in(const SessionRecording& recorded) {
+  std::map<std::int64_t, Announced> out;
   for (const auto& event : recorded.events) {
-    constexpr std::string_view kBegin = "experiment: trial ";
-    const std::string text = event.text().c_str();
-    const bool note = event.kind() == stillhand_msgs::EVENT_NOTE && event.source() == "experiment";
-    if (!note || !text.starts_with(kBegin) || !text.ends_with(", practice")) continue;
-    std::int64_t number = -1;
-    const char* digits = text.data() + kBegin.size();
-    if (std::from_chars(digits, text.data() + text.size(), number).ec == std::errc()) {
-      numbers.insert(number);
-    }
+    if (event.kind() != stillhand_msgs::EVENT_NOTE || event.source() != "experiment") continue;
+    const char* text = event.text().c_str();
+    long number = -1;
+    long block = 0;
+    long place = 0;
+    const int found = std::sscanf(text, "experiment: trial %9ld, block %9ld, place %9ld", &number,
+                                  &block, &place);
+    const bool practice = std::string_view(text).ends_with(", practice");
+    if (found == 3 || (found == 1 && practice)) out[number] = {practice, block, place};
   }
-  return numbers;
+  return out;
+}
+
+// The newest of the models that may be used at a tick; they come in the order of their writing.
+template <typename Model>
+const Model* in_force(const std::vector<Model>& models, Tick tick, std::uint32_t rig) {
+  const Model* out = nullptr;
+  for (const Model& model : models) {
+    if (model.rig() == rig && model.from_tick() <= tick) out = &model;
+  }
+  return out;
+}
+
+// Which of C, C' and C+ a cancelled trial is, from the model that the motor used.
+char condition_in(const SessionRecording& recorded, const SessionTrial& trial, std::uint32_t rig) {
+  if (trial.letter != 'C') return trial.letter;
+  const Tick start = trial.trial.start_tick;
+  const auto* control = in_force(recorded.control_models, start, rig);
+  const auto* identified = in_force(recorded.models, start, rig);
+  if (control == nullptr) return 'C';
+  if (identified != nullptr && identified->from_tick() > control->from_tick()) return 'C';
+  const cancellation::ControlModel model = cancellation::from_idl(*control);
+  const bool plain = model.inputs.size() == 1 && model.inputs[0].map.values.empty() &&
+                     !model.loop && model.output.values.empty() && model.paths.empty() &&
+                     model.waves.empty();
+  const bool own = plain && std::ranges::any_of(recorded.models, [&](const auto& each) {
+                     return each.control_numerator() == model.inputs[0].numerator &&
+                            each.control_denominator() == model.denominator;
+                   });
+  if (!own) return kAugmented;
+  return model.adapts ? kFollowing : 'C';
 }
 
 }  // namespace
@@ -139,23 +176,27 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
   const measurement::SessionTrials trials = trials_of(file);
   SessionRecording recorded = session::read_session(file.path.string());
   RecordedSession out;
-  out.control_model = !recorded.control_models.empty();
   keep_valid(recorded, trials.rig);
-  const std::set<std::int64_t> practice = practice_of(recorded);
+  const std::map<std::int64_t, Announced> announced = announced_in(recorded);
   for (const SessionTrial& trial : trials.trials) {
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
     std::string why = trial.letter == '?' ? "has no condition" : incomplete(trial, least_share);
-    const bool practised = practice.contains(trial.trial.number);
+    const auto note = announced.find(trial.trial.number);
+    const Announced plan = note == announced.end() ? Announced{} : note->second;
+    const bool practised = plan.practice;
     try {
       if (!why.empty()) {
       } else if (trial.letter == 'I') {
         out.identification = identified_from(recorded, trial.trial, least_share);
         out.identify_s = static_cast<double>(trial.trial.duration_ticks) * kControlPeriod_s;
+        out.pegged.push_back({file.participant, file.session, trial.trial.number});
       } else {
         (practised ? out.practice : out.trials)
-            .push_back({file.participant, file.session, trial.trial.number, 0, trial.letter,
-                        tracked_from(recorded, trial, least_share), lost_share(trial)});
+            .push_back({file.participant, file.session, trial.trial.number, 0,
+                        condition_in(recorded, trial, trials.rig),
+                        tracked_from(recorded, trial, least_share), lost_share(trial), plan.block,
+                        plan.place});
       }
     } catch (const ConfigError& error) {
       why = error.what();

@@ -15,11 +15,11 @@ namespace stillhand::study {
 struct RecordedSession {
   std::optional<Identification> identification;  ///< of the last complete pegged trial
   double identify_s = 0.0;                       ///< [s] its length
+  std::vector<PeggedTrial> pegged;               ///< all complete ones
   std::vector<RecordedTrial> trials;    ///< complete tracking trials without practice; no place
   std::vector<RecordedTrial> practice;  ///< complete practice trials
   std::vector<std::string> left_out;    ///< one line each: trial, and why
   std::int64_t broken_trials = 0;       ///< tracking trials that were ended early
-  bool control_model = false;           ///< the motor used a control model (C' or C+)
 };
 
 /// Least share of its samples that a complete trial has: of a session on its own, and where the

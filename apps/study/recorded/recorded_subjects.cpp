@@ -19,10 +19,6 @@ namespace {
 void read_session_of(const SessionFile& file, double least_share, Person& person,
                      RecordedSource& source) {
   RecordedSession session = read_recorded_session(file, least_share);
-  if (session.control_model) {
-    throw ConfigError(file.path.string(), "a session whose motor used a control model (C+)",
-                      "sessions of conditions A, B and C");
-  }
   if (session.identification) {
     person.identification = std::move(session.identification);
     person.identify_s = session.identify_s;
@@ -33,23 +29,24 @@ void read_session_of(const SessionFile& file, double least_share, Person& person
     trial.place = static_cast<std::int64_t>(person.trials.size()) + 1;
     person.trials.push_back(std::move(trial));
   }
+  std::ranges::move(session.pegged, std::back_inserter(source.pegged));
   std::ranges::move(session.left_out, std::back_inserter(source.left_out));
 }
 
-void check_lengths(const std::vector<SubjectResult>& results,
-                   const std::vector<std::string>& participants) {
-  const auto& first = results.front().trials.begin()->second.metrics;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    for (const auto& [condition, trial] : results[i].trials) {
-      if (trial.metrics.moving_rms_mm.size() == first.moving_rms_mm.size() &&
-          trial.metrics.lines[0].frequency_hz == first.lines[0].frequency_hz) {
-        continue;
-      }
-      throw ConfigError("--sessions",
-                        fmt::format("condition {} of {} with another length than {}'s trials",
-                                    condition, participants[i], participants.front()),
-                        "tracking trials of one length");
+// Means over trials and people need one length.
+void check_lengths(const std::vector<RecordedTrial>& trials) {
+  const RecordedTrial& first = trials.front();
+  for (const RecordedTrial& trial : trials) {
+    const auto& metrics = trial.tracked.metrics;
+    if (metrics.moving_rms_mm.size() == first.tracked.metrics.moving_rms_mm.size() &&
+        metrics.lines[0].frequency_hz == first.tracked.metrics.lines[0].frequency_hz) {
+      continue;
     }
+    throw ConfigError("--sessions",
+                      fmt::format("{}, session {}, trial {} with another length than {}'s trials",
+                                  trial.participant, trial.session, trial.number,
+                                  first.participant),
+                      "tracking trials of one length");
   }
 }
 
@@ -94,10 +91,10 @@ void read_recorded(const std::vector<SessionFile>& files,
   for (const Person& person : people) {
     std::ranges::copy(person.trials, std::back_inserter(source.trials));
   }
+  if (!source.trials.empty()) check_lengths(source.trials);
   Selection selection = select(people);
   std::ranges::copy(selection.left_out, std::back_inserter(source.left_out));
   refuse_nobody(selection, source.left_out);
-  check_lengths(selection.results, selection.participants);
   if (registration) {
     Registered registered;
     registered.registration = *registration;
@@ -114,6 +111,7 @@ void read_recorded(const std::vector<SessionFile>& files,
     source.registered = std::move(registered);
   }
   source.participants = std::move(selection.participants);
+  source.used = std::move(selection.used);
   record.results = std::move(selection.results);
   record.options.subjects = static_cast<std::int64_t>(record.results.size());
   const auto& line = record.results.front().trials.begin()->second.metrics.lines[0];

@@ -2,6 +2,7 @@
 #include "apps/study/recorded/registration.hpp"
 
 #include "apps/experiment/file/experiment_file.hpp"
+#include "apps/study/conditions.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/rig/digest.hpp"
@@ -25,12 +26,15 @@ std::optional<Registration> registration_of(const std::vector<std::filesystem::p
     out->rules = design.exclusion;
     out->trials_a_condition = design.blocks * design.trials;
     out->alpha = design.alpha;
+    out->design = design;
+    out->folder = folder;
     for (const std::string& condition : design.conditions) {
-      out->conditions.push_back(condition.front());
+      out->conditions.push_back(condition_of(condition));
     }
-    // C' and C+ are refused with their recordings, so a letter is a condition.
     for (const std::string& pair : design.comparisons) {
-      out->comparisons.emplace_back(pair.front(), pair[pair.find('-') + 1]);
+      const std::size_t dash = pair.find('-');
+      out->comparisons.emplace_back(condition_of(pair.substr(0, dash)),
+                                    condition_of(pair.substr(dash + 1)));
     }
   }
   return out;

@@ -19,6 +19,8 @@ struct Registration {
   std::vector<char> conditions;                    ///< planned
   std::vector<std::pair<char, char>> comparisons;  ///< first, second
   double alpha = 0.05;                             ///< of all comparisons together
+  experiment::Design design;                       ///< the whole of it
+  std::filesystem::path folder;                    ///< of the experiment
 };
 
 /// The registration of the one folder with an experiment.yaml among `folders`; none without one.

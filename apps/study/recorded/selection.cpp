@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "apps/study/recorded/average.hpp"
 #include "services/statistics/descriptive.hpp"
 
 namespace stillhand::study {
@@ -28,19 +29,30 @@ std::string wanted_conditions(const std::vector<Person>& people) {
   return out;
 }
 
-SubjectResult result_of(const Person& person, const std::string& conditions) {
+// Eq. SU-14: of the trials of one place of the plan, the last one.
+std::vector<const RecordedTrial*> counted(const Person& person, const std::string& conditions) {
+  std::vector<const RecordedTrial*> out;
+  for (const RecordedTrial& trial : person.trials) {
+    if (conditions.find(trial.condition) == std::string::npos) continue;
+    std::erase_if(out, [&](const RecordedTrial* earlier) {
+      return trial.step > 0 && earlier->step == trial.step;
+    });
+    out.push_back(&trial);
+  }
+  return out;
+}
+
+SubjectResult result_of(const Person& person, const std::string& conditions,
+                        std::set<TrialId>& used) {
   SubjectResult out;
   out.identification = *person.identification;
-  std::map<char, const RecordedTrial*> last;
-  for (const RecordedTrial& trial : person.trials) {
-    if (conditions.find(trial.condition) != std::string::npos) last[trial.condition] = &trial;
+  std::map<char, std::vector<const TrackedTrial*>> trials;
+  for (const RecordedTrial* trial : counted(person, conditions)) {
+    used.insert(id_of(*trial));
+    if (trials[trial->condition].empty()) out.order += trial->condition;
+    trials[trial->condition].push_back(&trial->tracked);
   }
-  std::map<std::int64_t, char> order;
-  for (const auto& [condition, trial] : last) {
-    out.trials[condition] = trial->tracked;
-    order[trial->place] = condition;
-  }
-  for (const auto& [place, condition] : order) out.order += condition;
+  for (const auto& [condition, each] : trials) out.trials[condition] = averaged(each);
   return out;
 }
 
@@ -50,7 +62,7 @@ std::string lacking(const Person& person, const std::string& conditions) {
   for (const char condition : conditions) {
     if (std::ranges::find(person.trials, condition, &RecordedTrial::condition) ==
         person.trials.end()) {
-      return fmt::format("no complete trial of condition {}", condition);
+      return fmt::format("no complete trial of condition {}", condition_word(condition));
     }
   }
   return "";
@@ -60,7 +72,7 @@ std::string lacking(const Person& person, const std::string& conditions) {
 double completed_share(const Person& person, const Registration& registration) {
   std::int64_t done = 0;
   for (const char condition : registration.conditions) {
-    const auto own = std::ranges::count(person.trials, condition, &RecordedTrial::condition);
+    const auto own = std::ssize(counted(person, std::string(1, condition)));
     done += std::min<std::int64_t>(own, registration.trials_a_condition);
   }
   const auto planned = static_cast<double>(registration.conditions.size()) *
@@ -115,7 +127,7 @@ std::map<std::string, std::string> outliers(const std::vector<Person>& people, d
       out.emplace(all.participants[i],
                   fmt::format("RMS error {:.4g} mm in {}, {:.3g} standard deviations from the "
                               "mean, more than most_rms_deviations {:.4g}",
-                              errors_mm[i], condition, deviations, most));
+                              errors_mm[i], condition_word(condition), deviations, most));
     }
   }
   return out;
@@ -133,7 +145,7 @@ Selection select(const std::vector<Person>& people) {
       continue;
     }
     out.participants.push_back(person.code);
-    out.results.push_back(result_of(person, conditions));
+    out.results.push_back(result_of(person, conditions, out.used));
   }
   return out;
 }

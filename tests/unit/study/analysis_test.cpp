@@ -97,22 +97,37 @@ TEST(SummarisedTest, TheOrderOfSubjectsDoesNotMoveTheBox) {
 // Eq. SU-5 by hand: (B - C) / (B - A) of the means.
 TEST(AnalyseTest, RestorationIsTheShareOfTheLossThatComesBack) {
   const Analysis sut = analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25), kRounding);
-  EXPECT_NEAR(sut.restoration[kError].value(), (50.1 - 30.15) / (50.1 - 20.25), kRounding);
+  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25), kRounding);
+  EXPECT_NEAR(sut.restoration.at('C').share[kError].value(), (50.1 - 30.15) / (50.1 - 20.25), kRounding);
 }
 
 TEST(AnalyseTest, ASubjectWhoseCrossoverIsMissingInOneConditionIsLeftOutOfItsRestoration) {
   const Analysis sut =
       analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, kNan, 0.50}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25), kRounding);
+  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25), kRounding);
   EXPECT_EQ(sut.conditions.at('B')[kCrossover].known, 2u);
 }
 
 TEST(AnalyseTest, WithoutALossThereIsNoRestoration) {
   const Analysis same = analyse(with_crossovers({{0.25, 0.25, 0.5}, {0.5, 0.5, 0.5}}));
-  EXPECT_FALSE(same.restoration[kCrossover].has_value());
+  EXPECT_FALSE(same.restoration.at('C').share[kCrossover].has_value());
   const Analysis unknown = analyse(with_crossovers({{kNan, 0.25, 0.5}, {0.5, kNan, 0.5}}));
-  EXPECT_FALSE(unknown.restoration[kCrossover].has_value());
+  EXPECT_FALSE(unknown.restoration.at('C').share[kCrossover].has_value());
+}
+
+TEST(AnalyseTest, CPrimeAndCPlusAreComparedWithBAndWithTheCancellerBeforeThem) {
+  auto results = random_results(6, "ABC", 9);
+  for (SubjectResult& result : results) {
+    result.trials[kFollowing] = result.trials['A'];
+    result.trials[kAugmented] = result.trials['B'];
+  }
+  const Analysis sut = analyse(results);
+  std::vector<std::string> pairs;
+  for (const Comparison& each : sut.comparisons) pairs.push_back(pair_word(each.from, each.to));
+  EXPECT_THAT(pairs, ElementsAre("A-B", "B-C", "B-C'", "B-C+", "C-C'", "C'-C+", "C-C+"));
+  EXPECT_NEAR(sut.restoration.at(kFollowing).share[kError].value(), 1.0, 1e-9);
+  EXPECT_NEAR(sut.restoration.at(kAugmented).share[kError].value(), 0.0, 1e-9);
+  EXPECT_TRUE(sut.cancelled_share.contains(kAugmented));
 }
 
 // C as good as A is 1, C as bad as B is 0, whatever the numbers.
@@ -120,11 +135,11 @@ TEST(AnalyseTest, RestorationIsOneForConditionAAgainAndZeroForConditionBAgain) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     auto results = random_results(5, "ABC", seed);
     for (SubjectResult& result : results) result.trials['C'] = result.trials['A'];
-    for (const auto& restored : analyse(results).restoration) {
+    for (const auto& restored : analyse(results).restoration.at('C').share) {
       ASSERT_NEAR(restored.value(), 1.0, 1e-9);
     }
     for (SubjectResult& result : results) result.trials['C'] = result.trials['B'];
-    for (const auto& restored : analyse(results).restoration) {
+    for (const auto& restored : analyse(results).restoration.at('C').share) {
       ASSERT_NEAR(restored.value(), 0.0, 1e-9);
     }
   }

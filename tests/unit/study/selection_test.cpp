@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <complex>
 #include <string>
 #include <vector>
 
+#include "apps/study/recorded/average.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {
@@ -33,7 +36,7 @@ Person person_of(const std::string& code, double rms_error_b_mm = 50.0, double d
 }
 
 Registration registration_of(const experiment::Exclusion& rules) {
-  return {rules, 1, {'A', 'B', 'C'}, {{'A', 'B'}}, 0.05};
+  return {rules, 1, {'A', 'B', 'C'}, {{'A', 'B'}}, 0.05, {}, {}};
 }
 
 std::vector<std::string> codes_of(const std::vector<Person>& people) {
@@ -115,14 +118,62 @@ TEST_F(SelectionTest, AnErrorFarFromTheOthersExcludesByItsNumberOfDeviations) {
   EXPECT_EQ(people_.size(), 9u);
 }
 
-TEST_F(SelectionTest, TheLastTrialOfAConditionCounts) {
+// Eq. SU-14.
+TEST_F(SelectionTest, SeveralTrialsOfAConditionAreAveraged) {
   RecordedTrial again = people_[0].trials[1];
-  again.place = 4;
+  again.place = again.number = 4;
+  again.tracked.metrics.rms_error_mm = 44.0;  // 48 mm before
+  again.tracked.metrics.crossover_hz = made::kNan;
+  people_[0].trials.push_back(again);
+  const Selection sut = select(people_);
+  const auto& metrics = sut.results[0].trials.at('B').metrics;
+  EXPECT_EQ(metrics.rms_error_mm, 46.0);
+  EXPECT_EQ(metrics.crossover_hz, 0.2);  // of the trial where it was found
+  EXPECT_EQ(sut.results[0].order, "ABC");
+  EXPECT_EQ(sut.used.size(), 10u);
+}
+
+TEST_F(SelectionTest, OfTheTrialsOfOnePlaceOfThePlanTheLastCounts) {
+  for (RecordedTrial& trial : people_[0].trials) trial.step = trial.place;
+  RecordedTrial again = people_[0].trials[1];
+  again.place = again.number = 4;
   again.tracked.metrics.rms_error_mm = 44.0;
   people_[0].trials.push_back(again);
   const Selection sut = select(people_);
   EXPECT_EQ(sut.results[0].trials.at('B').metrics.rms_error_mm, 44.0);
-  EXPECT_EQ(sut.results[0].order, "ACB");
+  EXPECT_EQ(sut.used.size(), 9u);
+  EXPECT_FALSE(sut.used.contains({"P01", "01", 2}));
+  EXPECT_THAT(apply({}), IsEmpty());  // every place of the plan has a trial
+}
+
+TEST_F(SelectionTest, ATrialThatARuleTakesAwayHasNoSayInTheMean) {
+  for (RecordedTrial& trial : people_[0].trials) trial.step = trial.place;
+  RecordedTrial again = people_[0].trials[1];
+  again.place = again.number = 4;
+  again.lost_share = 0.5;
+  again.tracked.metrics.rms_error_mm = 44.0;
+  people_[0].trials.push_back(again);
+  EXPECT_EQ(apply({}).size(), 1u);
+  // The repetition lost too many samples: the trial before it counts again.
+  EXPECT_EQ(select(people_).results[0].trials.at('B').metrics.rms_error_mm, 48.0);
+}
+
+// Magnitudes in decibels, angles as directions, closed loops as complex numbers.
+TEST(AveragedTest, TheOpenLoopOfTwoTrialsIsBetweenThem) {
+  TrackedTrial one = made::trial_of(20.0, 0.5, 0.1);
+  TrackedTrial two = made::trial_of(30.0, 0.3, 0.4);
+  one.metrics.moving_rms_mm = {1.0, 2.0};
+  two.metrics.moving_rms_mm = {3.0, 6.0};
+  const TrackedTrial sut = averaged({&one, &two});
+  const auto& line = sut.metrics.lines[3];
+  EXPECT_NEAR(std::abs(line.gain), 0.2 / line.frequency_hz, 1e-12);  // sqrt(0.1 * 0.4)
+  EXPECT_NEAR(std::arg(line.gain), -std::acos(0.0), 1e-12);
+  const auto closed = [](std::complex<double> gain) { return gain / (1.0 + gain); };
+  EXPECT_NEAR(std::abs(sut.closed_loop[3] - 0.5 * (closed(one.metrics.lines[3].gain) +
+                                                   closed(two.metrics.lines[3].gain))),
+              0.0, 1e-15);
+  EXPECT_THAT(sut.metrics.moving_rms_mm, ElementsAre(2.0, 4.0));
+  EXPECT_TRUE(averaged({&one}).closed_loop.empty());
 }
 
 }  // namespace

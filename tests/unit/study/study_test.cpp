@@ -74,7 +74,7 @@ TEST_F(PaperStudyTest, EverySignificanceOfThePaperIsFoundBelowOnePercent) {
 
 // C is a prediction: bounded only by what any cancellation must do, on both sides.
 TEST_F(PaperStudyTest, CancellationRestoresPartOfWhatMotionTook) {
-  for (const auto& restored : analysis_->restoration) {
+  for (const auto& restored : analysis_->restoration.at('C').share) {
     ASSERT_TRUE(restored.has_value());
     EXPECT_GT(*restored, 0.2);
     EXPECT_LT(*restored, 1.0);

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/diagnoses_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/diagnose/page/wording.hpp"
+#include "apps/report/or_null.hpp"
+#include "apps/report/text.hpp"
+#include "apps/study/csv_cells.hpp"
+#include "apps/study/figures.hpp"
+#include "apps/study/participants.hpp"
+#include "apps/study/report_cells.hpp"
+
+namespace stillhand::study {
+namespace {
+
+using close_the_loop::Finding;
+using close_the_loop::Level;
+using close_the_loop::Remaining;
+using nlohmann::ordered_json;
+using report::Cell;
+using report::Colour;
+using report::Kind;
+using report::number;
+using report::or_null;
+
+ordered_json level_json(const Level& level) {
+  ordered_json out{{"rms_n", level.rms}, {"interval95", nullptr}};
+  if (level.interval95) out["interval95"] = {level.interval95->first, level.interval95->second};
+  return out;
+}
+
+ordered_json left_json(const std::optional<Remaining>& remaining) {
+  return remaining ? level_json(remaining->left) : ordered_json(nullptr);
+}
+
+ordered_json person_json(const PersonDiagnosis& person) {
+  ordered_json findings = ordered_json::array();
+  for (const Finding& finding : person.findings) {
+    findings.push_back({{"kind", finding.kind},
+                        {"channel", or_null(finding.channel)},
+                        {"where", finding.where},
+                        {"explained_n", finding.explained_n},
+                        {"heldout_before_n", finding.before_n},
+                        {"heldout_after_n", finding.after_n},
+                        {"evidence", finding.evidence}});
+  }
+  ordered_json out{{"verdict", person.verdict}, {"findings", findings}, {"unseen_s", person.unseen_s}};
+  out["without"] =
+      person.by_linear ? level_json(person.by_linear->without) : ordered_json(nullptr);
+  out["left_by_c"] = left_json(person.by_linear);
+  out["left_by_c_plus"] = left_json(person.by_augmented);
+  out["gain_n"] = or_null(person.gain_n());
+  out["not_replayed"] = or_null(person.not_replayed);
+  return out;
+}
+
+std::string effect_words(const std::string& kind, const std::string& channel,
+                         const std::string& where) {
+  return diagnose::spaced(kind) + (channel.empty() ? "" : " (" + channel + ")") + ", " + where;
+}
+
+std::string level_text(const Level& level) {
+  std::string text = number(level.rms, 2);
+  if (!level.interval95) return text;
+  return fmt::format("{} [{}, {}]", text, number(level.interval95->first, 2),
+                     number(level.interval95->second, 2));
+}
+
+std::string left_text(const std::optional<Remaining>& remaining) {
+  return remaining ? level_text(remaining->left) : "–";
+}
+
+report::Table recurring_table(const Diagnoses& diagnoses) {
+  report::Table table;
+  table.caption = fmt::format(
+      "Effects that the paper's model lacks, over the {} people with a diagnosis. The force is the "
+      "median over the people who have the effect, RMS.",
+      diagnoses.people.size());
+  table.header = {"effect", "people", "force [N]", "who"};
+  for (const RecurringEffect& effect : diagnoses.recurring) {
+    table.rows.push_back({effect_words(effect.kind, effect.channel, effect.where),
+                          std::to_string(effect.participants.size()), number(effect.explained_n, 2),
+                          fmt::format("{}", fmt::join(effect.participants, ", "))});
+  }
+  table.align = {report::Align::kLeft, report::Align::kRight, report::Align::kRight,
+                 report::Align::kLeft};
+  return table;
+}
+
+report::Table people_table(const StudyRecord& record) {
+  report::Table table;
+  table.caption =
+      "RMS force on pegged samples that no fit saw [N], with its 95 % interval where these last 30 s "
+      "or more: without a motor; and what canceller and motor would have left of it by replaying "
+      "the recorded motion, with the linear model as in C and with the augmented one as in C+.";
+  table.header = {"participant", "verdict", "without", "left by C", "left by C+", "C+ gains"};
+  const auto files = participant_files(*record.recorded);
+  for (const auto& [code, person] : record.diagnoses->people) {
+    const auto gain = person.gain_n();
+    table.rows.push_back(
+        {report::linked(code, files.at(code)), person.verdict,
+         person.by_linear ? level_text(person.by_linear->without) : "–",
+         left_text(person.by_linear), left_text(person.by_augmented),
+         gain ? number(*gain, 2) : "–"});
+  }
+  table.align = {report::Align::kLeft, report::Align::kLeft};
+  table.align.resize(table.header.size(), report::Align::kRight);
+  return table;
+}
+
+std::string gain_sentence(const Diagnoses& diagnoses) {
+  if (!diagnoses.gain) {
+    return "There is no test of what C+ would have gained: fewer than two people have both, or the "
+           "augmented model changes nobody's force.";
+  }
+  const auto& test = *diagnoses.gain;
+  return fmt::format(
+      "Over {} people, C+ would have left {} N [{}, {}] {} than C (paired t-test, p = {}).", test.n,
+      number(std::abs(test.mean_difference), 3), number(-test.ci_high, 3),
+      number(-test.ci_low, 3), test.mean_difference <= 0.0 ? "less" : "more", p_value(test.p));
+}
+
+// Who has no diagnosis, or nothing to compare, and why.
+std::vector<std::string> missing_lines(const Diagnoses& diagnoses) {
+  std::vector<std::string> out;
+  for (const auto& [code, why] : diagnoses.failed) {
+    out.push_back(fmt::format("{}: not diagnosed: {}", code, why));
+  }
+  for (const auto& [code, person] : diagnoses.people) {
+    if (!person.not_replayed.empty()) {
+      out.push_back(fmt::format("{}: no C+ to compare: {}", code, person.not_replayed));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+ordered_json diagnoses_json(const Diagnoses& diagnoses) {
+  ordered_json out{{"participants", ordered_json::object()},
+                   {"failed", ordered_json::object()},
+                   {"recurring", ordered_json::array()},
+                   {"gain", nullptr}};
+  for (const auto& [code, person] : diagnoses.people) {
+    out["participants"][code] = person_json(person);
+  }
+  for (const auto& [code, why] : diagnoses.failed) out["failed"][code] = why;
+  for (const RecurringEffect& effect : diagnoses.recurring) {
+    out["recurring"].push_back({{"kind", effect.kind},
+                                {"channel", or_null(effect.channel)},
+                                {"where", effect.where},
+                                {"people", effect.participants.size()},
+                                {"participants", effect.participants},
+                                {"explained_n", effect.explained_n}});
+  }
+  if (diagnoses.gain) {
+    const auto& test = *diagnoses.gain;
+    out["gain"] = {{"people", test.n},
+                   {"mean_n", -test.mean_difference},
+                   {"ci95", {-test.ci_high, -test.ci_low}},
+                   {"t", -test.t},
+                   {"p", test.p}};
+  }
+  return out;
+}
+
+std::vector<CsvFile> diagnoses_csv(const Diagnoses& diagnoses) {
+  std::string people =
+      "participant,verdict,unseen [s],without [N],left by C [N],left by C+ [N],why not\n";
+  std::string findings =
+      "participant,kind,channel,where,explained [N],held-out error before [N],"
+      "held-out error after [N]\n";
+  const auto cell = [](const std::optional<Remaining>& remaining) {
+    return remaining ? csv::text(remaining->left.rms) : std::string();
+  };
+  for (const auto& [code, person] : diagnoses.people) {
+    people += csv::row({csv::quoted(code), person.verdict, csv::text(person.unseen_s),
+                        person.by_linear ? csv::text(person.by_linear->without.rms) : "",
+                        cell(person.by_linear), cell(person.by_augmented),
+                        csv::quoted(person.not_replayed)});
+    for (const Finding& finding : person.findings) {
+      findings += csv::row({csv::quoted(code), finding.kind, finding.channel, finding.where,
+                            csv::text(finding.explained_n), csv::text(finding.before_n),
+                            csv::text(finding.after_n)});
+    }
+  }
+  for (const auto& [code, why] : diagnoses.failed) {
+    people += csv::row({csv::quoted(code), "not diagnosed", "", "", "", "", csv::quoted(why)});
+  }
+  return {{"diagnoses.csv", people}, {"findings.csv", findings}};
+}
+
+report::Figure figure_gain(const Diagnoses& diagnoses) {
+  report::Panel panel;
+  panel.y = {.label = "RMS force [N]", .low = 0.0};
+  report::Series without{.label = "without a motor", .kind = Kind::kPoints,
+                         .colour = Colour::kConditionB};
+  report::Series linear{.label = "left by C", .kind = Kind::kPoints, .colour = Colour::kConditionC};
+  report::Series augmented{.label = "left by C+", .kind = Kind::kPoints,
+                           .colour = Colour::kConditionCPlus};
+  double place = 1.0;
+  for (const auto& [code, person] : diagnoses.people) {
+    panel.x.ticks.push_back({place, code});
+    const auto add = [&](report::Series& series, double value, double shift) {
+      series.x.push_back(place + shift);
+      series.y.push_back(value);
+    };
+    if (person.by_linear) {
+      add(without, person.by_linear->without.rms, 0.0);
+      add(linear, person.by_linear->left.rms, -0.12);
+    }
+    if (person.by_augmented) add(augmented, person.by_augmented->left.rms, 0.12);
+    place += 1.0;
+  }
+  panel.x.low = 0.4;
+  panel.x.high = place - 0.4;
+  panel.series = {without, linear, augmented};
+  return {.name = kGainFigure,
+          .caption = "Feedthrough force on pegged samples that no fit saw, and what canceller and "
+                     "motor would have left of it, for each participant.",
+          .panels = {panel},
+          .columns = 1,
+          .width_px = 860,
+          .height_px = 360};
+}
+
+void add_diagnoses(report::Page& page, const StudyRecord& record, const report::Drawing* drawing) {
+  if (!record.diagnoses) return;
+  const Diagnoses& diagnoses = *record.diagnoses;
+  page.section("What the model lacks");
+  page.paragraph(
+      "Each participant's recordings are diagnosed as stillhand close-the-loop diagnoses them: the "
+      "pegged trial for the body, the last trial of B for the stick, the last one of C for the "
+      "latency of the motor. Nothing but the recorded channels is used.");
+  if (diagnoses.recurring.empty()) {
+    page.paragraph("No effect was found in anybody.");
+  } else {
+    page.table(recurring_table(diagnoses));
+  }
+  if (!diagnoses.people.empty()) page.table(people_table(record));
+  if (drawing != nullptr) page.figure(*drawing);
+  page.paragraph(gain_sentence(diagnoses));
+  const auto missing = missing_lines(diagnoses);
+  if (!missing.empty()) page.list(missing);
+}
+
+void add_diagnosis(report::Page& page, const StudyRecord& record, const std::string& code) {
+  if (!record.diagnoses) return;
+  page.section("What the model lacks");
+  const Diagnoses& diagnoses = *record.diagnoses;
+  const auto found = diagnoses.people.find(code);
+  if (found == diagnoses.people.end()) {
+    const auto why = diagnoses.failed.find(code);
+    page.paragraph("Not diagnosed: " +
+                   (why == diagnoses.failed.end() ? "not in the tables" : why->second) + ".");
+    return;
+  }
+  const PersonDiagnosis& person = found->second;
+  page.paragraph("Verdict: " + person.verdict + ".");
+  std::vector<std::string> lines;
+  for (const Finding& finding : person.findings) {
+    lines.push_back(fmt::format("{}: {} N RMS. {}",
+                                effect_words(finding.kind, finding.channel, finding.where),
+                                number(finding.explained_n, 2), finding.evidence));
+  }
+  if (!lines.empty()) page.list(lines);
+  report::Table table;
+  table.caption = fmt::format(
+      "RMS force over {} s of pegged samples that no fit saw: without a motor, and what canceller "
+      "and motor would have left of it.",
+      number(person.unseen_s, 0));
+  table.header = {"", "force [N]"};
+  if (person.by_linear) {
+    table.rows.push_back({"without a motor", level_text(person.by_linear->without)});
+  }
+  table.rows.push_back({"C: linear model", left_text(person.by_linear)});
+  table.rows.push_back({"C+: augmented model", left_text(person.by_augmented)});
+  page.table(table);
+  if (!person.not_replayed.empty()) {
+    page.paragraph("No C+ to compare: " + person.not_replayed + ".");
+  }
+}
+
+}  // namespace stillhand::study

@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`--diagnose` and `--simulated` of `experiment report`: what the model lacks in each person, what C+ would have gained,
+and the same people simulated in one process. Every figure next to NumPy and SciPy on the exported tables; a diagnosis
+next to `stillhand close-the-loop` on the same recording.
+"""
+import csv
+import json
+import shutil
+
+import numpy
+from scipy import stats
+
+import lab_process
+from sample_experiment import WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, stillhand, unblind
+
+METRICS = {"rms_error_mm": "rms error [mm]", "dwell_ratio": "dwell ratio [-]", "crossover_hz": "crossover [Hz]"}
+EXACT = 1e-9
+
+
+def rows(file):
+    with open(file, encoding="utf-8", newline="") as text:
+        return list(csv.DictReader(text))
+
+
+def number(text):
+    return float(text) if text else numpy.nan
+
+
+def summary_of(folder):
+    return json.loads((folder / "summary.json").read_text())
+
+
+class RecordedPeopleTest(SampleExperimentCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        new_experiment(cls.experiment, 6, "--trial-seconds", 20, "--identify-seconds", 40, least_completed_share=0.5,
+                       most_lost_tick_share=0.1)
+        conduct(cls.experiment, 1)  # other remnants than those of the simulation
+        unblind(cls.experiment)
+        cls.said = stillhand("experiment", "report", cls.experiment, "--diagnose", "--simulated")[0]
+        cls.out = cls.experiment / "report"
+        cls.summary = summary_of(cls.out)
+        cls.people = cls.summary["recorded"]["participants"]
+
+    def test_everybody_in_the_tables_has_a_diagnosis_or_a_reason(self):
+        diagnoses = self.summary["diagnoses"]
+        self.assertEqual(self.people, ["P01", "P02", "P03", "P04", "P06"])
+        self.assertEqual(sorted([*diagnoses["participants"], *diagnoses["failed"]]), self.people)
+        self.assertGreaterEqual(len(diagnoses["participants"]), 4)
+        table = {row["participant"]: row for row in rows(self.out / "diagnoses.csv")}
+        self.assertEqual(sorted(table), self.people)
+        report = (self.out / "report.html").read_text()
+        self.assertIn("What the model lacks", report)
+        for code in self.people:
+            self.assertIn("What the model lacks", (self.out / f"participant_{code}.html").read_text())
+
+    def test_a_diagnosis_is_that_of_close_the_loop_on_the_same_recording(self):
+        out = self.folder / "loop"
+        # P01: one session, each condition once.
+        file = self.experiment / "participants" / "P01" / "sessions" / "01" / "session.mcap"
+        stillhand("close-the-loop", "--pegged", file, "--moving", file, "--cancelled", file, "--out", out)
+        theirs = summary_of(out)
+        ours = self.summary["diagnoses"]["participants"]["P01"]
+        judged = theirs["unseen"][0]
+        self.assertEqual(ours["without"]["rms_n"], judged["motor_linear"]["without"]["rms"]
+                         if "without" in judged["motor_linear"] else ours["without"]["rms_n"])
+        self.assertEqual(ours["left_by_c"]["rms_n"], judged["motor_linear"]["left"]["rms"])
+        self.assertEqual(ours["left_by_c_plus"]["rms_n"], judged["motor_augmented"]["left"]["rms"])
+        self.assertEqual([(each["kind"], each["channel"]) for each in ours["findings"]],
+                         [(each["kind"], each["channel"]) for each in theirs["verdict"]["findings"]])
+
+    def test_the_gain_and_the_counts_are_numpy_s_on_the_exported_tables(self):
+        diagnoses = self.summary["diagnoses"]
+        table = [row for row in rows(self.out / "diagnoses.csv") if row["left by C+ [N]"] and row["left by C [N]"]]
+        gain = numpy.array([number(row["left by C [N]"]) - number(row["left by C+ [N]"]) for row in table])
+        if diagnoses["gain"] is not None:
+            judge = stats.ttest_1samp(gain, 0.0)
+            self.assertEqual(diagnoses["gain"]["people"], len(gain))
+            self.assertAlmostEqual(diagnoses["gain"]["mean_n"], gain.mean(), delta=EXACT)
+            self.assertAlmostEqual(diagnoses["gain"]["p"], judge.pvalue, delta=EXACT)
+            numpy.testing.assert_allclose(diagnoses["gain"]["ci95"], judge.confidence_interval(), atol=EXACT, rtol=0)
+        else:
+            self.assertTrue(len(gain) < 2 or numpy.ptp(gain) < 1e-12)
+        found = {}
+        for row in rows(self.out / "findings.csv"):
+            found.setdefault((row["kind"], row["channel"], row["where"]), {}).setdefault(
+                row["participant"], number(row["explained [N]"]))
+        self.assertEqual(len(diagnoses["recurring"]), len(found))
+        for effect in diagnoses["recurring"]:
+            people = found[effect["kind"], effect["channel"] or "", effect["where"]]
+            self.assertEqual(effect["people"], len(people))
+            self.assertEqual(effect["participants"], sorted(people))
+            self.assertAlmostEqual(effect["explained_n"], numpy.median(list(people.values())), delta=EXACT)
+
+    def test_threads_do_not_change_a_result(self):
+        again = self.folder / "one_thread"
+        stillhand("study", "--sessions", self.experiment, "--out", again, "--diagnose", "--simulated", "--threads", 1)
+        self.assertEqual(summary_of(again), self.summary)
+
+    def pairs(self, summary, out):
+        """(condition, metric, check, differences) of the same people, from the exported tables."""
+        people = summary["recorded"]["participants"]
+        tables = [{(row["subject"], row["condition"]): row for row in rows(out / name)}
+                  for name in ("metrics.csv", "simulated.csv")]
+        for condition, cells in summary["simulated"]["paired"].items():
+            for metric, check in cells.items():
+                both = [[number(table[person, condition][METRICS[metric]]) for person in people] for table in tables]
+                differences = numpy.subtract(*both)
+                yield condition, metric, check, differences[~numpy.isnan(differences)]
+
+    def check_pairs(self, summary, out):
+        from statsmodels.stats.multitest import multipletests
+        tested = []
+        for _, _, check, differences in self.pairs(summary, out):
+            self.assertEqual(check["people"], len(differences))
+            self.assertAlmostEqual(check["mean_difference"], differences.mean(), delta=EXACT)
+            judge = stats.ttest_1samp(differences, 0.0)
+            self.assertAlmostEqual(check["p"], judge.pvalue, delta=EXACT)
+            self.assertAlmostEqual(check["t"] / judge.statistic, 1.0, delta=EXACT)
+            numpy.testing.assert_allclose(check["ci95"], judge.confidence_interval(), atol=EXACT, rtol=0)
+            self.assertAlmostEqual(check["p_signed_rank"], stats.wilcoxon(differences).pvalue, delta=EXACT)
+            tested.append(check)
+        self.assertEqual(len(tested), 9)
+        adjusted = multipletests([check["p"] for check in tested], method="holm")[1]
+        for check, p in zip(tested, adjusted):
+            self.assertAlmostEqual(check["p_holm"], p, delta=EXACT)
+        self.assertEqual(summary["simulated"]["more_than_chance"], int((adjusted < 0.05).sum()))
+
+    def test_the_same_people_with_other_remnants_differ_by_no_more_than_chance(self):
+        self.assertTrue(self.summary["simulated"]["same_people"])
+        self.check_pairs(self.summary, self.out)
+        self.assertEqual(self.summary["simulated"]["more_than_chance"], 0)
+        self.assertIn("no more than chance", (self.out / "report.html").read_text())
+        self.assertIn("no more than chance", self.said)
+
+    def test_the_same_remnants_leave_no_difference_and_another_motor_one_that_is_more_than_chance(self):
+        for gain, said in ((1.0, "do not differ at all"), (0.2, "more than chance in")):
+            place = self.folder / f"gain{gain}"
+            new_experiment(place, 8, "--trial-seconds", 20, "--identify-seconds", 20)
+            conduct(place, 0, gain)
+            unblind(place)
+            # Those whose sessions went as planned.
+            folders = [place]
+            out = self.folder / f"report{gain}"
+            printed = stillhand("study", "--sessions", *folders, "--out", out, "--simulated")[0]
+            summary = summary_of(out)
+            if gain < 1.0:
+                self.assertIn(said, printed)
+                self.check_pairs(summary, out)
+                self.assertLess(summary["simulated"]["paired"]["C"]["rms_error_mm"]["p_holm"], 0.05)
+                continue
+            for _, _, _, differences in self.pairs(summary, out):
+                # P01 and P07, P08 ran as planned: the same bits.
+                self.assertEqual(numpy.count_nonzero(differences[[0, -1]]), 0)
+
+    def test_other_people_are_not_compared_person_by_person(self):
+        out = self.folder / "alone"
+        sessions = [self.experiment / "participants" / code / "sessions" / "01" for code in ("P01", "P04")]
+        stillhand("study", "--sessions", *sessions, "--out", out, "--simulated")
+        simulated = summary_of(out)["simulated"]
+        self.assertFalse(simulated["same_people"])
+        self.assertNotIn("paired", simulated)
+        self.assertEqual(simulated["subjects"], 2)
+        self.assertEqual({row["subject"] for row in rows(out / "simulated.csv")}, {"1", "2"})
+
+    def refused(self, said, *words):
+        _, errors = stillhand(*words, status=2)
+        self.assertEqual(len(errors.splitlines()), 1, errors)
+        self.assertIn(said, errors)
+
+    def test_options_without_recordings_are_refused(self):
+        self.refused("--sessions", "study", "--diagnose", "--out", self.folder / "none")
+        self.refused("--sessions", "study", "--simulated", "--out", self.folder / "none")
+        population = self.folder / "population.yaml"
+        population.write_text("")
+        self.refused("--simulated", "study", "--sessions", self.experiment, "--population", population, "--out",
+                     self.folder / "none")
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_a_session_without_a_and_a_condition_that_comes_once_are_named(self):
+        """Single sessions: P03's first one holds one trial, so it lacks what the others have."""
+        out = self.folder / "lacking"
+        folders = [self.experiment / "participants" / code / "sessions" / "01" for code in ("P01", "P02", "P03")]
+        said = stillhand("study", "--sessions", *folders, "--out", out)[0]
+        self.assertIn("left out: P03: no complete trial of condition", said)
+        self.assertEqual(summary_of(out)["recorded"]["participants"], ["P01", "P02"])
+        self.assertTrue((out / "participant_P03.html").exists())
+        self.assertIn("not in the tables", (out / "participant_P03.html").read_text())
+
+    def test_two_participants_of_one_code_are_named_and_nothing_is_overwritten(self):
+        person = self.experiment / "participants" / "P01" / "sessions" / "01"
+        other = self.folder / "other" / "01"
+        shutil.copytree(person, other)
+        out = self.folder / "kept"
+        stillhand("study", "--sessions", person, self.experiment / "participants" / "P02" / "sessions" / "01", "--out", out)
+        before = {file.name: file.read_bytes() for file in out.iterdir() if file.is_file()}
+        self.refused("each code for one participant", "study", "--sessions", person, other, "--out", out)
+        self.assertEqual({file.name: file.read_bytes() for file in out.iterdir() if file.is_file()}, before)
+
+
+if __name__ == "__main__":
+    lab_process.main(WRITE_SAMPLE)
