@@ -36,7 +36,8 @@ std::vector<const RecordedTrial*> trials_of(const RecordedSource& source, const 
 std::map<char, const TrackedTrial*> last_trials(const RecordedSource& source,
                                                 const std::string& code) {
   std::map<char, const TrackedTrial*> out;
-  for (const RecordedTrial* trial : trials_of(source, code)) out[trial->condition] = &trial->tracked;
+  for (const RecordedTrial* trial : trials_of(source, code))
+    out[trial->condition] = &trial->tracked;
   return out;
 }
 
@@ -50,10 +51,10 @@ report::Panel among_panel(const StudyRecord& record, const SubjectResult* own, s
   report::Panel panel;
   panel.title = kMetrics[metric].title;
   panel.y.low = 0.0;
-  if (metric > 0) panel.legend = report::Legend::kNone;
-  report::Series others{.label = "all", .kind = Kind::kPoints, .colour = Colour::kNeutral};
-  report::Series one{.label = "this participant", .kind = Kind::kPoints, .colour = Colour::kWarning};
-  report::Series paper{.label = "paper, mean", .kind = Kind::kPoints, .colour = Colour::kTarget};
+  panel.legend = report::Legend::kNone;
+  report::Series others{.kind = Kind::kPoints, .colour = Colour::kNeutral};
+  report::Series one{.kind = Kind::kPoints, .colour = Colour::kWarning};
+  report::Series paper{.kind = Kind::kPoints, .colour = Colour::kTarget};
   others.point_size = 0.6;
   one.point_size = 1.5;
   double place = 1.0;
@@ -102,7 +103,8 @@ report::Table numbers_table(const StudyRecord& record, const SubjectResult* own)
 
 report::Table restored_table(const StudyRecord& record, const SubjectResult* own) {
   report::Table table;
-  table.caption = "Restoration (B − X)/(B − A): own, of the group's means with its interval, paper.";
+  table.caption =
+      "Restoration (B − X)/(B − A): own, of the group's means with its interval, paper.";
   table.header = {"metric", "canceller", "own", "group [95 %]", "paper"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     for (const auto& entry : record.analysis.restoration) {
@@ -124,9 +126,9 @@ report::Table trials_table(const RecordedSource& source, const std::string& code
   report::Table table;
   table.caption =
       "Every complete tracking trial, in the order in which it was run. Block and place are those "
-      "of the registered plan.";
-  table.header = {"trial", "session", "block", "place",    "condition",
-                  "RMS error [mm]", "dwell ratio", "f_c [Hz]", "lost [%]", "in the tables"};
+      "of the registered plan; used: in the tables.";
+  table.header = {"trial",          "session",     "block",    "place",    "condition",
+                  "RMS error [mm]", "dwell ratio", "f_c [Hz]", "lost [%]", "used"};
   const auto planned = [](std::int64_t n) { return n > 0 ? std::to_string(n) : std::string("–"); };
   for (const RecordedTrial* trial : trials_of(source, code)) {
     const auto& metrics = trial->tracked.metrics;
@@ -137,8 +139,7 @@ report::Table trials_table(const RecordedSource& source, const std::string& code
                           number(metrics.crossover_hz, 2), number(100.0 * trial->lost_share, 1),
                           Cell(used ? "yes" : "no", used ? Emphasis::kNone : Emphasis::kFaint)});
   }
-  table.align = {report::Align::kLeft, report::Align::kLeft};
-  table.align.resize(table.header.size(), report::Align::kRight);
+  table.align.assign(table.header.size(), report::Align::kRight);
   return table;
 }
 
@@ -155,13 +156,17 @@ std::string order_of(const RecordedSource& source, const std::string& code) {
 std::vector<report::Figure> participant_figures(const StudyRecord& record, const std::string& code,
                                                 const std::string& name) {
   const SubjectResult* own = result_of(record, code);
-  report::Figure among{.name = name + "_among",
-                       .caption = fmt::format("{} among the participants of the tables.", code),
-                       .panels = {},
-                       .columns = 3,
-                       .width_px = 980,
-                       .height_px = 330};
-  for (std::size_t k = 0; k < kMetricCount; ++k) among.panels.push_back(among_panel(record, own, k));
+  report::Figure among{
+      .name = name + "_among",
+      .caption = fmt::format("{} (red) among the participants of the tables (grey); black: the "
+                             "paper's means, at {} mm a unit of RMS error.",
+                             code, number(kPaperUnit_mm, 1)),
+      .panels = {},
+      .columns = 3,
+      .width_px = 980,
+      .height_px = 330};
+  for (std::size_t k = 0; k < kMetricCount; ++k)
+    among.panels.push_back(among_panel(record, own, k));
   std::vector<report::Figure> out{among};
   out.push_back(traces_figure(
       last_trials(*record.recorded, code), name + "_traces",
@@ -209,12 +214,12 @@ report::Page participant_page(const StudyRecord& record, const std::string& code
     page.paragraph("No complete pegged trial, or not every condition: see above.");
   } else {
     const auto& found = own->identification;
-    page.paragraph(fmt::format(
-        "The model explains {} % of the force on samples that the fit did not see. {}",
-        number(found.paper.heldout.free_run_vaf_percent, 1),
-        found.paper_unusable.empty()
-            ? "It is the paper's fit."
-            : "The paper's fit could not be used; the free-run fit was used instead."));
+    page.paragraph(
+        fmt::format("The model explains {} % of the force on samples that the fit did not see. {}",
+                    number(found.paper.heldout.free_run_vaf_percent, 1),
+                    found.paper_unusable.empty()
+                        ? "It is the paper's fit."
+                        : "The paper's fit could not be used; the free-run fit was used instead."));
     show("_model");
   }
   add_diagnosis(page, record, code);

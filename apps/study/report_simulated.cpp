@@ -40,10 +40,10 @@ report::Table means_table(const StudyRecord& record) {
                 Emphasis::kFaint)});
     }
     if (!record.analysis.restoration.contains('C')) continue;
-    table.rows.push_back({std::string(kMetrics[k].title) + ", restored by C", "",
-                          restored_text(record.analysis, k), restored_text(simulated.analysis, k),
-                          Cell(number(kMetrics[k].paper_restored_percent, 0) + " %",
-                               Emphasis::kFaint)});
+    table.rows.push_back(
+        {std::string(kMetrics[k].title) + ", restored by C", "", restored_text(record.analysis, k),
+         restored_text(simulated.analysis, k),
+         Cell(number(kMetrics[k].paper_restored_percent, 0) + " %", Emphasis::kFaint)});
   }
   return table;
 }
@@ -54,9 +54,11 @@ report::Table paired_table(const SimulatedSide& simulated) {
       "Recorded less simulated, person by person. t: paired t-test, p of Holm over all rows; W: "
       "Wilcoxon's signed ranks, two-sided, not adjusted. Strong: below {}.",
       report::short_number(SimulatedSide::kAlpha));
-  table.header = {"metric", "condition", "people", "difference [95 % CI]", "p (t)", "p (Holm)",
-                  "p (W)"};
-  for (const PairedCheck& check : simulated.paired) {
+  table.header = {"metric", "condition", "people", "difference [95 % CI]",
+                  "p (t)",  "p (Holm)",  "p (W)"};
+  std::vector<PairedCheck> checks = simulated.paired;
+  std::ranges::stable_sort(checks, {}, &PairedCheck::metric);
+  for (const PairedCheck& check : checks) {
     std::vector<Cell> row{kMetrics[check.metric].title, condition_word(check.condition),
                           std::to_string(check.n)};
     if (check.test) {
@@ -64,9 +66,8 @@ report::Table paired_table(const SimulatedSide& simulated) {
                                    number(check.test->ci_low, fine(check.metric)),
                                    number(check.test->ci_high, fine(check.metric))));
       row.emplace_back(p_value(check.test->p));
-      row.emplace_back(p_value(*check.p_holm), *check.p_holm < SimulatedSide::kAlpha
-                                                   ? Emphasis::kStrong
-                                                   : Emphasis::kNone);
+      row.emplace_back(p_value(*check.p_holm),
+                       *check.p_holm < SimulatedSide::kAlpha ? Emphasis::kStrong : Emphasis::kNone);
     } else {
       row.emplace_back(number(check.mean_difference, fine(check.metric)));
       row.insert(row.end(), 2, Cell("–"));
@@ -107,8 +108,9 @@ std::string chance_sentence(const SimulatedSide& simulated) {
 report::Figure figure_simulated(const StudyRecord& record) {
   report::Figure figure{
       .name = kSimulatedFigure,
-      .caption = "Participants as recorded (coloured), simulated subjects (grey) and the paper "
-                 "(black): means, with one standard deviation on either side.",
+      .caption =
+          "Participants as recorded (coloured), simulated subjects (grey) and the paper "
+          "(black): means, with one standard deviation on either side.",
       .panels = {},
       .columns = 3,
       .width_px = 980,
@@ -157,15 +159,19 @@ void add_simulated(report::Page& page, const StudyRecord& record, const report::
   page.section("Next to simulated people");
   page.paragraph(
       simulated.same_people
-          ? "The participants of this experiment are simulated, so the same people run once more in "
+          ? "The participants of this experiment are simulated, so the same people run once more "
+            "in "
             "one process: the same bodies, motions, targets and remnants, without the bus, trial "
-            "by trial. What is left between both is what the bus, the clock and the recording did."
-          : fmt::format(
-                "As many subjects of the population (seed {}) track with trials of the same length. "
-                "They are other people, so nothing is compared person by person.",
-                simulated.seed));
+            "by trial. What is left between both is what the bus and the clock did, and trials "
+            "that were "
+            "ended early, which do not run here."
+          : fmt::format("As many subjects of the population (seed {}) track with trials of the "
+                        "same length. "
+                        "They are other people, so nothing is compared person by person.",
+                        simulated.seed));
   std::vector<std::string> failed;
-  for (const auto& [code, why] : simulated.failed) failed.push_back(code + ": not simulated: " + why);
+  for (const auto& [code, why] : simulated.failed)
+    failed.push_back(code + ": not simulated: " + why);
   if (!failed.empty()) page.list(failed);
   if (simulated.results.empty()) return;
   page.table(means_table(record));

@@ -17,6 +17,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/stop.hpp"
+#include "services/settings/describe.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -85,6 +86,11 @@ bool has_simulated_people(const StudyRecord& record) {
 // The same people, where an experiment's are simulated; otherwise as many of the population.
 SimulatedSide simulated_next_to(const StudyRecord& record, const OnProgress& on_progress) {
   if (has_simulated_people(record)) {
+    if (settings::describe(record.options.population) !=
+        settings::describe(population::Population{})) {
+      throw ConfigError("--population", "another population than the default",
+                        "none: an experiment draws its participants from the default one");
+    }
     return simulate_people(*record.recorded, record.options.threads, on_progress);
   }
   StudyOptions options = record.options;

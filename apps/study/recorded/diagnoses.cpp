@@ -60,6 +60,13 @@ RecordedOptions recordings_of(const std::vector<SessionFile>& files, const Recor
   return out;
 }
 
+// The note of a record that no motor ran over, without the record's name before it.
+std::string reason_in(const std::string& note) {
+  const std::string before = ": no motor was run: ";
+  const std::size_t at = note.find(before);
+  return at == std::string::npos ? note : note.substr(at + before.size());
+}
+
 PersonDiagnosis diagnosis_of(RecordedLoop loop) {
   PersonDiagnosis out;
   out.verdict = loop.verdict.conclusion();
@@ -69,11 +76,11 @@ PersonDiagnosis diagnosis_of(RecordedLoop loop) {
   out.by_linear = std::move(judged.motor_linear);
   out.by_augmented = std::move(judged.motor_augmented);
   if (!out.by_linear || !out.by_augmented) {
-    out.not_replayed = !loop.no_motor.empty()               ? loop.no_motor
-                       : !loop.linear_not_carried.empty()   ? loop.linear_not_carried
-                       : !loop.verdict.not_carried.empty()  ? loop.verdict.not_carried
-                       : !loop.notes.empty()                ? loop.notes.back()
-                                                            : "no motor was run";
+    out.not_replayed = !loop.no_motor.empty()              ? loop.no_motor
+                       : !loop.linear_not_carried.empty()  ? loop.linear_not_carried
+                       : !loop.verdict.not_carried.empty() ? loop.verdict.not_carried
+                       : !loop.notes.empty()               ? reason_in(loop.notes.back())
+                                                           : "no motor was run";
   }
   return out;
 }
@@ -157,8 +164,8 @@ Diagnoses diagnose_people(const std::vector<SessionFile>& files, const RecordedS
     outcomes[i] = diagnose_person(recordings_of(files, source, codes[i]), stopped);
   };
   const auto on_done = [&](std::size_t done) {
-    const bool goes_on = on_progress(static_cast<std::int64_t>(done),
-                                     static_cast<std::int64_t>(codes.size()));
+    const bool goes_on =
+        on_progress(static_cast<std::int64_t>(done), static_cast<std::int64_t>(codes.size()));
     if (!goes_on) stopped = true;
     return goes_on;
   };

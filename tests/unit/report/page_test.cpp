@@ -45,6 +45,17 @@ TEST(PageTest, TheWholePageIsReadByAStrictParser) {
   EXPECT_TRUE(test::well_formed(full_page().html()));
 }
 
+TEST(PageTest, ALinkLeadsToAFileOfTheFolderWhateverItsName) {
+  Page page("Study");
+  page.table({.header = {"who"}, .rows = {{linked(kHostile, "javascript:alert(1)")}}});
+  page.link("back", "a b/\"<>.html");
+  const auto references = test::attributes(page.html(), "href");
+  EXPECT_THAT(references,
+              testing::ElementsAre("./javascript%3Aalert%281%29", "./a%20b%2F%22%3C%3E.html"));
+  EXPECT_TRUE(test::well_formed(page.html()));
+  EXPECT_THAT(page.html(), HasSubstr(kEscaped));
+}
+
 TEST(PageTest, NoTwoElementsShareAnIdAndEveryReferenceLeadsSomewhere) {
   const std::string sut = full_page().html();
   const auto ids = test::attributes(sut, "id");

@@ -54,6 +54,18 @@ TEST(SignedRankTest, BothTailsTogetherAreOneAndTheMiddle) {
   EXPECT_DOUBLE_EQ(signed_rank_p(up) + signed_rank_p(down), 1.0 + 3.0 / 32.0);
 }
 
+// As scipy.stats.wilcoxon: seven subsets of the ranks 1 to 6 have a sum of 4 or less, 7/64 on either
+// side.
+TEST(SignedRankTest, TwoSidedItIsTwiceTheSmallerTailAndAtMostOne) {
+  const std::vector<double> sut{1.0, 2.0, 3.0, -4.0, 5.0, 6.0};
+  EXPECT_NEAR(signed_rank_two_sided_p(sut), 0.21875, 1e-15);
+  std::vector<double> negated = sut;
+  for (double& each : negated) each = -each;
+  EXPECT_EQ(signed_rank_two_sided_p(negated), signed_rank_two_sided_p(sut));
+  EXPECT_EQ(signed_rank_two_sided_p({1.0, -1.0}), 1.0);
+  EXPECT_EQ(signed_rank_two_sided_p({0.0, 0.0}), 1.0);
+}
+
 TEST(SignedRankTest, ZerosAreLeftOutAndNothingLeftSaysNothing) {
   EXPECT_EQ(signed_rank_p({1.0, 0.0, 2.0, -0.0, 3.0}), signed_rank_p({1.0, 2.0, 3.0}));
   EXPECT_EQ(signed_rank_p({0.0, 0.0}), 1.0);
