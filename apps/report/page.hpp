@@ -38,8 +38,9 @@ struct Table {
 };
 
 /// One HTML page that needs no other file: it contains its style and figures, has no script and
-/// loads nothing.  Its links lead to other pages of its folder.  It follows the reader's light or dark scheme, and is readable on a phone and on
-/// paper.  Every text is plain text and escaped.  Tables and figures are numbered in order.
+/// loads nothing.  Its links lead to other pages of its folder.  It follows the reader's light or
+/// dark scheme, and is readable on a phone and on paper.  Every text is plain text and escaped.
+/// Tables and figures are numbered in order.
 ///
 ///   report::Page page("Study", "Twelve subjects ...");
 ///   page.facts({{"seed", "1"}});

@@ -14,8 +14,7 @@ using csv::text;
 
 // The participant's code, or the number of a simulated subject.
 std::string subject_key(const StudyRecord& record, std::size_t index) {
-  return record.recorded ? quoted(record.recorded->participants[index])
-                         : std::to_string(index + 1);
+  return record.recorded ? quoted(record.recorded->participants[index]) : std::to_string(index + 1);
 }
 
 CsvFile metrics_file(const StudyRecord& record) {

@@ -47,9 +47,9 @@ ordered_json person_json(const PersonDiagnosis& person) {
                         {"heldout_after_n", finding.after_n},
                         {"evidence", finding.evidence}});
   }
-  ordered_json out{{"verdict", person.verdict}, {"findings", findings}, {"unseen_s", person.unseen_s}};
-  out["without"] =
-      person.by_linear ? level_json(person.by_linear->without) : ordered_json(nullptr);
+  ordered_json out{
+      {"verdict", person.verdict}, {"findings", findings}, {"unseen_s", person.unseen_s}};
+  out["without"] = person.by_linear ? level_json(person.by_linear->without) : ordered_json(nullptr);
   out["left_by_c"] = left_json(person.by_linear);
   out["left_by_c_plus"] = left_json(person.by_augmented);
   out["gain_n"] = or_null(person.gain_n());
@@ -93,18 +93,18 @@ report::Table recurring_table(const Diagnoses& diagnoses) {
 report::Table people_table(const StudyRecord& record) {
   report::Table table;
   table.caption =
-      "RMS force on pegged samples that no fit saw [N], with its 95 % interval where these last 30 s "
+      "RMS force on pegged samples that no fit saw [N], with its 95 % interval where these last 30 "
+      "s "
       "or more: without a motor; and what canceller and motor would have left of it by replaying "
       "the recorded motion, with the linear model as in C and with the augmented one as in C+.";
   table.header = {"participant", "verdict", "without", "left by C", "left by C+", "C+ gains"};
   const auto files = participant_files(*record.recorded);
   for (const auto& [code, person] : record.diagnoses->people) {
     const auto gain = person.gain_n();
-    table.rows.push_back(
-        {report::linked(code, files.at(code)), person.verdict,
-         person.by_linear ? level_text(person.by_linear->without) : "–",
-         left_text(person.by_linear), left_text(person.by_augmented),
-         gain ? number(*gain, 2) : "–"});
+    table.rows.push_back({report::linked(code, files.at(code)), person.verdict,
+                          person.by_linear ? level_text(person.by_linear->without) : "–",
+                          left_text(person.by_linear), left_text(person.by_augmented),
+                          gain ? number(*gain, 2) : "–"});
   }
   table.align = {report::Align::kLeft, report::Align::kLeft};
   table.align.resize(table.header.size(), report::Align::kRight);
@@ -119,8 +119,8 @@ std::string gain_sentence(const Diagnoses& diagnoses) {
   const auto& test = *diagnoses.gain;
   return fmt::format(
       "Over {} people, C+ would have left {} N [{}, {}] {} than C (paired t-test, p = {}).", test.n,
-      number(std::abs(test.mean_difference), 3), number(-test.ci_high, 3),
-      number(-test.ci_low, 3), test.mean_difference <= 0.0 ? "less" : "more", p_value(test.p));
+      number(std::abs(test.mean_difference), 3), number(-test.ci_high, 3), number(-test.ci_low, 3),
+      test.mean_difference <= 0.0 ? "less" : "more", p_value(test.p));
 }
 
 // Who has no diagnosis, or nothing to compare, and why.
@@ -196,11 +196,11 @@ std::vector<CsvFile> diagnoses_csv(const Diagnoses& diagnoses) {
 report::Figure figure_gain(const Diagnoses& diagnoses) {
   report::Panel panel;
   panel.y = {.label = "RMS force [N]", .low = 0.0};
-  report::Series without{.label = "without a motor", .kind = Kind::kPoints,
-                         .colour = Colour::kConditionB};
+  report::Series without{
+      .label = "without a motor", .kind = Kind::kPoints, .colour = Colour::kConditionB};
   report::Series linear{.label = "left by C", .kind = Kind::kPoints, .colour = Colour::kConditionC};
-  report::Series augmented{.label = "left by C+", .kind = Kind::kPoints,
-                           .colour = Colour::kConditionCPlus};
+  report::Series augmented{
+      .label = "left by C+", .kind = Kind::kPoints, .colour = Colour::kConditionCPlus};
   double place = 1.0;
   for (const auto& [code, person] : diagnoses.people) {
     panel.x.ticks.push_back({place, code});
@@ -219,8 +219,9 @@ report::Figure figure_gain(const Diagnoses& diagnoses) {
   panel.x.high = place - 0.4;
   panel.series = {without, linear, augmented};
   return {.name = kGainFigure,
-          .caption = "Feedthrough force on pegged samples that no fit saw, and what canceller and "
-                     "motor would have left of it, for each participant.",
+          .caption =
+              "Feedthrough force on pegged samples that no fit saw, and what canceller and "
+              "motor would have left of it, for each participant.",
           .panels = {panel},
           .columns = 1,
           .width_px = 860,

@@ -23,8 +23,8 @@ std::vector<std::string> every_name(const report::StagedFolder& folder) {
   std::vector<std::string> names{"report.html",        "summary.json", "metrics.csv",
                                  "subjects.csv",       "models.csv",   "moving_averages.csv",
                                  "open_loop.csv",      "trials.csv",   rig::kSealedFile,
-                                 rig::kCommitmentFile, kShardFile,
-                                 "diagnoses.csv",      "findings.csv", "simulated.csv"};
+                                 rig::kCommitmentFile, kShardFile,     "diagnoses.csv",
+                                 "findings.csv",       "simulated.csv"};
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }

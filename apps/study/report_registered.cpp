@@ -52,8 +52,7 @@ report::Table comparisons_table(const Registered& registered) {
       return each.comparison.from == comparison.from && each.comparison.to == comparison.to;
     });
     for (std::size_t k = 0; k < kMetricCount; ++k) {
-      std::vector<Cell> row{pair_word(comparison.from, comparison.to),
-                            kMetrics[k].title};
+      std::vector<Cell> row{pair_word(comparison.from, comparison.to), kMetrics[k].title};
       add_test(row, with == registered.planned.end() ? nullptr : &*with, k, alpha);
       add_test(row, &without, k, alpha);
       table.rows.push_back(row);

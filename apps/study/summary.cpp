@@ -122,8 +122,7 @@ Restoration restoration_of(const Analysis& analysis) {
 void add_other_restorations(const Analysis& analysis, ordered_json& summary) {
   for (const auto& [condition, restoration] : analysis.restoration) {
     if (condition == 'C') continue;
-    const std::string key =
-        condition == kFollowing ? "restoration_c_prime" : "restoration_c_plus";
+    const std::string key = condition == kFollowing ? "restoration_c_prime" : "restoration_c_plus";
     summary[key] = restoration_json(restoration);
     summary[key + "_interval95"] = restoration_interval_json(restoration);
   }

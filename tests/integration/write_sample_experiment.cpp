@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// write_sample_experiment DIR [REMNANT [GAIN]]: conducts every participant of an experiment that
-// `stillhand experiment new` made, with simulated subjects and without a bus: the cores in one
-// process, then journals and recordings as a session over the bus leaves them.  Five participants
-// are special, where there are so many:
+// write_sample_experiment DIR [REMNANT [GAIN [EFFECT]]]: conducts every participant of an
+// experiment that `stillhand experiment new` made, with simulated subjects and without a bus: the
+// cores in one process, then journals and recordings as a session over the bus leaves them.  Five
+// participants are special, where there are so many:
 //
 //   P02  the first trial is ended after half its length and runs again
 //   P03  the session is killed after the first trial; a second session goes on
@@ -10,8 +10,9 @@
 //   P05  is excluded by the experimenter
 //   P06  repeats the first trial on request, although it was complete
 //
-// REMNANT is added to the seeds of remnant and sensor noise, so that a simulation of the same people
-// meets other noise; GAIN is that of the motor, so that it meets another rig.
+// REMNANT is added to the seeds of remnant and sensor noise, so that a simulation of the same
+// people meets other noise; GAIN is that of the motor, so that it meets another rig; EFFECT is the
+// seed of an undeclared effect that every rig holds.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -42,12 +43,12 @@ using experiment::EntryKind;
 using session::PlannedTrial;
 using session::TrialSignals;
 
-constexpr std::size_t kBrokenOff = 1, kKilled = 2, kLossy = 3, kExcluded = 4,
-                      kRepeated = 5;
+constexpr std::size_t kBrokenOff = 1, kKilled = 2, kLossy = 3, kExcluded = 4, kRepeated = 5;
 
 struct Otherwise {
   std::uint64_t remnant = 0;
   double motor_gain = 1.0;
+  std::uint64_t effect = 0;
 };
 
 session::CoreConfigs configs_of(const experiment::Design& design, std::size_t index,
@@ -72,7 +73,8 @@ class SampleSession {
         number_(number),
         journal_(journal),
         loop_(configs_of(folder.design(), index, otherwise),
-              experiment::session_seed(folder.design(), index, number) + otherwise.remnant) {
+              experiment::session_seed(folder.design(), index, number) + otherwise.remnant, 1,
+              rig::SealedEffect(otherwise.effect, rig::RigConfig{})) {
     loop_.keep_measured();
     protocol_.trial_s = folder.design().trial_s;
     protocol_.identify_s = folder.design().identify_s;
@@ -285,14 +287,15 @@ void conduct(const experiment::Folder& folder, std::size_t index, const Otherwis
 }  // namespace stillhand::tests
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 4) {
-    std::fputs("usage: write_sample_experiment DIR [REMNANT [GAIN]]\n", stderr);
+  if (argc < 2 || argc > 5) {
+    std::fputs("usage: write_sample_experiment DIR [REMNANT [GAIN [EFFECT]]]\n", stderr);
     return 2;
   }
   try {
     stillhand::tests::Otherwise otherwise;
     if (argc > 2) otherwise.remnant = std::stoull(argv[2]);
     if (argc > 3) otherwise.motor_gain = std::stod(argv[3]);
+    if (argc > 4) otherwise.effect = std::stoull(argv[4]);
     const stillhand::experiment::Folder folder(argv[1]);
     folder.register_design();
     for (std::int64_t n = 0; n < folder.design().participants; ++n) {

@@ -123,8 +123,7 @@ class RecordedLoopRun {
   void read_sticks(const std::vector<std::string>& paths, const std::vector<std::string>& trials,
                    const char* letter, std::vector<recording::Recording>& into) {
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      into.push_back(
-          read_stick(paths[i], trial_at(trials, i, letter), options_.read, out_.notes));
+      into.push_back(read_stick(paths[i], trial_at(trials, i, letter), options_.read, out_.notes));
       want_channels(into.back(), paths[i]);
     }
   }

@@ -71,9 +71,9 @@ TrackedTrial averaged(const Trials& trials) {
     }
     out.closed_loop[k] = sum / static_cast<double>(trials.size());
   }
-  for (const auto metric : {&TrackingMetrics::rms_error_mm, &TrackingMetrics::dwell_ratio,
-                            &TrackingMetrics::crossover_hz,
-                            &TrackingMetrics::crossover_reference_hz}) {
+  for (const auto metric :
+       {&TrackingMetrics::rms_error_mm, &TrackingMetrics::dwell_ratio,
+        &TrackingMetrics::crossover_hz, &TrackingMetrics::crossover_reference_hz}) {
     out.metrics.*metric = mean_of(trials, [&](const TrackedTrial& t) { return t.metrics.*metric; });
   }
   for (const auto series : {&TrackingMetrics::moving_rms_mm, &TrackingMetrics::moving_dwell}) {

@@ -42,11 +42,11 @@ void check_lengths(const std::vector<RecordedTrial>& trials) {
         metrics.lines[0].frequency_hz == first.tracked.metrics.lines[0].frequency_hz) {
       continue;
     }
-    throw ConfigError("--sessions",
-                      fmt::format("{}, session {}, trial {} with another length than {}'s trials",
-                                  trial.participant, trial.session, trial.number,
-                                  first.participant),
-                      "tracking trials of one length");
+    throw ConfigError(
+        "--sessions",
+        fmt::format("{}, session {}, trial {} with another length than {}'s trials",
+                    trial.participant, trial.session, trial.number, first.participant),
+        "tracking trials of one length");
   }
 }
 

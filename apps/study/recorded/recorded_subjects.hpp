@@ -12,9 +12,9 @@ namespace stillhand::study {
 
 /// Fills results, source and lengths of a record from recordings.  The sessions of a participant
 /// join; of each condition the mean over the complete trials counts (Eq. SU-14), and the last
-/// complete pegged trial.  A participant who lacks the pegged trial, or a condition that most others have, is left out with
-/// the reason.  With a registration the results are those of its exclusion rules, and
-/// RecordedSource::registered has the selection without them.
+/// complete pegged trial.  A participant who lacks the pegged trial, or a condition that most
+/// others have, is left out with the reason.  With a registration the results are those of its
+/// exclusion rules, and RecordedSource::registered has the selection without them.
 /// @param files  find_sessions()
 /// @throws ConfigError for a recording that cannot be read, trials of unequal
 ///         lengths, and if no participant is complete; Interrupted

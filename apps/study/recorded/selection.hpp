@@ -21,8 +21,8 @@ struct Person {
   std::vector<RecordedTrial> trials;  ///< complete ones
 };
 
-/// Of each condition the mean over the complete trials counts, Eq. SU-14.  A person who lacks the pegged trial, or a
-/// condition that more than half of the people have, is left out.
+/// Of each condition the mean over the complete trials counts, Eq. SU-14.  A person who lacks the
+/// pegged trial, or a condition that more than half of the people have, is left out.
 Selection select(const std::vector<Person>& people);
 
 /// Applies the exclusion rules, Eq. SU-12: takes trials, then people away.

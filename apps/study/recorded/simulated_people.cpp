@@ -55,8 +55,8 @@ class SimulatedPerson {
         index_(experiment::participant_index(code, design_.participants)) {
     protocol_.trial_s = design_.trial_s;
     protocol_.identify_s = design_.identify_s;
-    chooses_models_ = std::ranges::any_of(
-        design_.conditions, [](const std::string& each) { return each.size() > 1; });
+    chooses_models_ = std::ranges::any_of(design_.conditions,
+                                          [](const std::string& each) { return each.size() > 1; });
   }
 
   // Runs a session's pegged and tracking trials in the order of their numbers.
@@ -174,9 +174,8 @@ std::optional<statistics::TTest> tested(const std::vector<double>& recorded,
 }  // namespace
 
 std::size_t SimulatedSide::more_than_chance() const {
-  return static_cast<std::size_t>(std::ranges::count_if(paired, [](const PairedCheck& check) {
-    return check.p_holm && *check.p_holm < kAlpha;
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      paired, [](const PairedCheck& check) { return check.p_holm && *check.p_holm < kAlpha; }));
 }
 
 std::vector<PairedCheck> paired_checks(const std::vector<std::string>& participants,

@@ -22,7 +22,7 @@ struct PairedCheck {
   double mean_difference = 0.0;
   std::optional<statistics::TTest> test = {};  ///< none for one person, or without variance
   std::optional<double> p_holm = {};           ///< of the t-tests, over all conditions and metrics
-  double p_signed_rank = 1.0;             ///< Wilcoxon's, two-sided
+  double p_signed_rank = 1.0;                  ///< Wilcoxon's, two-sided
 };
 
 /// Simulated subjects next to recorded people.

@@ -54,8 +54,8 @@ TEST(SignedRankTest, BothTailsTogetherAreOneAndTheMiddle) {
   EXPECT_DOUBLE_EQ(signed_rank_p(up) + signed_rank_p(down), 1.0 + 3.0 / 32.0);
 }
 
-// As scipy.stats.wilcoxon: seven subsets of the ranks 1 to 6 have a sum of 4 or less, 7/64 on either
-// side.
+// As scipy.stats.wilcoxon: seven subsets of the ranks 1 to 6 have a sum of 4 or less, 7/64 on
+// either side.
 TEST(SignedRankTest, TwoSidedItIsTwiceTheSmallerTailAndAtMostOne) {
   const std::vector<double> sut{1.0, 2.0, 3.0, -4.0, 5.0, 6.0};
   EXPECT_NEAR(signed_rank_two_sided_p(sut), 0.21875, 1e-15);

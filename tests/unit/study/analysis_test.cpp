@@ -97,14 +97,17 @@ TEST(SummarisedTest, TheOrderOfSubjectsDoesNotMoveTheBox) {
 // Eq. SU-5 by hand: (B - C) / (B - A) of the means.
 TEST(AnalyseTest, RestorationIsTheShareOfTheLossThatComesBack) {
   const Analysis sut = analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25), kRounding);
-  EXPECT_NEAR(sut.restoration.at('C').share[kError].value(), (50.1 - 30.15) / (50.1 - 20.25), kRounding);
+  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25),
+              kRounding);
+  EXPECT_NEAR(sut.restoration.at('C').share[kError].value(), (50.1 - 30.15) / (50.1 - 20.25),
+              kRounding);
 }
 
 TEST(AnalyseTest, ASubjectWhoseCrossoverIsMissingInOneConditionIsLeftOutOfItsRestoration) {
   const Analysis sut =
       analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, kNan, 0.50}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25), kRounding);
+  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25),
+              kRounding);
   EXPECT_EQ(sut.conditions.at('B')[kCrossover].known, 2u);
 }
 

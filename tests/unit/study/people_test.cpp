@@ -98,7 +98,7 @@ TEST_F(PairedChecksTest, PeopleAreFoundByTheirCodesAndAMissingOneHasNoSay) {
   EXPECT_NEAR(b.mean_difference, 3.0, 1e-12);
   ASSERT_TRUE(b.test.has_value());
   EXPECT_NEAR(b.p_signed_rank, 0.25, 1e-12);  // 2/2^3: all three have one sign
-  EXPECT_EQ(*b.p_holm, b.test->p);  // the only test: Holm changes nothing
+  EXPECT_EQ(*b.p_holm, b.test->p);            // the only test: Holm changes nothing
 }
 
 TEST_F(PairedChecksTest, MoreThanChanceIsWhatHolmLeavesBelowTheLevel) {
