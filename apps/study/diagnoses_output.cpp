@@ -263,7 +263,7 @@ void add_diagnosis(report::Page& page, const StudyRecord& record, const std::str
   page.paragraph("Verdict: " + person.verdict + ".");
   std::vector<std::string> lines;
   for (const Finding& finding : person.findings) {
-    lines.push_back(fmt::format("{}: {} N RMS. {}",
+    lines.push_back(fmt::format("{}, {} N RMS: {}",
                                 effect_words(finding.kind, finding.channel, finding.where),
                                 number(finding.explained_n, 2), finding.evidence));
   }

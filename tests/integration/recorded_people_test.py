@@ -130,7 +130,7 @@ class RecordedPeopleTest(SampleExperimentCase):
         for code in strongest["participants"]:
             person = diagnoses["participants"][code]
             self.assertEqual(person["verdict"], "effects found")
-            self.assertGreater(person["gain_n"], 0.1)
+            self.assertGreater(person["gain_n"], 0.05)  # [N] of 1 N that the effect takes
         self.check_diagnoses(diagnoses, out)
         self.assertIn("coupled input (a_x)", (out / "report.html").read_text())
 

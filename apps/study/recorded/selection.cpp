@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -53,6 +54,48 @@ SubjectResult result_of(const Person& person, const std::string& conditions,
     trials[trial->condition].push_back(&trial->tracked);
   }
   for (const auto& [condition, each] : trials) out.trials[condition] = averaged(each);
+  return out;
+}
+
+// Conditions that too few people have.
+std::vector<std::string> rare_conditions(const std::vector<Person>& people,
+                                         const std::string& wanted) {
+  std::map<char, std::set<std::string>> owners;
+  for (const Person& person : people) {
+    for (const RecordedTrial& trial : person.trials) owners[trial.condition].insert(person.code);
+  }
+  std::vector<std::string> out;
+  for (const auto& [condition, codes] : owners) {
+    if (wanted.find(condition) != std::string::npos) continue;
+    out.push_back(fmt::format("condition {}: only {} of {} participants have it ({})",
+                              condition_word(condition), codes.size(), people.size(),
+                              fmt::join(codes, ", ")));
+  }
+  return out;
+}
+
+// Who has fewer trials of a condition than is usual: the mean is over what is there.
+std::vector<std::string> short_of_trials(const std::vector<Person>& people,
+                                         const std::vector<std::string>& selected,
+                                         const std::string& conditions) {
+  std::vector<std::string> out;
+  for (const char condition : conditions) {
+    std::map<std::string, std::ptrdiff_t> own;
+    std::map<std::ptrdiff_t, std::size_t> people_with;
+    for (const Person& person : people) {
+      if (std::ranges::find(selected, person.code) == selected.end()) continue;
+      own[person.code] = std::ssize(counted(person, std::string(1, condition)));
+      ++people_with[own[person.code]];
+    }
+    if (people_with.size() < 2) continue;
+    const auto usual = std::ranges::max_element(
+        people_with, [](const auto& a, const auto& b) { return a.second < b.second; });
+    for (const auto& [code, count] : own) {
+      if (count >= usual->first) continue;
+      out.push_back(fmt::format("{}: {} of the usual {} trials of condition {}; their mean counts",
+                                code, count, usual->first, condition_word(condition)));
+    }
+  }
   return out;
 }
 
@@ -147,6 +190,9 @@ Selection select(const std::vector<Person>& people) {
     out.participants.push_back(person.code);
     out.results.push_back(result_of(person, conditions, out.used));
   }
+  std::ranges::copy(rare_conditions(people, conditions), std::back_inserter(out.left_out));
+  std::ranges::copy(short_of_trials(people, out.participants, conditions),
+                    std::back_inserter(out.left_out));
   return out;
 }
 

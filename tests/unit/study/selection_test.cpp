@@ -158,6 +158,21 @@ TEST_F(SelectionTest, ATrialThatARuleTakesAwayHasNoSayInTheMean) {
   EXPECT_EQ(select(people_).results[0].trials.at('B').metrics.rms_error_mm, 48.0);
 }
 
+TEST_F(SelectionTest, AConditionThatOnePersonHasAndAPersonWithFewerTrialsAreNamed) {
+  people_[0].trials[2].condition = kAugmented;  // C of P01
+  people_.push_back(person_of("P04", 51.0));
+  for (std::size_t i = 1; i < people_.size(); ++i) {
+    if (i == 2) continue;
+    people_[i].trials.push_back(people_[i].trials[1]);
+  }
+  const Selection sut = select(people_);
+  EXPECT_THAT(sut.participants, ElementsAre("P02", "P03", "P04"));
+  EXPECT_THAT(sut.left_out,
+              ElementsAre("P01: no complete trial of condition C",
+                          "condition C+: only 1 of 4 participants have it (P01)",
+                          "P03: 1 of the usual 2 trials of condition B; their mean counts"));
+}
+
 // Magnitudes in decibels, angles as directions, closed loops as complex numbers.
 TEST(AveragedTest, TheOpenLoopOfTwoTrialsIsBetweenThem) {
   TrackedTrial one = made::trial_of(20.0, 0.5, 0.1);
