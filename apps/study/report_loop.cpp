@@ -128,6 +128,8 @@ report::Table steps_table(const Analysis& analysis) {
       table.rows.push_back(row);
     }
   }
+  table.align.assign(table.header.size(), report::Align::kRight);
+  table.align[0] = table.align[1] = report::Align::kLeft;
   return table;
 }
 
@@ -155,8 +157,7 @@ void add_cancellers(report::Page& page, const Analysis& analysis) {
   page.section("Cancellers that go beyond the paper's");
   page.paragraph(
       "C cancels with the model of the session's pegged trial, as the paper does. C' uses the same "
-      "model, whose gain and phase follow the hand. C+ uses an augmented model, which "
-      "the experiment registered.");
+      "model, whose gain and phase follow the hand. C+ uses another model, from a file.");
   page.table(mitigations_table(analysis));
   page.table(restorations_table(analysis));
   page.table(steps_table(analysis));
