@@ -349,6 +349,14 @@ class RefusalTest(ExperimentTestCase):
             self.assertFalse(self.study.exists())
         self.new()
         self.assertIn("holds something", experiment("new", self.study, status=2)[1])
+        _, errors = experiment("new", self.folder / "plus", "--conditions", "A,C+", "--control-model",
+                               self.folder / "none.json", status=2)
+        self.assertIn("--control-model", errors)
+        pad = self.folder / "pad"
+        experiment("new", pad, "--operator", "gamepad")
+        for folder, words in ((pad, ()), (self.study, ("--gamepad", "/dev/input/event0"))):
+            self.assertIn("--gamepad", experiment("run", folder, *words, status=2)[1])
+            self.assertEqual(os.listdir(folder / "participants"), [])
         self.assertIn("without experiment.yaml", experiment("run", self.folder, status=2)[1])
         (self.study / "assignment.sealed").write_text("00\n")
         self.assertIn("assignment.sealed", experiment("status", self.study, status=2)[1])

@@ -17,13 +17,14 @@ import browser
 import lab_process
 from dashboard_test import Dashboard
 from experiment_test import END_LIMIT_S, ExperimentTestCase, experiment, journal, of_kind
-from lab_process import STILLHAND, hold, next_domain, running, wait_for
+from lab_process import STILLHAND, campaign, hold, next_domain, running, wait_for
 from virtual_display import VirtualDisplay, missing_tools
 
 TITLE = "Stillhand"
 WINDOW = (1024, 768)  # services/display/screen_loop.cpp
 WINDOW_LIMIT_S = 60.0
 STEP_LIMIT_S = 60.0
+WHITE = bytes(level > 200 for level in range(256))
 READS_S = 0.7  # a person reads before acting
 QUESTIONS = """questions:
   - name: "effort"
@@ -55,9 +56,9 @@ class Participant:
         self.display.xdotool("mousemove", WINDOW[0] // 2, 20)
         self.display.xdotool("windowfocus", "--sync", window)
 
-    def light(self, rows=range(0, WINDOW[1], 2)):
-        """Sum of the brightness of some rows."""
-        return sum(sum(self.display.pixels(row)[:WINDOW[0]]) for row in rows)
+    def light(self):
+        """Sum of the brightness of the picture."""
+        return sum(map(sum, self.display.picture(*WINDOW)))
 
     def press(self, key):
         self.display.xdotool("key", "--clearmodifiers", key)
@@ -66,11 +67,15 @@ class Participant:
         self.display.xdotool("mousemove", column, row)
         self.display.xdotool("click", 1)
 
+    def white(self):
+        """Row by row, 1 for each white pixel and 0 for each other."""
+        return [row.translate(WHITE) for row in self.display.picture(*WINDOW)]
+
     def button_row(self):
         """A row of a button that works, or None: it is white over its width, for more rows than a line is thick."""
         middle = slice(WINDOW[0] // 2 - 30, WINDOW[0] // 2 + 30)
-        white = [min(self.display.pixels(row)[middle]) > 200 for row in range(WINDOW[1])]
-        return next((row + 4 for row in range(WINDOW[1] - 8) if all(white[row:row + 8])), None)
+        wide = [all(row[middle]) for row in self.white()]
+        return next((row + 4 for row in range(len(wide) - 8) if all(wide[row:row + 8])), None)
 
     def boxes(self):
         """Left edges of the boxes of a scale, and a row in them, or None.
@@ -78,13 +83,13 @@ class Participant:
         The upper sides of the boxes are white lines of one length in one row, and a white line hangs from the left end
         of each: no text has that.
         """
-        white = [bytes(level > 200 for level in self.display.pixels(row)[:WINDOW[0]]) for row in range(150, 700)]
+        white = self.white()
         for row, pixels in enumerate(white[:-40]):
             runs = [(match.start(), len(match[0])) for match in re.finditer(rb"\x01+", pixels)]
             lengths = [length for _, length in runs]
             if (len(runs) >= 2 and 50 <= min(lengths) and max(lengths) <= min(min(lengths) + 4, 90) and
                     all(white[row + down][start + 1] for start, _ in runs for down in range(40))):
-                return [start for start, _ in runs], 150 + row + 20
+                return [start for start, _ in runs], row + 20
         return None
 
 
@@ -266,6 +271,7 @@ class AnswersTest(ParticipantTestCase):
 
 
 class KilledTest(ParticipantTestCase):
+    @campaign
     def test_a_question_that_a_kill_cut_is_asked_again_and_nothing_twice(self):
         self.make(QUESTIONS.replace('after: "end"', 'after: "trial"'), "--conditions", "A,B")
         self.begin()

@@ -77,18 +77,21 @@ class VirtualDisplay:
         assert bits_per_pixel == 32
         return header_size + 12 * colours, bytes_per_line
 
+    def picture(self, columns, rows):
+        """Brightness of the upper left part of the screen, row by row; read at once, so that it is mostly one frame."""
+        with self._framebuffer.open("rb") as file:
+            first, line = self._rows(file)
+            file.seek(first)
+            pixels = file.read(rows * line)
+        return [pixels[row * line:row * line + 4 * columns][1::4] for row in range(rows)]
+
     def keep(self, name, columns, rows):
         """Saves the upper left part of the screen as a picture (PNG), if STILLHAND_SCREENSHOTS is set."""
         if not KEPT:
             return
         folder = pathlib.Path(KEPT)
         folder.mkdir(parents=True, exist_ok=True)
-        with self._framebuffer.open("rb") as file:
-            first, line = self._rows(file)
-            file.seek(first)
-            pixels = file.read(rows * line)  # at once, so that it is mostly one frame
-        # The first byte of each row: no filter.
-        grey = b"".join(b"\0" + pixels[row * line:row * line + 4 * columns][1::4] for row in range(rows))
+        grey = b"".join(b"\0" + row for row in self.picture(columns, rows))  # the first byte of each row: no filter
 
         def part(kind, content):
             return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))

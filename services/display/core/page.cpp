@@ -122,7 +122,7 @@ Page on_break(const Prompt& prompt, const Moment& moment) {
   page.task = false;
   page.heading = "Break";
   page.lines = prompt.lines;
-  if (page.lines.empty()) page.lines = {"Let go of the stick and rest."};
+  if (page.lines.empty()) page.lines = {"Let go, and rest."};
   if (prompt.end_tick >= 0) page.large = clock_text(seconds(prompt.end_tick - moment.tick));
   if (prompt.trial > 0) page.below = "Next: trial" + of(prompt.trial, prompt.trials);
   return page;
