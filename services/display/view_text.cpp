@@ -104,7 +104,8 @@ struct Typeface::Faces {
       const double whole = std::floor(column + pen_px);
       FT_Vector rest{std::lround((column + pen_px - whole) * kUnits_px), 0};
       FT_Set_Transform(face, nullptr, &rest);
-      if (FT_Load_Glyph(face, glyph, how | FT_LOAD_NO_HINTING) != 0) continue;
+      if (FT_Load_Glyph(face, glyph, how | static_cast<FT_Int32>(FT_LOAD_NO_HINTING)) != 0)
+        continue;
       use(face, static_cast<int>(whole));
       pen_px += static_cast<double>(face->glyph->advance.x) / kUnits_px;
     }
