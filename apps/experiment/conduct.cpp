@@ -99,7 +99,10 @@ int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtim
     lab.trials = script->possible_trials();
     lab::run_session(lab, stop, [&](lab::LiveTrials& trials) { script->run(trials); });
   } catch (const std::exception& error) {
-    add({.kind = EntryKind::kSessionEnded, .session = session, .text = error.what()});
+    add({.kind = EntryKind::kSessionEnded,
+         .session = session,
+         .completed = progress.complete(),
+         .text = error.what()});
     throw;
   }
   const bool complete = progress.complete();

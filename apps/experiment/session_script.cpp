@@ -98,10 +98,13 @@ std::vector<session::PlannedTrial> SessionScript::possible_trials() const {
 
 void SessionScript::run(lab::LiveTrials& trials) {
   if (!instruct(trials) || !identify(trials)) return;
-  while (const auto next = progress_.next()) {
-    if (!do_step(trials, *next) || !look(trials)) return;
-  }
-  show_end(trials);
+  do {
+    while (const auto next = progress_.next()) {
+      if (!do_step(trials, *next) || !look(trials)) return;
+    }
+    show_end(trials);
+    if (!look(trials)) return;
+  } while (progress_.next());  // the last trial was asked again while the end was shown
 }
 
 lab::Prompt SessionScript::prompt_of(lab::PromptKind kind, const Step& step) const {
@@ -189,9 +192,10 @@ bool SessionScript::track(lab::LiveTrials& trials, std::size_t number) {
   return run_trial(trials, number, planned_of(plan_[number]));
 }
 
-// C runs the session's own model, C' the same while it follows the hand, C+ that of the file.
+// C runs the session's own model, C' the same while it follows the hand, C+ that of the file.  A
+// and B get the session's own, which they do not use: who sees the event of a loaded model, or
+// waits for it, learns nothing.
 void SessionScript::give_model(lab::LiveTrials& trials, const std::string& condition) {
-  if (condition.front() != 'C') return;
   cancellation::ControlModel model =
       condition == "C+" ? *augmented_ : cancellation::control_model(trials.model().control);
   if (condition == "C'") model.adapts = close_the_loop::average_hand();

@@ -98,12 +98,14 @@ void StagedFolder::write(const std::string& name, const std::string& text) const
   if (!status.ok()) throw std::runtime_error((out_ / name).string() + ": " + status.text);
 }
 
-std::vector<std::string> StagedFolder::in_place(const std::string& begin,
-                                                const std::string& end) const {
+std::vector<std::string> StagedFolder::in_place(const std::string& begin, const std::string& end,
+                                                const std::string& mark) const {
   std::vector<std::string> names;
   for (const fs::directory_entry& file : fs::directory_iterator(out_)) {
     const std::string name = file.path().filename().string();
-    if (name.starts_with(begin) && name.ends_with(end)) names.push_back(name);
+    if (!name.starts_with(begin) || !name.ends_with(end) || !file.is_regular_file()) continue;
+    if (recording::read_file(file.path().string()).find(mark) == std::string::npos) continue;
+    names.push_back(name);
   }
   return names;
 }

@@ -24,9 +24,10 @@ class StagedFolder {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staging_; }
   /// Writes a file in path().  @throws std::runtime_error with the file and the reason
   void write(const std::string& name, const std::string& text) const;
-  /// Names of the files that are in the folder already and begin and end so: of an earlier run.
-  [[nodiscard]] std::vector<std::string> in_place(const std::string& begin,
-                                                  const std::string& end) const;
+  /// Names of the files that are in the folder already, begin and end so, and hold the mark: of an
+  /// earlier run.
+  [[nodiscard]] std::vector<std::string> in_place(const std::string& begin, const std::string& end,
+                                                  const std::string& mark) const;
   /// Checks that every file in path() can be moved; publish() calls it too.
   /// @throws ConfigError naming a folder that is in the way
   void check() const;

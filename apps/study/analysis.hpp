@@ -76,7 +76,7 @@ struct Analysis {
   std::map<char, MetricSample> crossover_reference_hz;
   std::map<char, std::vector<PooledLine>> open_loop;
   std::vector<Comparison> comparisons;
-  MultivariateResult main_effects;  ///< A, B, C with one trial a cell: no interaction
+  MultivariateResult main_effects;  ///< A, B, C with one value a cell: no interaction
   MultivariateResult thirds;        ///< RMS error and dwell, thirds of a trial as replicates
   /// Eq. SU-5 of C, C' and C+, as far as they were run next to A and B.
   std::map<char, Restoration> restoration;

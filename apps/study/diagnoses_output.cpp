@@ -111,18 +111,6 @@ report::Table people_table(const StudyRecord& record) {
   return table;
 }
 
-std::string gain_sentence(const Diagnoses& diagnoses) {
-  if (!diagnoses.gain) {
-    return "There is no test of what C+ would have gained: fewer than two people have both, or the "
-           "augmented model changes nobody's force.";
-  }
-  const auto& test = *diagnoses.gain;
-  return fmt::format(
-      "Over {} people, C+ would have left {} N [{}, {}] {} than C (paired t-test, p = {}).", test.n,
-      number(std::abs(test.mean_difference), 3), number(-test.ci_high, 3), number(-test.ci_low, 3),
-      test.mean_difference <= 0.0 ? "less" : "more", p_value(test.p));
-}
-
 // Who has no diagnosis, or nothing to compare, and why.
 std::vector<std::string> missing_lines(const Diagnoses& diagnoses) {
   std::vector<std::string> out;
@@ -138,6 +126,19 @@ std::vector<std::string> missing_lines(const Diagnoses& diagnoses) {
 }
 
 }  // namespace
+
+std::string gain_sentence(const Diagnoses& diagnoses) {
+  if (!diagnoses.gain) {
+    return "There is no test of what C+ would have gained: fewer than two people have both, or the "
+           "augmented model changes nobody's force.";
+  }
+  const auto& test = *diagnoses.gain;
+  const bool less = test.mean_difference <= 0.0;
+  return fmt::format(
+      "Over {} people, C+ would have left {} N [{}, {}] {} than C (paired t-test, p = {}).", test.n,
+      number(std::abs(test.mean_difference), 3), number(less ? -test.ci_high : test.ci_low, 3),
+      number(less ? -test.ci_low : test.ci_high, 3), less ? "less" : "more", p_value(test.p));
+}
 
 ordered_json diagnoses_json(const Diagnoses& diagnoses) {
   ordered_json out{{"participants", ordered_json::object()},

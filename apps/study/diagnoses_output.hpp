@@ -25,6 +25,9 @@ report::Figure figure_gain(const Diagnoses& diagnoses);
 /// @param drawing  of figure_gain(), or nullptr
 void add_diagnoses(report::Page& page, const StudyRecord& record, const report::Drawing* drawing);
 
+/// What C+ would have gained over the people.
+std::string gain_sentence(const Diagnoses& diagnoses);
+
 /// On a participant's page.
 void add_diagnosis(report::Page& page, const StudyRecord& record, const std::string& code);
 

@@ -28,7 +28,7 @@ std::vector<std::string> every_name(const report::StagedFolder& folder) {
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
-  for (const std::string& page : folder.in_place(kParticipantPage, kPageEnding)) {
+  for (const std::string& page : folder.in_place(kParticipantPage, kPageEnding, kPageLead)) {
     names.push_back(page);
   }
   return names;
@@ -157,6 +157,7 @@ void print_study(const StudyRecord& record) {
   for (const Comparison& comparison : analysis.comparisons) print_comparison(comparison);
   if (record.recorded) {
     for (const std::string& line : record.recorded->left_out) fmt::print("left out: {}\n", line);
+    for (const std::string& line : record.recorded->remarks) fmt::print("remark: {}\n", line);
     print_registered(record);
     print_people(record);
   }

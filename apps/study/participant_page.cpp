@@ -186,8 +186,7 @@ report::Page participant_page(const StudyRecord& record, const std::string& code
   const RecordedSource& source = *record.recorded;
   const SubjectResult* own = result_of(record, code);
   const bool in_tables = std::ranges::find(source.participants, code) != source.participants.end();
-  report::Page page("Participant " + code,
-                    "What one participant of the study did, next to the group and the paper.");
+  report::Page page("Participant " + code, kPageLead);
   page.facts({{"participant", code},
               {"order", order_of(source, code)},
               {"in the tables", in_tables ? "yes" : "no"},

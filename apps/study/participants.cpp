@@ -45,6 +45,7 @@ std::vector<std::string> remarks_on(const RecordedSource& source, const std::str
     }
   };
   take(source.left_out, "Left out: ");
+  take(source.remarks, "");
   if (source.registered) take(source.registered->excluded, "Excluded by a rule: ");
   return out;
 }

@@ -15,6 +15,9 @@ namespace stillhand::study {
 /// Names of the files of participants' pages begin and end so.
 inline constexpr const char* kParticipantPage = "participant_";
 inline constexpr const char* kPageEnding = ".html";
+/// The page says so under its title; other files of such a name are not ours.
+inline constexpr const char* kPageLead =
+    "What one participant of the study did, next to the group and the paper.";
 
 /// File of the page of each participant who has a complete tracking trial, by code.  Letters,
 /// digits, '-' and '_' of the code stay; every file has another name.

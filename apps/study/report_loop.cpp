@@ -73,7 +73,7 @@ report::Table mitigations_table(const Analysis& analysis) {
   for (const auto& [condition, metrics] : analysis.conditions) {
     const Comparison* test = find_comparison(analysis, 'B', condition);
     std::string restored = "–";
-    if (condition > 'B' && analysis.conditions.contains('A')) {
+    if (condition > 'B' && analysis.conditions.contains('A') && analysis.conditions.contains('B')) {
       const double a = analysis.conditions.at('A')[0].mean;
       const double b = analysis.conditions.at('B')[0].mean;
       restored = percent((b - metrics[0].mean) / (b - a));

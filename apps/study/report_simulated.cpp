@@ -69,7 +69,7 @@ report::Table paired_table(const SimulatedSide& simulated) {
       row.emplace_back(p_value(*check.p_holm),
                        *check.p_holm < SimulatedSide::kAlpha ? Emphasis::kStrong : Emphasis::kNone);
     } else {
-      row.emplace_back(number(check.mean_difference, fine(check.metric)));
+      row.emplace_back(check.n > 0 ? number(check.mean_difference, fine(check.metric)) : "–");
       row.insert(row.end(), 2, Cell("–"));
     }
     row.emplace_back(check.n > 0 ? p_value(check.p_signed_rank) : std::string("–"));
@@ -83,8 +83,12 @@ report::Table paired_table(const SimulatedSide& simulated) {
 std::string chance_sentence(const SimulatedSide& simulated) {
   const auto tests = static_cast<std::size_t>(std::ranges::count_if(
       simulated.paired, [](const PairedCheck& check) { return check.test.has_value(); }));
+  if (std::ranges::none_of(simulated.paired,
+                           [](const PairedCheck& check) { return check.n > 0; })) {
+    return "There is no test: nobody was both recorded and simulated.";
+  }
   const bool equal = std::ranges::all_of(simulated.paired, [](const PairedCheck& check) {
-    return check.mean_difference == 0.0 && !check.test;
+    return check.n == 0 || (check.mean_difference == 0.0 && !check.test);
   });
   if (equal) return "Recorded and simulated people do not differ at all.";
   if (tests == 0) return "There is no test: fewer than two people, or no variance.";

@@ -155,7 +155,7 @@ void add_statistics(report::Page& page, const Analysis& analysis) {
   page.section("Multivariate analysis of variance");
   add_manova(
       page, analysis.main_effects,
-      "All three metrics, with one trial a cell. Only the main effects are tested, because an "
+      "All three metrics, with one value a cell. Only the main effects are tested, because an "
       "interaction cannot be separated from the error.");
   add_manova(
       page, analysis.thirds,

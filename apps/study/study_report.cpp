@@ -56,7 +56,7 @@ void add_open_questions(report::Page& page, const StudyRecord& record) {
        "factors with others. They are used as printed; the display offers 89 and 311.",
        "The tracking motion is 0.7 to 2 Hz \"as mentioned above\", but 0.7 to 4 Hz is mentioned "
        "there. This study uses 0.7 to 4 Hz for identification and 0.7 to 2 Hz for tracking.",
-       "An interaction of condition and subject cannot be tested with one trial a cell. That test "
+       "An interaction of condition and subject cannot be tested with one value a cell. That test "
        "covers the main effects only. The interaction is tested with the thirds of a trial as "
        "replicates.",
        "The remnant biases X_p/X_e in a closed loop. The report gives this estimate and the one "
@@ -85,6 +85,10 @@ void add_recorded_facts(report::Page& page, const StudyRecord& record) {
   if (!source.left_out.empty()) {
     page.paragraph("Left out:");
     page.list(source.left_out);
+  }
+  if (!source.remarks.empty()) {
+    page.paragraph("Remarks:");
+    page.list(source.remarks);
   }
 }
 

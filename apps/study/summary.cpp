@@ -214,12 +214,16 @@ ordered_json wrong_json(const Analysis& analysis) {
 
 ordered_json paired_json(const PairedCheck& check) {
   ordered_json out{{"people", check.n},
-                   {"mean_difference", check.mean_difference},
+                   {"mean_difference", nullptr},
                    {"ci95", nullptr},
                    {"t", nullptr},
                    {"p", nullptr},
                    {"p_holm", or_null(check.p_holm)},
-                   {"p_signed_rank", check.p_signed_rank}};
+                   {"p_signed_rank", nullptr}};
+  if (check.n > 0) {
+    out["mean_difference"] = check.mean_difference;
+    out["p_signed_rank"] = check.p_signed_rank;
+  }
   if (check.test) {
     out["ci95"] = {check.test->ci_low, check.test->ci_high};
     out["t"] = check.test->t;
@@ -266,7 +270,7 @@ std::string summary_json(const StudyRecord& record) {
   ordered_json summary;
   summary["conditions"] = conditions_json(record.analysis);
   summary["t_tests"] = p_values_json(record.analysis);
-  summary["manova"] = manova_json(record.analysis.main_effects, "main effects, one trial a cell");
+  summary["manova"] = manova_json(record.analysis.main_effects, "main effects, one value a cell");
   summary["restoration"] = restoration_json(restoration_of(record.analysis));
   summary["restoration_interval95"] = restoration_interval_json(restoration_of(record.analysis));
   add_other_restorations(record.analysis, summary);
@@ -284,6 +288,7 @@ std::string summary_json(const StudyRecord& record) {
     summary["recorded"] = {{"participants", record.recorded->participants},
                            {"trials", record.recorded->trials.size()},
                            {"left_out", record.recorded->left_out},
+                           {"remarks", record.recorded->remarks},
                            {"digest", or_null(record.recorded->digest)}};
     if (record.recorded->registered) {
       summary["registered"] = registered_json(*record.recorded->registered);

@@ -144,8 +144,9 @@ rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
 }
 
 void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept {
-  // A platform that is simulated moves no sensor.
-  if (!platform_ || !input.command_valid) return;
+  // A platform that is simulated, or does not follow, moves no sensor.
+  const bool follows = platform_ && seat_.reply.stage == PlatformStage::kFollowing;
+  if (!follows || !input.command_valid) return;
   const double motion = input.command_acceleration_m_s2;
   if (parts_.acceleration != Parts::Source::kSimulated) {
     acceleration_.step(output.raw.accel_y_v, motion);

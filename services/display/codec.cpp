@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/display/codec.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 namespace stillhand::display {
@@ -45,13 +46,19 @@ stillhand_msgs::TrackingSample to_idl(const TrackingSample& sample, Tick tick, s
   return message;
 }
 
+namespace {
+
+constexpr Tick kFurthest = Tick{1} << 60;  // a difference of two ticks stays a number
+
+}  // namespace
+
 Prompt from_idl(const stillhand_msgs::Prompt& message) {
   Prompt prompt;
   prompt.number = message.number();
   prompt.kind = kind_of(message.kind());
   prompt.trial = message.trial();
   prompt.trials = message.trials();
-  prompt.end_tick = message.end_tick();
+  prompt.end_tick = std::clamp<Tick>(message.end_tick(), -1, kFurthest);
   std::istringstream text(message.text().c_str());
   for (std::string line; std::getline(text, line);) prompt.lines.push_back(line);
   prompt.lowest = message.lowest().c_str();

@@ -52,7 +52,12 @@ class ScreenLoop::Screen {
     }
     if (!window_) return true;
     const bool open = window_->show(frame);
-    take_acts();
+    take_acts(page);
+    if (!open && prompt_.kind == PromptKind::kEnd) {  // its button closes it, and so may anything
+      answering_.confirm();
+      window_.reset();
+      return true;
+    }
     return open;
   }
   [[nodiscard]] const std::optional<Answering::Answer>& answer() const noexcept {
@@ -69,9 +74,12 @@ class ScreenLoop::Screen {
     if (newest.number() != prompt_.number) prompt_ = from_idl(newest);
     answering_.show(prompt_);
   }
-  // What the participant did to the frame that is shown.
-  void take_acts() {
-    for (const char key : window_->keys()) {
+  // What the participant did to the frame that is shown.  Keys count while it has a button: nobody
+  // answers what is not on the screen.
+  void take_acts(const Page& page) {
+    const auto keys = window_->keys();
+    for (const char key : keys) {
+      if (page.button.empty()) break;
       if (key >= '1' && key <= '9') answering_.choose(key - '0');
       if (key == kEnterKey || key == ' ') answering_.confirm();
     }

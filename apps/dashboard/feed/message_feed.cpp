@@ -209,6 +209,9 @@ void MessageFeed::take_recorder(const Message& message) {
 }
 
 void MessageFeed::take_control(const stillhand_msgs::TrialControl& control, std::int64_t at_ns) {
+  // What the last session's participant saw is not of the next one.
+  const bool was_over = control_ && control_->session() == stillhand_msgs::SESSION_ENDING;
+  if (was_over && control.session() != stillhand_msgs::SESSION_ENDING) prompt_.reset();
   control_ = control;
   health_.set_running(is_running(control.session()), at_ns);
 }

@@ -52,7 +52,11 @@ Json protocol_json(const MessageFeed& feed) {
   const Tick end_tick = trial.start_tick + trial.duration_ticks;
   const auto wait = [&](const char* what, Tick until) {
     protocol["waits_for"] = what;
-    if (until > now) protocol["left_s"] = static_cast<double>(until - now) * kControlPeriod_s;
+    // The tick comes from the bus: a difference of numbers cannot overflow.
+    if (until > now) {
+      protocol["left_s"] =
+          (static_cast<double>(until) - static_cast<double>(now)) * kControlPeriod_s;
+    }
   };
   if (control->session() == stillhand_msgs::SESSION_PAUSED) {
     wait("start", -1);

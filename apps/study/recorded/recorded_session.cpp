@@ -63,6 +63,8 @@ void keep_valid(SessionRecording& recorded, std::uint32_t rig) {
     return m.rig() != rig || !std::isfinite(m.target_m() + m.cursor_m());
   });
   std::erase_if(recorded.rig_truths, [&](const auto& m) { return m.rig() != rig; });
+  // The canceller does not take them.
+  std::erase_if(recorded.models, [](const auto& m) { return !m.usable(); });
 }
 
 template <typename Message, typename Value>

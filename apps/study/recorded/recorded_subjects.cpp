@@ -110,6 +110,7 @@ void read_recorded(const std::vector<SessionFile>& files,
     refuse_nobody(selection, registered.excluded);
     source.registered = std::move(registered);
   }
+  source.remarks = std::move(selection.remarks);
   source.participants = std::move(selection.participants);
   source.used = std::move(selection.used);
   record.results = std::move(selection.results);

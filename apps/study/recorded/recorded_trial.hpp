@@ -45,6 +45,7 @@ struct Selection {
   std::vector<std::string> participants;
   std::vector<SubjectResult> results;
   std::vector<std::string> left_out;  ///< who lacks a trial, and which
+  std::vector<std::string> remarks;   ///< rare conditions, and who has fewer trials than is usual
   std::set<TrialId> used;             ///< the trials that the results are means of
 };
 
@@ -64,6 +65,7 @@ struct RecordedSource {
   std::vector<std::string> participants;  ///< codes, one for each entry of StudyRecord::results
   std::vector<RecordedTrial> trials;      ///< all complete ones, also those not in the tables
   std::vector<std::string> left_out;      ///< one line each: trial or participant, and why
+  std::vector<std::string> remarks;       ///< one line each, on who and what is in the tables
   std::set<TrialId> used;                 ///< of `trials` those in the tables
   std::vector<PeggedTrial> pegged;        ///< all complete ones
   std::string digest;                     ///< of the pre-registration, or empty

@@ -88,8 +88,10 @@ std::vector<std::string> short_of_trials(const std::vector<Person>& people,
       ++people_with[own[person.code]];
     }
     if (people_with.size() < 2) continue;
-    const auto usual = std::ranges::max_element(
-        people_with, [](const auto& a, const auto& b) { return a.second < b.second; });
+    // Of as many people the larger number.
+    const auto usual = std::ranges::max_element(people_with, [](const auto& a, const auto& b) {
+      return std::pair(a.second, a.first) < std::pair(b.second, b.first);
+    });
     for (const auto& [code, count] : own) {
       if (count >= usual->first) continue;
       out.push_back(fmt::format("{}: {} of the usual {} trials of condition {}; their mean counts",
@@ -125,8 +127,8 @@ double completed_share(const Person& person, const Registration& registration) {
 
 std::optional<double> dwell_ratio_a(const Person& person) {
   std::vector<double> ratios;
-  for (const RecordedTrial& trial : person.trials) {
-    if (trial.condition == 'A') ratios.push_back(trial.tracked.metrics.dwell_ratio);
+  for (const RecordedTrial* trial : counted(person, "A")) {
+    ratios.push_back(trial->tracked.metrics.dwell_ratio);
   }
   if (ratios.empty()) return std::nullopt;
   return statistics::mean(ratios);
@@ -190,9 +192,9 @@ Selection select(const std::vector<Person>& people) {
     out.participants.push_back(person.code);
     out.results.push_back(result_of(person, conditions, out.used));
   }
-  std::ranges::copy(rare_conditions(people, conditions), std::back_inserter(out.left_out));
+  std::ranges::copy(rare_conditions(people, conditions), std::back_inserter(out.remarks));
   std::ranges::copy(short_of_trials(people, out.participants, conditions),
-                    std::back_inserter(out.left_out));
+                    std::back_inserter(out.remarks));
   return out;
 }
 

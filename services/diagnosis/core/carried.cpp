@@ -91,6 +91,7 @@ bool has_body_of_baseline(const Model& model, const Signals& signals) {
 // [unit of the output]
 double rms_error(const Model& model, const Signals& signals) {
   const FreeRun run = free_run(model, signals);
+  if (!run.finite) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
   double weight = 0.0;
   for (std::size_t n = 0; n < signals.size(); ++n) {
@@ -272,7 +273,7 @@ std::optional<std::size_t> idle(const Model& model, const PartErrors& with, cons
     const PartErrors bare = carrying.errors(carrying.refitted(without(model, e), baseline));
     if (!with.is_below(bare)) return e;
     if (!carrying.several()) continue;
-    bool helps = false;
+    bool helps = bare.squares.empty();  // without it the model's run is not finite
     for (std::size_t r = 0; r < bare.squares.size(); ++r) {
       helps = helps || std::sqrt(with.squares[r] / bare.squares[r]) < 1.0 - kHelps;
     }

@@ -13,8 +13,8 @@ namespace stillhand::display {
 ///   a number, or a click on its box    chooses; another one changes the choice
 ///   Enter, Space, a click on the button confirms, once something is chosen
 ///
-/// A prompt with one step ("go on") has nothing to choose.  Two acts make an answer, so that the
-/// click that ended a trial, or a slip, is none.  Pure.
+/// A prompt with one step ("go on") has nothing to choose: one act.  Otherwise two acts make an
+/// answer, so that the click that ended a trial, or a slip, is none.  Pure.
 class Answering {
  public:
   struct Answer {

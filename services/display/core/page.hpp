@@ -24,7 +24,7 @@ struct Moment {
 /// condition: the participant is blinded.
 struct Page {
   bool task = true;          ///< box and cross are drawn
-  std::string corner_left;   ///< "TRIAL 4 OF 12"
+  std::string corner_left;   ///< "Trial 4 of 12"
   std::string corner_right;  ///< time left of the measured part, "2:51"
   std::string heading;
   std::vector<std::string> lines;

@@ -53,11 +53,15 @@ class FakeTrials final : public lab::LiveTrials {
   void note(const std::string& /*text*/) override {}
   lab::Asked asked() override { return {}; }
   [[nodiscard]] const identification::FeedthroughModel& model() const override { return model_; }
-  std::string use(const cancellation::ControlModel& /*model*/) override { return ""; }
+  std::string use(const cancellation::ControlModel& /*model*/) override {
+    ++models;
+    return "";
+  }
   [[nodiscard]] bool interrupted() const override { return false; }
 
   std::vector<lab::Prompt> shown;
   int asked_prompts = 0;
+  int models = 0;
   bool passes_over = false;
 
  private:
@@ -179,6 +183,15 @@ TEST_F(SessionScriptTest, NothingThatIsShownDependsOnTheConditions) {
     EXPECT_EQ(all.front(), texts) << seed;
   }
   EXPECT_GT(orders.size(), 1u);
+}
+
+// The dashboard lists that a model was loaded.
+TEST_F(SessionScriptTest, EveryTrialOfADesignThatChoosesModelsGetsOne) {
+  design_.conditions = {"A", "B", "C", "C'"};
+  make(3);
+  FakeTrials trials;
+  ASSERT_TRUE(run(trials));
+  EXPECT_EQ(trials.models, 8);  // two blocks
 }
 
 TEST_F(SessionScriptTest, AKillAtAnyPointAsksAgainWhatWasNotAnsweredAndNothingTwice) {

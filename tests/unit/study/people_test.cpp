@@ -6,15 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "apps/study/diagnoses_output.hpp"
 #include "apps/study/participants.hpp"
 #include "apps/study/recorded/diagnoses.hpp"
 #include "apps/study/recorded/simulated_people.hpp"
+#include "apps/study/report_sections.hpp"
+#include "services/statistics/t_test.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 RecordedSource source_of(const std::vector<std::string>& codes) {
@@ -105,6 +110,24 @@ TEST_F(PairedChecksTest, MoreThanChanceIsWhatHolmLeavesBelowTheLevel) {
   SimulatedSide sut;
   sut.paired = {{.condition = 'A', .p_holm = 0.04}, {.condition = 'B', .p_holm = 0.06}, {}};
   EXPECT_EQ(sut.more_than_chance(), 1u);
+}
+
+TEST(ChanceSentenceTest, WhereNobodyWasComparedNothingIsSaidOfADifference) {
+  SimulatedSide sut;
+  EXPECT_THAT(chance_sentence(sut), HasSubstr("nobody was both"));
+  sut.paired = {{}};  // a metric that nobody has
+  EXPECT_THAT(chance_sentence(sut), HasSubstr("nobody was both"));
+  sut.paired.push_back({.condition = 'A', .n = 2});
+  EXPECT_THAT(chance_sentence(sut), HasSubstr("do not differ at all"));
+}
+
+TEST(GainSentenceTest, TheIntervalHasTheSignOfTheDifference) {
+  Diagnoses sut;
+  sut.gain = statistics::paired_t_test(std::vector{1.0, 2.0, 3.0}, std::vector{0.6, 1.4, 2.7});
+  ASSERT_TRUE(sut.gain.has_value());
+  EXPECT_THAT(gain_sentence(sut), ContainsRegex("left 0.433 N \\[0\\.[0-9]+, 0\\.[0-9]+\\] more"));
+  sut.gain = statistics::paired_t_test(std::vector{0.6, 1.4, 2.7}, std::vector{1.0, 2.0, 3.0});
+  EXPECT_THAT(gain_sentence(sut), ContainsRegex("left 0.433 N \\[0\\.[0-9]+, 0\\.[0-9]+\\] less"));
 }
 
 }  // namespace
