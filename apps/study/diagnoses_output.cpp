@@ -20,7 +20,6 @@ using close_the_loop::Finding;
 using close_the_loop::Level;
 using close_the_loop::Remaining;
 using nlohmann::ordered_json;
-using report::Cell;
 using report::Colour;
 using report::Kind;
 using report::number;

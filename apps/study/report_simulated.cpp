@@ -174,8 +174,9 @@ void add_simulated(report::Page& page, const StudyRecord& record, const report::
                         "They are other people, so nothing is compared person by person.",
                         simulated.seed));
   std::vector<std::string> failed;
-  for (const auto& [code, why] : simulated.failed)
-    failed.push_back(code + ": not simulated: " + why);
+  for (const auto& [code, why] : simulated.failed) {
+    failed.push_back(fmt::format("{}: not simulated: {}", code, why));
+  }
   if (!failed.empty()) page.list(failed);
   if (simulated.results.empty()) return;
   page.table(means_table(record));

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -125,19 +126,30 @@ struct Announced {
   std::int64_t place = 0;
 };
 
+// The whole number behind these words, if there is one.
+std::optional<std::int64_t> number_after(std::string_view text, std::string_view words) {
+  const std::size_t at = text.find(words);
+  if (at == std::string_view::npos) return std::nullopt;
+  text.remove_prefix(at + words.size());
+  std::int64_t number = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  return read.ec == std::errc() ? std::optional(number) : std::nullopt;
+}
+
 // "experiment: trial 4, practice" or "experiment: trial 4, block 1, place 2, label X", by number.
 std::map<std::int64_t, Announced> announced_in(const SessionRecording& recorded) {
   std::map<std::int64_t, Announced> out;
   for (const auto& event : recorded.events) {
     if (event.kind() != stillhand_msgs::EVENT_NOTE || event.source() != "experiment") continue;
-    const char* text = event.text().c_str();
-    long number = -1;
-    long block = 0;
-    long place = 0;
-    const int found = std::sscanf(text, "experiment: trial %9ld, block %9ld, place %9ld", &number,
-                                  &block, &place);
-    const bool practice = std::string_view(text).ends_with(", practice");
-    if (found == 3 || (found == 1 && practice)) out[number] = {practice, block, place};
+    const std::string_view text = event.text().c_str();
+    const auto number = number_after(text, "experiment: trial ");
+    if (!number) continue;
+    const auto block = number_after(text, ", block ");
+    const auto place = number_after(text, ", place ");
+    const bool practice = text.ends_with(", practice");
+    if (practice || (block && place)) {
+      out[*number] = {practice, block.value_or(0), place.value_or(0)};
+    }
   }
   return out;
 }

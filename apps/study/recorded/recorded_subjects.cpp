@@ -67,6 +67,7 @@ std::vector<Person> people_of(const std::vector<SessionFile>& files, double leas
     }
   }
   std::vector<Person> out;
+  out.reserve(people.size());
   for (auto& [code, person] : people) out.push_back(std::move(person));
   return out;
 }

@@ -208,7 +208,7 @@ std::vector<PairedCheck> paired_checks(const std::vector<std::string>& participa
         check.test = tested(one, other);
       }
       if (check.test) p.push_back(check.test->p);
-      out.push_back(std::move(check));
+      out.push_back(check);
     }
   }
   if (p.empty()) return out;

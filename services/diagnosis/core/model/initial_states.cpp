@@ -30,6 +30,7 @@ std::vector<double> quick_poles(const std::vector<double>& denominator, const Si
     for (std::size_t i = polynomial.size(); i-- > 1;) polynomial[i] -= pole * polynomial[i - 1];
   }
   std::vector<double> quick;
+  quick.reserve(polynomial.size());
   for (const std::complex<double>& c : polynomial) quick.push_back(c.real());
   return quick;
 }
