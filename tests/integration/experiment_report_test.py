@@ -3,7 +3,6 @@
 """The study of an experiment's recordings: `experiment report`, exclusion rules, planned comparisons, --plan, and every
 test next to NumPy, SciPy and statsmodels on the exported tables.
 """
-import csv
 import itertools
 import json
 import shutil
@@ -13,25 +12,17 @@ import numpy
 from scipy import special, stats
 
 import lab_process
-from sample_experiment import WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, stillhand, unblind
+from sample_experiment import (WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, number, rows, stillhand,
+                               unblind)
 
 PARTICIPANTS = 12
 METRICS = {"rms_error_mm": "rms error [mm]", "dwell_ratio": "dwell ratio [-]", "crossover_hz": "crossover [Hz]"}
 EXACT = 1e-9
 
 
-def rows(file):
-    with open(file, encoding="utf-8", newline="") as text:
-        return list(csv.DictReader(text))
-
-
 def tree(folder):
     """{name: bytes} of all files."""
     return {file.name: file.read_bytes() for file in folder.iterdir() if file.is_file()}
-
-
-def number(text):
-    return float(text) if text else numpy.nan
 
 
 class ReportTest(SampleExperimentCase):

@@ -4,7 +4,6 @@
 are in tables, figures and planned comparisons, each participant has a page. Every number next to NumPy and SciPy on the
 exported tables.
 """
-import csv
 import html.parser
 import itertools
 import json
@@ -15,7 +14,8 @@ import numpy
 from scipy import stats
 
 import lab_process
-from sample_experiment import WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, stillhand, unblind
+from sample_experiment import (WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, number, rows, stillhand,
+                               unblind)
 
 PARTICIPANTS = 7
 CONDITIONS = ("A", "B", "C", "C'", "C+")
@@ -23,15 +23,6 @@ PAIRS = (("A", "B"), ("B", "C"), ("B", "C'"), ("B", "C+"), ("C", "C'"), ("C'", "
 METRICS = {"rms_error_mm": "rms error [mm]", "dwell_ratio": "dwell ratio [-]", "crossover_hz": "crossover [Hz]"}
 RESTORATIONS = {"C": "restoration", "C'": "restoration_c_prime", "C+": "restoration_c_plus"}
 EXACT = 1e-9
-
-
-def rows(file):
-    with open(file, encoding="utf-8", newline="") as text:
-        return list(csv.DictReader(text))
-
-
-def number(text):
-    return float(text) if text else numpy.nan
 
 
 def control_model(folder):

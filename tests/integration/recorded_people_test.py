@@ -4,7 +4,6 @@
 and the same people simulated in one process. Every figure next to NumPy and SciPy on the exported tables; a diagnosis
 next to `stillhand close-the-loop` on the same recording.
 """
-import csv
 import json
 import shutil
 import warnings
@@ -13,19 +12,11 @@ import numpy
 from scipy import stats
 
 import lab_process
-from sample_experiment import WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, stillhand, unblind
+from sample_experiment import (WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, number, rows, stillhand,
+                               unblind)
 
 METRICS = {"rms_error_mm": "rms error [mm]", "dwell_ratio": "dwell ratio [-]", "crossover_hz": "crossover [Hz]"}
 EXACT = 1e-9
-
-
-def rows(file):
-    with open(file, encoding="utf-8", newline="") as text:
-        return list(csv.DictReader(text))
-
-
-def number(text):
-    return float(text) if text else numpy.nan
 
 
 def signed_rank_p(differences):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """An experiment's folder with simulated participants, made in seconds and without a bus (write_sample_experiment.cpp)."""
+import csv
+import math
 import pathlib
 import re
 import subprocess
@@ -37,6 +39,17 @@ def new_experiment(folder, participants, *words, **values):
 def conduct(folder, *otherwise):
     """Every participant.  `otherwise`: arguments of write_sample_experiment."""
     subprocess.run([str(WRITE_SAMPLE), str(folder), *map(str, otherwise)], check=True, timeout=LIMIT_S)
+
+
+def rows(file):
+    """Of a CSV file, by the names of its columns."""
+    with open(file, encoding="utf-8", newline="") as text:
+        return list(csv.DictReader(text))
+
+
+def number(text):
+    """Of a cell; an empty one is not a number."""
+    return float(text) if text else math.nan
 
 
 def unblind(folder):
