@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "apps/calibrate/calibrate_command.hpp"
 #include "apps/close_the_loop/closed_loop_command.hpp"
 #include "apps/close_the_loop/control_model_command.hpp"
 #include "apps/dashboard/dashboard_command.hpp"
@@ -56,6 +57,7 @@ int run(int argc, char** argv) {
     stillhand::record::add_record_command(cli, status);
     stillhand::replay::add_replay_command(cli, status);
     stillhand::dashboard::add_dashboard_command(cli, status);
+    stillhand::calibrate::add_calibrate_command(cli, status);
     stillhand::stop::add_stop_command(cli, status);
     stillhand::deploy::add_deploy_command(cli, status);
     cli.parse(argc, argv);

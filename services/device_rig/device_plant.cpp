@@ -52,6 +52,29 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
   }
 }
 
+std::string DevicePlant::device_of(CalibratedSignal signal) const {
+  const bool angle = signal == CalibratedSignal::kAngle;
+  const bool force = signal == CalibratedSignal::kForce;
+  switch (angle ? parts_.angle : force ? parts_.force : parts_.acceleration) {
+    case Parts::Source::kSimulated:
+      return {};
+    case Parts::Source::kDrive: {
+      const std::string drive = "drive, serial " + drive_->serial();
+      if (angle) return drive + ", encoder";
+      return drive + ", AUX" +
+             std::to_string(force ? devices_.drive.force_input : devices_.drive.acceleration_input);
+    }
+    case Parts::Source::kPlatform:
+      return "platform at " + devices_.platform.address;
+    case Parts::Source::kIio: {
+      const IioConfig& config = force ? devices_.load_cell : devices_.accelerometer;
+      const IioLink& link = force ? *load_cell_ : *accelerometer_;
+      return "IIO " + config.device + ", serial " + link.serial() + ", " + config.channel;
+    }
+  }
+  return {};
+}
+
 bool DevicePlant::drive_fresh() const noexcept {
   return is_young(stick_.sequence, stick_.at_ns, now_ns_, devices_.drive.max_age_ticks);
 }

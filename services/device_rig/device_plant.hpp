@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "services/device_rig/calibration_file.hpp"
 #include "services/device_rig/core/arming.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/device_rig/core/repeated_number.hpp"
@@ -34,6 +35,8 @@ class DevicePlant final : public rig::Plant {
   [[nodiscard]] bool prepared() const noexcept override;
   [[nodiscard]] const char* unsound() const noexcept override { return why_; }
   [[nodiscard]] const char* parts() const noexcept override { return words_.c_str(); }
+  /// The device that measures a signal, with its serial number; empty: the signal is simulated.
+  [[nodiscard]] std::string device_of(CalibratedSignal signal) const;
 
  private:
   void take_drive() noexcept;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/device_rig/drive_link.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -41,6 +43,7 @@ DriveLink::DriveLink(const DriveConfig& config, const moteus::SettingLimits& lim
     throw ConfigError(drive + ": " + fault->name, fault->got,
                       fault->want + "; this mends it: " + fault->mend);
   }
+  opened_ = ask_serial();
   sample_.checked = true;
   samples_.store(sample_);
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
@@ -93,7 +96,9 @@ bool DriveLink::check_again() {
   if (port_->gone()) return false;
   reply_clock_.clear();
   const auto trip_ms = round_trip_ms();
-  const bool good = trip_ms && *trip_ms <= kSlowest_ms && !wrong_setting();
+  // Another drive has another zero of its angle, and amplifiers that nobody calibrated.
+  const bool good =
+      trip_ms && *trip_ms <= kSlowest_ms && !wrong_setting() && ask_serial() == opened_;
   sample_.checked = good;
   samples_.store(sample_);
   return good;
@@ -157,6 +162,10 @@ void DriveLink::take(const moteus::Received& received) noexcept {
     answer_.take(item->console);
   }
   if (console) return;
+  if (const auto serial = moteus::read_serial(received.frame.payload())) {
+    serial_ = serial;
+    return;
+  }
   const auto reply = moteus::read_reply(received.frame.payload());
   if (reply.whole) {
     take_state(reply);
@@ -232,6 +241,22 @@ std::optional<std::string> DriveLink::ask(std::string_view name) {
     if (receive_until(next_ns, [&] { return answer_.line().has_value(); })) return answer_.line();
   }
   return std::nullopt;
+}
+
+std::optional<moteus::SerialNumber> DriveLink::ask_serial() {
+  serial_.reset();
+  // A firmware that does not know these registers answers with an error.
+  for (int attempt = 0; attempt < kTrips && !serial_ && !port_->gone(); ++attempt) {
+    send(moteus::serial_frame());
+    receive_until(runtime::monotonic_ns() + kAnswerLimit_ns / 10,
+                  [&] { return serial_.has_value(); });
+  }
+  return serial_;
+}
+
+std::string DriveLink::serial() const {
+  if (!opened_) return "unknown";
+  return fmt::format("{:08x}-{:08x}-{:08x}", (*opened_)[2], (*opened_)[1], (*opened_)[0]);
 }
 
 }  // namespace stillhand::device_rig

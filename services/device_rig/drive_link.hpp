@@ -48,6 +48,8 @@ class DriveLink {
 
   void demand(Order order, double torque_n_m) noexcept;
   const DriveSample& newest() noexcept { return samples_.load(); }
+  /// Serial number of the drive that was opened, in hexadecimal digits; "unknown" if it has none.
+  [[nodiscard]] std::string serial() const;
 
  private:
   struct Demand {
@@ -74,6 +76,8 @@ class DriveLink {
   /// Reads the settings back.  @returns the first that is wrong
   std::optional<moteus::SettingFault> wrong_setting();
   std::optional<std::string> ask(std::string_view name);
+  /// Asks the drive who it is.
+  std::optional<moteus::SerialNumber> ask_serial();
 
   DriveConfig config_;
   moteus::SettingLimits limits_;
@@ -81,11 +85,13 @@ class DriveLink {
   runtime::Bell bell_;
   runtime::LatestValue<Demand> demands_;
   runtime::LatestValue<DriveSample> samples_;
-  std::uint64_t demand_number_ = 0;  // the loop's
+  std::uint64_t demand_number_ = 0;             // the loop's
+  std::optional<moteus::SerialNumber> opened_;  ///< of the drive that was opened; then constant
   // The thread's.
   moteus::LineSplitter splitter_;
   ReplyClock reply_clock_;
   moteus::ConsoleAnswer answer_;
+  std::optional<moteus::SerialNumber> serial_;  ///< newest answer
   DriveSample sample_;
   std::uint64_t sent_number_ = 0;
   bool piece_sent_ = false;  ///< the port took a part of a line

@@ -33,6 +33,8 @@ class IioLink {
   IioLink& operator=(const IioLink&) = delete;
 
   const IioSample& newest() noexcept { return samples_.load(); }
+  /// Serial number of the device when it was opened, or "unknown".
+  [[nodiscard]] const std::string& serial() const noexcept { return serial_; }
 
  private:
   void work(const std::stop_token& stop);
@@ -40,6 +42,7 @@ class IioLink {
 
   double factor_;
   runtime::IioDevice device_;
+  std::string serial_ = device_.serial();  ///< the thread may open the device again
   runtime::LatestValue<IioSample> samples_;
   // The thread's.
   IioSample sample_;

@@ -7,6 +7,24 @@
 #include "services/settings/check_name.hpp"
 #include "services/settings/load.hpp"
 
+namespace {
+
+// README Eq. DR-16: what sensing uses is what was calibrated on these devices, not long ago.
+void refuse_uncalibrated(const stillhand::device_rig::DevicePlant& plant,
+                         const stillhand::device_rig::DevicesConfig& devices,
+                         const std::filesystem::path& folder) {
+  using namespace stillhand;
+  if (devices.calibration.max_age_days == 0) return;
+  const auto calibrations = device_rig::load_calibrations(folder / "calibration.yaml");
+  const auto sensing = settings::load<sensing::Config>(folder / "sensing.yaml", "sensing");
+  for (const device_rig::CalibratedSignal signal : device_rig::kCalibratedSignals) {
+    device_rig::check_calibration(signal, calibrations.of(signal), plant.device_of(signal), sensing,
+                                  devices.calibration.max_age_days, device_rig::today());
+  }
+}
+
+}  // namespace
+
 // On the bus it is the session's rig.
 int main(int argc, char** argv) {
   using namespace stillhand;
@@ -18,6 +36,7 @@ int main(int argc, char** argv) {
         if (file.empty()) file = service.options().config / "devices.yaml";
         const auto devices = settings::load<device_rig::DevicesConfig>(file, "devices");
         device_rig::DevicePlant plant(rig, devices);
+        refuse_uncalibrated(plant, devices, service.options().config);
         rig::Shell(service, plant, rig.motor).run();
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {

@@ -135,6 +135,12 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     laboratory_.saturate(value != 0.0);
   } else if (word == "hold") {
     laboratory_.hold_acceleration(value != 0.0);
+  } else if (word == "pull") {
+    laboratory_.pull(value);
+  } else if (word == "tilt") {
+    laboratory_.tilt(value);
+  } else if (word == "turn") {
+    laboratory_.turn(value);
   } else if (!obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value)) {
     std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
   }
@@ -149,6 +155,8 @@ bool EmulatedLoop::obey_drive(const std::string& word, double value, std::int64_
     drive_.forget(static_cast<std::uint32_t>(value));
   } else if (word == "nan") {
     drive_.lose_position(value != 0.0);
+  } else if (word == "serial") {
+    drive_.be(static_cast<std::uint32_t>(value));
   } else {
     return false;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/emulators/laboratory.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -20,6 +21,10 @@ constexpr double kSupply_v = 3.3;
 constexpr double kMiddle_v = 1.65;
 constexpr double kAccelGain = 0.97;
 constexpr double kForceGain = 0.2;
+// Of the sensors themselves: rig.yaml.
+constexpr double kAccel_v_m_s2 = 0.1019716;
+constexpr double kForce_v_n = 0.1;
+constexpr double kTurn_rad_tick = 0.01;  // a quick hand
 
 /// The drive has its own bounds: the simulated motor only keeps its lag.
 rig::RigConfig without_barrier(rig::RigConfig config) {
@@ -92,12 +97,15 @@ void Laboratory::step(std::int64_t now_ns, Person* person) {
   const rig::RigTruth& truth = output_.truth;
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   constexpr double kCounts = 4096.0;  // rig.yaml
-  if (!held_) accel_v_ = saturated_ ? kSupply_v : kMiddle_v + kAccelGain * output_.raw.accel_y_v;
-  drive_.sense(
-      {.position_rev = static_cast<double>(output_.raw.encoder_counts) / kCounts + slip_rev_,
-       .velocity_rev_s = truth.omega_rad_s / kTurn_rad,
-       .analog1 = (kMiddle_v + kForceGain * output_.raw.load_cell_v) / kSupply_v,
-       .analog2 = accel_v_ / kSupply_v});
+  const double accel_v = output_.raw.accel_y_v + kAccel_v_m_s2 * tilt_m_s2_;
+  if (!held_) accel_v_ = saturated_ ? kSupply_v : kMiddle_v + kAccelGain * accel_v;
+  const double force_v = output_.raw.load_cell_v + kForce_v_n * pull_n_;
+  turn_rad_ += std::clamp(wanted_turn_rad_ - turn_rad_, -kTurn_rad_tick, kTurn_rad_tick);
+  drive_.sense({.position_rev = static_cast<double>(output_.raw.encoder_counts) / kCounts +
+                                slip_rev_ + turn_rad_ / kTurn_rad,
+                .velocity_rev_s = truth.omega_rad_s / kTurn_rad,
+                .analog1 = (kMiddle_v + kForceGain * force_v) / kSupply_v,
+                .analog2 = accel_v_ / kSupply_v});
   platform_.stand({.position_m = truth.platform_position_m,
                    .velocity_m_s = truth.platform_velocity_m_s,
                    .acceleration_m_s2 = truth.platform_acceleration_m_s2});

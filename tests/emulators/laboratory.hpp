@@ -53,6 +53,11 @@ class Laboratory {
   void step(std::int64_t now_ns, Person* person);
   /// The encoder slips by so much.
   void slip(double angle_rev) { slip_rev_ += angle_rev; }
+  /// What a person does who calibrates: a force on the load cell, an accelerometer that is tilted,
+  /// a stick that is turned by hand.
+  void pull(double force_n) { pull_n_ = force_n; }
+  void tilt(double acceleration_m_s2) { tilt_m_s2_ = acceleration_m_s2; }
+  void turn(double angle_rad) { wanted_turn_rad_ = angle_rad; }
   /// The accelerometer's amplifier sticks at its end.
   void saturate(bool saturated) { saturated_ = saturated; }
   /// The accelerometer's input gives the number that it gave last.
@@ -67,6 +72,8 @@ class Laboratory {
   PlatformEmulator& platform_;
   rig::RigOutput output_{};
   double slip_rev_ = 0.0;
+  double pull_n_ = 0.0, tilt_m_s2_ = 0.0;
+  double turn_rad_ = 0.0, wanted_turn_rad_ = 0.0;
   bool saturated_ = false;
   bool held_ = false;
   double accel_v_ = 0.0;

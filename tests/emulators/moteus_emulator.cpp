@@ -100,6 +100,11 @@ class Bytes {
   std::size_t at_ = 0;
 };
 
+void put_varuint(std::vector<std::uint8_t>& reply, std::uint32_t value) {
+  for (; value >= 0x80; value >>= 7) reply.push_back((value & 0x7fu) | 0x80u);
+  reply.push_back(static_cast<std::uint8_t>(value));
+}
+
 void put(std::vector<std::uint8_t>& reply, std::uint32_t address, unsigned kind, double value) {
   std::uint32_t bits = 0;
   const unsigned size = kind == 0 ? 1 : kind == 1 ? 2 : 4;
@@ -244,7 +249,7 @@ std::vector<std::uint8_t> MoteusEmulator::frame(const std::vector<std::uint8_t>&
       talked = true;
       reply.push_back(static_cast<std::uint8_t>(0x20u | kind << 2 | (count <= 3 ? count : 0u)));
       if (count > 3) reply.push_back(static_cast<std::uint8_t>(count));
-      reply.push_back(static_cast<std::uint8_t>(first));
+      put_varuint(reply, first);
       for (std::uint32_t i = 0; i < count; ++i) {
         put(reply, first + i, kind, of_register(first + i, now_ns));
       }
@@ -376,6 +381,12 @@ double MoteusEmulator::of_register(std::uint32_t address, std::int64_t now_ns) c
       return converted(senses_.analog2);
     case 0x70:
       return std::floor(1e-6 * static_cast<double>(now_ns - began_ns_));
+    case 0x120:
+      return serial_;
+    case 0x121:
+      return 0x5030;
+    case 0x122:
+      return 0x3230;
     default:
       return 0.0;
   }

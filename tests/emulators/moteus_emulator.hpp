@@ -58,6 +58,8 @@ class MoteusEmulator {
   void set(const std::string& name, const std::string& value) { settings_[name] = value; }
   /// A register that this firmware does not know; reading it is an error.
   void forget(std::uint32_t address) { unknown_ = address; }
+  /// Another drive in its place.
+  void be(std::uint32_t serial) { serial_ = serial; }
   /// The position has no value.
   void lose_position(bool lost) { lost_ = lost; }
 
@@ -90,6 +92,7 @@ class MoteusEmulator {
   std::uint64_t since_stop_ = 0;  ///< commands
   std::uint32_t unknown_ = 0xffff;
   bool lost_ = false;
+  std::uint32_t serial_ = 0x1d003a;  ///< least significant word
 };
 
 }  // namespace stillhand::emulators

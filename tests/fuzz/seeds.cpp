@@ -81,7 +81,7 @@ std::string bag() {
 }
 
 // A pegged trial and one of tracking.
-std::string session() {
+std::string session_recording() {
   tests::SessionFile file(2048, recording::Compression::kNone);
   file.assignment(0, stillhand_msgs::MOTION_BAND_NOISE, false);
   file.control(0, stillhand_msgs::PHASE_PEGGED, 0, 60);
@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
   write(out / "mcap/lz4", mcap_of(recording::Compression::kLz4));
   write(out / "mcap/zstd", mcap_of(recording::Compression::kZstd));
   write(out / "bag/ros2", bag());
-  write(out / "bag/session", session());
+  write(out / "bag/session", session_recording());
   write(out / "json/linear", identification::model_json(linear()));
   write(out / "json/control", cancellation::control_model_json(every_part(), 1));
   write_messages(out / "cdr");

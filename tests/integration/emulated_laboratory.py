@@ -43,7 +43,7 @@ def free_port():
         return one.getsockname()[1]
 
 
-def devices_yaml(link, port, uart=False, iio=None, **signals):
+def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, **signals):
     """Settings in which every signal is a device's, but those that are given. `iio`: uri of an IIO context."""
     if iio:
         signals = {"acceleration": "iio", "force": "iio"} | signals
@@ -54,6 +54,8 @@ def devices_yaml(link, port, uart=False, iio=None, **signals):
     lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}"]
     for group in ("accelerometer", "load_cell") if iio else ():
         lines += [f"{group}:", f"  uri: {iio}", f"  max_age_ticks: {MAX_AGE_MS}"]
+    # The amplifiers are known; a test that calibrates asks for it.
+    lines += ["calibration:", f"  max_age_days: {max_age_days}"]
     return "\n".join(lines) + "\n"
 
 

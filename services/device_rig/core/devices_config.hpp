@@ -130,6 +130,17 @@ struct IioConfig {
   }
 };
 
+/// What a session asks of the calibration of its devices.
+struct CalibrationRule {
+  std::int64_t max_age_days = 90;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("max_age_days", self.max_age_days, Range{0.0, 3650.0},
+          "[days] oldest calibration (stillhand calibrate) of a device; 0: none is asked for");
+  }
+};
+
 /// The rig made of devices: devices.yaml.
 struct DevicesConfig {
   SignalsConfig signals;
@@ -137,6 +148,7 @@ struct DevicesConfig {
   PlatformLinkConfig platform;
   IioConfig accelerometer{.device = "accelerometer", .channel = "accel_y"};
   IioConfig load_cell{.device = "bridge", .channel = "voltage0"};
+  CalibrationRule calibration;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
@@ -145,6 +157,7 @@ struct DevicesConfig {
     visit.group("platform", self.platform);
     visit.group("accelerometer", self.accelerometer);
     visit.group("load_cell", self.load_cell);
+    visit.group("calibration", self.calibration);
   }
 };
 

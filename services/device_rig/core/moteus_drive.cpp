@@ -130,4 +130,28 @@ DriveReply read_reply(std::span<const std::uint8_t> payload) noexcept {
   return reply;
 }
 
+Frame serial_frame() noexcept {
+  Frame frame;
+  FrameWriter writer(frame);
+  writer.read(Resolution::kInt32, kSerialNumber, SerialNumber{}.size());
+  writer.pad();
+  return frame;
+}
+
+std::optional<SerialNumber> read_serial(std::span<const std::uint8_t> payload) noexcept {
+  SerialNumber serial{};
+  unsigned seen = 0;
+  FrameReader reader(payload);
+  while (const auto item = reader.next()) {
+    const std::uint32_t word = item->address - kSerialNumber;
+    if (item->kind != FrameReader::Kind::kValue || word >= serial.size()) return std::nullopt;
+    constexpr double kMost = 2147483648.0;  // all bits of a word are its own
+    if (!(std::abs(item->value) <= kMost)) return std::nullopt;
+    serial[word] = static_cast<std::uint32_t>(static_cast<std::int64_t>(item->value));
+    seen |= 1u << word;
+  }
+  if (!reader.sound() || seen != 7u) return std::nullopt;
+  return serial;
+}
+
 }  // namespace stillhand::device_rig::moteus

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "services/device_rig/core/moteus_frame.hpp"
@@ -55,5 +57,12 @@ struct DriveReply {
 };
 
 DriveReply read_reply(std::span<const std::uint8_t> payload) noexcept;
+
+/// The drive's serial number, least significant word first.
+using SerialNumber = std::array<std::uint32_t, 3>;
+/// Asks for the serial number alone.
+Frame serial_frame() noexcept;
+/// Nothing if the frame is not the answer to serial_frame().
+std::optional<SerialNumber> read_serial(std::span<const std::uint8_t> payload) noexcept;
 
 }  // namespace stillhand::device_rig::moteus

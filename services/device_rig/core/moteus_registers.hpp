@@ -26,6 +26,7 @@ enum Register : std::uint32_t {
   kAnalog1 = 0x060,       ///< [-] 0 to 1, first of AUX1
   kAnalog2 = 0x068,       ///< [-] 0 to 1, first of AUX2
   kMilliseconds = 0x070,  ///< counter, wraps
+  kSerialNumber = 0x120,  ///< 96 bit in three registers, least significant word first
 };
 
 /// How a value travels; its place in the type byte of a subframe.

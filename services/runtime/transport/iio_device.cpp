@@ -3,6 +3,7 @@
 
 #include <iio.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -29,6 +30,15 @@ IioFormat format_of(const iio_channel* channel) {
   format.highest = (std::int64_t{1} << bits) - 1;
   format.lowest = data.is_signed ? -format.highest - 1 : 0;
   return format;
+}
+
+std::string serial_of(const iio_context* context, const iio_device* device) {
+  std::array<char, 128> text{};
+  if (iio_device_debug_attr_read(device, "serial_number", text.data(), text.size()) > 0) {
+    return text.data();
+  }
+  const char* value = iio_context_get_attr_value(context, "hw_serial");
+  return value != nullptr ? value : "unknown";
 }
 
 std::string error_text() { return std::generic_category().message(errno); }
@@ -114,6 +124,7 @@ void IioDevice::open() {
   iio_channel_enable(channel_);
   format_ = format_of(channel_);
   if (iio_device_attr_read_double(device_, "sampling_frequency", &rate_hz_) < 0) rate_hz_ = 0.0;
+  serial_ = serial_of(context_, device_);
   const std::lock_guard lock(mutex_);
   if (!cancelled_) buffer_ = iio_device_create_buffer(device_, 1, false);
   if (buffer_ == nullptr) {

@@ -49,6 +49,9 @@ class IioDevice {
   [[nodiscard]] const IioFormat& format() const noexcept { return format_; }
   /// `sampling_frequency` of the device [Hz]; 0: it does not say.
   [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }
+  /// `serial_number` of the device (a debug attribute of some drivers) or `hw_serial` of the
+  /// context; "unknown": neither is there.
+  [[nodiscard]] const std::string& serial() const noexcept { return serial_; }
 
  private:
   void open();
@@ -61,6 +64,7 @@ class IioDevice {
   std::string channel_name_;
   IioFormat format_;
   double rate_hz_ = 0.0;
+  std::string serial_ = "unknown";
   iio_context* context_ = nullptr;
   iio_device* device_ = nullptr;
   iio_channel* channel_ = nullptr;

@@ -72,6 +72,7 @@ TEST_F(UartLinkTest, SpeaksWithChecksums) {
   EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
                            [](const DriveSample& sample) { return sample.sequence > 5; }));
   EXPECT_EQ(sut.newest().damaged, 0u);
+  EXPECT_EQ(sut.serial(), "00003230-00005030-001d003a");
 }
 
 TEST_F(DriveLinkTest, ADriveThatDampsAfterATimeoutIsRefusedWithTheCommandThatMendsIt) {
@@ -139,6 +140,20 @@ TEST_F(DriveLinkTest, AfterTheCableWasOutTheDriveIsCheckedAgain) {
   emulated_.with([](auto&, auto& serial) { serial.put_in(); });
   EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
                            [](const DriveSample& sample) { return sample.checked; }));
+}
+
+// Its angle has another zero, and nobody calibrated what is wired to it.
+TEST_F(DriveLinkTest, AnotherDriveInItsPlaceIsNotChecked) {
+  DriveLink sut(config_, kLimits);
+  emulated_.with([](auto&, auto& serial) { serial.pull_out(); });
+  EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return !sample.checked; }));
+  emulated_.with([](auto& drive, auto& serial) {
+    drive.be(77);
+    serial.put_in();
+  });
+  // The same drive is checked again after 2.1 s (the test before).
+  EXPECT_FALSE(eventually([&] { return sut.newest().checked; }, std::chrono::seconds(4)));
 }
 
 TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/calibrate/calibrate_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "apps/calibrate/calibrate.hpp"
+#include "services/settings/check_name.hpp"
+
+namespace stillhand::calibrate {
+
+void add_calibrate_command(CLI::App& cli, int& status) {
+  auto options = std::make_shared<CalibrateOptions>();
+  auto signal = std::make_shared<std::string>();
+  CLI::App* calibrate = cli.add_subcommand(
+      "calibrate",
+      "Calibrates a sensor of a rig of devices, by steps that a person makes: zero, gain, sign,\n"
+      "noise, and what the other sensors see. No motor is armed. Writes the result into\n"
+      "sensing.yaml and calibration.yaml of --config; a session with devices asks for it.\n"
+      "Example: stillhand calibrate force --config hall --person kl --known 0,5,10,-5,-10");
+  calibrate->add_option("signal", *signal, "force, acceleration or angle")
+      ->required()
+      ->check(CLI::IsMember({"force", "acceleration", "angle"}));
+  calibrate
+      ->add_option("--config", options->config,
+                   "your folder of settings, with devices.yaml; a copy of deploy/config to begin "
+                   "with")
+      ->required()
+      ->check(settings::check_name);
+  calibrate->add_option("--person", options->person, "who does it")
+      ->required()
+      ->check(settings::check_name);
+  calibrate->add_option("--sensor", options->sensor, "number that is printed on the sensor");
+  calibrate->add_option(
+      "--known", options->known,
+      "quantities that act, + right, in N or kg, m/s^2 or g, rad or deg; the first one comes again "
+      "at the end [0,5,10,-5,-10 N; 0,1g,-1g; 0,10deg,20deg,-10deg,-20deg]");
+  calibrate->add_option("--seconds", options->seconds, "time of each step [s]")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  calibrate
+      ->add_option("--tolerance", options->tolerance,
+                   "largest distance from the straight line, and largest drift, as a share of the "
+                   "largest quantity [-]")
+      ->check(CLI::Range(0.0001, 0.5))
+      ->capture_default_str();
+  calibrate->callback([options, signal, &status] {
+    const std::map<std::string, device_rig::CalibratedSignal> signals{
+        {"force", device_rig::CalibratedSignal::kForce},
+        {"acceleration", device_rig::CalibratedSignal::kAcceleration},
+        {"angle", device_rig::CalibratedSignal::kAngle}};
+    options->signal = signals.at(*signal);
+    const runtime::Stop interrupted;
+    status = run_calibrate(*options, interrupted);
+  });
+}
+
+}  // namespace stillhand::calibrate

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/device_rig/core/calibration_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+void check(std::span<const CalibrationStep> steps) {
+  std::set<double> known;
+  for (const CalibrationStep& step : steps) {
+    if (!std::isfinite(step.known) || !std::isfinite(step.reading)) {
+      throw ConfigError("calibration step", "a reading that is no number",
+                        "a sensor that measures");
+    }
+    known.insert(step.known);
+  }
+  if (known.size() < 3 || *known.begin() >= 0.0 || *known.rbegin() <= 0.0) {
+    throw ConfigError("known quantities", fmt::format("{} different ones", known.size()),
+                      "three or more, to both sides of 0");
+  }
+}
+
+}  // namespace
+
+CalibrationFit calibration_fit(std::span<const CalibrationStep> steps) {
+  check(steps);
+  const auto count = static_cast<double>(steps.size());
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  for (const CalibrationStep& step : steps) {
+    mean_x += step.known / count;
+    mean_y += step.reading / count;
+  }
+  double s_xx = 0.0;
+  double s_xy = 0.0;
+  for (const CalibrationStep& step : steps) {
+    s_xx += (step.known - mean_x) * (step.known - mean_x);
+    s_xy += (step.known - mean_x) * (step.reading - mean_y);
+  }
+  CalibrationFit fit;
+  fit.sensitivity = s_xy / s_xx;
+  if (fit.sensitivity == 0.0) {
+    throw ConfigError("readings", "the same one at every step", "a sensor that answers");
+  }
+  fit.zero = mean_y - fit.sensitivity * mean_x;
+  fit.low = fit.high = steps.front().known;
+  double squares = 0.0;
+  for (const CalibrationStep& step : steps) {
+    const double off = step.reading - fit.zero - fit.sensitivity * step.known;
+    squares += off * off;
+    fit.residual = std::max(fit.residual, std::abs(off / fit.sensitivity));
+    fit.noise = std::max(fit.noise, std::abs(step.spread / fit.sensitivity));
+    fit.low = std::min(fit.low, step.known);
+    fit.high = std::max(fit.high, step.known);
+  }
+  const double variance = squares / (count - 2.0);
+  fit.sensitivity_error = std::sqrt(variance / s_xx);
+  fit.zero_error = std::sqrt(variance * (1.0 / count + mean_x * mean_x / s_xx));
+  fit.drift = (steps.back().reading - steps.front().reading) / fit.sensitivity;
+  return fit;
+}
+
+std::string calibration_fault(const CalibrationFit& fit, double most_share) {
+  const double most = most_share * std::max(-fit.low, fit.high);
+  if (fit.sensitivity < 0.0) {
+    return "the reading falls where it must grow (positive is to the right): turn the sensor or "
+           "change its sign in devices.yaml, and calibrate again";
+  }
+  if (std::abs(fit.drift) > most) {
+    return fmt::format(
+        "the first quantity, applied again, reads {:.3g} away from the first time, "
+        "more than {:.3g}: something slipped or warms up",
+        fit.drift, most);
+  }
+  if (fit.residual > most) {
+    return fmt::format(
+        "a step is {:.3g} off the straight line, more than {:.3g}: a wrong quantity "
+        "at one step, a loose mount, or a sensor at its end",
+        fit.residual, most);
+  }
+  return {};
+}
+
+}  // namespace stillhand::device_rig

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eq. DR-16: whose calibration a session accepts.
+#include "services/device_rig/calibration_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "services/contract/config_error.hpp"
+#include "services/settings/load.hpp"
+#include "services/settings/yaml_text.hpp"
+
+namespace stillhand::device_rig {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kDrive = "drive, serial 00003230-00005030-001d003a, AUX1";
+
+class CalibrationFileTest : public testing::Test {
+ protected:
+  CalibrationFileTest() {
+    record_.date = "2026-11-25";
+    record_.device = kDrive;
+    record_.fit.sensitivity = sensing_.load_cell_sensitivity_v_n;
+    record_.fit.zero = sensing_.load_cell_offset_v;
+  }
+  std::string refusal(const std::string& today = "2026-11-30", std::int64_t max_age_days = 90) {
+    try {
+      check_calibration(CalibratedSignal::kForce, record_, device_, sensing_, max_age_days, today);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  sensing::Config sensing_;
+  CalibrationRecord record_;
+  std::string device_ = kDrive;
+};
+
+TEST_F(CalibrationFileTest, ThatOfThisDeviceAndTheseSettingsIsAccepted) {
+  EXPECT_THAT(refusal(), IsEmpty());
+  EXPECT_THAT(refusal("2027-02-23"), IsEmpty());  // 90 days
+}
+
+TEST_F(CalibrationFileTest, AnOldOneIsRefused) {
+  EXPECT_THAT(refusal("2027-02-24"), HasSubstr("91 days ago"));
+  EXPECT_THAT(refusal("2026-11-24"), HasSubstr("-1 days ago"));
+}
+
+TEST_F(CalibrationFileTest, NoneAndADateThatIsNoneAreRefused) {
+  record_.date = "";
+  EXPECT_THAT(refusal(), HasSubstr("no calibration of " + kDrive));
+  record_.date = "2026-13-01";
+  EXPECT_THAT(refusal(), HasSubstr("no calibration"));
+}
+
+TEST_F(CalibrationFileTest, ThatOfAnotherDeviceIsRefusedWithBothNames) {
+  device_ = "drive, serial 1, AUX1";
+  EXPECT_THAT(refusal(), HasSubstr(kDrive));
+  EXPECT_THAT(refusal(), HasSubstr(device_));
+}
+
+TEST_F(CalibrationFileTest, ANumberThatSomebodyTypedOverIsNamed) {
+  sensing_.load_cell_offset_v += 0.001;
+  EXPECT_THAT(refusal(), HasSubstr("sensing.yaml: load_cell_offset_v: got 0.006, want 0.005"));
+}
+
+TEST_F(CalibrationFileTest, ASimulatedSignalAndAnAgeOfZeroAskForNone) {
+  record_.date = "";
+  EXPECT_THAT(refusal("2026-11-30", 0), IsEmpty());
+  device_ = "";
+  EXPECT_THAT(refusal(), IsEmpty());
+}
+
+TEST_F(CalibrationFileTest, TheFileKeepsEveryBit) {
+  Calibrations all;
+  record_.fit.sensitivity = 0.1 + 1e-17;
+  record_.person = "k'l: #";
+  all.angle = record_;
+  const auto again = settings::load_text<Calibrations>(settings::yaml_text(all), "calibration");
+  EXPECT_EQ(again.angle.fit.sensitivity, record_.fit.sensitivity);
+  EXPECT_EQ(again.angle.person, record_.person);
+  EXPECT_EQ(again.force.date, "");
+}
+
+}  // namespace
+}  // namespace stillhand::device_rig
