@@ -7,6 +7,7 @@
 #include "apps/calibrate/calibrate_command.hpp"
 #include "apps/close_the_loop/closed_loop_command.hpp"
 #include "apps/close_the_loop/control_model_command.hpp"
+#include "apps/compare/compare_command.hpp"
 #include "apps/dashboard/dashboard_command.hpp"
 #include "apps/deploy/deploy_command.hpp"
 #include "apps/diagnose/diagnose_command.hpp"
@@ -48,6 +49,7 @@ int run(int argc, char** argv) {
     stillhand::lab::add_lab_command(cli, status);
     stillhand::experiment::add_experiment_command(cli, status);
     stillhand::study::add_study_command(cli, status);
+    stillhand::compare::add_compare_command(cli, status);
     stillhand::identify::add_identify_command(cli, status);
     stillhand::diagnose::add_diagnose_command(cli, status);
     stillhand::close_the_loop::add_closed_loop_command(cli, status);

@@ -85,4 +85,34 @@ TTest one_sample_t_test(const std::vector<double>& values, double reference, dou
   return test_of(differences, std::max(largest_magnitude(values), std::abs(reference)), confidence);
 }
 
+WelchTest welch_t_test(const std::vector<double>& first, const std::vector<double>& second,
+                       double confidence) {
+  require_sample(first, 2, "t_test.first");
+  require_sample(second, 2, "t_test.second");
+  require_inside_unit_interval(confidence, "t_test.confidence");
+  // Variances of the two means.
+  const auto of_mean = [](const std::vector<double>& values) {
+    const double s = standard_deviation(values);
+    return s * s / static_cast<double>(values.size());
+  };
+  const double a = of_mean(first);
+  const double b = of_mean(second);
+  if (!(a + b > 0.0)) {
+    throw ConfigError("t_test.first", "no variance in either sample", "values that vary");
+  }
+  WelchTest out;
+  out.mean_difference = mean(first) - mean(second);
+  out.t = out.mean_difference / std::sqrt(a + b);
+  out.degrees_of_freedom = (a + b) * (a + b) /
+                           (a * a / (static_cast<double>(first.size()) - 1.0) +
+                            b * b / (static_cast<double>(second.size()) - 1.0));
+  const boost::math::students_t distribution(out.degrees_of_freedom);
+  out.p = 2.0 * cdf(complement(distribution, std::abs(out.t)));
+  const double reach =
+      quantile(complement(distribution, (1.0 - confidence) / 2.0)) * std::sqrt(a + b);
+  out.ci_low = out.mean_difference - reach;
+  out.ci_high = out.mean_difference + reach;
+  return out;
+}
+
 }  // namespace stillhand::statistics

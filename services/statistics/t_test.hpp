@@ -44,4 +44,21 @@ TTest paired_t_test(const std::vector<double>& first, const std::vector<double>&
 TTest one_sample_t_test(const std::vector<double>& values, double reference,
                         double confidence = 0.95);
 
+/// Test of two independent samples, README Eq. ST-18.
+struct WelchTest {
+  double mean_difference = 0.0;
+  double t = 0.0;                   ///< [-]
+  double degrees_of_freedom = 0.0;  ///< [-] by Satterthwaite, no whole number
+  double p = 1.0;                   ///< [-] two-sided
+  double ci_low = 0.0;              ///< interval of the mean difference
+  double ci_high = 0.0;
+};
+
+/// mean(first) - mean(second) of samples whose variances may differ.
+/// Source: Welch, Biometrika 34, 1947.  Pure.
+/// @throws stillhand::ConfigError for a sample of fewer than two values or a value that isn't
+///         finite, two samples without variance, or a confidence outside of 0 to 1
+WelchTest welch_t_test(const std::vector<double>& first, const std::vector<double>& second,
+                       double confidence = 0.95);
+
 }  // namespace stillhand::statistics

@@ -84,6 +84,12 @@ std::string si_unit(const std::string& name) {
 }
 
 ColumnWish parse_wish(const std::string& text, const std::string& place) {
+  // YAML folds the line breaks of a text: such a title would be another one when it is read again.
+  constexpr auto is_control = [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 0x7f; };
+  if (std::ranges::any_of(text, is_control)) {
+    throw ConfigError(place, "'" + text + "'",
+                      "a title in one line; a column without one has a number: '#2=f [N]'");
+  }
   for (std::size_t at = text.rfind('='); at != std::string::npos && at > 0;
        at = text.rfind('=', at - 1)) {
     std::optional<ColumnWish> wish = channel_of(std::string_view(text).substr(at + 1));

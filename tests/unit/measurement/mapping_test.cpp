@@ -53,6 +53,13 @@ TEST(MappingTest, AWrongWishIsRefusedWithAnExample) {
   }
 }
 
+TEST(MappingTest, ATitleOfSeveralLinesIsRefused) {
+  for (const char* wrong : {"a\n\nb=f [N]", "a\x01=f [N]", "a\x7f=f"}) {
+    EXPECT_THAT(error_of([&] { parse_wish(wrong); }), HasSubstr("'#2=f [N]'")) << wrong;
+  }
+  EXPECT_EQ(parse_wish("a\tb=f [N]").from, "a\tb");
+}
+
 TEST(MappingTest, AFileGivesTheSameMappingAgain) {
   Mapping mapping;
   for (const char* wish :

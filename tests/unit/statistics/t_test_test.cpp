@@ -123,5 +123,22 @@ TEST(TTestTest, UnusableSamplesAreRefused) {
   }
 }
 
+// Eq. ST-18: scipy.stats.ttest_ind(equal_var=False) of SciPy 1.10; degrees of freedom and interval
+// with numpy.var(ddof=1) and scipy.stats.t.ppf.
+TEST(WelchTestTest, AgreesWithSciPy) {
+  const WelchTest sut = welch_t_test({23.1, 25.4, 22.8, 27.9, 24.0}, {30.2, 28.1, 35.7});
+  EXPECT_NEAR(sut.t, -2.7318488985508087, 1e-13);
+  EXPECT_NEAR(sut.p, 0.08084565529088143, 1e-13);
+  EXPECT_NEAR(sut.degrees_of_freedom, 2.695353465807146, 1e-12);
+  EXPECT_NEAR(sut.ci_low, -15.013759937894301, 1e-10);
+  EXPECT_NEAR(sut.ci_high, 1.627093271227631, 1e-10);
+}
+
+TEST(WelchTestTest, RefusesSamplesThatCannotBeTested) {
+  EXPECT_THROW(welch_t_test({1.0}, {1.0, 2.0}), ConfigError);
+  EXPECT_THROW(welch_t_test({1.0, 1.0}, {2.0, 2.0}), ConfigError);
+  EXPECT_THROW(welch_t_test({1.0, 2.0}, {2.0, 3.0}, 1.0), ConfigError);
+}
+
 }  // namespace
 }  // namespace stillhand::statistics

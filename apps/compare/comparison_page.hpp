@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "apps/compare/core/comparison.hpp"
+
+namespace stillhand::compare {
+
+/// Files that write_report() writes.
+inline constexpr const char* kReportFiles[] = {"comparison.html", "comparison.json",
+                                               "comparison.svg", "comparison.png"};
+
+/// Page, figure and numbers in a folder that exists.
+/// @throws as report::render()
+void write_report(const Comparison& all, const std::filesystem::path& folder);
+
+}  // namespace stillhand::compare
