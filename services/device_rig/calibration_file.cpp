@@ -5,8 +5,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <ctime>
+#include <iomanip>
 #include <optional>
+#include <sstream>
 
 #include "services/contract/config_error.hpp"
 #include "services/settings/load.hpp"
@@ -15,12 +17,13 @@ namespace stillhand::device_rig {
 namespace {
 
 std::optional<std::chrono::sys_days> day_of(const std::string& date) {
-  int year = 0;
-  unsigned month = 0;
-  unsigned day = 0;
-  if (std::sscanf(date.c_str(), "%4d-%2u-%2u", &year, &month, &day) != 3) return std::nullopt;
-  const std::chrono::year_month_day whole{std::chrono::year{year}, std::chrono::month{month},
-                                          std::chrono::day{day}};
+  std::tm parts{};
+  std::istringstream text(date);
+  if (!(text >> std::get_time(&parts, "%Y-%m-%d"))) return std::nullopt;
+  const std::chrono::year_month_day whole{
+      std::chrono::year{parts.tm_year + 1900},
+      std::chrono::month{static_cast<unsigned>(parts.tm_mon + 1)},
+      std::chrono::day{static_cast<unsigned>(parts.tm_mday)}};
   if (!whole.ok()) return std::nullopt;
   return std::chrono::sys_days(whole);
 }
