@@ -214,6 +214,31 @@ Finding check_governor(const std::vector<std::string>& governors) {
                "again after each restart");
 }
 
+Finding check_serial_port(const SerialPortState& port) {
+  if (!port.exists) {
+    return wrong("serial-port", port.path + " is not there",
+                 "connect the drive, and name its port in devices.yaml (drive.port); "
+                 "/dev/serial/by-id has names that stay");
+  }
+  if (!port.open_to_us) {
+    return wrong("serial-port", port.path + " may not be read and written",
+                 fmt::format("sudo adduser $USER {}; log in again", port.group));
+  }
+  return good("serial-port", port.path + " may be read and written");
+}
+
+Finding check_latency_timer(const SerialPortState& port) {
+  const auto timer_ms = number_at<int>(port.latency_timer);
+  if (!timer_ms) return not_checked("latency", port.path + " has no latency timer");
+  if (*timer_ms <= 1) return good("latency", fmt::format("{} ms", *timer_ms));
+  return wrong(
+      "latency",
+      fmt::format("the serial chip of {} collects bytes for {} ms, 1 is needed", port.path,
+                  *timer_ms),
+      "echo 'ACTION==\"add\", SUBSYSTEM==\"usb-serial\", ATTR{latency_timer}=\"1\"' | sudo tee "
+      "/etc/udev/rules.d/60-stillhand.rules; connect it again");
+}
+
 Finding check_keys(const std::vector<std::string>& refused,
                    const std::vector<std::string>& expiring) {
   const std::string mend =

@@ -65,6 +65,19 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
 /// @param governors  text of each /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor
 Finding check_governor(const std::vector<std::string>& governors);
 
+/// The serial port of a drive.
+struct SerialPortState {
+  std::string path;  ///< of devices.yaml
+  bool exists = false;
+  bool open_to_us = false;  ///< may be read and written
+  std::string group = {};   ///< that owns it
+  std::string latency_timer =
+      {};  ///< text of the USB serial driver's latency_timer; empty: has none
+};
+Finding check_serial_port(const SerialPortState& port);
+/// A USB serial chip may collect bytes for 16 ms; at 1 kHz it has to hand them on after 1 ms.
+Finding check_latency_timer(const SerialPortState& port);
+
 /// @param refused   message of runtime::check_identity() for each service whose keys it refuses
 /// @param expiring  runtime::expiry_warning() of the others
 Finding check_keys(const std::vector<std::string>& refused,

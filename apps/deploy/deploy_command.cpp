@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +24,7 @@ namespace {
 struct Words {
   std::filesystem::path inventory;
   std::filesystem::path profiles;  ///< qos/profiles.xml
+  std::filesystem::path devices;   ///< devices.yaml; empty: no rig of devices
   std::string out;
   std::string host;
   std::string json;
@@ -91,7 +93,10 @@ int run_check(const Words& words) {
   const Inventory inventory = read_inventory(words.inventory);
   const Host& host = this_host(inventory, words.host);
   const LabProfiles profiles(words.profiles);
-  const std::vector<Finding> findings = check_machine(inventory, host, profiles.buffers());
+  std::vector<Finding> findings = check_machine(inventory, host, profiles.buffers());
+  if (!words.devices.empty()) {
+    std::ranges::move(check_devices(words.devices), std::back_inserter(findings));
+  }
   const bool all_good = std::ranges::none_of(
       findings, [](const Finding& each) { return each.state == State::kWrong; });
   for (const Finding& each : findings) {
@@ -142,6 +147,10 @@ void add_deploy_command(CLI::App& cli, int& status) {
   common(check);
   check->add_option("--host", words->host,
                     "this machine's host; by default the one whose address it has");
+  check
+      ->add_option("--devices", words->devices,
+                   "devices.yaml of a rig of devices: also check the drive's serial port")
+      ->check(settings::check_name);
   check->add_option("--json", words->json, "also write the results to this file")
       ->check(settings::check_name);
   check->callback([words, &status] { status = run_check(*words); });

@@ -2,9 +2,11 @@
 #include "apps/deploy/machine.hpp"
 
 #include <arpa/inet.h>
+#include <grp.h>
 #include <ifaddrs.h>
 #include <linux/capability.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/timex.h>
 #include <unistd.h>
@@ -20,7 +22,9 @@
 #include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/core/parts.hpp"
 #include "services/runtime/bus/identity.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -148,6 +152,26 @@ std::vector<std::string> authority_keys_of(const Inventory& inventory) {
     if (fs::exists(key, unseen)) found.push_back(key.string());
   }
   return found;
+}
+
+std::vector<Finding> check_devices(const fs::path& devices) {
+  const auto config = settings::load<device_rig::DevicesConfig>(devices, "devices");
+  if (!device_rig::parts_of(config).needs_drive()) return {};
+  SerialPortState port{.path = config.drive.port};
+  struct stat state {};
+  port.exists = stat(port.path.c_str(), &state) == 0;
+  port.open_to_us = access(port.path.c_str(), R_OK | W_OK) == 0;
+  if (port.exists) {
+    const group* owner = getgrgid(state.st_gid);
+    port.group = owner != nullptr ? owner->gr_name : std::to_string(state.st_gid);
+    std::error_code error;
+    const fs::path device = fs::canonical(port.path, error);
+    port.latency_timer =
+        read_of(fs::path("/sys/bus/usb-serial/devices") / device.filename() / "latency_timer");
+  }
+  std::vector<Finding> findings{check_serial_port(port)};
+  if (port.exists) findings.push_back(check_latency_timer(port));
+  return findings;
 }
 
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,

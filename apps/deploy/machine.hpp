@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,11 @@ Finding check_keys_of(const Inventory& inventory, const Host& host);
 
 /// Private keys of an authority in the folders from which a host's services read their keys.
 std::vector<std::string> authority_keys_of(const Inventory& inventory);
+
+/// The checks of a rig of devices on this machine.
+/// @param devices  devices.yaml
+/// @throws ConfigError for a file that is refused
+std::vector<Finding> check_devices(const std::filesystem::path& devices);
 
 /// Runs every check on this machine as that host.  Reads /proc, /sys and the folder of keys.
 std::vector<Finding> check_machine(const Inventory& inventory, const Host& host,

@@ -135,6 +135,33 @@ TEST(CheckTest, ProgramsThatAskForAnyPortMustGetNoneOfTheDomains) {
   EXPECT_THAT(check_ephemeral_ports("", "", 10400, 10441), not_checked());
 }
 
+TEST(CheckTest, TheDrivesPortHasToBeThereAndOpen) {
+  SerialPortState port{.path = "/dev/ttyACM0"};
+  EXPECT_THAT(check_serial_port(port), wrong("/dev/ttyACM0 is not there", "/dev/serial/by-id"));
+  port.exists = true;
+  port.group = "dialout";
+  EXPECT_THAT(check_serial_port(port).mend, HasSubstr("adduser $USER dialout"));
+  port.open_to_us = true;
+  EXPECT_THAT(check_serial_port(port), good());
+}
+
+TEST(CheckTest, ASerialChipHandsBytesOnAtOnce) {
+  SerialPortState port{.path = "/dev/ttyUSB0", .exists = true};
+  EXPECT_THAT(check_latency_timer(port), not_checked());
+  port.latency_timer = "16\n";
+  EXPECT_THAT(check_latency_timer(port), wrong("collects bytes for 16 ms", "latency_timer"));
+  port.latency_timer = "1\n";
+  EXPECT_THAT(check_latency_timer(port), good());
+}
+
+TEST(CheckTest, OnlyARigWithADriveHasAPort) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "devices.yaml";
+  std::ofstream(file) << "signals:\n  platform: plain_udp\n";
+  EXPECT_THAT(check_devices(file), IsEmpty());
+  std::ofstream(file) << "signals:\n  force: drive\ndrive:\n  port: /dev/null\n";
+  EXPECT_THAT(check_devices(file), SizeIs(2));
+}
+
 TEST(CheckTest, EveryProcessorMustKeepItsSpeed) {
   EXPECT_THAT(check_governor({"performance\n", "performance\n"}), good());
   EXPECT_THAT(check_governor({"performance\n", "powersave\n"}),
