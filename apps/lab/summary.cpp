@@ -65,6 +65,13 @@ void print_models(const session::SessionResult& result,
       std::printf("feedthrough force cancelled while tracking: %.1f %%\n",
                   100.0 * *trial.cancelled_share);
     }
+    if (trial.sensed_share) {
+      std::printf(
+          "of the stick's motion with the seat, as sensed in B, %c takes away: %.0f %% (%.0f to "
+          "%.0f)\n",
+          trial.label, 100.0 * trial.sensed_share->share, 100.0 * trial.sensed_share->low,
+          100.0 * trial.sensed_share->high);
+    }
   }
   if (result.conversion) {
     std::printf(

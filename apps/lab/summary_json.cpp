@@ -26,6 +26,11 @@ ordered_json condition_json(const session::TrialResult& trial) {
   }
   condition["crossover_reference_hz"] = or_null(trial.metrics.crossover_reference_hz);
   condition["cancelled_share"] = or_null(trial.cancelled_share);
+  if (trial.sensed_share) {
+    condition["cancelled_share_sensed"] = {
+        {"mean", trial.sensed_share->share},
+        {"interval95", {trial.sensed_share->low, trial.sensed_share->high}}};
+  }
   if (trial.counterforce_delay_s) {
     condition["counterforce_delay_ms"] = or_null(1e3 * *trial.counterforce_delay_s);
   }

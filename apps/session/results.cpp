@@ -156,6 +156,33 @@ RateConversionCost conversion_cost(const SessionRecording& session,
   return {rms(fast_error) / rms(judged), rms(held_error) / rms(judged)};
 }
 
+SensedMotion sensed_motion(const SessionRecording& session, const Trial& trial) {
+  std::int64_t missing = 0;
+  return {measured(
+              session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing),
+          measured(
+              session.sensed, trial, [](const auto& s) { return s.theta_rad(); }, missing)};
+}
+
+void judge_by_senses(const SessionRecording& session, const std::vector<TrialOutcome>& outcomes,
+                     SessionResult& result) {
+  const auto moves_alone = [](const TrialOutcome& outcome) {
+    return outcome.completed && outcome.planned.trial.phase == TrialPhase::kTracking &&
+           outcome.planned.moving && !outcome.planned.cancellation;
+  };
+  const auto without = std::ranges::find_if(outcomes, moves_alone);
+  if (without == outcomes.end()) return;
+  const SensedMotion moving = sensed_motion(session, without->planned.trial);
+  for (TrialResult& trial : result.trials) {
+    const auto outcome = std::ranges::find_if(outcomes, [&](const TrialOutcome& each) {
+      return each.planned.trial.number == trial.number;
+    });
+    if (!outcome->planned.cancellation) continue;
+    trial.sensed_share =
+        sensed_share(moving, sensed_motion(session, outcome->planned.trial), kControlRateHz);
+  }
+}
+
 }  // namespace
 
 SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes) {
@@ -176,6 +203,7 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
       if (std::isfinite(cost.control_filter)) result.conversion = cost;
     }
   }
+  judge_by_senses(session, outcomes, result);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/session/sensed_share.hpp"
 #include "apps/session/session_recording.hpp"
 #include "apps/session/trial_forces.hpp"
 #include "apps/session/trial_outcome.hpp"
@@ -31,6 +32,8 @@ struct TrialResult {
   /// force the body would exert with the stick held, f_m the motor's; only where the platform
   /// moves.
   std::optional<double> cancelled_share;
+  /// The same from what is sensed, next to the session's trial without cancellation, Eq. SN-7.
+  std::optional<SensedShare> sensed_share;
   TrialForces forces;
   /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
   std::optional<double> counterforce_delay_s;

@@ -97,6 +97,10 @@ class LabSessionTest(unittest.TestCase):
         # The motor is off in B.
         self.assertEqual(self.summary["conditions"]["B"]["cancelled_share"], 0.0)
         self.assertIsNone(self.summary["conditions"]["A"]["cancelled_share"])
+        sensed = self.summary["conditions"]["C"]["cancelled_share_sensed"]
+        self.assertLess(sensed["interval95"][0], sensed["mean"])
+        # Of short trials; SN-7 sees the part that follows the acceleration alone.
+        self.assertAlmostEqual(sensed["mean"], self.summary["conditions"]["C"]["cancelled_share"], delta=0.3)
         model = json.loads((self.lab.out / "model.json").read_text())
         self.assertTrue(model)
 
