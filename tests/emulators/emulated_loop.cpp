@@ -135,6 +135,8 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     laboratory_.saturate(value != 0.0);
   } else if (word == "hold") {
     laboratory_.hold_acceleration(value != 0.0);
+  } else if (word == "swapped") {
+    laboratory_.swap_wires(value != 0.0);
   } else if (word == "pull") {
     laboratory_.pull(value);
   } else if (word == "tilt") {

@@ -101,11 +101,12 @@ void Laboratory::step(std::int64_t now_ns, Person* person) {
   if (!held_) accel_v_ = saturated_ ? kSupply_v : kMiddle_v + kAccelGain * accel_v;
   const double force_v = output_.raw.load_cell_v + kForce_v_n * pull_n_;
   turn_rad_ += std::clamp(wanted_turn_rad_ - turn_rad_, -kTurn_rad_tick, kTurn_rad_tick);
-  drive_.sense({.position_rev = static_cast<double>(output_.raw.encoder_counts) / kCounts +
-                                slip_rev_ + turn_rad_ / kTurn_rad,
-                .velocity_rev_s = truth.omega_rad_s / kTurn_rad,
-                .analog1 = (kMiddle_v + kForceGain * force_v) / kSupply_v,
-                .analog2 = accel_v_ / kSupply_v});
+  drive_.sense(
+      {.position_rev = static_cast<double>(output_.raw.encoder_counts) / kCounts + slip_rev_ +
+                       turn_rad_ / kTurn_rad,
+       .velocity_rev_s = truth.omega_rad_s / kTurn_rad,
+       .analog1 = (kMiddle_v + (swapped_ ? -kForceGain : kForceGain) * force_v) / kSupply_v,
+       .analog2 = accel_v_ / kSupply_v});
   platform_.stand({.position_m = truth.platform_position_m,
                    .velocity_m_s = truth.platform_velocity_m_s,
                    .acceleration_m_s2 = truth.platform_acceleration_m_s2});

@@ -58,6 +58,8 @@ class Laboratory {
   void pull(double force_n) { pull_n_ = force_n; }
   void tilt(double acceleration_m_s2) { tilt_m_s2_ = acceleration_m_s2; }
   void turn(double angle_rad) { wanted_turn_rad_ = angle_rad; }
+  /// The load cell's wires are the wrong way round.
+  void swap_wires(bool swapped) { swapped_ = swapped; }
   /// The accelerometer's amplifier sticks at its end.
   void saturate(bool saturated) { saturated_ = saturated; }
   /// The accelerometer's input gives the number that it gave last.
@@ -76,6 +78,7 @@ class Laboratory {
   double turn_rad_ = 0.0, wanted_turn_rad_ = 0.0;
   bool saturated_ = false;
   bool held_ = false;
+  bool swapped_ = false;
   double accel_v_ = 0.0;
 };
 

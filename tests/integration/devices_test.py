@@ -114,6 +114,16 @@ class DevicesTest(DevicesCase):
         self.assertIn("servo.timeout_mode: got 12, want 0: the driver is off after a timeout; this mends it: "
                       "conf set servo.timeout_mode 0, then conf write", lab.errors()[-1])
 
+    def test_a_load_cell_of_the_wrong_sign_gives_no_model_and_no_force(self):
+        arguments = quick_session(self.folder / "config")
+        domain = next_domain()
+        laboratory = self.laboratory(domain=domain)
+        laboratory.order("swapped", 1)
+        lab = self.lab("--rig", "devices", *arguments, domain=domain)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1, lab.errors())
+        self.assertIn("an idle hand stays behind the seat", lab.errors()[-1])
+        self.assertEqual(laboratory.report()["most_torque_n_m"], 0.0)
+
     def test_a_port_that_is_not_there_is_refused(self):
         laboratory = self.laboratory()
         laboratory.close()

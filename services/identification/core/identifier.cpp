@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/identification/core/identifier.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
+#include "services/signal/difference_model.hpp"
 
 namespace stillhand::identification {
 
@@ -23,6 +26,18 @@ void convert_refined(IdentificationSteps& steps, int order, const ConversionBand
     }
     --order;
     steps.refined = refine_output_error(steps.record, fit_arx(steps.record, order).model);
+  }
+}
+
+// Eq. ID-21.  A sensor of the wrong sign turns the model round, and the motor would help the seat.
+void check_sign(const DifferenceModel& model, std::int64_t expected) {
+  constexpr double kLowest_hz = 0.7;  // of the identification motion, paper III-A
+  const double gain = signal::response_at(model, kLowest_hz).real();
+  if (gain * static_cast<double>(expected) < 0.0) {
+    throw ConfigError(
+        "feedthrough at 0.7 Hz", fmt::format("{:+.2f} N per m/s^2", gain),
+        "the other sign: an idle hand stays behind the seat. Check the signs of the accelerometer "
+        "and the load cell (stillhand calibrate)");
   }
 }
 
@@ -68,7 +83,9 @@ FeedthroughModel identify(const Record& recorded, const Config& config) {
 Identification identify(const PeggedTrial& trial, const Config& config) {
   if (std::string why = why_unusable(trial); !why.empty()) return {std::nullopt, std::move(why)};
   try {
-    return {identify(trial.record, config), {}};
+    FeedthroughModel model = identify(trial.record, config);
+    check_sign(model.fit, config.expected_sign);
+    return {std::move(model), {}};
   } catch (const ConfigError& error) {
     return {std::nullopt, error.what()};
   }

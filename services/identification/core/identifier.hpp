@@ -19,6 +19,7 @@ struct Config {
   std::int64_t order = 4;              ///< p of Eq. ID-1
   bool refine = false;                 ///< Eq. ID-6 after the paper's fit
   double max_conversion_error = 0.05;  ///< bound on Eq. ID-11
+  std::int64_t expected_sign = -1;     ///< Eq. ID-21
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
@@ -29,6 +30,10 @@ struct Config {
     visit(
         "max_conversion_error", self.max_conversion_error, Range{0.001, 1.0},
         "[-] largest error of the 1 kHz filter over 0 to 10 Hz, over the excited band's peak gain");
+    visit(
+        "expected_sign", self.expected_sign, Range{-1.0, 1.0},
+        "[-] sign of a live model's gain at 0.7 Hz; -1: an idle hand stays behind the seat (paper "
+        "IV-A: phase 180 degrees); 0: any");
   }
 };
 
@@ -70,7 +75,8 @@ struct Identification {
   std::string why_not;  ///< one line for a person where there is no model
 };
 
-/// identify() of a collected trial, or why_unusable(); a ConfigError becomes its text.
+/// identify() of a collected trial, or why_unusable(); a ConfigError becomes its text.  A model
+/// with another sign than the expected one is refused, Eq. ID-21.
 Identification identify(const PeggedTrial& trial, const Config& config);
 
 }  // namespace stillhand::identification

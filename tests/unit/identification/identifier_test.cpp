@@ -87,5 +87,18 @@ TEST(IdentifierTest, ACollectedTrialGivesTheModelOfItsRecord) {
   EXPECT_EQ(outcome.model->control.numerator, identify(trial.record).control.numerator);
 }
 
+// Eq. ID-21: the load cell's wires are the wrong way round.
+TEST(IdentifierTest, AForceOnTheSideOfTheAccelerationIsRefusedLive) {
+  PeggedTrial trial{pegged_trial(0.05), 0, 4};
+  for (double& force : trial.record.force_n) force = -force;
+  const Identification turned = identify(trial, {});
+  EXPECT_FALSE(turned.model);
+  EXPECT_NE(turned.why_not.find("an idle hand stays behind the seat"), std::string::npos)
+      << turned.why_not;
+  Config any;
+  any.expected_sign = 0;
+  EXPECT_TRUE(identify(trial, any).model);
+}
+
 }  // namespace
 }  // namespace stillhand::identification
