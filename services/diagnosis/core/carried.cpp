@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kThirds = 3;  // of a single recording
 constexpr double kHelps = 0.01;     // of a recording's error, as SearchOptions::least_fall
-constexpr double kSpreads[] = {0.1, 0.3, 1.0, 3.0};  // of a prior, of the RMS gain in the band
+constexpr double kSpreads[] = {0.03, 0.1, 0.3, 1.0,
+                               3.0};  // of a prior, of the RMS gain in the band
 constexpr int kCarryIterations = 30;
 constexpr int kPartIterations = 3;
 
