@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 
 #include "apps/study/shard.hpp"
 #include "services/contract/config_error.hpp"
@@ -22,15 +23,21 @@ std::string cbor_of(const std::string& text) {
 }
 
 // Of this process, for the one file.
-std::filesystem::path folder() {
-  static const std::filesystem::path path = [] {
-    const auto own =
-        std::filesystem::temp_directory_path() / ("fuzz_shard_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(own);
-    std::atexit([] { std::filesystem::remove_all(folder()); });
-    return own;
-  }();
-  return path;
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("fuzz_shard_" + std::to_string(::getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+};
+
+const std::filesystem::path& folder() {
+  static const Folder own;
+  return own.path;
 }
 
 }  // namespace
