@@ -21,6 +21,7 @@
 #include "apps/replay/replay_command.hpp"
 #include "apps/stop/stop_command.hpp"
 #include "apps/study/study_command.hpp"
+#include "apps/vehicle/vehicle_command.hpp"
 #include "services/contract/config_error.hpp"
 #include "version.hpp"
 
@@ -50,6 +51,7 @@ int run(int argc, char** argv) {
     stillhand::experiment::add_experiment_command(cli, status);
     stillhand::study::add_study_command(cli, status);
     stillhand::compare::add_compare_command(cli, status);
+    stillhand::vehicle::add_vehicle_command(cli, status);
     stillhand::identify::add_identify_command(cli, status);
     stillhand::diagnose::add_diagnose_command(cli, status);
     stillhand::close_the_loop::add_closed_loop_command(cli, status);

@@ -47,20 +47,21 @@ void GrowingOscillation::reset() noexcept {
   started_ = found_ = false;
 }
 
+bool GrowingOscillation::in_band() const noexcept {
+  return std::ranges::all_of(past_, [this](const HalfWave& half) {
+    return half.ticks >= shortest_ && half.ticks <= longest_;
+  });
+}
+
 bool GrowingOscillation::regular() const noexcept {
-  Tick longest = 0;
-  Tick shortest = longest_ + 1;
-  for (const HalfWave& half : past_) {
-    longest = std::max(longest, half.ticks);
-    shortest = std::min(shortest, half.ticks);
-  }
-  return shortest >= shortest_ && longest <= longest_ &&
-         static_cast<double>(longest) <= limits_.regularity * static_cast<double>(shortest);
+  const auto [shortest, longest] = std::ranges::minmax(past_, {}, &HalfWave::ticks);
+  return static_cast<double>(longest.ticks) <=
+         limits_.regularity * static_cast<double>(shortest.ticks);
 }
 
 // Eq. VH-7.
 bool GrowingOscillation::grows() const noexcept {
-  return now_.peak_rad >= limits_.floor_rad &&
+  return regular() && now_.peak_rad >= limits_.floor_rad &&
          now_.peak_rad >= limits_.growth * past_[0].peak_rad &&
          past_[0].peak_rad >= limits_.growth * past_[1].peak_rad &&
          past_[1].peak_rad >= limits_.growth * past_[2].peak_rad;
@@ -93,7 +94,7 @@ bool GrowingOscillation::step(double theta_rad) noexcept {
   }
   now_.ticks = std::min(now_.ticks + 1, longest_ + 1);
   now_.peak_rad = std::max(now_.peak_rad, std::abs(y));
-  if (!found_ && regular() && (grows() || too_large())) {
+  if (!found_ && in_band() && (grows() || too_large())) {
     found_ = true;
     frequency_hz_ = kControlRateHz / static_cast<double>(past_[0].ticks + past_[1].ticks);
   }

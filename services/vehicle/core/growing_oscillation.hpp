@@ -15,7 +15,7 @@ struct OscillationLimits {
   double low_hz = 0.7;
   double high_hz = 10.0;
   double floor_rad = 0.04;
-  double ceiling_rad = 0.12;
+  double ceiling_rad = 0.08;
   double growth = 1.05;
   double regularity = 1.6;
 
@@ -28,7 +28,8 @@ struct OscillationLimits {
     visit("floor_rad", self.floor_rad, Range{0.005, 0.3},
           "[rad] smallest amplitude that counts as growing; own choice, 4 mm at the hand");
     visit("ceiling_rad", self.ceiling_rad, Range{0.01, 0.5},
-          "[rad] amplitude that no regular oscillation may hold, growing or not; own choice");
+          "[rad] amplitude that no oscillation may hold, growing or not; own choice, twice the "
+          "floor");
     visit("growth", self.growth, Range{1.0, 2.0},
           "[-] from each half wave to the next, three times in a row");
     visit("regularity", self.regularity, Range{1.05, 4.0},
@@ -42,7 +43,7 @@ struct OscillationLimits {
 ///
 ///   regular:   longest / shortest of the last three half waves <= regularity, each in the band
 ///   growing:   regular, p_0 >= floor,  p_k >= growth p_(k+1) for k = 0, 1, 2        (VH-7)
-///   too large: regular, p_0, p_1, p_2 >= ceiling                                    (VH-8)
+///   too large: the last three half waves in the band, p_0, p_1, p_2 >= ceiling       (VH-8)
 ///
 /// Four half waves are two periods, and three of them one and a half, which leaves room for the
 /// band-pass: either finding comes at most two periods after the amplitude passed its bound.  A
@@ -64,12 +65,15 @@ class GrowingOscillation {
   [[nodiscard]] double frequency_hz() const noexcept { return frequency_hz_; }
   /// [rad] largest |y| of the half wave that goes on.
   [[nodiscard]] double amplitude_rad() const noexcept { return now_.peak_rad; }
+  /// [rad] the same of the half wave before it.
+  [[nodiscard]] double last_amplitude_rad() const noexcept { return past_[0].peak_rad; }
 
  private:
   struct HalfWave {
     double peak_rad = 0.0;
     Tick ticks = 0;
   };
+  [[nodiscard]] bool in_band() const noexcept;
   [[nodiscard]] bool regular() const noexcept;
   [[nodiscard]] bool grows() const noexcept;
   [[nodiscard]] bool too_large() const noexcept;

@@ -122,7 +122,8 @@ GainInterval critical_gain(const VehicleConfig& config, const IdentifiedResponse
   }
   std::sort(gains.begin(), gains.end());
   const auto at = [&](double share) {
-    return gains[static_cast<std::size_t>(share * static_cast<double>(gains.size() - 1) + 0.5)];
+    return gains[static_cast<std::size_t>(
+        std::lround(share * static_cast<double>(gains.size() - 1)))];
   };
   return {gain, at(0.025), at(0.975)};
 }

@@ -64,11 +64,12 @@ TEST(GrowingOscillationTest, AGrowingOscillationIsFoundWithinTwoPeriods) {
   }
 }
 
-// One that grows too slowly to stand out from noise is found at the ceiling.
+// One that grows too slowly to stand out from noise is found at the ceiling.  At the edges of the
+// band the filter takes 2 % of the amplitude, which is one half wave of such growth.
 TEST(GrowingOscillationTest, ASlowlyGrowingOscillationIsFoundWithinTwoPeriodsOfTheCeiling) {
   for (const double f : {0.8, 2.0, 4.5, 9.0}) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-      const Found found = run(f, 1.02, OscillationLimits{}.ceiling_rad, seed);
+      const Found found = run(f, 1.02, OscillationLimits{}.ceiling_rad / 0.98, seed);
       ASSERT_GE(found.at, 0) << f << " Hz";
       EXPECT_LE(static_cast<double>(found.at - found.onset), 2.0 * kControlRateHz / f) << f;
     }
@@ -82,7 +83,7 @@ TEST(GrowingOscillationTest, ADyingOrASmallOscillationIsNone) {
     for (Tick n = 0; n < 20'000; ++n) {
       const double t = static_cast<double>(n) * kControlPeriod_s;
       const double s = std::sin(kTwoPi * f * t);
-      dying.step(0.3 * std::pow(0.6, 2.0 * f * t) * s);  // two half waves above the ceiling
+      dying.step(0.2 * std::pow(0.6, 2.0 * f * t) * s);  // two half waves above the ceiling
       small.step(0.8 * OscillationLimits{}.floor_rad * s);
     }
     EXPECT_FALSE(small.found()) << f;
@@ -129,7 +130,7 @@ TEST(GrowingOscillationTest, FalseAlarmsOfAStableLoopAreRare) {
     const double sigma = rms_rad / std::sqrt(kTwoPi * 2.5 * kControlPeriod_s / (4.0 * damping));
     GrowingOscillation sut{limits};
     int count = 0;
-    for (Tick n = 0; n < 20 * 60'000; ++n) {
+    for (Tick n = 0; n < 1'200'000; ++n) {
       if (!sut.step(loop.step(sigma * normal()).x)) continue;
       ++count;
       sut.reset();

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/vehicle/vehicle_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "apps/report/command_line.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/progress.hpp"
+#include "apps/report/staged_folder.hpp"
+#include "apps/vehicle/region.hpp"
+#include "apps/vehicle/region_output.hpp"
+#include "services/runtime/process/stop.hpp"
+#include "services/settings/check_name.hpp"
+#include "services/settings/check_number.hpp"
+
+namespace stillhand::vehicle {
+namespace {
+
+struct Words {
+  RegionOptions options;
+  std::filesystem::path out;
+};
+
+int run(const Words& words) {
+  runtime::Stop stop;
+  RegionOptions options = words.options;
+  if (options.gains_m_s2_rad.empty()) options.gains_m_s2_rad = geometric_gains();
+  preset(options.preset);  // an unknown name is refused before the folder is made
+  report::StagedFolder folder(words.out);
+  report::require_gnuplot();
+  report::ProgressLine progress;
+  const Region region = map_region(options, [&](const char* step, double done) {
+    progress.show(step, done);
+    return !stop.requested();
+  });
+  progress.finish();
+  if (region.runs.empty()) {
+    std::fputs("stillhand vehicle: stopped; nothing was written\n", stderr);
+    return 1;
+  }
+  folder.write("summary.json", region_json(options, region));
+  folder.write("runs.csv", runs_csv(region));
+  folder.write("limits.csv", limits_csv(region));
+  const auto drawings = report::render({{region_figure(options, region)}}, folder.path());
+  region_page(options, region, report::command_line(), drawings)
+      .write(folder.path() / "report.html");
+  folder.publish(region_files());
+  std::fputs(region_text(options, region).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void add_vehicle_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  RegionOptions& options = words->options;
+  CLI::App* verb = cli.add_subcommand(
+      "vehicle",
+      "Maps the stable region of the loop through vehicle and hand, in one process: the stick\n"
+      "drives the vehicle whose acceleration shakes the hand. Each simulated subject is\n"
+      "identified; the critical gain is predicted, and the whole grid of gain and delay is\n"
+      "driven, without and with cancellation. A growing oscillation ends a drive.\n"
+      "Example: stillhand vehicle --preset excavator --subjects 6 --out region");
+  verb->add_option("--out", words->out, "folder for figure, report and numbers")
+      ->required()
+      ->check(settings::check_name);
+  verb->add_option("--preset", options.preset,
+                   "first_order, second_order, excavator, wheelchair or aircraft_roll")
+      ->capture_default_str();
+  verb->add_option("--subjects", options.subjects, "number of simulated subjects")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb->add_option("--seed", options.seed, "of everything random")
+      ->check(CLI::Range(0, 2'000'000'000))
+      ->capture_default_str();
+  verb->add_option("--gains", options.gains_m_s2_rad,
+                   "gains of the grid [m/s^2 per rad], rising, 0.1 to 100; 17 from 4 to 100 if "
+                   "none is given")
+      ->delimiter(',');
+  verb->add_option("--delays", options.delays_s, "delays of the grid [s], rising, 0.02 to 1")
+      ->delimiter(',')
+      ->capture_default_str();
+  verb->add_option("--drive-seconds", options.drive_s, "length of each drive [s]")
+      ->check(settings::number_between(6.0, 600.0))
+      ->capture_default_str();
+  verb->add_option("--threads", options.threads,
+                   "number of threads, 0: one per core; the results do not depend on it")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::vehicle
