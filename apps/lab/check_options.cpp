@@ -5,9 +5,11 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/parts.hpp"
+#include "services/motion/core/motion_generator.hpp"
 #include "services/motion/ride_file.hpp"
 #include "services/runtime/process/domain.hpp"
 #include "services/settings/load.hpp"
+#include "services/vehicle/vehicle_settings.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -47,6 +49,20 @@ void check_combinations(const LabOptions& options) {
   }
 }
 
+// The name, the settings, and their bounds, before anything starts.
+void check_vehicle(const LabOptions& options) {
+  if (options.vehicle.empty()) return;
+  if (options.attach) {
+    throw ConfigError("--attach", "--vehicle with it", "stillhand-vehicle_motion as a service");
+  }
+  const auto limits =
+      settings::load<motion::MotionGenerator::Config>(options.config / "motion.yaml", "motion")
+          .limits;
+  const auto settings =
+      settings::load<vehicle::VehicleSettings>(options.config / "vehicle.yaml", "vehicle");
+  const vehicle::DrivenMotion checked(vehicle::driven_config(limits, settings, options.vehicle));
+}
+
 void check_values(const LabOptions& options) {
   if (options.domain > runtime::kMaxDomain) {
     throw ConfigError("--domain", fmt::to_string(options.domain),
@@ -77,6 +93,7 @@ AskedMotions check_options(const LabOptions& options) {
   const auto planned = session::plan(options.protocol);  // checks durations and road
   check_combinations(options);
   check_values(options);
+  check_vehicle(options);
   return rehearse(options.trials.empty() ? planned : options.trials, options.protocol,
                   ride_of(options), options.config);
 }

@@ -102,6 +102,12 @@ void add_motion_options(CLI::App& lab, LabOptions& options, Words& words) {
                  "road for --motion road: ISO 8608 class, A (very good) to H [B]");
   lab.add_option("--speed-m-s", words.road_speed_m_s,
                  "speed of the vehicle on that road [m/s], 0.5 to 70 [20]");
+  lab.add_option("--vehicle", options.vehicle,
+                 "in B and C the stick drives a vehicle that moves the platform: first_order, "
+                 "second_order, excavator, wheelchair, aircraft_roll, or settings (vehicle.yaml of "
+                 "--config); a growing oscillation ends the trial")
+      ->check(settings::check_name)
+      ->excludes(lab.get_option("--motion"));
   CLI::Option* canceller = lab.add_option(
       "--canceller", options.canceller,
       "of condition C: now (1 kHz), or paper (behind the paper's low-pass of 10 Hz, at 50 Hz, one "

@@ -28,6 +28,7 @@ struct LabOptions {
   std::filesystem::path config;    ///< folder of the services' settings
   std::uint32_t domain = 0;
   std::uint32_t rig = 1;
+  std::string vehicle;            ///< that the stick drives in B and C; empty: none
   std::filesystem::path devices;  ///< which device serves which signal; empty: the simulated rig
   bool headless = false;
   bool video = false;     ///< headless display writes DIR/screen.avi

@@ -42,6 +42,7 @@ Arguments recorder_words(const LabOptions& options, const Place& place) {
 
 // What the assignment on the bus does not say.
 Arguments motion_words(const LabOptions& options) {
+  if (!options.vehicle.empty()) return {"--vehicle", options.vehicle};
   const session::ProtocolOptions& protocol = options.protocol;
   switch (protocol.motion) {
     case session::Motion::kRide:
@@ -89,8 +90,10 @@ std::vector<Launch> launches(const LabOptions& options, const Hosts& hosts,
     Launch launch;
     launch.name = service;
     const bool devices = service == "rig" && !options.devices.empty();
-    launch.executable =
-        options.programs / (devices ? "stillhand-device_rig" : "stillhand-" + launch.name);
+    const bool driven = service == "motion" && !options.vehicle.empty();
+    launch.executable = options.programs / (devices  ? "stillhand-device_rig"
+                                            : driven ? "stillhand-vehicle_motion"
+                                                     : "stillhand-" + launch.name);
     launch.log = options.out / "logs" / (launch.name + ".log");
     launch.arguments = shared_words(options, hosts, place);
     launch.arguments.insert(launch.arguments.end(), {"--experiment", experiment});

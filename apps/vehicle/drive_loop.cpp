@@ -35,6 +35,14 @@ motion::MotionProfile pegged_profile(Tick duration_ticks, std::uint64_t seed) {
   return profile;
 }
 
+void keep_extremes(const motion::PlatformCommand& next, double theta_rad, DriveOutcome& out) {
+  out.farthest_m = std::max(out.farthest_m, std::abs(next.position_m));
+  out.fastest_m_s = std::max(out.fastest_m_s, std::abs(next.velocity_m_s));
+  out.hardest_m_s2 = std::max(out.hardest_m_s2, std::abs(next.acceleration_m_s2));
+  out.shaped = out.shaped || (next.flags & (kWorkspaceLimit | kSaturated)) != 0;
+  out.largest_rad = std::max(out.largest_rad, std::abs(theta_rad));
+}
+
 // Since when every half wave of the stick passes a bound; 0: the last one does not.
 struct Passed {
   double bound_rad;
@@ -156,13 +164,18 @@ FreeStick DriveLoop::free_stick(const admittance::Excitation& excitation, int pe
   return out;
 }
 
-DriveOutcome DriveLoop::drive(double seconds, bool cancel) {
+Trial DriveLoop::next_trial(double seconds) {
   Trial trial;
   trial.number = ++trials_;
   trial.phase = TrialPhase::kTracking;
   trial.duration_ticks = ticks_in(seconds);
   trial.ramp_ticks = kRamp_ticks;
   trial.start_tick = tick_ + kLead_ticks + kRamp_ticks + 1;
+  return trial;
+}
+
+DriveOutcome DriveLoop::drive(double seconds, bool cancel) {
+  const Trial trial = next_trial(seconds);
   driven_.arm({}, trial, true);
   ahead_.fill(last_command_);
   DriveOutcome out;
@@ -183,12 +196,7 @@ DriveOutcome DriveLoop::drive(double seconds, bool cancel) {
     const Now now = tick_once(asked);
     ahead_[slot] = driven_.step(
         {tick_, now.sensed.theta_rad, (now.sensed.flags & (kInputInvalid | kInputStale)) == 0});
-    const motion::PlatformCommand& next = ahead_[slot];
-    out.farthest_m = std::max(out.farthest_m, std::abs(next.position_m));
-    out.fastest_m_s = std::max(out.fastest_m_s, std::abs(next.velocity_m_s));
-    out.hardest_m_s2 = std::max(out.hardest_m_s2, std::abs(next.acceleration_m_s2));
-    out.shaped = out.shaped || (next.flags & (kWorkspaceLimit | kSaturated)) != 0;
-    out.largest_rad = std::max(out.largest_rad, std::abs(now.truth.theta_rad));
+    keep_extremes(ahead_[slot], now.truth.theta_rad, out);
     if (tick_ >= last - trial.ramp_ticks - kTail_ticks && tick_ < last - trial.ramp_ticks) {
       squares += now.truth.theta_rad * now.truth.theta_rad;
     }

@@ -82,6 +82,8 @@ class DriveLoop {
     bool permitted = false;
   };
   Now tick_once(const Asked& asked);
+  /// A trial that begins as soon as the lead allows.
+  Trial next_trial(double seconds);
   /// Platform and motor to rest.
   void settle(double seconds);
 

@@ -152,8 +152,9 @@ const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick t
                                                       RigInput& input) {
   // A stop that came during the wait counts.
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
-  const bool closed =
-      interlock_.step(trial, tick, service_.bus().peers_alive() && plant_.unsound() == nullptr);
+  const bool closed = interlock_.step(
+      trial, tick,
+      service_.bus().peers_alive() && plant_.unsound() == nullptr && !drive_ended(trial));
   const bool permitted = closed && stop_tick_ < 0;
   const auto* motor = motor_now();
   put_motor(input, tick, motor, permitted);
@@ -168,6 +169,7 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
     service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
                         interlock_.stopped() ? topics::kEmergencyStop.data()
                         : unsound != nullptr ? unsound
+                        : drive_ended(trial) ? "growing oscillation of the stick"
                                              : service_.bus().why_not_alive());
   }
   if (notice.force_zero) {
@@ -178,6 +180,7 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
 
 const stillhand_msgs::PlatformCommand* Shell::command_for(Tick tick) {
   arriving_commands_.consume_all([this](const stillhand_msgs::PlatformCommand& command) {
+    if ((command.flags() & kFault) != 0) ended_trial_ = command.trial();
     if (command.tick() >= 0) {
       commands_[static_cast<std::size_t>(command.tick()) % kCommandsAhead] = command;
     }

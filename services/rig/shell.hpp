@@ -41,6 +41,10 @@ class Shell {
   void await_answer(Tick tick, std::int64_t due_ns);
   /// The motor's part of the input, as it is now: newest command and interlock.
   const stillhand_msgs::MotorCommand* take_motor(const Trial& trial, Tick tick, RigInput& input);
+  /// A vehicle ended this trial's drive.
+  [[nodiscard]] bool drive_ended(const Trial& trial) const noexcept {
+    return trial.number >= 0 && trial.number == ended_trial_;
+  }
   void report_interlock(const Trial& trial, Tick tick, double motor_force_n);
   const stillhand_msgs::PlatformCommand* command_for(Tick tick);
   const stillhand_msgs::MotorCommand* motor_now();
@@ -67,8 +71,9 @@ class Shell {
   // Of the loop.
   std::array<stillhand_msgs::PlatformCommand, kCommandsAhead> commands_;
   Tick motor_void_tick_ = -1;
-  Tick stop_tick_ = -1;  ///< of the request to end; -1: none
-  bool at_rest_ = true;  ///< no motor force, and the platform stands
+  std::int64_t ended_trial_ = -1;  ///< of a platform command with kFault: a drive that was ended
+  Tick stop_tick_ = -1;            ///< of the request to end; -1: none
+  bool at_rest_ = true;            ///< no motor force, and the platform stands
 };
 
 }  // namespace stillhand::rig

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/contract/config_field.hpp"
 #include "services/contract/tick.hpp"
 #include "services/contract/trial.hpp"
 #include "services/motion/core/motion_trajectory.hpp"
@@ -14,16 +13,9 @@ namespace stillhand::vehicle {
 
 /// Settings of the process in the place of the motion process.
 struct DrivenConfig {
-  motion::PlatformLimits limits;
+  motion::PlatformLimits limits;  ///< of motion.yaml
   VehicleConfig vehicle;
   OscillationLimits oscillation;
-
-  template <typename Visitor, typename Self>
-  static void fields(Visitor&& visit, Self& self) {
-    visit.group("limits", self.limits);
-    visit.group("vehicle", self.vehicle);
-    visit.group("oscillation", self.oscillation);
-  }
 };
 
 /// The stick at one tick of the sample clock.

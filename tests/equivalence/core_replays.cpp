@@ -2,6 +2,7 @@
 #include "tests/equivalence/core_replays.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/cancellation/codec.hpp"
 #include "services/display/codec.hpp"
@@ -12,6 +13,8 @@
 #include "services/rig/codec.hpp"
 #include "services/runtime/trial_codec.hpp"
 #include "services/sensing/codec.hpp"
+#include "services/vehicle/codec.hpp"
+#include "services/vehicle/vehicle_settings.hpp"
 #include "tests/equivalence/recorded_trial.hpp"
 
 namespace stillhand::equivalence {
@@ -58,6 +61,35 @@ Replay replay_motion(const SessionRecording& session, const SessionSettings& set
     return motion::to_idl(core.step(tick), tick, armed);
   };
   return replay("motion", session.platform_commands, step, kSameTrial);
+}
+
+Replay replay_vehicle(const SessionRecording& session, const SessionSettings& settings,
+                      const std::string& vehicle) {
+  const auto limits = settings.of<motion::MotionGenerator::Config>("motion").limits;
+  vehicle::DrivenMotion core(
+      vehicle::driven_config(limits, settings.of<vehicle::VehicleSettings>("vehicle"), vehicle));
+  const ByTick sensed("sensed", session.sensed);
+  std::int64_t armed = -1;
+  const auto step = [&](Tick tick, const msgs::PlatformCommand& like) {
+    if (like.trial() != armed) {
+      const Trial trial = runtime::from_idl(of_trial(session.trial_controls, like.trial()));
+      const auto& assignment = of_trial(session.trial_assignments, like.trial());
+      const bool driven = vehicle::driven(assignment, trial);
+      motion::MotionTrajectory trajectory;
+      if (!driven)
+        trajectory = motion::MotionTrajectory(motion::from_idl(assignment, trial), limits);
+      core.arm(std::move(trajectory), trial, driven);
+      armed = like.trial();
+    }
+    // The first commands answer ticks before the first sample.  Later, a sample that the live core
+    // did not get is flagged stale; the command that ends a drive is a brake, which is so, too.
+    const Tick of_stick = tick - vehicle::kLead_ticks;
+    vehicle::StickSample sample{of_stick, 0.0, false};
+    const bool lost = (like.flags() & kInputStale) != 0 && (like.flags() & kFault) == 0;
+    if (!lost && sensed.has(of_stick)) sample = vehicle::from_idl(sensed.at(of_stick));
+    return motion::to_idl(core.step(sample), tick, armed);
+  };
+  return replay("vehicle", session.platform_commands, step, kSameTrial);
 }
 
 Replay replay_cancellation(const SessionRecording& session, const SessionSettings& settings) {

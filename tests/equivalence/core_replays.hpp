@@ -26,6 +26,9 @@ using session::SessionRecording;
 // Each replays one core in this process: inputs, order of calls and settings as in the service's
 // shell, outputs compared with the recorded ones.
 Replay replay_sensing(const SessionRecording& session, const SessionSettings& settings);
+/// @param vehicle  of the process in the place of the motion process, as its --vehicle
+Replay replay_vehicle(const SessionRecording& session, const SessionSettings& settings,
+                      const std::string& vehicle);
 Replay replay_motion(const SessionRecording& session, const SessionSettings& settings);
 Replay replay_cancellation(const SessionRecording& session, const SessionSettings& settings);
 Replay replay_display(const SessionRecording& session, const SessionSettings& settings);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Same core, two modes: what a live session's cores answered, their replay in one process answers
-// bit for bit, gaps included.  STILLHAND_RECORDING names the session.mcap.
+// bit for bit, gaps included.  STILLHAND_RECORDING names the session.mcap, STILLHAND_CONFIG its
+// settings unless they are deploy/config, STILLHAND_VEHICLE its --vehicle.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -37,7 +38,8 @@ class LiveRecordingTest : public testing::Test {
   static void SetUpTestSuite() {
     const char* path = std::getenv("STILLHAND_RECORDING");
     if (path == nullptr) return;
-    settings_ = {STILLHAND_SOURCE "/deploy/config", seed_of(path)};
+    const char* config = std::getenv("STILLHAND_CONFIG");
+    settings_ = {config != nullptr ? config : STILLHAND_SOURCE "/deploy/config", seed_of(path)};
     session_ = std::make_unique<SessionRecording>(session::read_session(path));
   }
   static void TearDownTestSuite() { session_.reset(); }
@@ -82,7 +84,14 @@ TEST_F(LiveRecordingTest, SensingAnswersTheSame) {
 }
 
 TEST_F(LiveRecordingTest, MotionAnswersTheSame) {
+  if (std::getenv("STILLHAND_VEHICLE") != nullptr) GTEST_SKIP() << "a vehicle took its place";
   expect_same(replay_motion(*session_, settings_));
+}
+
+TEST_F(LiveRecordingTest, TheVehicleAnswersTheSame) {
+  const char* vehicle = std::getenv("STILLHAND_VEHICLE");
+  if (vehicle == nullptr) GTEST_SKIP() << "STILLHAND_VEHICLE names no vehicle";
+  expect_same(replay_vehicle(*session_, settings_, vehicle));
 }
 
 TEST_F(LiveRecordingTest, CancellationAnswersTheSame) {

@@ -25,7 +25,7 @@ import lab_process  # noqa: E402 (found by the line above)
 BUILD = lab_process.BUILD
 CORES = ("signal", "statistics", "motion_core", "rig_core", "sensing_core", "identification_core", "cancellation_core",
          "diagnosis_core", "clock_core", "display_core", "human_operator_core", "recording_core")
-PROGRAMS = {"stillhand", "stillhand-permissions", "stillhand-device_rig",
+PROGRAMS = {"stillhand", "stillhand-permissions", "stillhand-device_rig", "stillhand-vehicle_motion",
             *(f"stillhand-{service}" for service in lab_process.SERVICES)}
 SUBVERBS = {"deploy-generate", "deploy-check",
             *(f"experiment-{verb}" for verb in ("new", "run", "status", "exclude", "unblind", "report",

@@ -22,6 +22,7 @@
 #include "services/sensing/core/conditioner.hpp"
 #include "services/settings/describe.hpp"
 #include "services/settings/load.hpp"
+#include "services/vehicle/vehicle_settings.hpp"
 
 namespace stillhand {
 namespace {
@@ -88,6 +89,7 @@ TEST(DeployedSettingsTest, EveryFileShowsEveryKeyWithItsDefault) {
   expect_in_step<device_rig::DevicesConfig>("config/devices.yaml");
   expect_in_step<sensing::Config>("config/sensing.yaml");
   expect_in_step<motion::MotionGenerator::Config>("config/motion.yaml");
+  expect_in_step<vehicle::VehicleSettings>("config/vehicle.yaml");
   expect_in_step<cancellation::Config>("config/cancellation.yaml");
   expect_in_step<display::TrackingDisplay::Config>("config/display.yaml");
   expect_in_step<human_operator::SubjectConfig>("config/human_operator.yaml");

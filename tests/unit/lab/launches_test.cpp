@@ -84,6 +84,16 @@ TEST_F(LaunchesTest, ARigOfDevicesIsAnotherProgramWithTheFileOfItsDevices) {
   }
 }
 
+TEST_F(LaunchesTest, AVehicleIsAnotherProgramInThePlaceOfMotion) {
+  options_.vehicle = "wheelchair";
+  for (const Launch& launch : all()) {
+    const bool motion = launch.name == "motion";
+    EXPECT_EQ(launch.executable,
+              "/programs/stillhand-" + (motion ? "vehicle_motion" : launch.name));
+    EXPECT_EQ(value_of(launch, "--vehicle"), motion ? "wheelchair" : "");
+  }
+}
+
 TEST_F(LaunchesTest, WithoutRealTimeNoProcessAsksForIt) {
   options_.real_time = false;
   for (const Launch& launch : all()) {
