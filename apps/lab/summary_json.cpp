@@ -7,6 +7,7 @@
 #include "apps/session/paper_table.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/settings/load.hpp"
+#include "services/vehicle/vehicle_settings.hpp"
 #include "version.hpp"
 
 namespace stillhand::lab {
@@ -69,9 +70,23 @@ ordered_json restoration_json(const session::SessionResult& result) {
   return restoration;
 }
 
+// The stick drove: no motion was asked.
+ordered_json vehicle_json(const LabOptions& options) {
+  const auto settings =
+      settings::load<vehicle::VehicleSettings>(options.config / "vehicle.yaml", "vehicle");
+  const vehicle::VehicleConfig driven =
+      vehicle::driven_config({}, settings, options.vehicle).vehicle;
+  return {{"kind", "vehicle"},
+          {"vehicle", options.vehicle},
+          {"gain_m_s2_rad", driven.gain_m_s2_rad},
+          {"delay_s", driven.delay_s}};
+}
+
 // Motion that the trial asked of the platform; null: none.
-ordered_json motion_json(const session::TrialOutcome& outcome,
-                         const session::ProtocolOptions& protocol) {
+ordered_json motion_json(const session::TrialOutcome& outcome, const LabOptions& options) {
+  const session::ProtocolOptions& protocol = options.protocol;
+  const bool tracks = outcome.planned.trial.phase == TrialPhase::kTracking;
+  if (!options.vehicle.empty() && outcome.planned.moving && tracks) return vehicle_json(options);
   if (!outcome.asked) return nullptr;
   const motion::MotionReport& asked = *outcome.asked;
   ordered_json json{{"kind", "noise"},
@@ -91,8 +106,7 @@ ordered_json motion_json(const session::TrialOutcome& outcome,
   return json;
 }
 
-ordered_json trial_json(const session::TrialOutcome& outcome,
-                        const session::ProtocolOptions& protocol) {
+ordered_json trial_json(const session::TrialOutcome& outcome, const LabOptions& options) {
   ordered_json marks = ordered_json::array();
   for (const session::Mark& mark : outcome.marks) {
     marks.push_back({{"what", mark.what},
@@ -109,7 +123,7 @@ ordered_json trial_json(const session::TrialOutcome& outcome,
           {"condition", std::string(1, outcome.planned.label)},
           {"start_tick", trial.start_tick},
           {"duration_ticks", trial.duration_ticks},
-          {"motion", motion_json(outcome, protocol)},
+          {"motion", motion_json(outcome, options)},
           {"completed", outcome.completed},
           {"aborted", or_null(outcome.aborted)},
           {"deadline_misses", outcome.misses.deadline},
@@ -184,7 +198,7 @@ ordered_json summary_json(const LabOptions& options,
   summary["canceller"] = options.canceller;
   summary["trials"] = ordered_json::array();
   for (const session::TrialOutcome& outcome : outcomes) {
-    summary["trials"].push_back(trial_json(outcome, options.protocol));
+    summary["trials"].push_back(trial_json(outcome, options));
   }
   summary["lost_ticks"] = result.lost_ticks;
   summary["clocks"] = clocks_json(result);

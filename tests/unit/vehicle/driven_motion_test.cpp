@@ -8,6 +8,7 @@
 
 #include "services/contract/units.hpp"
 #include "services/signal/random.hpp"
+#include "services/vehicle/vehicle_settings.hpp"
 
 namespace stillhand::vehicle {
 namespace {
@@ -90,6 +91,27 @@ TEST(DrivenMotionTest, AGrowingOscillationBrakesThePlatformAndHoldsItUntilAnothe
   next.start_tick = n + 1000;
   sut.arm({}, next, true);
   EXPECT_FALSE(sut.step({n++, 0.0, true}).flags & kFault);
+}
+
+// A preset gives dynamics and delay; gain, bounds and detector stay those of the settings.
+TEST(DrivenMotionTest, APresetReplacesTheDynamicsAlone) {
+  VehicleSettings settings;
+  settings.vehicle.gain_m_s2_rad = 7.0;
+  settings.vehicle.max_acceleration_m_s2 = 2.0;
+  settings.vehicle.lag_s = 9.0;
+  settings.oscillation.floor_rad = 0.03;
+  const DrivenConfig own = driven_config({}, settings, kOwnVehicle);
+  EXPECT_EQ(own.vehicle.lag_s, 9.0);
+  EXPECT_FALSE(own.vehicle.speed_follows);
+  const DrivenConfig named = driven_config({}, settings, "wheelchair");
+  EXPECT_EQ(named.vehicle.lag_s, preset("wheelchair").lag_s);
+  EXPECT_EQ(named.vehicle.delay_s, preset("wheelchair").delay_s);
+  EXPECT_TRUE(named.vehicle.speed_follows);
+  for (const DrivenConfig& config : {own, named}) {
+    EXPECT_EQ(config.vehicle.gain_m_s2_rad, 7.0);
+    EXPECT_EQ(config.vehicle.max_acceleration_m_s2, 2.0);
+    EXPECT_EQ(config.oscillation.floor_rad, 0.03);
+  }
 }
 
 TEST(DrivenMotionTest, AStickOutsideOfATrialMovesNothing) {
