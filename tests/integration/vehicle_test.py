@@ -16,8 +16,8 @@ DELAY_S = 0.1
 SESSION_LIMIT_S = 120.0
 TRIAL_S = 10
 RAMP_TICKS = 40  # of the force envelope
-# `stillhand vehicle`: critical gains of six subjects at 100 ms, 10 to 17 m/s^2 per rad without cancellation and 25 to 71
-# with it; every drive at 67 and more was ended.
+# `stillhand vehicle`: critical gains of six subjects at 100 ms, 10 to 17 m/s^2 per rad without cancellation and 25 to
+# 71 with it; every drive at 67 and more was ended.
 STABLE, UNSTABLE = 4, 100
 
 
@@ -26,8 +26,8 @@ class VehicleTest(LabTestCase):
         config = loose_settings(self.folder / "config")
         (config / "vehicle.yaml").write_text(f"vehicle:\n  speed_follows: true\n  lag_s: 0.5\n  delay_s: {DELAY_S}\n"
                                               f"  gain_m_s2_rad: {gain}\n")
-        lab = self.lab("--vehicle", VEHICLE, "--conditions", conditions, "--identify-seconds", 5, "--trial-seconds", TRIAL_S,
-                       "--seed", 2, "--config", config)
+        lab = self.lab("--vehicle", VEHICLE, "--conditions", conditions, "--identify-seconds", 5,
+                       "--trial-seconds", TRIAL_S, "--seed", 2, "--config", config)
         status = lab.end_status(SESSION_LIMIT_S)
         self.assert_nothing_left(lab)
         return lab, status
