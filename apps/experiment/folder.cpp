@@ -25,6 +25,25 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   if (!status.ok()) throw std::runtime_error(status.text);
 }
 
+// A line of `sha256sum`.
+std::string digest_line(const std::string& digest, const std::string& name) {
+  return digest + "  " + name + "\n";
+}
+
+// A model that changed between two participants would be two conditions of one name.
+void refuse_changed_model(const std::filesystem::path& file, const std::string& name,
+                          const std::string& registered) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw ConfigError(file.string(), "no file",
+                      "the model of condition C+, as the first participant had it");
+  }
+  const std::string digest = rig::sha256(recording::read_file(file.string()));
+  if (registered.find(digest_line(digest, name)) != std::string::npos) return;
+  throw ConfigError(file.string(), "SHA-256 " + digest.substr(0, 12) + "...",
+                    "the one in experiment.sha256: the model of condition C+ changed after the "
+                    "first participant; take the change back, or begin another experiment");
+}
+
 // Why a recording does not belong where it is; empty: it does.
 std::string wrong_place(const std::filesystem::path& file,
                         const recording::OfExperiment& expected) {
@@ -62,6 +81,9 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
                           "the change back, or begin another experiment");
   }
   design_ = design_of(yaml, file.string());
+  if (!design_.control_model.empty() && !participants().empty()) {
+    refuse_changed_model(path_ / design_.control_model, design_.control_model, registered);
+  }
   const std::string sealed = recording::read_file((path_ / kSealedFile).string());
   if (rig::sha256(sealed) != design_.assignment) {
     throw ConfigError((path_ / kSealedFile).string(), "another content than at the beginning",
@@ -146,7 +168,12 @@ void Folder::refuse_findings() const {
 }
 
 void Folder::register_design() const {
-  write_whole(path_ / kDigestFile, digest_ + "  " + kDesignFile + "\n");
+  std::string lines = digest_line(digest_, kDesignFile);
+  if (const std::string& model = design_.control_model; !model.empty()) {
+    const std::string bytes = recording::read_file((path_ / model).string());
+    lines += digest_line(rig::sha256(bytes), model);
+  }
+  write_whole(path_ / kDigestFile, lines);
 }
 
 void make_folder(const std::filesystem::path& path, Design design, std::uint64_t order_seed) {
@@ -161,7 +188,7 @@ void make_folder(const std::filesystem::path& path, Design design, std::uint64_t
   design.assignment = rig::sha256(sealed);
   const std::string yaml = yaml_of(design);
   write_whole(path / kSealedFile, sealed);
-  write_whole(path / kDigestFile, rig::sha256(yaml) + "  " + kDesignFile + "\n");
+  write_whole(path / kDigestFile, digest_line(rig::sha256(yaml), kDesignFile));
   write_whole(path / kDesignFile, yaml);  // last: it makes the folder an experiment
 }
 

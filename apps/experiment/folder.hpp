@@ -20,7 +20,7 @@ namespace stillhand::experiment {
 class Folder {
  public:
   /// @throws ConfigError for a folder that is no experiment, a changed assignment, and, once a
-  ///         participant is there, a changed experiment.yaml
+  ///         participant is there, a changed experiment.yaml or model of condition C+
   explicit Folder(std::filesystem::path path);
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
@@ -47,7 +47,8 @@ class Folder {
   /// @throws ConfigError naming the first of findings() over all participants
   void refuse_findings() const;
 
-  /// Writes the digest as it is now: before the first participant.
+  /// Writes the digests of experiment.yaml and of the model of condition C+ as they are now: before
+  /// the first participant.
   void register_design() const;
 
  private:

@@ -8,6 +8,7 @@ import html.parser
 import itertools
 import json
 import shutil
+import subprocess
 import unittest
 
 import numpy
@@ -219,6 +220,29 @@ class RecordedConditionsTest(SampleExperimentCase):
         shutil.copytree(person, other)
         self.refused("participant P01, session 01", "study", "--sessions", person, other, "--out", self.folder / "none")
         self.assertFalse((self.folder / "none").exists())
+
+    def test_a_model_that_changed_after_the_first_participant_is_named(self):
+        model, digests = self.experiment / "plus.json", self.experiment / "experiment.sha256"
+        whole, lines = model.read_text(), digests.read_text()
+        self.addCleanup(model.write_text, whole)
+        self.addCleanup(digests.write_text, lines)
+        subprocess.run(["sha256sum", "--check", "--quiet", digests.name], cwd=self.experiment, check=True)
+        calls = (("status",), ("run", "--headless"), ("report",), ("export", "--csv", "--out", self.folder / "none"),
+                 ("exclude", "--participant", "P01", "--reason", "none"), ("unblind", "--reason", "again"))
+
+        def all_refuse(said):
+            for verb, *words in calls:
+                self.refused(said, "experiment", verb, self.experiment, *words)
+        model.write_text(whole.replace("1.5", "1.6", 1))
+        all_refuse("plus.json: got SHA-256")
+        self.refused("the model of condition C+ changed after the first", "experiment", "status", self.experiment)
+        model.unlink()
+        all_refuse("plus.json: got no file")
+        model.write_text(whole)
+        digests.write_text(lines.splitlines(keepends=True)[0])  # as one that did not register the model
+        all_refuse("plus.json: got SHA-256")
+        digests.write_text(lines)
+        stillhand("experiment", "status", self.experiment)
 
 
 if __name__ == "__main__":
