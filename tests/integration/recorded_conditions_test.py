@@ -245,5 +245,29 @@ class RecordedConditionsTest(SampleExperimentCase):
         stillhand("experiment", "status", self.experiment)
 
 
+class RefusedModelTest(SampleExperimentCase):
+    def test_a_trial_whose_model_was_refused_is_named_and_in_no_table(self):
+        new_experiment(self.experiment, 3, "--conditions", "B,C", "--identify-seconds", 20, conditions="[B, C, C+]",
+                       control_model="plus.json", comparisons="[B-C, C-C+]")
+        (self.experiment / "plus.json").write_text(control_model(self.folder))
+        conduct(self.experiment, 0, 1, 0, 2)
+        unblind(self.experiment)
+        stillhand("experiment", "report", self.experiment)
+        recorded = json.loads((self.experiment / "report" / "summary.json").read_text())["recorded"]
+        self.assertEqual(recorded["participants"], ["P01", "P03"])
+        named = [line for line in recorded["left_out"] if "model" in line]
+        self.assertEqual(len(named), 1, recorded["left_out"])
+        self.assertRegex(named[0], r"^P02, session 01, trial \d \(C, 5 s\): ran model \d+ in place of model \d+ in 100 % of "
+                                   "it; the canceller refused it: it is not stable$")
+        self.assertTrue(any(line.startswith("P02: ") and "C+" in line for line in recorded["left_out"]), recorded)
+        self.assertIn("the canceller refused it", (self.experiment / "report" / "report.html").read_text())
+        in_report = rows(self.experiment / "report" / "trials.csv")
+        self.assertEqual([row for row in in_report if row["participant"] == "P02" and row["condition"] == "C+"], [])
+        stillhand("experiment", "export", self.experiment, "--out", self.folder / "tables", "--csv")
+        other = [row for row in rows(self.folder / "tables" / "trials.csv") if row["condition [-]"] == "n/a"]
+        self.assertEqual([row["participant [-]"] for row in other], ["P02"])
+        self.assertEqual(other[0]["rms_error [mm]"], "")
+
+
 if __name__ == "__main__":
     lab_process.main(WRITE_SAMPLE)

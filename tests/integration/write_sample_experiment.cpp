@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// write_sample_experiment DIR [REMNANT [GAIN [EFFECT]]]: conducts every participant of an
+// write_sample_experiment DIR [REMNANT [GAIN [EFFECT [REFUSED]]]]: conducts every participant of an
 // experiment that `stillhand experiment new` made, with simulated subjects and without a bus: the
 // cores in one process, then journals and recordings as a session over the bus leaves them.  Five
 // participants are special, where there are so many:
@@ -12,7 +12,8 @@
 //
 // REMNANT is added to the seeds of remnant and sensor noise, so that a simulation of the same
 // people meets other noise; GAIN is that of the motor, so that it meets another rig; EFFECT is the
-// seed of an undeclared effect that every rig holds.
+// seed of an undeclared effect that every rig holds; REFUSED is the number of a participant whose
+// canceller refuses the model of C+ and goes on with the one before.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -49,6 +50,7 @@ struct Otherwise {
   std::uint64_t remnant = 0;
   double motor_gain = 1.0;
   std::uint64_t effect = 0;
+  std::size_t refused = 0;
 };
 
 session::CoreConfigs configs_of(const experiment::Design& design, std::size_t index,
@@ -72,6 +74,7 @@ class SampleSession {
         index_(index),
         number_(number),
         journal_(journal),
+        refused_(otherwise.refused),
         loop_(configs_of(folder.design(), index, otherwise),
               experiment::session_seed(folder.design(), index, number) + otherwise.remnant, 1,
               rig::SealedEffect(otherwise.effect, rig::RigConfig{})) {
@@ -103,6 +106,7 @@ class SampleSession {
     message.usable(true);
     file_.add(topics::kFeedthroughModel, message);
     identified_ = model.control;
+    in_use_ = 0;
     add({.kind = EntryKind::kTrialEnded, .trial = 0, .completed = true});
   }
 
@@ -117,7 +121,8 @@ class SampleSession {
     planned.reference_seed = at.target_seed;
     planned.trial.number = ++trials_;
     given_ = model_for(condition);
-    if (given_) use(*given_);
+    refuses_ = condition == "C+" && index_ + 1 == refused_;
+    if (given_ && !refuses_) use(*given_);
     Entry entry{.kind = EntryKind::kTrialBegan,
                 .step = static_cast<std::int64_t>(step),
                 .trial = trials_,
@@ -193,6 +198,14 @@ class SampleSession {
       auto message = cancellation::to_idl(*given_, cancellation::kFirstControlModel + models_++);
       message.from_tick(first - 1000);
       file_.add(topics::kAugmentedModel, message);
+      stillhand_msgs::Event answer;
+      answer.kind(refuses_ ? stillhand_msgs::EVENT_MODEL_REFUSED
+                           : stillhand_msgs::EVENT_MODEL_LOADED);
+      answer.source("cancellation");
+      answer.text(refuses_ ? "it is not stable" : "");
+      answer.tick(first - 1000);
+      file_.add(topics::kEvent, answer);
+      if (!refuses_) in_use_ = message.model();
     }
     const auto number = static_cast<std::int32_t>(planned.trial.number);
     file_.control(number, pegged ? stillhand_msgs::PHASE_PEGGED : stillhand_msgs::PHASE_TRACKING,
@@ -229,6 +242,7 @@ class SampleSession {
     stillhand_msgs::MotorCommand motor;
     motor.tick(tick);
     motor.force_n(at(7));
+    motor.model(in_use_);
     file_.add(topics::kMotorCommand, motor);
     stillhand_msgs::RigTruth truth;
     truth.tick(tick);
@@ -247,13 +261,16 @@ class SampleSession {
   std::size_t index_;
   std::int64_t number_;
   experiment::Journal& journal_;
+  std::size_t refused_;
   session::ProtocolOptions protocol_;
   session::InProcessLoop loop_;
   SessionFile file_{std::size_t{1} << 20, recording::Compression::kZstd, topics::idl_of};
   std::int64_t trials_ = 0;
   signal::DifferenceModel identified_;
   std::optional<cancellation::ControlModel> given_;  ///< for the next trial
+  bool refuses_ = false;                             ///< the canceller, in this trial
   std::int32_t models_ = 0;
+  std::int32_t in_use_ = -1;  ///< number of the model that the canceller has
   Tick last_tick_ = 0;
 };
 
@@ -287,8 +304,8 @@ void conduct(const experiment::Folder& folder, std::size_t index, const Otherwis
 }  // namespace stillhand::tests
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 5) {
-    std::fputs("usage: write_sample_experiment DIR [REMNANT [GAIN [EFFECT]]]\n", stderr);
+  if (argc < 2 || argc > 6) {
+    std::fputs("usage: write_sample_experiment DIR [REMNANT [GAIN [EFFECT [REFUSED]]]]\n", stderr);
     return 2;
   }
   try {
@@ -296,6 +313,7 @@ int main(int argc, char** argv) {
     if (argc > 2) otherwise.remnant = std::stoull(argv[2]);
     if (argc > 3) otherwise.motor_gain = std::stod(argv[3]);
     if (argc > 4) otherwise.effect = std::stoull(argv[4]);
+    if (argc > 5) otherwise.refused = std::stoul(argv[5]);
     const stillhand::experiment::Folder folder(argv[1]);
     folder.register_design();
     for (std::int64_t n = 0; n < folder.design().participants; ++n) {

@@ -55,7 +55,8 @@ ordered_json levels(const char* description,
 }
 
 ordered_json condition_levels() {
-  return levels("Condition of the trial", {kMeanings.begin(), kMeanings.end()});
+  return levels("Condition of the trial; n/a: the motor ran another model than the condition's",
+                {kMeanings.begin(), kMeanings.end()});
 }
 
 // Of every table with a row a trial.

@@ -106,6 +106,10 @@ void add_session(ExportedParticipant& participant, const Folder& folder, const P
       study::kLeastShareBeforeRules);
   add_metrics(participant, session, recorded.trials);
   add_metrics(participant, session, recorded.practice);
+  for (ExportedTrial& trial : participant.trials) {
+    const bool other = recorded.other_model.contains(trial.trial.number);
+    if (trial.session == session && other) trial.condition = kOtherModel;
+  }
 }
 
 void add_answers(ExportedParticipant& participant, const Folder& folder, const Plan& plan,

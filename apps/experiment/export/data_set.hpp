@@ -21,6 +21,9 @@ enum class TrialKind : std::uint8_t { kIdentification, kPractice, kTracking };
 /// "identification", "practice", "tracking".
 const char* name_of(TrialKind kind);
 
+/// Condition of a trial in which the motor ran another model than the condition's.
+inline constexpr const char* kOtherModel = "n/a";
+
 /// One trial that was recorded, complete or not.
 struct ExportedTrial {
   std::int64_t session = 1;
@@ -29,7 +32,7 @@ struct ExportedTrial {
   Tick end_tick = 0;        ///< first tick after it; earlier than planned if it was ended early
   std::int64_t block = 0;   ///< from 1; 0: none
   std::int64_t place = 0;   ///< in the plan, from 1; 0: none
-  std::string condition;    ///< "A" to "C+"; empty: identification
+  std::string condition;    ///< "A" to "C+", or kOtherModel; empty: identification
   bool completed = false;   ///< by the journal
   double lost_share = 0.0;  ///< [-] of the planned samples
   std::optional<identification::TrackingMetrics> metrics;  ///< of a complete tracking trial

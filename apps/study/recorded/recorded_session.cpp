@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -14,9 +13,8 @@
 #include "apps/measurement/session_trials.hpp"
 #include "apps/session/measured_ticks.hpp"
 #include "apps/session/session_recording.hpp"
-#include "apps/study/conditions.hpp"
+#include "apps/study/recorded/model_in_use.hpp"
 #include "apps/study/trial_analysis.hpp"
-#include "services/cancellation/codec.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/flag.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
@@ -154,36 +152,6 @@ std::map<std::int64_t, Announced> announced_in(const SessionRecording& recorded)
   return out;
 }
 
-// The newest of the models that may be used at a tick; they come in the order of their writing.
-template <typename Model>
-const Model* in_force(const std::vector<Model>& models, Tick tick, std::uint32_t rig) {
-  const Model* out = nullptr;
-  for (const Model& model : models) {
-    if (model.rig() == rig && model.from_tick() <= tick) out = &model;
-  }
-  return out;
-}
-
-// Which of C, C' and C+ a cancelled trial is, from the model that the motor used.
-char condition_in(const SessionRecording& recorded, const SessionTrial& trial, std::uint32_t rig) {
-  if (trial.letter != 'C') return trial.letter;
-  const Tick start = trial.trial.start_tick;
-  const auto* control = in_force(recorded.control_models, start, rig);
-  const auto* identified = in_force(recorded.models, start, rig);
-  if (control == nullptr) return 'C';
-  if (identified != nullptr && identified->from_tick() > control->from_tick()) return 'C';
-  const cancellation::ControlModel model = cancellation::from_idl(*control);
-  const bool plain = model.inputs.size() == 1 && model.inputs[0].map.values.empty() &&
-                     !model.loop && model.output.values.empty() && model.paths.empty() &&
-                     model.waves.empty();
-  const bool own = plain && std::ranges::any_of(recorded.models, [&](const auto& each) {
-                     return each.control_numerator() == model.inputs[0].numerator &&
-                            each.control_denominator() == model.denominator;
-                   });
-  if (!own) return kAugmented;
-  return model.adapts ? kFollowing : 'C';
-}
-
 }  // namespace
 
 RecordedSession read_recorded_session(const SessionFile& file, double least_share) {
@@ -196,6 +164,10 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
     std::string why = trial.letter == '?' ? "has no condition" : incomplete(trial, least_share);
+    if (why.empty()) {
+      why = other_model_in(recorded, trial, trials.rig);
+      if (!why.empty()) out.other_model.insert(trial.trial.number);
+    }
     const auto note = announced.find(trial.trial.number);
     const Announced plan = note == announced.end() ? Announced{} : note->second;
     const bool practised = plan.practice;

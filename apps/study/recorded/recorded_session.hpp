@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct RecordedSession {
   std::vector<RecordedTrial> trials;    ///< complete tracking trials without practice; no place
   std::vector<RecordedTrial> practice;  ///< complete practice trials
   std::vector<std::string> left_out;    ///< one line each: trial, and why
+  std::set<std::int64_t> other_model;   ///< complete trials that were not what their condition says
   std::int64_t broken_trials = 0;       ///< tracking trials that were ended early
 };
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "apps/measurement/session_trials.hpp"
+#include "apps/session/session_recording.hpp"
+
+/// Which model the motor had in a recorded trial, and which one it should have had.  A model counts
+/// from the tick that it names itself; the newest one is in force.
+namespace stillhand::study {
+
+/// Which of C, C' and C+ a trial with cancellation is (conditions.hpp), by the model in force when
+/// it began; of any other trial its letter.
+char condition_in(const session::SessionRecording& recorded, const measurement::SessionTrial& trial,
+                  std::uint32_t rig);
+
+/// Why a trial with cancellation was not what its condition says: the motor ran another model than
+/// the one in force in more than 1 % of the recorded commands, for example because the canceller
+/// had refused it.  A recording without commands is judged by the canceller's last answer before
+/// the trial.  Empty: the trial is what its condition says.
+std::string other_model_in(const session::SessionRecording& recorded,
+                           const measurement::SessionTrial& trial, std::uint32_t rig);
+
+}  // namespace stillhand::study
