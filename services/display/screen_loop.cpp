@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "services/display/view_opencv.hpp"
 #include "services/display/view_output.hpp"
@@ -25,8 +26,8 @@ constexpr std::int64_t kRepeated_ns = 1'000'000'000;
 // An answer is repeated this often until the next prompt.
 constexpr std::int64_t kAnswerPeriod_ns = 300'000'000;
 
-Moment moment_of(const Shown& shown, bool fresh) {
-  return {shown.tick, shown.trial, shown.paused, fresh};
+Moment moment_of(const Shown& shown, bool fresh, bool gamepad) {
+  return {shown.tick, shown.trial, shown.paused, fresh, gamepad};
 }
 
 }  // namespace
@@ -35,15 +36,16 @@ Moment moment_of(const Shown& shown, bool fresh) {
 class ScreenLoop::Screen {
  public:
   Screen(Shell& shell, const ScreenOptions& options)
-      : shell_(shell), view_(shell.config(), kColumns, kRows) {
+      : shell_(shell), view_(shell.config(), kColumns, kRows), gamepad_(!options.gamepad.empty()) {
     if (!options.video.empty()) file_.emplace(options.video.string(), kRate_hz, kColumns, kRows);
     if (options.window) window_.emplace("Stillhand", view_.projection(), false);
   }
 
+  /// @param pressed  on a gamepad since the frame before
   /// @return false once the window was closed.
-  bool show(const Shown& shown, bool fresh) {
+  bool show(const Shown& shown, bool fresh, const std::vector<PadAct>& pressed) {
     take_prompt();
-    const Page page = page_of(prompt_, moment_of(shown, fresh), answering_);
+    const Page page = page_of(prompt_, moment_of(shown, fresh, gamepad_), answering_);
     const cv::Mat& frame = view_.draw(shown.sample, page);
     // Frames of a session that has not begun, or of a disk that is full, are not kept.
     if (file_ && shown.tick >= 0 && !file_->write(frame)) {
@@ -53,6 +55,7 @@ class ScreenLoop::Screen {
     if (!window_) return true;
     const bool open = window_->show(frame);
     take_acts(page);
+    if (!page.button.empty()) take_pressed(pressed);
     if (!open && prompt_.kind == PromptKind::kEnd) {  // its button closes it, and so may anything
       answering_.confirm();
       window_.reset();
@@ -90,8 +93,17 @@ class ScreenLoop::Screen {
     if (box) answering_.choose(*box);
   }
 
+  void take_pressed(const std::vector<PadAct>& pressed) {
+    for (const PadAct act : pressed) {
+      if (act == PadAct::kLeft) answering_.move(-1);
+      if (act == PadAct::kRight) answering_.move(1);
+      if (act == PadAct::kConfirm) answering_.confirm();
+    }
+  }
+
   Shell& shell_;
   TrackingView view_;
+  bool gamepad_;
   Prompt prompt_;
   Answering answering_;
   std::optional<FrameFile> file_;
@@ -130,7 +142,8 @@ void ScreenLoop::run() {
     bool open = true;
     {
       const runtime::OrdinaryWhile ordinary;
-      open = screen_->show(shown, due_ns - fresh_ns < kLinkLost_ns);
+      open = screen_->show(shown, due_ns - fresh_ns < kLinkLost_ns,
+                           gamepad_ ? gamepad_->acts() : std::vector<PadAct>());
     }
     // The window stays: the session ends by itself, and the subject sees why.
     if (screen_->escape_pressed()) escape_ns_ = due_ns;

@@ -7,9 +7,11 @@ The test knows from the journal and the recording what the screen has to show, a
 """
 import csv
 import json
+import os
 import pathlib
 import re
 import signal
+import struct
 import subprocess
 import tempfile
 
@@ -93,7 +95,29 @@ class Participant:
         return None
 
 
+class Gamepad:
+    """Linux's evdev events in a named pipe, which stands for a device."""
+    SOUTH, HAT0X = (1, 0x130), (3, 0x10)
+
+    def __init__(self, path):
+        os.mkfifo(path)
+        self.path, self.pipe = path, os.open(path, os.O_RDWR)
+        self.put(3, 0, 0)  # the stick in the middle
+
+    def put(self, kind, code, value):
+        os.write(self.pipe, struct.pack("llHHi", 0, 0, kind, code, value))
+
+    def press(self, button, value=1):
+        self.put(*button, value)
+        self.put(*button, 0)
+
+    def close(self):
+        os.close(self.pipe)
+
+
 class ParticipantTestCase(ExperimentTestCase):
+    pad = None
+
     def setUp(self):
         super().setUp()
         self.display = VirtualDisplay()
@@ -102,7 +126,11 @@ class ParticipantTestCase(ExperimentTestCase):
         self.file = self.study / "participants" / "P01" / "journal.jsonl"
 
     def make(self, questions, *words, **values):
-        self.new(*words, "--participants", 1, "--operator", "mouse")
+        if self.pad is None:
+            words = (*words, "--operator", "mouse")
+        else:
+            words = (*words, "--operator", "gamepad")
+        self.new(*words, "--participants", 1)
         self.edit(**{"rest_s": 0, "order": "latin", **values})
         file = self.study / "experiment.yaml"
         file.write_text(re.sub(r"questions: \[\]\n", questions, file.read_text()))
@@ -110,7 +138,8 @@ class ParticipantTestCase(ExperimentTestCase):
     def begin(self):
         domain = next_domain()
         process = subprocess.Popen([str(STILLHAND), "experiment", "run", str(self.study), "--domain", str(domain),
-                                    "--config", str(self.settings), "--match-seconds", str(WINDOW_LIMIT_S)],
+                                    "--config", str(self.settings), "--match-seconds", str(WINDOW_LIMIT_S),
+                                    *(["--gamepad", str(self.pad.path)] if self.pad else [])],
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                    env=self.display.environment, start_new_session=True)
 
@@ -177,7 +206,9 @@ class ParticipantTestCase(ExperimentTestCase):
 
 
 class AnswersTest(ParticipantTestCase):
-    def test_answers_by_keys_and_clicks_are_in_the_journal_and_in_the_tables(self):
+    def test_answers_by_keys_clicks_and_gamepad_are_in_the_journal_and_in_the_tables(self):
+        self.pad = Gamepad(self.folder / "pad")
+        self.addCleanup(self.pad.close)
         self.make(QUESTIONS, "--conditions", "A", "--blocks", 2, break_s=20)
         self.begin()
         self.dashboard = Dashboard("--domain", self.domain)
@@ -200,11 +231,11 @@ class AnswersTest(ParticipantTestCase):
         self.wait("the second trial's end", lambda: len(self.entries("trial ended")) == 3)
         self.answer("question-2", self.by_clicks)
         self.wait("the second answer", lambda: len(self.entries("question answered")) == 2)
-        self.answer("question-end", self.choose("9"))
+        self.answer("question-end", self.by_gamepad)
         self.wait("the third answer", lambda: len(self.entries("question answered")) == 3)
         self.wait("the end's button", self.person.button_row)
         self.display.keep("end", *WINDOW)
-        self.person.press("space")
+        self.pad.press(Gamepad.SOUTH)
         out, errors = self.process.communicate(timeout=END_LIMIT_S)
         self.assertEqual(self.process.returncode, 0, errors)
         self.assertIn("2 of 2 trials", out)
@@ -249,6 +280,16 @@ class AnswersTest(ParticipantTestCase):
         button = self.wait("a button that works", self.person.button_row)
         self.display.keep("question-clicked", *WINDOW)
         self.person.click(WINDOW[0] // 2, button)
+
+    def by_gamepad(self, edges, row):
+        """From nothing, left is the last box of nine; the first button before a choice has no effect."""
+        self.pad.press(Gamepad.SOUTH)
+        for direction in (-1, -1, 1):
+            self.pad.press(Gamepad.HAT0X, direction)
+        self.wait("a button that works", self.person.button_row)
+        self.display.keep("question-gamepad", *WINDOW)
+        self.assertEqual(len(self.entries("question answered")), 2)
+        self.pad.press(Gamepad.SOUTH)
 
     def judge_prompts(self):
         rows = self.prompts()

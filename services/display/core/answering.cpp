@@ -15,6 +15,10 @@ void Answering::choose(std::int64_t value) {
   if (!answer_ && value >= 1 && value <= steps_) chosen_ = value;
 }
 
+void Answering::move(std::int64_t boxes) {
+  choose(chosen_ == 0 && boxes < 0 ? steps_ : chosen_ + boxes);
+}
+
 void Answering::confirm() {
   if (!answer_ && chosen_ > 0) answer_ = {number_, chosen_};
 }

@@ -11,6 +11,7 @@ namespace stillhand::display {
 /// From a participant's keys and clicks to the answer of a prompt.
 ///
 ///   a number, or a click on its box    chooses; another one changes the choice
+///   left, right (of a gamepad)         chooses the neighbour; from nothing, the first or the last
 ///   Enter, Space, a click on the button confirms, once something is chosen
 ///
 /// A prompt with one step ("go on") has nothing to choose: one act.  Otherwise two acts make an
@@ -26,6 +27,9 @@ class Answering {
   void show(const Prompt& prompt);
   /// @param value  1 to the steps of the prompt; anything else has no effect
   void choose(std::int64_t value);
+  /// The neighbour of what is chosen: +1 right, -1 left.  It stays within the scale; from nothing,
+  /// right is the first box and left the last one.
+  void move(std::int64_t boxes);
   void confirm();
 
   /// 0: nothing.

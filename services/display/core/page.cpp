@@ -72,11 +72,24 @@ Page pegged(const Prompt& prompt, const Moment& moment) {
   return page;
 }
 
-void add_scale(Page& page, const Prompt& prompt, const Answering& answering) {
+// What the participant can do to a page.
+std::string hint_of(const Page& page, bool one_step, bool gamepad) {
+  if (one_step) {
+    return gamepad ? "First button (A), Enter, or a click on the button"
+                   : "Enter, Space, or a click on the button";
+  }
+  if (page.chosen == 0) {
+    return gamepad ? "Press left or right, or a number" : "Press a number, or click on it";
+  }
+  return gamepad ? "First button (A) or Enter confirms; left and right change the answer"
+                 : "Enter or OK confirms; another number changes the answer";
+}
+
+void add_scale(Page& page, const Prompt& prompt, const Answering& answering, bool gamepad) {
   const bool given = answering.answer().has_value();
   if (prompt.steps == 1) {
     page.button = given ? "" : prompt.kind == PromptKind::kEnd ? "Close" : "Continue";
-    page.hint = given ? "Please wait" : "Enter, Space, or a click on the button";
+    page.hint = given ? "Please wait" : hint_of(page, true, gamepad);
     return;
   }
   page.steps = std::min(prompt.steps, kMostSteps);
@@ -85,12 +98,10 @@ void add_scale(Page& page, const Prompt& prompt, const Answering& answering) {
   page.chosen = answering.chosen();
   page.button = given ? "" : "OK";
   page.button_works = page.chosen > 0;
-  page.hint = given             ? "Thank you"
-              : page.chosen > 0 ? "Enter or OK confirms; another number changes the answer"
-                                : "Press a number, or click on it";
+  page.hint = given ? "Thank you" : hint_of(page, false, gamepad);
 }
 
-Page asking(const Prompt& prompt, const Answering& answering) {
+Page asking(const Prompt& prompt, const Answering& answering, bool gamepad) {
   Page page;
   page.task = false;
   page.lines = prompt.lines;
@@ -99,7 +110,7 @@ Page asking(const Prompt& prompt, const Answering& answering) {
     page.heading = "Thank you";
     if (page.lines.empty()) page.lines = {"That was the last trial. You are done."};
   }
-  if (prompt.steps > 0) add_scale(page, prompt, answering);
+  if (prompt.steps > 0) add_scale(page, prompt, answering, gamepad);
   return page;
 }
 
@@ -152,7 +163,7 @@ Page page_of(const Prompt& prompt, const Moment& moment, const Answering& answer
     case PromptKind::kInstructions:
     case PromptKind::kQuestion:
     case PromptKind::kEnd:
-      return asking(prompt, answering);
+      return asking(prompt, answering, moment.gamepad);
     case PromptKind::kBreak:
       return on_break(prompt, moment);
     case PromptKind::kIdentification:

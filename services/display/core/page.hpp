@@ -14,10 +14,11 @@ namespace stillhand::display {
 
 /// What a page depends on besides the prompt.
 struct Moment {
-  Tick tick = -1;       ///< newest; -1: none yet
-  Trial trial = {};     ///< newest that was announced
-  bool paused = false;  ///< no trial begins before the experimenter starts it
-  bool fresh = true;    ///< a tick came within the last 0.1 s
+  Tick tick = -1;        ///< newest; -1: none yet
+  Trial trial = {};      ///< newest that was announced
+  bool paused = false;   ///< no trial begins before the experimenter starts it
+  bool fresh = true;     ///< a tick came within the last 0.1 s
+  bool gamepad = false;  ///< its buttons answer, too
 };
 
 /// The words of one frame.  They depend on prompt, tick and trial alone, none of which holds the

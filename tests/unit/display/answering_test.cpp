@@ -30,6 +30,27 @@ TEST_F(AnsweringTest, AChoiceIsNoAnswerBeforeItIsConfirmed) {
   EXPECT_EQ(sut_.answer()->value, 5);
 }
 
+TEST_F(AnsweringTest, LeftAndRightChooseTheNeighbourWithinTheScale) {
+  sut_.move(1);
+  EXPECT_EQ(sut_.chosen(), 1);
+  sut_.move(-1);
+  EXPECT_EQ(sut_.chosen(), 1);
+  for (int i = 0; i < 9; ++i) sut_.move(1);
+  EXPECT_EQ(sut_.chosen(), 7);
+  show(5, 7);
+  sut_.move(-1);
+  EXPECT_EQ(sut_.chosen(), 7);
+  sut_.move(-1);
+  sut_.confirm();
+  sut_.move(1);
+  ASSERT_TRUE(sut_.answer());
+  EXPECT_EQ(sut_.answer()->value, 6);
+  show(6, 0);
+  sut_.move(1);
+  sut_.move(-1);
+  EXPECT_EQ(sut_.chosen(), 0);
+}
+
 TEST_F(AnsweringTest, NothingChosenCannotBeConfirmed) {
   sut_.confirm();
   EXPECT_FALSE(sut_.answer());

@@ -78,6 +78,21 @@ TEST_F(GamepadTest, ADeviceThatIsGoneHasNoPosition) {
   EXPECT_EQ(sut_->position(), std::nullopt);
 }
 
+TEST_F(GamepadTest, PressedButtonsAnswerOnceAndInTheirOrder) {
+  using enum PadAct;
+  const std::vector<std::vector<std::byte>> events{
+      event(EV_ABS, ABS_HAT0X, -1), event(EV_ABS, ABS_HAT0X, 0),       // D-pad
+      event(EV_KEY, BTN_TR, 1),     event(EV_KEY, BTN_TR, 2),          // held
+      event(EV_KEY, BTN_TR, 0),     event(EV_KEY, BTN_DPAD_RIGHT, 1),  // released
+      event(EV_KEY, BTN_THUMB, 1),  event(EV_KEY, BTN_EAST, 1),        // B does nothing
+      event(EV_ABS, ABS_X, 32767),  event(EV_KEY, BTN_SOUTH, 1),
+      event(EV_KEY, BTN_TRIGGER, 1)};
+  for (const auto& each : events) put(each);
+  EXPECT_EQ(sut_->position(), 1.0);
+  EXPECT_EQ(sut_->acts(), (std::vector{kLeft, kRight, kRight, kLeft, kConfirm, kConfirm}));
+  EXPECT_EQ(sut_->acts(), std::vector<PadAct>());
+}
+
 TEST(GamepadRefusalTest, ADeviceThatIsNotThereIsRefused) {
   EXPECT_THROW(Gamepad("/nowhere/event5"), ConfigError);
 }

@@ -10,6 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class PageTest : public testing::Test {
  protected:
@@ -139,6 +140,19 @@ TEST_F(PageTest, GoingOnNeedsNoScale) {
   EXPECT_EQ(shown.steps, 0);
   EXPECT_EQ(shown.button, "Continue");
   EXPECT_TRUE(shown.button_works);
+}
+
+TEST_F(PageTest, WithAGamepadTheHintNamesItsButtons) {
+  Moment moment = at(50'000);
+  const auto hint = [&](std::int64_t steps) { return page(question(steps), moment).hint; };
+  answering_.show(question());
+  EXPECT_THAT(hint(1), Not(HasSubstr("(A)")));
+  EXPECT_THAT(hint(7), Not(HasSubstr("left")));
+  moment.gamepad = true;
+  EXPECT_THAT(hint(1), HasSubstr("(A)"));
+  EXPECT_THAT(hint(7), HasSubstr("left or right"));
+  answering_.move(1);
+  EXPECT_THAT(hint(7), HasSubstr("(A)"));
 }
 
 TEST_F(PageTest, TheEndThanks) {
