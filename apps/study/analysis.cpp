@@ -41,16 +41,19 @@ MultivariateResult manova(const Eigen::MatrixXd& observations,
   }
 }
 
-MultivariateResult main_effects(const Analysis& analysis, Eigen::Index subjects) {
-  Eigen::MatrixXd observations(3 * subjects, kMetricCount);
-  for (Eigen::Index row = 0; row < observations.rows(); ++row) {
-    const auto& metrics = analysis.conditions.at(kPaperConditions[row % 3]);
+MultivariateResult main_effects(const Analysis& analysis, const std::string& conditions,
+                                std::size_t subjects) {
+  const std::size_t count = conditions.size();
+  Eigen::MatrixXd observations(count * subjects, kMetricCount);
+  for (std::size_t row = 0; row < count * subjects; ++row) {
+    const auto& metrics = analysis.conditions.at(conditions[row % count]);
     for (std::size_t k = 0; k < kMetricCount; ++k) {
-      observations(row, static_cast<Eigen::Index>(k)) =
-          metrics[k].per_subject[static_cast<std::size_t>(row / 3)];
+      observations(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k)) =
+          metrics[k].per_subject[row / count];
     }
   }
-  return manova(observations, {subjects, 3, 1});
+  return manova(observations,
+                {static_cast<Eigen::Index>(subjects), static_cast<Eigen::Index>(count), 1});
 }
 
 // RMS error and dwell ratio of one third of a trial, from consecutive windows.
@@ -66,19 +69,22 @@ std::array<double, 2> third(const TrackedTrial& trial, std::size_t which, std::s
   return {std::sqrt(square_mm2 / n), dwell / n};
 }
 
-MultivariateResult thirds(const std::vector<SubjectResult>& results) {
-  const auto entries = results.front().trials.at('A').metrics.moving_rms_mm.size();
+MultivariateResult thirds(const std::vector<SubjectResult>& results,
+                          const std::string& conditions) {
+  const auto entries = results.front().trials.begin()->second.metrics.moving_rms_mm.size();
   const std::size_t windows = (entries + kWindow_s - 1) / kWindow_s / kThirds;
   if (windows == 0) return {std::nullopt, "the thirds of a trial need 30 s or more"};
   const auto subjects = static_cast<Eigen::Index>(results.size());
-  Eigen::MatrixXd observations(subjects * 3 * kThirds, 2);
+  const auto count = static_cast<Eigen::Index>(conditions.size());
+  Eigen::MatrixXd observations(subjects * count * kThirds, 2);
   for (Eigen::Index row = 0; row < observations.rows(); ++row) {
-    const auto& result = results[static_cast<std::size_t>(row / (3 * kThirds))];
-    const auto& trial = result.trials.at(kPaperConditions[row / kThirds % 3]);
+    const auto& result = results[static_cast<std::size_t>(row / (count * kThirds))];
+    const auto& trial =
+        result.trials.at(conditions[static_cast<std::size_t>(row / kThirds % count)]);
     const auto values = third(trial, static_cast<std::size_t>(row % kThirds), windows);
     observations.row(row) << values[0], values[1];
   }
-  return manova(observations, {subjects, 3, kThirds});
+  return manova(observations, {subjects, count, kThirds});
 }
 
 std::vector<PooledLine> pooled_lines(const std::vector<SubjectResult>& results, char condition) {
@@ -181,6 +187,12 @@ Comparison compared(const Analysis& analysis, char from, char to) {
 
 namespace {
 
+std::string conditions_in(const Analysis& analysis) {
+  std::string out;
+  for (const auto& entry : analysis.conditions) out += entry.first;
+  return out;
+}
+
 void add_comparisons(Analysis& analysis) {
   const auto add = [&analysis](char from, char to) {
     if (!has(analysis, from) || !has(analysis, to)) return;
@@ -192,6 +204,14 @@ void add_comparisons(Analysis& analysis) {
 }
 
 }  // namespace
+
+std::string words_of_conditions(const Analysis& analysis) {
+  std::string out;
+  for (const char condition : conditions_in(analysis)) {
+    out += (out.empty() ? "" : ", ") + condition_word(condition);
+  }
+  return out;
+}
 
 Analysis analyse(const std::vector<SubjectResult>& results) {
   Analysis out;
@@ -225,10 +245,15 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
   }
   add_comparisons(out);
   if (has(out, 'A') && has(out, 'B') && has(out, 'C')) {
-    out.main_effects = main_effects(out, static_cast<Eigen::Index>(results.size()));
-    out.thirds = thirds(results);
+    out.main_effects = main_effects(out, kPaperConditions, results.size());
+    out.thirds = thirds(results, kPaperConditions);
   } else {
     out.main_effects.reason = out.thirds.reason = "needs conditions A, B and C";
+  }
+  const std::string all = conditions_in(out);
+  if (all.size() > 1 && all != kPaperConditions) {
+    out.all_main_effects = main_effects(out, all, results.size());
+    out.all_thirds = thirds(results, all);
   }
   if (has(out, 'B') && has(out, 'C')) add_wrong_models(out, results);
   for (const SubjectResult& result : results) {

@@ -78,6 +78,9 @@ struct Analysis {
   std::vector<Comparison> comparisons;
   MultivariateResult main_effects;  ///< A, B, C with one value a cell: no interaction
   MultivariateResult thirds;        ///< RMS error and dwell, thirds of a trial as replicates
+  /// The same two over all conditions, where these are two or more and not A, B and C alone.
+  std::optional<MultivariateResult> all_main_effects;
+  std::optional<MultivariateResult> all_thirds;
   /// Eq. SU-5 of C, C' and C+, as far as they were run next to A and B.
   std::map<char, Restoration> restoration;
   std::map<char, WrongModel> wrong;
@@ -91,6 +94,9 @@ MetricSample summarised(std::vector<double> values);
 /// Paired t-tests of the differences to - from.
 /// @param from, to  conditions that the analysis has
 Comparison compared(const Analysis& analysis, char from, char to);
+
+/// "A, B, C, C', C+": the conditions of an analysis, in their order in its tests.
+std::string words_of_conditions(const Analysis& analysis);
 
 /// Eqs. SU-3 to SU-5; statistics of services/statistics.  Pure.
 /// @param results  at least one subject, all with the same conditions

@@ -60,6 +60,14 @@ void print_metric(const Analysis& analysis, std::size_t k) {
   }
 }
 
+void print_manova(const MultivariateResult& result, const std::string& of) {
+  if (!result.manova) return;
+  const auto& manova = *result.manova;
+  fmt::print("MANOVA, {}: condition Wilks {:.3g} (p {:.3g}), subject Wilks {:.3g} (p {:.3g})\n", of,
+             manova.condition.wilks_lambda, manova.condition.wilks.p, manova.subject.wilks_lambda,
+             manova.subject.wilks.p);
+}
+
 void print_comparison(const Comparison& comparison) {
   fmt::print("paired t-test {}, p:", pair_word(comparison.from, comparison.to));
   for (const auto& test : comparison.tests) {
@@ -161,13 +169,9 @@ void print_study(const StudyRecord& record) {
     print_registered(record);
     print_people(record);
   }
-  if (analysis.main_effects.manova) {
-    const auto& manova = *analysis.main_effects.manova;
-    fmt::print(
-        "MANOVA, main effects: condition Wilks {:.3g} (p {:.3g}), subject Wilks {:.3g} (p "
-        "{:.3g})\n",
-        manova.condition.wilks_lambda, manova.condition.wilks.p, manova.subject.wilks_lambda,
-        manova.subject.wilks.p);
+  print_manova(analysis.main_effects, "main effects");
+  if (analysis.all_main_effects) {
+    print_manova(*analysis.all_main_effects, "main effects, " + words_of_conditions(analysis));
   }
 }
 

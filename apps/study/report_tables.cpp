@@ -119,7 +119,7 @@ void add_effect(report::Table& table, const char* name, const statistics::Multiv
        Cell(p_value(test.wilks.p), test.wilks.p < 0.01 ? Emphasis::kStrong : Emphasis::kNone)});
 }
 
-void add_manova(report::Page& page, const MultivariateResult& result, const char* caption) {
+void add_manova(report::Page& page, const MultivariateResult& result, const std::string& caption) {
   if (!result.manova) {
     page.paragraph(fmt::format("{} No test: {}.", caption, result.reason));
     return;
@@ -153,16 +153,23 @@ void add_paper_tables(report::Page& page, const StudyRecord& record) {
 
 void add_statistics(report::Page& page, const Analysis& analysis) {
   page.section("Multivariate analysis of variance");
-  add_manova(
-      page, analysis.main_effects,
-      "All three metrics, with one value a cell. Only the main effects are tested, because an "
-      "interaction cannot be separated from the error.");
+  add_manova(page, analysis.main_effects,
+             "The paper's conditions A, B and C. All three metrics, with one value a cell. Only "
+             "the main effects are tested, because an "
+             "interaction cannot be separated from the error.");
   add_manova(
       page, analysis.thirds,
-      "RMS error and dwell ratio, with the thirds of each trial (whole windows of 10 s) as "
+      "The paper's conditions A, B and C. RMS error and dwell ratio, with the thirds of each trial "
+      "(whole windows of 10 s) as "
       "replicates, which makes the interaction of condition and subject testable. The thirds "
       "of one trial are not independent, so these p-values are too small. The crossover "
       "needs a whole trial.");
+  if (analysis.all_main_effects && analysis.all_thirds) {
+    const std::string all = "The conditions " + words_of_conditions(analysis);
+    add_manova(page, *analysis.all_main_effects, all + ". All three metrics, main effects.");
+    add_manova(page, *analysis.all_thirds,
+               all + ". RMS error and dwell ratio, thirds of each trial.");
+  }
   const Comparison* test = find_comparison(analysis, 'B', 'C');
   if (test == nullptr) return;
   report::Table table;

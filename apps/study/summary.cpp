@@ -84,7 +84,7 @@ ordered_json effect_json(const statistics::MultivariateTest& effect) {
           {"pillai_p", effect.pillai.p}};
 }
 
-ordered_json manova_json(const MultivariateResult& result, const char* design) {
+ordered_json manova_json(const MultivariateResult& result, const std::string& design) {
   if (!result.manova) return {{"design", design}, {"reason", result.reason}};
   ordered_json out{{"design", design},
                    {"condition", effect_json(result.manova->condition)},
@@ -92,6 +92,16 @@ ordered_json manova_json(const MultivariateResult& result, const char* design) {
                    {"interaction", nullptr}};
   if (result.manova->interaction) out["interaction"] = effect_json(*result.manova->interaction);
   return out;
+}
+
+// The tests over more, or other, conditions than the paper's.
+void add_all_conditions(const Analysis& analysis, ordered_json& summary) {
+  if (!analysis.all_main_effects || !analysis.all_thirds) return;
+  const std::string all = words_of_conditions(analysis);
+  summary["manova_all"] =
+      manova_json(*analysis.all_main_effects, all + ": main effects, one value a cell");
+  summary["manova_all_thirds"] = manova_json(
+      *analysis.all_thirds, all + ": thirds of a trial as replicates; RMS error and dwell");
 }
 
 ordered_json restoration_interval_json(const Restoration& restoration) {
@@ -277,6 +287,7 @@ std::string summary_json(const StudyRecord& record) {
   summary["t_test_details"] = t_test_details_json(record.analysis);
   summary["manova_thirds"] =
       manova_json(record.analysis.thirds, "thirds of a trial as replicates; RMS error and dwell");
+  add_all_conditions(record.analysis, summary);
   summary["wrong_models"] = wrong_json(record.analysis);
   summary["identification"] = identification_json(record);
   summary["subjects"] = options.subjects;

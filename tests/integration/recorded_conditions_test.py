@@ -112,6 +112,26 @@ class RecordedConditionsTest(SampleExperimentCase):
         self.assertGreaterEqual(checked, 14)
         self.assertEqual(set(self.summary["t_tests"]), {f"{first}-{second}" for first, second in PAIRS})
 
+    def test_the_manova_over_all_conditions_is_that_of_statsmodels(self):
+        import pandas
+        from statsmodels.multivariate.manova import MANOVA
+        found = self.summary["manova_all"]
+        self.assertTrue(found["design"].startswith("A, B, C, C', C+: "), found)
+        self.assertTrue(self.summary["manova"]["design"].startswith("main effects"))
+        values = [self.values(metric) for metric in METRICS]
+        frame = pandas.DataFrame([{"person": person, "condition": condition,
+                                   **{f"m{k}": value[condition][i] for k, value in enumerate(values)}}
+                                  for i, person in enumerate(self.people) for condition in CONDITIONS])
+        self.assertFalse(frame.isna().any().any())
+        test = MANOVA.from_formula("m0 + m1 + m2 ~ C(condition, Sum) + C(person, Sum)", frame).mv_test()
+        for effect, term in (("condition", "C(condition, Sum)"), ("subject", "C(person, Sum)")):
+            table = test.results[term]["stat"]
+            self.assertAlmostEqual(found[effect]["wilks_lambda"], table.loc["Wilks' lambda", "Value"], delta=EXACT)
+            self.assertAlmostEqual(found[effect]["f"] / table.loc["Wilks' lambda", "F Value"], 1.0, delta=EXACT)
+        self.assertIn("The conditions A, B, C, C&#39;, C+", (self.out / "report.html").read_text().replace("&apos;", "&#39;")
+                      .replace("C'", "C&#39;"))
+        self.assertIn("30 s", self.summary["manova_all_thirds"]["reason"])
+
     def test_each_canceller_has_its_restoration_with_fieller_s_interval(self):
         for metric, key in (("rms_error_mm", "rms_error"), ("dwell_ratio", "dwell_ratio")):
             values = self.values(metric)

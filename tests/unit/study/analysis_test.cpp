@@ -230,6 +230,26 @@ TEST(AnalyseTest, TheThirdsOfATrialAreReplicatesOfItsCell) {
   EXPECT_TRUE(sut.thirds.manova->interaction.has_value());
 }
 
+// ST-7 with q conditions: (S-1)(q-1) degrees of freedom with one trial a cell, q S (3-1) with
+// thirds.
+TEST(AnalyseTest, OtherConditionsThanThePapersHaveTestsOverAllOfThem) {
+  EXPECT_FALSE(analyse(random_results(6, "ABC", 7)).all_main_effects);
+  EXPECT_FALSE(analyse(random_results(6, "A", 7)).all_main_effects);
+  for (const auto& [conditions, words] :
+       {std::pair{"ABCcp", "A, B, C, C', C+"}, {"BCp", "B, C, C+"}, {"AB", "A, B"}}) {
+    const Analysis sut = analyse(random_results(6, conditions, 7));
+    const auto count = static_cast<double>(std::string_view(conditions).size());
+    EXPECT_EQ(words_of_conditions(sut), words);
+    ASSERT_TRUE(sut.all_main_effects && sut.all_main_effects->manova) << words;
+    EXPECT_EQ(sut.all_main_effects->manova->error_df, 5.0 * (count - 1.0));
+    ASSERT_TRUE(sut.all_thirds && sut.all_thirds->manova) << words;
+    EXPECT_EQ(sut.all_thirds->manova->error_df, 6.0 * count * 2.0);
+  }
+  const Analysis paper = analyse(random_results(6, "ABC", 7));
+  EXPECT_EQ(analyse(random_results(6, "ABCcp", 7)).main_effects.manova->error_df,
+            paper.main_effects.manova->error_df);
+}
+
 // 51 window starts of a minute: windows at 0, 10, .. 50 s, two a third.  What lies between them,
 // and so would count a second twice, has no say.
 TEST(AnalyseTest, AThirdIsMadeOfWindowsThatDoNotOverlap) {
