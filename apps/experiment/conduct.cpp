@@ -31,6 +31,7 @@ Progress progress_of(const Folder& folder, const Plan& plan, const std::vector<E
 void set_session(const Folder& folder, std::size_t index, std::int64_t session,
                  lab::LabOptions& lab) {
   const Design& design = folder.design();
+  lab.rig = kRig;
   lab.out = folder.session(index, session);
   lab.protocol.trial_s = design.trial_s;
   lab.protocol.identify_s = design.identify_s;

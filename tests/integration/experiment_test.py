@@ -73,6 +73,15 @@ class ExperimentTestCase(LabTestCase):
             self.assertGreaterEqual(count, 1, key)
         file.write_text(text)
 
+    def augmented_model(self):
+        """A file for C+: of an effect that the rig of close-the-loop holds, and that of the experiment does not."""
+        loop = self.folder / "loop"
+        closed = subprocess.run([str(STILLHAND), "close-the-loop", "--undeclared-effect", "9", "--seed", "3",
+                                 "--trial-seconds", "5", "--identify-seconds", "30", "--out", str(loop)],
+                                capture_output=True, text=True, check=False, timeout=SESSION_LIMIT_S)
+        self.assertEqual(closed.returncode, 0, closed.stderr)
+        return loop / "control_model.json"
+
     def start(self, *words):
         """Starts `experiment run`; returns (process, domain)."""
         domain = next_domain()
@@ -311,12 +320,7 @@ class ChosenModelTest(ExperimentTestCase):
 
     @campaign
     def test_the_model_of_the_folder_runs_in_c_plus_and_in_no_other_trial(self):
-        loop = self.folder / "loop"
-        closed = subprocess.run([str(STILLHAND), "close-the-loop", "--undeclared-effect", "9", "--seed", "3",
-                                 "--trial-seconds", "5", "--identify-seconds", "30", "--out", str(loop)],
-                                capture_output=True, text=True, check=False, timeout=SESSION_LIMIT_S)
-        self.assertEqual(closed.returncode, 0, closed.stderr)
-        self.new("--conditions", "B,C,C',C+", "--participants", 1, "--control-model", loop / "control_model.json")
+        self.new("--conditions", "B,C,C',C+", "--participants", 1, "--control-model", self.augmented_model())
         self.edit(rest_s=0, identify_s=20)
         shown = self.run_to_the_end()
         self.assertIn("4 of 4 trials", shown)
@@ -406,6 +410,37 @@ class CampaignTest(ExperimentTestCase):
         for place in range(3):
             at = [order[place] for order in opened["orders"].values()]
             self.assertEqual({condition: at.count(condition) for condition in "ABC"}, {"A": 4, "B": 4, "C": 4})
+
+
+class CancellersTest(ExperimentTestCase):
+    PEOPLE = 3
+
+    @campaign
+    def test_people_with_c_prime_and_c_plus_are_conducted_reported_and_diagnosed(self):
+        """Pegged trials of 40 s, of which 12 s judge a diagnosis."""
+        kept = os.environ.get("STILLHAND_EXPERIMENT")
+        if kept:
+            self.study = pathlib.Path(kept)
+        self.new("--conditions", "A,B,C,C',C+", "--participants", self.PEOPLE, "--control-model",
+                 self.augmented_model())
+        self.edit(rest_s=0, identify_s=40)
+        for _ in range(self.PEOPLE):
+            self.assertIn("5 of 5 trials", self.run_to_the_end())
+        experiment("unblind", self.study, "--reason", "all are complete")
+        print(experiment("report", self.study, "--plan", "--diagnose", "--simulated")[0], flush=True)
+        summary = json.loads((self.study / "report" / "summary.json").read_text())
+        self.assertEqual(list(summary["conditions"]), ["A", "B", "C", "C'", "C+"])
+        self.assertEqual(summary["recorded"]["participants"], ["P01", "P02", "P03"])
+        self.assertEqual(summary["recorded"]["left_out"], [])  # each model was the one that the trial was given
+        for key in ("restoration", "restoration_c_prime", "restoration_c_plus"):
+            self.assertIsNotNone(summary[key]["rms_error"], key)
+        self.assertTrue(summary["manova_all"]["design"].startswith("A, B, C, C', C+"), summary["manova_all"])
+        diagnoses = summary["diagnoses"]
+        self.assertEqual(diagnoses["failed"], {})
+        self.assertEqual(sorted(diagnoses["participants"]), summary["recorded"]["participants"])
+        self.assertTrue(summary["simulated"]["same_people"])
+        self.assertEqual(summary["simulated"]["failed"], {})
+        self.assertIn("C+", summary["simulated"]["paired"])
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ def control_model(folder):
               "--out", folder / "model")
     row = next(row for row in rows(folder / "model" / "models.csv") if row["model"] == "1 kHz filter")
     return json.dumps({
-        "format": "stillhand control model", "version": 1, "rig": 0, "rate_hz": 1000,
+        "format": "stillhand control model", "version": 1, "rig": 1, "rate_hz": 1000,
         "denominator": [1.0] + [float(row[f"d{i} [-]"]) for i in range(1, 5)],
         "inputs": [{"channel": "a_y", "map": None, "numerator": [float(row[f"c{i} [N s^2/m]"]) for i in range(5)]}],
         "loop": None, "output": None, "paths": [], "waves": [],
@@ -272,8 +272,11 @@ class RefusedModelTest(SampleExperimentCase):
         (self.experiment / "plus.json").write_text(control_model(self.folder))
         conduct(self.experiment, 0, 1, 0, 2)
         unblind(self.experiment)
-        stillhand("experiment", "report", self.experiment)
-        recorded = json.loads((self.experiment / "report" / "summary.json").read_text())["recorded"]
+        stillhand("experiment", "report", self.experiment, "--simulated")
+        summary = json.loads((self.experiment / "report" / "summary.json").read_text())
+        self.assertEqual(summary["simulated"]["failed"], {})  # the model of C+ runs in the simulation, too
+        self.assertIn("C+", summary["simulated"]["paired"])
+        recorded = summary["recorded"]
         self.assertEqual(recorded["participants"], ["P01", "P03"])
         named = [line for line in recorded["left_out"] if "model" in line]
         self.assertEqual(len(named), 1, recorded["left_out"])

@@ -169,7 +169,7 @@ class SampleSession {
     if (!chooses || condition.front() != 'C') return std::nullopt;
     if (condition == "C+") {
       const std::string file = (folder_.path() / design.control_model).string();
-      return cancellation::parse_control_model(recording::read_file(file), file, 0);
+      return cancellation::parse_control_model(recording::read_file(file), file, experiment::kRig);
     }
     cancellation::ControlModel model = cancellation::control_model(identified_);
     if (condition == "C'") model.adapts = close_the_loop::average_hand();

@@ -11,6 +11,10 @@
 
 namespace stillhand::experiment {
 
+/// Number of the rig of every session: that of `stillhand lab` without --rig, for which
+/// `stillhand close-the-loop` writes a model.
+inline constexpr std::uint32_t kRig = 1;
+
 /// Conditions that a session over the bus can run.  D to F need the command filter, another stick
 /// or another rest of the arm, which run in one process alone (`stillhand study`).
 inline constexpr const char* kLiveConditions = "A, B, C, C' or C+";

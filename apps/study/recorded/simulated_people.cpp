@@ -106,7 +106,8 @@ class SimulatedPerson {
     if (!chooses_models_ || !cancels(condition)) return;
     if (condition == kAugmented) {
       const std::string file = (registration_.folder / design_.control_model).string();
-      use(loop, cancellation::parse_control_model(recording::read_file(file), file, 0));
+      use(loop,
+          cancellation::parse_control_model(recording::read_file(file), file, experiment::kRig));
       return;
     }
     auto model = cancellation::control_model(identification_.control.model);
