@@ -9,6 +9,7 @@ For each metric, by restricted maximum likelihood (SU-11 of apps/study/README.md
     metric ~ condition + place,   a random intercept for each participant
 
 Place counts the tracking trials of a participant: its slope is learning or fatigue a trial. Condition B is the base.
+Trials that are not in the study's tables (a rule excluded them, or they were repeated) have no say.
 Exit status 2 and one line for a table that is not of this form.
 """
 import json
@@ -57,6 +58,8 @@ def main(arguments):
     missing = sorted(NEEDED - set(trials.columns))
     if missing:
         return f"mixed_models: {arguments[0]}: no column {missing[0]}; want the trials.csv of a study"
+    if "in tables" in trials.columns:
+        trials = trials[trials["in tables"] == 1]
     print(json.dumps({key: fitted(trials, column) for key, column in METRICS.items()}, indent=2))
     return None
 

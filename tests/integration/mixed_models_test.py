@@ -55,6 +55,15 @@ class MixedModelsTest(unittest.TestCase):
         self.assertAlmostEqual(found["residual_variance"], 0.25, delta=0.12)
         self.assertGreater(found["participant_variance"], 4.0)
 
+    def test_a_trial_that_is_not_in_the_tables_has_no_say(self):
+        head, *lines = table(6, 0.5).splitlines()
+        marked = "\n".join([head + ",in tables", *(line + ",1" for line in lines)]) + "\n"
+        self.path.write_text(marked)
+        found = run(self.path).stdout
+        self.assertIn('"estimate"', found)
+        self.path.write_text(marked + lines[0].rsplit(",", 3)[0] + ",900.0,0.9,,0\n")
+        self.assertEqual(run(self.path).stdout, found)
+
     def test_a_metric_without_values_has_a_reason(self):
         self.path.write_text(table(4, 1.0))
         self.assertIn("too few", json.loads(run(self.path).stdout)["crossover_hz"]["reason"])

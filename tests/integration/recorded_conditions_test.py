@@ -4,19 +4,20 @@
 are in tables, figures and planned comparisons, each participant has a page. Every number next to NumPy and SciPy on the
 exported tables.
 """
+import html
 import html.parser
 import itertools
 import json
 import shutil
 import subprocess
-import unittest
+import sys
 
 import numpy
 from scipy import stats
 
 import lab_process
-from sample_experiment import (WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, number, rows, stillhand,
-                               unblind)
+from sample_experiment import (LIMIT_S, WRITE_SAMPLE, SampleExperimentCase, conduct, new_experiment, number, rows,
+                               stillhand, unblind)
 
 PARTICIPANTS = 7
 CONDITIONS = ("A", "B", "C", "C'", "C+")
@@ -128,9 +129,29 @@ class RecordedConditionsTest(SampleExperimentCase):
             table = test.results[term]["stat"]
             self.assertAlmostEqual(found[effect]["wilks_lambda"], table.loc["Wilks' lambda", "Value"], delta=EXACT)
             self.assertAlmostEqual(found[effect]["f"] / table.loc["Wilks' lambda", "F Value"], 1.0, delta=EXACT)
-        self.assertIn("The conditions A, B, C, C&#39;, C+", (self.out / "report.html").read_text().replace("&apos;", "&#39;")
-                      .replace("C'", "C&#39;"))
+        self.assertIn("The conditions A, B, C, C', C+", html.unescape((self.out / "report.html").read_text()))
         self.assertIn("30 s", self.summary["manova_all_thirds"]["reason"])
+
+    def test_the_mixed_models_are_numpy_s_generalised_least_squares(self):
+        """SU-11: given both variances, the effects are (X' V^-1 X)^-1 X' V^-1 y, over the trials in the tables."""
+        script = lab_process.SOURCE / "apps" / "study" / "mixed_models.py"
+        models = json.loads(subprocess.run([sys.executable, script, self.out / "trials.csv"], capture_output=True,
+                                           text=True, check=True, timeout=LIMIT_S).stdout)
+        for metric, column in METRICS.items():
+            used = [row for row in self.trials if row["in tables"] == "1" and row[column]]
+            model = models[metric]
+            self.assertEqual(model["trials"], len(used))
+            y = numpy.array([number(row[column]) for row in used])
+            x = numpy.array([[1.0, *(row["condition"] == each for each in CONDITIONS if each != "B"),
+                              number(row["place"])] for row in used])
+            person = numpy.array([row["participant"] for row in used])
+            v = (model["participant_variance"] * (person[:, None] == person[None, :]) +
+                 model["residual_variance"] * numpy.eye(len(used)))
+            weighted = numpy.linalg.solve(v, x)
+            wanted = numpy.linalg.solve(x.T @ weighted, weighted.T @ y)
+            names = ["intercept", *(f"{each}-B" for each in CONDITIONS if each != "B"), "place"]
+            for name, value in zip(names, wanted):
+                self.assertAlmostEqual(model["effects"][name]["estimate"] / value, 1.0, delta=1e-6, msg=(metric, name))
 
     def test_each_canceller_has_its_restoration_with_fieller_s_interval(self):
         for metric, key in (("rms_error_mm", "rms_error"), ("dwell_ratio", "dwell_ratio")):
@@ -280,8 +301,8 @@ class RefusedModelTest(SampleExperimentCase):
         self.assertEqual(recorded["participants"], ["P01", "P03"])
         named = [line for line in recorded["left_out"] if "model" in line]
         self.assertEqual(len(named), 1, recorded["left_out"])
-        self.assertRegex(named[0], r"^P02, session 01, trial \d \(C, 5 s\): ran model \d+ in place of model \d+ in 100 % of "
-                                   "it; the canceller refused it: it is not stable$")
+        self.assertRegex(named[0], r"^P02, session 01, trial \d \(C, 5 s\): ran model \d+ in place of model \d+ in 100 % "
+                                   "of it; the canceller refused it: it is not stable$")
         self.assertTrue(any(line.startswith("P02: ") and "C+" in line for line in recorded["left_out"]), recorded)
         self.assertIn("the canceller refused it", (self.experiment / "report" / "report.html").read_text())
         in_report = rows(self.experiment / "report" / "trials.csv")
