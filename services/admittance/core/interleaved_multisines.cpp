@@ -117,7 +117,7 @@ Excitation design(const ExcitationConfig& config) {
   std::vector<std::int64_t> of_force;
   std::vector<std::int64_t> of_motion;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    (i % 2 == 0 ? of_force : of_motion).push_back(all[i]);
+    ((i % 2 == 0) != config.swapped ? of_force : of_motion).push_back(all[i]);
   }
   constexpr double kNoBound = 1e300;
   return {scaled(config, config.force, of_force, kForcePhases, config.peak_force_n, kNoBound),

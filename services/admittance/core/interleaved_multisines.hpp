@@ -40,6 +40,7 @@ struct ExcitationConfig {
   double peak_position_m = 0.12;        ///< [m] bound of the platform
   LineShape force{};                    ///< flat
   LineShape motion{.low_slope = 2.0};   ///< constant displacement below 0.5 Hz
+  bool swapped = false;                 ///< motion takes the lines of the force, and the reverse
   bool schroeder = false;               ///< phases of Eq. SG-2; false: uniform from the seed
   std::int64_t seed = 1;
 
@@ -57,6 +58,8 @@ struct ExcitationConfig {
           "[m] bound of the platform's position");
     visit.group("force", self.force);
     visit.group("motion", self.motion);
+    visit("swapped", self.swapped, Range{0.0, 1.0},
+          "[-] motion takes the lines of the force, and the force those of the motion");
     visit("schroeder", self.schroeder, Range{0.0, 1.0}, "[-] low-crest phases, or random ones");
     visit("seed", self.seed, Range{0.0, 9e15}, "[-] of the random phases");
   }

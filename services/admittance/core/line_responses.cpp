@@ -88,6 +88,18 @@ LineResponse ratio(const Lines& lines, const Eigen::RowVector3cd& above,
   return out;
 }
 
+// Covariance of two outputs over one input, as Eq. AD-6.
+Complex covariance(const Lines& lines, const Eigen::RowVector3cd& one,
+                   const Eigen::RowVector3cd& other) {
+  const Complex input = lines.excited[0];
+  const auto errors = [&](const Eigen::RowVector3cd& of) -> Eigen::RowVectorXcd {
+    const Eigen::RowVector3cd of_input(Complex(of * lines.excited) / input, 0.0, 0.0);
+    return (of - of_input) * lines.noise;
+  };
+  return errors(other).dot(errors(one)) /
+         (static_cast<double>(lines.noise.cols()) * std::norm(input));
+}
+
 }  // namespace
 
 LineEstimates estimate(const FreeStickRecord& record, const Excitation& excitation) {
@@ -106,6 +118,19 @@ LineEstimates estimate(const FreeStickRecord& record, const Excitation& excitati
     const Lines lines = lines_at(record, record.acceleration_m_s2, component.harmonic, periods);
     out.feedthrough_to_force.push_back(ratio(lines, of_force, of_input));
     out.feedthrough_to_position.push_back(ratio(lines, of_displacement, of_input));
+    out.position_force_covariance.push_back(covariance(lines, of_displacement, of_force));
+  }
+  return out;
+}
+
+std::vector<LineResponse> estimate_pegged(const FreeStickRecord& record,
+                                          const Excitation& excitation) {
+  const std::int64_t periods = periods_of(record, excitation.motion.samples_per_period());
+  std::vector<LineResponse> out;
+  for (const signal::Component& component : excitation.motion.components()) {
+    const Lines lines = lines_at(record, record.acceleration_m_s2, component.harmonic, periods);
+    out.push_back(
+        ratio(lines, Eigen::RowVector3cd(0.0, 0.0, 1.0), Eigen::RowVector3cd(1.0, 0.0, 0.0)));
   }
   return out;
 }

@@ -34,6 +34,8 @@ struct LineEstimates {
   std::vector<LineResponse> stick_per_force;          ///< X/F_m [m/N], arm and stick, force lines
   std::vector<LineResponse> feedthrough_to_force;     ///< F/A [N s^2/m], stick free, motion lines
   std::vector<LineResponse> feedthrough_to_position;  ///< X/A [s^2], stick free, motion lines
+  /// E[(X/A - truth) conj(F/A - truth)] [s^2 * N s^2/m]: the two share the hand's own force
+  std::vector<std::complex<double>> position_force_covariance;
   std::int64_t neighbours = 0;  ///< nu [-] unexcited lines at each line: complex degrees of freedom
 };
 
@@ -49,5 +51,10 @@ struct LineEstimates {
 /// @throws stillhand::ConfigError when signals differ in length or are not finite, or the record
 ///         is not a whole number of periods, four or more.
 LineEstimates estimate(const FreeStickRecord& record, const Excitation& excitation);
+
+/// Feedthrough to force of a pegged stick, F/A [N s^2/m] at the motion lines, Eqs. AD-4 to AD-8.
+/// @param record  displacement and motor force are not used; same lengths and conditions as above
+std::vector<LineResponse> estimate_pegged(const FreeStickRecord& record,
+                                          const Excitation& excitation);
 
 }  // namespace stillhand::admittance
