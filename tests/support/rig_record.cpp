@@ -28,6 +28,10 @@ RigRecord record(const RigRun& run) {
   const std::int64_t period = run.motion->samples_per_period();
   RigRecord out;
   out.record.rate_hz = kControlRateHz / static_cast<double>(kEvery);
+  signal::Butterworth of_step(2, sensing.antialias_cutoff_hz, kControlRateHz);
+  // Of a step of the motor's force, hand and handle take this share through the load cell.
+  const rig::ChainParameters chain = rig::chain_parameters(run.rig.body, run.rig.stick, true);
+  const double share = chain.cell_mass_kg / chain.stick_mass_kg;
   double acted_n = 0.0;
   for (std::int64_t n = 0; n < (run.periods + 1) * period; ++n) {
     const signal::MotionSample motion = run.motion->at(n);
@@ -47,11 +51,12 @@ RigRecord record(const RigRun& run) {
     const sensing::Sensed sensed = conditioner.step(device_sample_at(now.raw, n));
     const double displacement_m = of_angle.step(run.rig.stick.lever_m * sensed.theta_rad);
     const double motor_n = of_motor.step(0.5 * (before_n + acted_n));
+    const double half_step_n = of_step.step(-0.5 * share * (acted_n - before_n));
     if (n < period || n % kEvery != 0) continue;
     out.record.motor_force_n.push_back(motor_n);
     out.record.acceleration_m_s2.push_back(sensed.accel_y_m_s2);
     out.record.displacement_m.push_back(displacement_m);
-    out.record.hand_force_n.push_back(sensed.force_n);
+    out.record.hand_force_n.push_back(sensed.force_n + (run.mean_of_tick ? half_step_n : 0.0));
     out.held_force_n.push_back(now.truth.feedthrough_force_n);
   }
   return out;

@@ -17,6 +17,9 @@ struct RigRun {
   const signal::Multisine* force = nullptr;   ///< of the motor, 1 kHz; null: off
   bool pegged = false;
   std::int64_t periods = 8;  ///< after one that is left out
+  /// The rig's load cell is read before the motor's force of its tick steps in, so that step shows
+  /// half a tick late; true: the mean of before and after, as a cell with an analogue filter shows.
+  bool mean_of_tick = true;
 };
 struct RigRecord {
   admittance::FreeStickRecord record;  ///< every fourth sample, 250 Hz
