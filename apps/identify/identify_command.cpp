@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
+#include "apps/identify/admittance.hpp"
 #include "apps/identify/identify.hpp"
 #include "apps/identify/identify_output.hpp"
 #include "apps/measurement/read_options.hpp"
+#include "apps/report/plot/draw.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/identification/model_file.hpp"
@@ -18,6 +21,9 @@ namespace stillhand::identify {
 namespace {
 
 struct Words {
+  bool admittance = false;
+  double lever_m = 0.1;  // of the paper's stick
+  std::filesystem::path picture;
   std::string recording;
   measurement::ReadOptions read;
   IdentifyOptions identify;
@@ -25,7 +31,28 @@ struct Words {
   std::filesystem::path json;
 };
 
+int run_admittance(const Words& words) {
+  if (!words.save.empty()) {
+    throw ConfigError("--save", "it with --admittance", "it without: a model for the canceller");
+  }
+  report::ResultFiles files({{"--json", words.json}, {"--picture", words.picture}},
+                            {words.recording});
+  const AdmittanceResult result = identify_admittance(words.recording, words.lever_m);
+  if (files.wants("--json")) files.set("--json", result_json(result));
+  if (files.wants("--picture")) {
+    const std::vector<report::Figure> figures{figure(result)};
+    files.set("--picture", report::draw(figures).front().png);
+  }
+  files.publish();
+  std::fputs(result_table(result).c_str(), stdout);
+  return 0;
+}
+
 int run(const Words& words) {
+  if (words.admittance) return run_admittance(words);
+  if (!words.picture.empty()) {
+    throw ConfigError("--picture", "it without --admittance", "it with --admittance");
+  }
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.recording, words.read.map_file});
   const IdentifyResult result =
@@ -76,6 +103,15 @@ void add_identify_command(CLI::App& cli, int& status) {
   verb->add_option("--save", words->save, "file for the model, in the form that cancellation reads")
       ->check(settings::check_name);
   verb->add_option("--json", words->json, "file for all results")->check(settings::check_name);
+  verb->add_flag(
+      "--admittance", words->admittance,
+      "REC is a session of `stillhand lab --identify admittance,feedthrough`: admittance "
+      "and feedthrough of the free stick with 95 % bands, and a physical arm");
+  verb->add_option("--lever-m", words->lever_m, "of --admittance: hand to pivot [m]")
+      ->check(CLI::Range(0.02, 0.5))
+      ->capture_default_str();
+  verb->add_option("--picture", words->picture, "of --admittance: PNG file for the responses")
+      ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }
 

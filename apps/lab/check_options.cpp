@@ -40,6 +40,13 @@ void check_combinations(const LabOptions& options) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
   if (!options.devices.empty()) check_devices(options);
+  if (options.protocol.perturb_period_s != 0.0 &&
+      (options.attach || !options.inventory.empty() || !options.model.empty() ||
+       options.canceller != "now" || options.protocol.motion != session::Motion::kBandNoise)) {
+    throw ConfigError("--identify",
+                      "--attach, --inventory, --model, --canceller or --motion with it",
+                      "none of them: the motor perturbs in place of cancelling");
+  }
   if (options.attach &&
       (options.undeclared_effect != 0 || options.subject != 0 || options.video ||
        options.who == Operator::kMouse || options.protocol.motion != session::Motion::kBandNoise)) {

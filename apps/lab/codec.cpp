@@ -72,6 +72,8 @@ stillhand_msgs::MotionKind motion_of(const session::PlannedTrial& planned) {
       return stillhand_msgs::MOTION_ROAD;
     case session::Motion::kRide:
       return stillhand_msgs::MOTION_RIDE;
+    case session::Motion::kInterleaved:
+      return stillhand_msgs::MOTION_MULTISINE;
   }
   return stillhand_msgs::MOTION_STILL;
 }

@@ -111,7 +111,8 @@ LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
     throw ConfigError("--config", options.config.string() + ", which this session would replace",
                       "a copy of it, or another --out");
   }
-  if (options.subject != 0) options.config = own_config;
+  const bool perturbed = options.protocol.perturb_period_s != 0.0;
+  if (options.subject != 0 || perturbed) options.config = own_config;
   Hosts hosts(options);
   const DomainLock lock(hosts.domain(), options.rig);
   LiveSession live;
@@ -128,6 +129,10 @@ LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
     if (options.subject != 0) {
       write_subject_settings(asked_options.config, options.config,
                              options.subject_seed.value_or(options.protocol.seed), options.subject);
+    }
+    if (perturbed) {
+      write_perturbed_settings(options.subject != 0 ? options.config : asked_options.config,
+                               options.config, options.task);
     }
     if (options.undeclared_effect != 0) {
       live.sealed = rig::text_of({options.undeclared_effect, rig::new_nonce()});

@@ -27,7 +27,22 @@ struct Words {
   std::vector<std::string> rig;  // its number, what it is made of, or both
   std::optional<std::string> road_class;
   std::optional<double> road_speed_m_s;
+  std::string identify;
+  std::optional<double> perturb_period_s;
+  std::optional<std::string> task;
 };
+
+// The options of the perturbed trial have no effect without --identify: they are refused.
+void take_perturbation(const Words& words, LabOptions& options) {
+  if (words.identify.empty()) {
+    if (!words.perturb_period_s && !words.task) return;
+    throw ConfigError(words.perturb_period_s ? "--perturb-period-s" : "--task",
+                      "it without --identify", "it with --identify admittance,feedthrough");
+  }
+  options.protocol.conditions = {session::Condition::kPerturbed};
+  options.protocol.perturb_period_s = words.perturb_period_s.value_or(20.0);
+  options.task = words.task.value_or(options.task);
+}
 
 // An option of the road has no effect without --motion road: it is refused.
 void take_road(const Words& words, session::ProtocolOptions& protocol) {
@@ -71,6 +86,17 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
   lab.add_option("--identify-seconds", options.protocol.identify_s,
                  "length of the pegged trial [s]; the paper's is 120")
       ->capture_default_str();
+  lab.add_option("--identify", words.identify,
+                 "admittance,feedthrough: in place of the conditions one trial in which motor and "
+                 "platform move the free stick at once; `stillhand identify --admittance` reads it")
+      ->excludes(lab.get_option("--conditions"))
+      ->check(CLI::IsMember({"admittance,feedthrough"}));
+  lab.add_option("--perturb-period-s", words.perturb_period_s,
+                 "of --identify: period of both multisines [s]; the trial is a whole number of "
+                 "them, five or more [20]");
+  lab.add_option("--task", words.task,
+                 "of --identify: what the simulated person does: hold, relax or give-way [hold]")
+      ->check(CLI::IsMember({"hold", "relax", "give-way"}));
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
       ->check(session::check_seed)
       ->capture_default_str();
@@ -179,6 +205,7 @@ void take_words(const Words& words, LabOptions& options) {
                             : words.motion == "ride" ? session::Motion::kRide
                                                      : session::Motion::kBandNoise;
   take_road(words, options.protocol);
+  take_perturbation(words, options);
   take_rig(words.rig, options);
   options.real_time = !words.ordinary;
 }

@@ -41,6 +41,7 @@ struct LabOptions {
   std::filesystem::path inventory;            ///< the lab's machines; empty: this one
   std::filesystem::path model;                ///< control model for C; empty: the session's own
   std::string canceller = "now";              ///< cancellation::sampling_named()
+  std::string task = "hold";                  ///< of the simulated person in a perturbed trial
   std::uint64_t undeclared_effect = 0;  ///< seed of the effect that only the rig knows; 0: none
   double match_s = 20.0;                ///< [s] patience until every endpoint has matched
   bool attach = false;                  ///< use services that run already

@@ -41,9 +41,15 @@ Arguments recorder_words(const LabOptions& options, const Place& place) {
 }
 
 // What the assignment on the bus does not say.
+Arguments perturb_words(const session::ProtocolOptions& protocol) {
+  return {"--perturb-period-s", fmt::format("{:.17g}", protocol.perturb_period_s), "--perturb-seed",
+          fmt::to_string(protocol.seed)};
+}
+
 Arguments motion_words(const LabOptions& options) {
   if (!options.vehicle.empty()) return {"--vehicle", options.vehicle};
   const session::ProtocolOptions& protocol = options.protocol;
+  if (protocol.perturb_period_s != 0.0) return perturb_words(protocol);
   switch (protocol.motion) {
     case session::Motion::kRide:
       return {"--ride", options.ride.string()};
@@ -52,6 +58,7 @@ Arguments motion_words(const LabOptions& options) {
       return {"--road-class", protocol.road_class, "--speed-m-s",
               fmt::format("{:.17g}", protocol.road_speed_m_s)};
     case session::Motion::kBandNoise:
+    case session::Motion::kInterleaved:
       break;
   }
   return {};
@@ -73,6 +80,9 @@ Arguments own_words(std::string_view service, const LabOptions& options, const P
   if (service == "recorder") return recorder_words(options, place);
   if (service == "motion") return motion_words(options);
   if (service == "display") return display_words(options, place);
+  if (service == "cancellation" && options.protocol.perturb_period_s != 0.0) {
+    return perturb_words(options.protocol);
+  }
   if (service == "cancellation" && options.canceller != "now") {
     return {"--canceller", options.canceller};
   }

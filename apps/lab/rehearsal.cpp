@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "services/admittance/core/session_excitation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/display/core/tracking_display.hpp"
 #include "services/motion/core/motion_generator.hpp"
@@ -21,6 +22,10 @@ motion::MotionProfile profile_of(const session::PlannedTrial& planned,
   profile.road_speed_m_s = options.road_speed_m_s;
   profile.ride_rate_hz = ride.rate_hz;
   profile.ride_accel_m_s2 = ride.accel_m_s2;
+  if (planned.motion == session::Motion::kInterleaved) {
+    profile.components = admittance::motion_components({options.perturb_period_s, options.seed},
+                                                       profile.duration_ticks);
+  }
   return profile;
 }
 
@@ -37,6 +42,9 @@ ConfigError refusal(const session::PlannedTrial& planned, const session::Protoco
           "--road-class",
           fmt::format("{} at {:.6g} m/s", options.road_class, options.road_speed_m_s),
           fmt::format("a better road or less speed, so that the platform can follow ({})", why)};
+    case session::Motion::kInterleaved:
+      return {"--perturb-period-s", fmt::format("{:.6g}", options.perturb_period_s),
+              fmt::format("a motion that the platform can follow ({})", why)};
     case session::Motion::kRide:
       break;
   }

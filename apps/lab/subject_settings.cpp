@@ -4,8 +4,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "services/display/core/tracking_display.hpp"
 #include "services/human_operator/core/subject_config.hpp"
 #include "services/population/population.hpp"
+#include "services/population/task.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/settings/load.hpp"
@@ -19,7 +21,28 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   if (!status.ok()) throw std::runtime_error(status.text);
 }
 
+void copy_settings(const std::filesystem::path& config, const std::filesystem::path& to) {
+  std::filesystem::create_directories(to);
+  if (std::filesystem::equivalent(config, to)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(config)) {
+    if (entry.path().extension() != ".yaml") continue;
+    write_file(to / entry.path().filename(), recording::read_file(entry.path().string()));
+  }
+}
+
 }  // namespace
+
+void write_perturbed_settings(const std::filesystem::path& config, const std::filesystem::path& to,
+                              const std::string& task) {
+  auto rig = settings::load<rig::RigConfig>(config / "rig.yaml", "rig");
+  auto screen =
+      settings::load<display::TrackingDisplay::Config>(config / "display.yaml", "display");
+  rig.body = population::doing(rig.body, population::task_from(task));
+  screen.reference_scale_m = 0.0;
+  copy_settings(config, to);
+  write_file(to / "rig.yaml", settings::yaml_text(rig));
+  write_file(to / "display.yaml", settings::yaml_text(screen));
+}
 
 void write_subject_settings(const std::filesystem::path& config, const std::filesystem::path& to,
                             std::uint64_t seed, std::int64_t subject) {
@@ -31,11 +54,7 @@ void write_subject_settings(const std::filesystem::path& config, const std::file
   rig.body = drawn.body;
   person.crossover = drawn.who;
   person.pointer.arm = population::learnt_feel(rig.body, rig.stick, person.pointer.arm);
-  std::filesystem::create_directories(to);
-  for (const auto& entry : std::filesystem::directory_iterator(config)) {
-    if (entry.path().extension() != ".yaml") continue;
-    write_file(to / entry.path().filename(), recording::read_file(entry.path().string()));
-  }
+  copy_settings(config, to);
   write_file(to / "rig.yaml", settings::yaml_text(rig));
   write_file(to / "human_operator.yaml", settings::yaml_text(person));
 }

@@ -17,4 +17,10 @@ namespace stillhand::lab {
 void write_subject_settings(const std::filesystem::path& config, const std::filesystem::path& to,
                             std::uint64_t seed, std::int64_t subject);
 
+/// Copies the settings, with a target that stands still, and a simulated body that does this
+/// (population::task_from) with the stick.
+/// @param to  may be `config` itself
+void write_perturbed_settings(const std::filesystem::path& config, const std::filesystem::path& to,
+                              const std::string& task);
+
 }  // namespace stillhand::lab

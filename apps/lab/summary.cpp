@@ -21,6 +21,10 @@ namespace stillhand::lab {
 namespace {
 
 void print_table(const session::SessionResult& result) {
+  if (trial_of(result, 'P') != nullptr) {
+    std::printf("`stillhand identify session.mcap --admittance` reads the perturbed trial\n");
+    return;
+  }
   std::printf("\n%-22s %9s %9s %9s   %9s   %s\n", "", "A", "B", "C", "restored",
               "paper (12 subjects): A, B, C, restored");
   for (const session::Metric& metric : session::kMetrics) {
@@ -85,7 +89,10 @@ void print_models(const session::SessionResult& result,
 void print_motion(const std::vector<session::TrialOutcome>& outcomes,
                   const session::ProtocolOptions& protocol) {
   for (const session::TrialOutcome& outcome : outcomes) {
-    if (!outcome.asked || outcome.planned.motion == session::Motion::kBandNoise) continue;
+    if (!outcome.asked || outcome.planned.motion == session::Motion::kBandNoise ||
+        outcome.planned.motion == session::Motion::kInterleaved) {
+      continue;
+    }
     const motion::MotionReport& asked = *outcome.asked;
     if (outcome.planned.motion == session::Motion::kRide) {
       std::printf(

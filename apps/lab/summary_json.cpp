@@ -97,6 +97,9 @@ ordered_json motion_json(const session::TrialOutcome& outcome, const LabOptions&
     json["kind"] = "road";
     json["road_class"] = protocol.road_class;
     json["speed_m_s"] = protocol.road_speed_m_s;
+  } else if (outcome.planned.motion == session::Motion::kInterleaved) {
+    json["kind"] = "interleaved multisines";
+    json["period_s"] = protocol.perturb_period_s;
   } else if (outcome.planned.motion == session::Motion::kRide) {
     json["kind"] = "ride";
     json["corner_hz"] = asked.corner_hz;

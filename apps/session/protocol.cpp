@@ -67,6 +67,7 @@ void set_tracking_motion(PlannedTrial& planned, const ProtocolOptions& options) 
       break;
     }
     case Motion::kRide:
+    case Motion::kInterleaved:
       planned.band_low_hz = kLowest_hz;
       planned.band_high_hz = kHighest_hz;
       break;
@@ -99,6 +100,8 @@ const char* condition_name(Condition condition) {
       return "damped stick";
     case Condition::kArmRest:
       return "arm rest";
+    case Condition::kPerturbed:
+      return "perturbed";
   }
   return "unknown";
 }
@@ -157,9 +160,12 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
   planned.reference_seed = derived_seed(options.seed, SeedUse::kReference, number);
   planned.label = static_cast<char>(condition);
   planned.moving = condition != Condition::kStationary;
-  set_tracking_motion(planned, options);
+  ProtocolOptions own = options;
+  if (condition == Condition::kPerturbed) own.motion = Motion::kInterleaved;
+  set_tracking_motion(planned, own);
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
-  planned.cancellation = condition == Condition::kMovingCancelled;
+  planned.cancellation =
+      condition == Condition::kMovingCancelled || condition == Condition::kPerturbed;
   planned.command_filter = condition == Condition::kCommandFilter;
   return planned;
 }
@@ -196,6 +202,9 @@ motion::MotionProfile motion_profile(const PlannedTrial& planned) {
         break;
       case Motion::kRide:
         profile.kind = motion::MotionKind::kRide;
+        break;
+      case Motion::kInterleaved:
+        profile.kind = motion::MotionKind::kMultisine;
         break;
     }
   }

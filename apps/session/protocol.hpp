@@ -19,14 +19,15 @@ enum class Condition : char {
   kCommandFilter = 'D',    ///< platform moves, the prediction is taken off the command
   kDampedStick = 'E',      ///< platform moves, more stick damping
   kArmRest = 'F',          ///< platform moves, the forearm rests
+  kPerturbed = 'P',        ///< platform and motor move the hand at once, to identify it
 };
 
 /// Conditions of a session over the bus, and of a study.
 inline constexpr const char* kLabConditions = "ABC";
 inline constexpr const char* kStudyConditions = "ABCDEF";
 
-/// Kind of platform motion during B and C.
-enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide };
+/// Kind of platform motion during B and C; kInterleaved during P.
+enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide, kInterleaved };
 
 /// The numbers of a session, from the command line; defaults are the paper's unless said otherwise.
 struct ProtocolOptions {
@@ -38,6 +39,8 @@ struct ProtocolOptions {
   Motion motion = Motion::kBandNoise;
   std::string road_class = "B";  ///< Motion::kRoad: ISO 8608, A (very good) to H
   double road_speed_m_s = 20.0;  ///< [m/s] Motion::kRoad: speed of the vehicle
+  /// [s] period of both multisines of P, which then is the one trial after the pegged one; 0: none
+  double perturb_period_s = 0.0;
 };
 
 /// One trial of the session: the part that every process may know, and the part that stays blinded.

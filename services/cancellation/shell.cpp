@@ -7,11 +7,13 @@
 
 namespace stillhand::cancellation {
 
-Shell::Shell(runtime::Service& service, const Config& config)
+Shell::Shell(runtime::Service& service, const Config& config,
+             std::optional<signal::Multisine> perturbation)
     : service_(service),
       config_(config),
       core_(config_),
       command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)) {
+  if (perturbation) perturbation_.emplace(*std::move(perturbation), config_);
   runtime::Bus& bus = service.bus();
   service.on_trial([this](const Trial& trial, const auto&) {
     arming_.announce(trial);
@@ -40,7 +42,7 @@ Shell::Shell(runtime::Service& service, const Config& config)
 }
 
 void Shell::note_when_armed() {
-  switch (arming_.readiness(core_.has_model(), schedule_.waits_for())) {
+  switch (arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for())) {
     case Readiness::kUnassigned:
       return;
     case Readiness::kArmed:
@@ -120,7 +122,9 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   const bool permitted = interlock_.step(trial, sensed.tick(), service_.bus().peers_alive());
   note_interlock(trial);
   const CancellerInput input = from_idl(sensed, arming_.cancels(sensed.tick()), permitted);
-  auto message = to_idl(core_.step(input), input, sensed, schedule_.in_use());
+  const CancellerOutput output =
+      perturbation_ ? perturbation_->step(input, trial) : core_.step(input);
+  auto message = to_idl(output, input, sensed, schedule_.in_use());
   command_.write(message);
   service_.note_tick(sensed.tick());
 }

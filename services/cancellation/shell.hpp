@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "idl/model.h"
@@ -12,6 +13,7 @@
 #include "services/cancellation/codec.hpp"
 #include "services/cancellation/core/canceller.hpp"
 #include "services/cancellation/core/model_schedule.hpp"
+#include "services/cancellation/core/perturbation.hpp"
 #include "services/cancellation/core/trial_arming.hpp"
 #include "services/runtime/process/handover.hpp"
 #include "services/runtime/process/interlock.hpp"
@@ -23,7 +25,9 @@ namespace stillhand::cancellation {
 /// Models are prepared in another thread and taken by the sample that ModelSchedule names.
 class Shell {
  public:
-  Shell(runtime::Service& service, const Config& config);
+  /// @param perturbation  force in place of cancelling; none: it cancels
+  Shell(runtime::Service& service, const Config& config,
+        std::optional<signal::Multisine> perturbation = {});
   void run() { service_.run(); }
 
  private:
@@ -53,6 +57,7 @@ class Shell {
   runtime::Service& service_;
   const Config config_;
   Canceller core_;
+  std::optional<Perturbation> perturbation_;
   ModelSchedule schedule_;
   TrialArming arming_;
   runtime::Interlock interlock_;

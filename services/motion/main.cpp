@@ -21,5 +21,8 @@ int main(int argc, char** argv) {
             ->capture_default_str();
         cli.add_option("--speed-m-s", way.road_speed_m_s, "speed on the road [m/s]")
             ->capture_default_str();
+        cli.add_option("--perturb-period-s", way.perturbation.period_s,
+                       "period of the platform's multisine while the motor perturbs the hand");
+        cli.add_option("--perturb-seed", way.perturbation.seed, "seed of its phases");
       });
 }

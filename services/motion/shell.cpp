@@ -58,6 +58,9 @@ void Shell::prepare_when_complete() {
 void Shell::complete(MotionProfile& profile) const {
   profile.road_class = way_.road_class;
   profile.road_speed_m_s = way_.road_speed_m_s;
+  if (profile.kind == MotionKind::kMultisine && way_.perturbation.period_s != 0.0) {
+    profile.components = admittance::motion_components(way_.perturbation, profile.duration_ticks);
+  }
   if (profile.kind != MotionKind::kRide) return;
   profile.ride_rate_hz = ride_.rate_hz;
   profile.ride_accel_m_s2 = ride_.accel_m_s2;
@@ -75,6 +78,8 @@ void Shell::report_motion(const MotionProfile& profile, const MotionReport& repo
   } else if (profile.kind == MotionKind::kRoad) {
     std::snprintf(text, sizeof(text), "road: class %s at %.1f m/s, RMS %.3f m/s^2",
                   profile.road_class.c_str(), profile.road_speed_m_s, report.rms_m_s2);
+  } else if (profile.kind == MotionKind::kMultisine && way_.perturbation.period_s != 0.0) {
+    std::snprintf(text, sizeof(text), "%s", admittance::in_words(way_.perturbation).c_str());
   } else {
     return;
   }

@@ -7,6 +7,7 @@
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
+#include "services/admittance/core/session_excitation.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/motion/ride_file.hpp"
 #include "services/runtime/process/handover.hpp"
@@ -19,6 +20,7 @@ struct RideAndRoad {
   std::filesystem::path ride;  ///< recorded ride for read_ride(), or empty
   std::string road_class = "B";
   double road_speed_m_s = 20.0;
+  admittance::SessionPerturbation perturbation;  ///< its motion is that of a multisine's trial
 };
 
 /// The motion generator's process.  Sensed samples are its clock: each one brings the command for a

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/admittance/core/session_excitation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::admittance {
+namespace {
+
+constexpr std::int64_t kMostLines = 20;
+constexpr double kLowest_hz = 0.05;
+constexpr std::int64_t kFewestPeriods = 5;  // four to analyse, after one that is left out
+
+}  // namespace
+
+ExcitationConfig session_excitation(const SessionPerturbation& perturbation) {
+  if (!(perturbation.period_s >= 2.0 && perturbation.period_s <= 200.0)) {
+    throw ConfigError("perturbation.period_s", std::to_string(perturbation.period_s), "2 to 200 s");
+  }
+  ExcitationConfig config;
+  config.period_s = perturbation.period_s;
+  config.lowest_hz = std::max(kLowest_hz, 1.0 / perturbation.period_s);
+  config.seed = static_cast<std::int64_t>(perturbation.seed);
+  for (config.lines = kMostLines; config.lines > 2; --config.lines) {
+    try {
+      interleaved_harmonics(config);
+      break;
+    } catch (const ConfigError&) {
+      continue;  // no room for so many
+    }
+  }
+  interleaved_harmonics(config);
+  return config;
+}
+
+std::vector<signal::Component> motion_components(const SessionPerturbation& perturbation,
+                                                 std::int64_t duration_ticks) {
+  const Excitation excitation = design(session_excitation(perturbation));
+  const std::int64_t period = excitation.motion.samples_per_period();
+  if (duration_ticks % period != 0 || duration_ticks / period < kFewestPeriods) {
+    throw ConfigError("perturbation.period_s", std::to_string(perturbation.period_s),
+                      "a trial of whole periods, five or more; " + std::to_string(duration_ticks) +
+                          " ticks are none");
+  }
+  std::vector<signal::Component> out = excitation.motion.components();
+  for (signal::Component& component : out) component.harmonic *= duration_ticks / period;
+  return out;
+}
+
+std::string in_words(const SessionPerturbation& perturbation) {
+  std::array<char, 120> text{};
+  std::snprintf(text.data(), text.size(), "interleaved multisines: period %.17g s, seed %" PRIu64,
+                perturbation.period_s, perturbation.seed);
+  return text.data();
+}
+
+SessionPerturbation perturbation_in(const std::string& words) {
+  SessionPerturbation out;
+  if (std::sscanf(words.c_str(), "interleaved multisines: period %lf s, seed %" SCNu64,
+                  &out.period_s, &out.seed) != 2) {
+    return {};
+  }
+  return out;
+}
+
+}  // namespace stillhand::admittance

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Motor and platform move the free stick at once in a session over DDS; the recording gives admittance and feedthrough.
+
+A minute: a pegged trial of 5 s, then six periods of 4 s, and the start of a session.
+"""
+import json
+import math
+import re
+import shutil
+import statistics
+import subprocess
+import unittest
+
+from lab_process import BUILD, STILLHAND, LabProcess
+
+PERIOD_S = 4
+PERIODS = 6
+SESSION_LIMIT_S = 120
+# Bound of the perturbation, services/admittance, ExcitationConfig::peak_force_n.
+PEAK_N = 8.0
+
+
+def admittance(settings, frequency_hz):
+    """-X/F of the idle hand of the rig with these settings [m/N]; services/rig, RG-3 and RG-5."""
+    values = {name: float(value) for name, value in re.findall(r"^ +(\w+): ([-+.e\d]+)$", settings, re.M)}
+    s = 2j * math.pi * frequency_hz
+    shoulder = values["shoulder_stiffness_n_m"] + s * values["shoulder_damping_n_s_m"]
+    grip = values["grip_stiffness_n_m"] + s * values["grip_damping_n_s_m"]
+    trunk = values["trunk_mass_kg"] * s ** 2 + values["seat_stiffness_n_m"] + s * values["seat_damping_n_s_m"]
+    # From the seat to the hand: springs in series, masses in parallel.
+    at_arm = values["arm_mass_kg"] * s ** 2 + 1 / (1 / trunk + 1 / shoulder)
+    at_hand = (values["hand_mass_kg"] + values["handle_mass_kg"]) * s ** 2 + 1 / (1 / at_arm + 1 / grip)
+    return 1 / at_hand
+
+
+class AdmittanceTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.out = BUILD / "tests" / "admittance_run"
+        shutil.rmtree(cls.out, ignore_errors=True)
+        cls.lab = LabProcess(cls.out, "--identify", "admittance,feedthrough", "--perturb-period-s", PERIOD_S,
+                             "--task", "relax", "--trial-seconds", PERIOD_S * PERIODS, "--identify-seconds", 5)
+        cls.addClassCleanup(cls.lab.close)
+        cls.lab.wait_for("the end", lambda: cls.lab.process.poll() is not None, SESSION_LIMIT_S, poll_s=0.5)
+        cls.identify = [STILLHAND, "identify", cls.out / "session.mcap", "--admittance"]
+
+    def setUp(self):
+        self.assertEqual(self.lab.process.returncode, 0, self.lab.errors())
+
+    def test_the_recording_gives_admittance_and_feedthrough(self):
+        files = self.out / "admittance.json", self.out / "admittance.png"
+        subprocess.run([*self.identify, "--json", files[0], "--picture", files[1]], check=True,
+                       stdout=subprocess.DEVNULL)
+        found = json.loads(files[0].read_text())
+        self.assertEqual(found["periods"], PERIODS - 1)
+        self.assertGreater(found["largest_motor_force_n"], 0.5 * PEAK_N)
+        self.assertLessEqual(found["largest_motor_force_n"], PEAK_N)
+        for name in ("admittance_m_n", "feedthrough_to_force_n_s2_m", "feedthrough_to_position_s2"):
+            self.assertGreater(len(found[name]), 5)
+            for line in found[name]:
+                self.assertTrue(math.isfinite(line["radius95"]))
+        # The relaxed body of the session in closed form. Its stiffness wanders by some 10 %, which moves the modes: half of
+        # the lines above 2 Hz are within 30 %; a wrong sign, unit or filter is not.
+        settings = (self.out / "logs" / "config" / "rig.yaml").read_text()
+        errors = [abs(complex(line["real"], line["imaginary"]) / admittance(settings, line["frequency_hz"]) - 1)
+                  for line in found["admittance_m_n"] if line["frequency_hz"] > 2]
+        self.assertLess(statistics.median(errors), 0.3)
+        self.assertEqual(files[1].read_bytes()[:4], b"\x89PNG")
+
+    def test_another_recording_is_refused_in_one_line(self):
+        none = self.out / "none.mcap"
+        done = subprocess.run([*self.identify[:2], none, "--admittance"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def test_the_trial_is_marked_as_what_it_was(self):
+        trials = self.lab.summary()["trials"]
+        self.assertEqual([trial["condition"] for trial in trials], ["I", "P"])
+        self.assertTrue(all(trial["completed"] for trial in trials), trials)
+        self.assertEqual(trials[1]["motion"]["kind"], "interleaved multisines")
+
+
+if __name__ == "__main__":
+    unittest.main()

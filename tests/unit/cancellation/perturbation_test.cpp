@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/cancellation/core/perturbation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "services/signal/random.hpp"
+
+namespace stillhand::cancellation {
+namespace {
+
+constexpr Tick kPeriod = 1000;
+constexpr double kForce_n = 6.0;
+constexpr Tick kRamp = 40;  // of the envelope
+constexpr Trial kPerturbedTrial{.number = 1,
+                                .phase = TrialPhase::kTracking,
+                                .start_tick = 2000,
+                                .duration_ticks = 5000,
+                                .ramp_ticks = 500};
+
+signal::Multisine tone() { return {kPeriod, 1000.0, {{3, kForce_n, 0.7}}}; }
+
+CancellerInput good(Tick tick) {
+  CancellerInput input{};
+  input.tick = tick;
+  input.enabled = input.permitted = true;
+  return input;
+}
+
+// Eq. CC-17: 6 N at 3 Hz needs 113 N/s, far below the limits.
+TEST(PerturbationTest, IsTheMultisineOverTheMeasuredTicksAndZeroOutsideTheTrial) {
+  Perturbation sut(tone(), {});
+  for (Tick tick = 0; tick < 9000; ++tick) {
+    const double force_n = sut.step(good(tick), kPerturbedTrial).force_n;
+    if (kPerturbedTrial.measures(tick)) {
+      ASSERT_DOUBLE_EQ(force_n, tone().at(tick - 2000).accel_m_s2) << tick;
+    } else if (!kPerturbedTrial.covers(tick) && !kPerturbedTrial.covers(tick - kRamp)) {
+      ASSERT_EQ(force_n, 0.0) << tick;
+    }
+  }
+}
+
+TEST(PerturbationTest, FallsToZeroWithinTheRampOnceItMayNotAct) {
+  const Config config;
+  const auto spoil = [&](int how, CancellerInput& input) {
+    if (how == 0) input.permitted = false;
+    if (how == 1) input.enabled = false;
+    if (how == 2) input.sensed_flags = kFault;
+    if (how == 3) input.sensed[0] = std::numeric_limits<double>::quiet_NaN();
+    if (how == 4) input.tick = 3000;  // a stuck sender
+  };
+  for (int how = 0; how < 5; ++how) {
+    Perturbation sut(tone(), config);
+    for (Tick tick = 1500; tick <= 3000; ++tick) sut.step(good(tick), kPerturbedTrial);
+    double force_n = 1.0;
+    for (Tick tick = 3001; tick <= 3001 + config.limits.ramp_ticks; ++tick) {
+      CancellerInput input = good(tick);
+      spoil(how, input);
+      force_n = sut.step(input, kPerturbedTrial).force_n;
+    }
+    EXPECT_EQ(force_n, 0.0) << how;
+  }
+}
+
+// Whatever comes: the bound and the change a tick are those of the settings.
+TEST(PerturbationTest, IsBoundedForAnyInput) {
+  Config config;
+  config.limits.max_force_n = 4.0;  // below what the multisine asks for
+  Perturbation sut(tone(), config);
+  signal::Gaussian draw(1, 2);
+  double before_n = 0.0;
+  Tick tick = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const double chance = draw.uniform();
+    tick += chance < 0.02 ? -50 : chance < 0.04 ? 90 : 1;
+    if (tick > 9000) tick = 0;
+    CancellerInput input = good(tick);
+    input.enabled = draw.uniform() > 0.01;
+    input.permitted = draw.uniform() > 0.01;
+    if (draw.uniform() < 0.01) input.sensed[1] = 1e308;
+    const double force_n = sut.step(input, kPerturbedTrial).force_n;
+    ASSERT_LE(std::abs(force_n), 4.0);
+    // The envelope's slew, and its ramp to zero of at most 4 N in 40 ticks.
+    ASSERT_LE(std::abs(force_n - before_n), 2.0 + 1e-12);
+    before_n = force_n;
+  }
+}
+
+}  // namespace
+}  // namespace stillhand::cancellation

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/population/task.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/contract/config_error.hpp"
+#include "services/rig/core/body_response.hpp"
+#include "services/rig/core/rig.hpp"
+
+namespace stillhand::population {
+namespace {
+
+// Eq. SU-3.  Compliance at 0.05 Hz, without the reflex, which only makes holding stiffer.
+TEST(TaskTest, HoldingIsStifferThanRelaxingAndGivingWayIsSofter) {
+  const auto compliance = [](Task task) {
+    return std::abs(rig::hand_admittance(doing({}, task), {}, false, 0.05));
+  };
+  EXPECT_LT(compliance(Task::kHold), compliance(Task::kRelax));
+  EXPECT_LT(compliance(Task::kRelax), compliance(Task::kGiveWay));
+  EXPECT_GT(doing({}, Task::kHold).neuromuscular.reflex_stiffness_n_m, 0.0);
+  EXPECT_EQ(doing(doing({}, Task::kHold), Task::kRelax).neuromuscular.reflex_stiffness_n_m, 0.0);
+}
+
+TEST(TaskTest, ABodyOfEveryTaskIsOneThatTheRigTakes) {
+  for (const char* word : {"hold", "relax", "give-way"}) {
+    rig::RigConfig config;
+    config.body = doing(config.body, task_from(word));
+    EXPECT_NO_THROW(rig::Rig{config}) << word;
+  }
+  EXPECT_THROW(task_from("push"), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::population
