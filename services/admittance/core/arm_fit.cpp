@@ -212,7 +212,7 @@ std::vector<ArmParameter> parameters(bool reflex) {
 // Inverse of J'J with its smallest directions kept: they become large, never wrong.
 Eigen::MatrixXd inverse_information(const Jacobian& slopes, double& condition) {
   const Eigen::JacobiSVD<Jacobian> svd(slopes, Eigen::ComputeThinV);
-  const Numbers s = svd.singularValues();
+  const auto& s = svd.singularValues();
   condition = s[0] / s[s.size() - 1];
   const Numbers floor = s.cwiseMax(1e-12 * s[0]);
   return svd.matrixV() * floor.cwiseAbs2().cwiseInverse().asDiagonal() * svd.matrixV().transpose();

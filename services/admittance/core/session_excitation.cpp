@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
+#include <system_error>
 
 #include "services/contract/config_error.hpp"
 
@@ -14,6 +17,8 @@ namespace {
 
 constexpr std::int64_t kMostLines = 20;
 constexpr double kLowest_hz = 0.05;
+constexpr std::string_view kBeforePeriod = "interleaved multisines: period ";
+constexpr std::string_view kBeforeSeed = " s, seed ";
 constexpr std::int64_t kFewestPeriods = 5;  // four to analyse, after one that is left out
 
 }  // namespace
@@ -54,18 +59,20 @@ std::vector<signal::Component> motion_components(const SessionPerturbation& pert
 
 std::string in_words(const SessionPerturbation& perturbation) {
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "interleaved multisines: period %.17g s, seed %" PRIu64,
-                perturbation.period_s, perturbation.seed);
+  std::snprintf(text.data(), text.size(), "%s%.17g%s%" PRIu64, kBeforePeriod.data(),
+                perturbation.period_s, kBeforeSeed.data(), perturbation.seed);
   return text.data();
 }
 
 SessionPerturbation perturbation_in(const std::string& words) {
   SessionPerturbation out;
-  if (std::sscanf(words.c_str(), "interleaved multisines: period %lf s, seed %" SCNu64,
-                  &out.period_s, &out.seed) != 2) {
-    return {};
-  }
-  return out;
+  const char* const end = words.data() + words.size();
+  if (!words.starts_with(kBeforePeriod)) return {};
+  const auto period = std::from_chars(words.data() + kBeforePeriod.size(), end, out.period_s);
+  const std::string_view rest(period.ptr, static_cast<std::size_t>(end - period.ptr));
+  if (period.ec != std::errc() || !rest.starts_with(kBeforeSeed)) return {};
+  const auto seed = std::from_chars(rest.data() + kBeforeSeed.size(), end, out.seed);
+  return seed.ec == std::errc() && seed.ptr == end ? out : SessionPerturbation{};
 }
 
 }  // namespace stillhand::admittance
