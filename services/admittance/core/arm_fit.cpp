@@ -268,8 +268,12 @@ ArmFit fitted_to(const std::vector<Line>& lines, const std::vector<ArmParameter>
   return best;
 }
 
-ArmValues without_reflex(ArmValues arm) {
-  arm[kReflexStiffness] = arm[kReflexDamping] = 0.0;
+// A second start: from the stiff arm alone the fit of one that gives way can end in a local
+// minimum.
+ArmValues soft_arm() {
+  ArmValues arm = mean_arm();
+  for (const ArmParameter p : {kArmStiffness, kGripStiffness}) arm[p] *= 0.4;
+  for (const ArmParameter p : {kArmDamping, kGripDamping}) arm[p] *= 0.6;
   return arm;
 }
 
@@ -283,7 +287,7 @@ ArmFit fit_arm(const LineEstimates& estimates) {
   const std::vector<Line> lines = lines_of(estimates);
   const auto nu = static_cast<double>(estimates.neighbours);
   double chi2_without = 0.0;
-  ArmFit without = fitted_to(lines, parameters(false), {mean_arm()}, nu, chi2_without);
+  ArmFit without = fitted_to(lines, parameters(false), {mean_arm(), soft_arm()}, nu, chi2_without);
   std::vector<ArmValues> starts;
   for (const double gain_n_m : {50.0, 300.0}) {
     for (const double delay_s : {0.03, 0.06}) {
@@ -308,7 +312,7 @@ ArmFit fit_pegged_arm(const std::vector<LineResponse>& feedthrough, std::int64_t
   estimates.feedthrough_to_position.resize(feedthrough.size());
   estimates.position_force_covariance.resize(feedthrough.size());
   double chi2 = 0.0;
-  return fitted_to(lines_of(estimates), parameters(false), {without_reflex(mean_arm())},
+  return fitted_to(lines_of(estimates), parameters(false), {mean_arm(), soft_arm()},
                    static_cast<double>(neighbours), chi2);
 }
 

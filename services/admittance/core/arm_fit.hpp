@@ -23,7 +23,8 @@ struct ArmFit {
   std::vector<ArmParameter> undetermined;  ///< Eq. AD-14
 };
 
-/// Mean person of services/population with a tracking arm, rounded; the start of every fit.
+/// Mean person of services/population with a tracking arm, rounded.  A fit starts from it and from
+/// a softer one.
 ArmValues mean_arm() noexcept;
 
 /// Fits the arm to admittance, feedthrough to force and feedthrough to position at once, Eqs. AD-12
