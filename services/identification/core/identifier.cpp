@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/identification/core/identifier.hpp"
 
-#include <fmt/format.h>
-
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
 #include "services/contract/config_error.hpp"
@@ -34,8 +34,10 @@ void check_sign(const DifferenceModel& model, std::int64_t expected) {
   constexpr double kLowest_hz = 0.7;  // of the identification motion, paper III-A
   const double gain = signal::response_at(model, kLowest_hz).real();
   if (gain * static_cast<double>(expected) < 0.0) {
+    std::ostringstream got;
+    got << std::showpos << std::setprecision(3) << gain << " N per m/s^2";
     throw ConfigError(
-        "feedthrough at 0.7 Hz", fmt::format("{:+.2f} N per m/s^2", gain),
+        "feedthrough at 0.7 Hz", got.str(),
         "the other sign: an idle hand stays behind the seat. Check the signs of the accelerometer "
         "and the load cell (stillhand calibrate)");
   }
