@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -51,6 +52,8 @@ std::string text_of(const std::filesystem::path& file) {
 
 /// A line on standard input; false at its end or after an interrupt.
 bool enter_came(const runtime::Stop& interrupted) {
+  // What was typed during a reading is no answer to this step.
+  if (isatty(STDIN_FILENO) == 1) tcflush(STDIN_FILENO, TCIFLUSH);
   constexpr int kLook_ms = 50;
   while (!interrupted.requested()) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -91,6 +94,7 @@ class Steps {
                 << std::flush;
       if (!enter_came(interrupted)) return false;
       take_one(known[i]);
+      if (interrupted.requested()) return false;
     }
     return true;
   }
@@ -183,11 +187,13 @@ void write(const CalibrateOptions& options, const CalibrationFit& fit, const std
   settings::load_text<sensing::Config>(text, "sensing", "calibration");
   device_rig::Calibrations all = device_rig::load_calibrations(file);
   all.of(options.signal) = {device_rig::today(), options.person, device, options.sensor, fit};
+  const std::string calibrations =
+      "# Written by `stillhand calibrate`; services/device_rig/README.md, Eq. DR-16.\n" +
+      settings::yaml_text(all);
+  settings::load_text<device_rig::Calibrations>(calibrations, "calibration", "calibration");
   report::ResultFiles files({{"sensing.yaml", sensing_file}, {"calibration.yaml", file}}, {});
   files.set("sensing.yaml", text);
-  files.set("calibration.yaml",
-            "# Written by `stillhand calibrate`; services/device_rig/README.md, Eq. DR-16.\n" +
-                settings::yaml_text(all));
+  files.set("calibration.yaml", calibrations);
   files.publish();
   std::cout << "wrote " << sensing_file.string() << " and " << file.string() << '\n';
 }
@@ -198,7 +204,8 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
   const auto words = device_rig::words_of(options.signal);
   std::vector<double> known = known_quantities(
       options.known.empty() ? default_quantities(options.signal) : options.known, options.signal);
-  if (!known.empty()) known.push_back(known.front());  // what slips or warms up shows
+  device_rig::check_known(known);
+  known.push_back(known.front());  // what slips or warms up shows
   const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
   const auto devices =
       settings::load<device_rig::DevicesConfig>(options.config / "devices.yaml", "devices");

@@ -10,6 +10,17 @@
 #include "services/settings/check_name.hpp"
 
 namespace stillhand::calibrate {
+namespace {
+
+/// calibration.yaml keeps it.
+std::string check_short(const std::string& word) {
+  constexpr std::size_t kMost = 100;
+  const bool one_line = word.find_first_of("\r\n") == std::string::npos;
+  return word.size() <= kMost && one_line ? ""
+                                          : "got a long text, want at most 100 bytes in one line";
+}
+
+}  // namespace
 
 void add_calibrate_command(CLI::App& cli, int& status) {
   auto options = std::make_shared<CalibrateOptions>();
@@ -31,8 +42,10 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       ->check(settings::check_name);
   calibrate->add_option("--person", options->person, "who does it")
       ->required()
-      ->check(settings::check_name);
-  calibrate->add_option("--sensor", options->sensor, "number that is printed on the sensor");
+      ->check(settings::check_name)
+      ->check(check_short);
+  calibrate->add_option("--sensor", options->sensor, "number that is printed on the sensor")
+      ->check(check_short);
   calibrate->add_option(
       "--known", options->known,
       "quantities that act, + right, in N or kg, m/s^2 or g, rad or deg; the first one comes again "

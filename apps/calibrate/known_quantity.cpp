@@ -56,6 +56,10 @@ std::vector<double> known_quantities(const std::string& words, CalibratedSignal 
   std::istringstream list(words);
   for (std::string word; std::getline(list, word, ',');) {
     known.push_back(known_quantity(word, signal));
+    constexpr double kMost_m_s2 = 1.001 * kGravity_m_s2;
+    if (signal == CalibratedSignal::kAcceleration && std::abs(known.back()) > kMost_m_s2) {
+      throw ConfigError("--known", word, "at most 1g: the steps turn the sensor in gravity");
+    }
   }
   return known;
 }

@@ -36,6 +36,7 @@ void run_compare(const CompareOptions& options) {
   if (options.out.empty()) return;
   report::StagedFolder folder(options.out);
   write_report(all, folder.path());
+  folder.write("comparison.json", comparison_json(all));
   folder.publish({std::begin(kReportFiles), std::end(kReportFiles)});
   std::cout << "wrote " << (options.out / "comparison.html").string() << '\n';
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -129,7 +128,7 @@ report::Table conditions_table(const Comparison& all, std::size_t m) {
          std::to_string(outcome.people),
          mean,
          restored,
-         outcome.harmed ? fmt::format("{} of {}", *outcome.harmed, outcome.people) : "–",
+         outcome.harmed ? fmt::format("{} of {}", *outcome.harmed, outcome.compared) : "–",
          outcome.least_gain ? number(*outcome.least_gain) : "–"});
   }
   return table;
@@ -172,7 +171,6 @@ void write_report(const Comparison& all, const std::filesystem::path& folder) {
       "metric. A simulated population is not a person, and neither is an average.");
   page.table(contrasts_table(all));
   page.write(folder / "comparison.html");
-  std::ofstream(folder / "comparison.json") << comparison_json(all);
 }
 
 }  // namespace stillhand::compare

@@ -11,7 +11,7 @@ namespace stillhand::compare {
 inline constexpr const char* kReportFiles[] = {"comparison.html", "comparison.json",
                                                "comparison.svg", "comparison.png"};
 
-/// Page, figure and numbers in a folder that exists.
+/// Page and figure in a folder that exists; comparison.json is the caller's.
 /// @throws as report::render()
 void write_report(const Comparison& all, const std::filesystem::path& folder);
 

@@ -42,7 +42,7 @@ std::string best_sentence(const Comparison& all, std::size_t m, std::size_t best
   }
   if (outcome.harmed) {
     text += fmt::format("; {} of {} are worse off with it than without", *outcome.harmed,
-                        outcome.people);
+                        outcome.compared);
   }
   return text + ".";
 }
@@ -50,9 +50,13 @@ std::string best_sentence(const Comparison& all, std::size_t m, std::size_t best
 // How sure that is.
 std::string sure_sentence(const Comparison& all, std::size_t m) {
   const Ranking& ranking = all.rankings[m];
-  if (all.options.size() < 2) return "Nothing else was tried.";
+  const auto with_values = std::ranges::count_if(
+      all.options, [m](const Option& option) { return option.outcomes[m].people > 0; });
+  if (with_values < 2) return "No other option has a value of it.";
   if (ranking.contrasts.empty()) {
-    return "With one person on a side, this says nothing about others.";
+    return all.options[*ranking.best].outcomes[m].people < 2
+               ? "With one person on a side, this says nothing about others."
+               : "No other option can be tested against it: one person, or the same values.";
   }
   std::string names;
   for (const std::size_t other : ranking.as_good) {
@@ -79,6 +83,7 @@ ordered_json outcome_json(const Outcome& outcome) {
   out["restored_ci95"] = outcome.restored_interval ? ordered_json{outcome.restored_interval->low,
                                                                   outcome.restored_interval->high}
                                                    : ordered_json(nullptr);
+  out["compared"] = outcome.compared;
   out["harmed"] = outcome.harmed ? ordered_json(*outcome.harmed) : ordered_json(nullptr);
   out["least_gain"] = or_null(outcome.least_gain);
   return out;

@@ -50,6 +50,7 @@ Side read_summary(const fs::path& folder) {
   side.name = without_end(folder).filename().string();
   if (!json["conditions"].is_object()) conditions.refuse("an object of conditions");
   for (const auto& [label, ignored] : json["conditions"].items()) {
+    if (label.empty()) conditions.refuse("names of conditions");
     const JsonEntry entry = conditions.at(label);
     Condition condition{.label = label, .values = {}};
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {

@@ -39,6 +39,12 @@ void refuse_changed_model(const std::filesystem::path& file, const std::string& 
   }
   const std::string digest = rig::sha256(recording::read_file(file.string()));
   if (registered.find(digest_line(digest, name)) != std::string::npos) return;
+  if (registered.find("  " + name + "\n") == std::string::npos) {
+    throw ConfigError(
+        (file.parent_path() / kDigestFile).string(), "no line of " + name,
+        "one: an older version began this experiment. If the model is unchanged, `sha256sum " +
+            name + " >> " + kDigestFile + "` in that folder adds it");
+  }
   throw ConfigError(file.string(), "SHA-256 " + digest.substr(0, 12) + "...",
                     "the one in experiment.sha256: the model of condition C+ changed after the "
                     "first participant; take the change back, or begin another experiment");

@@ -42,9 +42,10 @@ void check_combinations(const LabOptions& options) {
   if (!options.devices.empty()) check_devices(options);
   if (options.protocol.perturb_period_s != 0.0 &&
       (options.attach || !options.inventory.empty() || !options.model.empty() ||
-       options.canceller != "now" || options.protocol.motion != session::Motion::kBandNoise)) {
+       !options.vehicle.empty() || options.canceller != "now" ||
+       options.protocol.motion != session::Motion::kBandNoise)) {
     throw ConfigError("--identify",
-                      "--attach, --inventory, --model, --canceller or --motion with it",
+                      "--attach, --inventory, --model, --vehicle, --canceller or --motion with it",
                       "none of them: the motor perturbs in place of cancelling");
   }
   if (options.attach &&

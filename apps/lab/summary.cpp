@@ -128,7 +128,11 @@ void draw(const session::SessionResult& result, const std::filesystem::path& fol
 
 int report_session(const LabOptions& options, const std::vector<session::TrialOutcome>& outcomes,
                    bool interrupted) {
-  const session::SessionResult result = evaluate((options.out / "session.mcap").string(), outcomes);
+  session::SessionResult result = evaluate((options.out / "session.mcap").string(), outcomes);
+  // Under a vehicle the acceleration follows the stick: Eq. SN-7 would show the vehicle.
+  if (!options.vehicle.empty()) {
+    for (session::TrialResult& trial : result.trials) trial.sensed_share.reset();
+  }
   if (result.model && result.model->usable()) {
     write(options.out / "model.json",
           identification::model_json(identification::from_idl(*result.model)));

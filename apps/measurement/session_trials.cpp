@@ -62,6 +62,10 @@ class TrialFinder {
   }
 
   void take(const stillhand_msgs::TrialAssignment& assignment) {
+    // The motor perturbs the hand in an identification of admittance: no condition.
+    const bool perturbs =
+        assignment.cancellation() && assignment.motion() == stillhand_msgs::MOTION_MULTISINE;
+    if (perturbs) return;
     letters_[assignment.trial()] = assignment.motion() == stillhand_msgs::MOTION_STILL ? 'A'
                                    : assignment.cancellation()                         ? 'C'
                                                                                        : 'B';

@@ -102,7 +102,8 @@ std::optional<SensedShare> sensed_share(const SensedMotion& moving, const Sensed
                                         double rate_hz) {
   for (const SensedMotion* motion : {&moving, &cancelled}) {
     const auto size = static_cast<double>(motion->accel_m_s2.size());
-    if (size < kLeast_s * rate_hz) return std::nullopt;
+    const bool whole = motion->theta_rad.size() == motion->accel_m_s2.size();
+    if (!whole || size < kLeast_s * rate_hz) return std::nullopt;
   }
   // Trials of two lengths are cut to the shorter one, so that both have the same lines.
   const std::size_t common = std::min(moving.accel_m_s2.size(), cancelled.accel_m_s2.size());
@@ -116,7 +117,7 @@ std::optional<SensedShare> sensed_share(const SensedMotion& moving, const Sensed
   const CrossSpectra all_b = mean_without(b, kBlocks);
   const CrossSpectra all_c = mean_without(c, kBlocks);
   const double full = coherent_power(all_b, all_c);
-  if (!(full > 0.0)) return std::nullopt;
+  if (!(full > 0.0) || !std::isfinite(coherent_power(all_c, all_c))) return std::nullopt;
   const auto left = [&](const CrossSpectra& of_b, const CrossSpectra& of_c) {
     return std::sqrt(std::max(0.0, coherent_power(of_c, all_c)) /
                      std::max(1e-300, coherent_power(of_b, all_c)));

@@ -10,6 +10,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/population/population.hpp"
 #include "services/runtime/process/run_jobs.hpp"
+#include "services/statistics/descriptive.hpp"
 
 namespace stillhand::vehicle {
 namespace {
@@ -83,11 +84,8 @@ void add_runs(Limit& limit, const std::vector<Drive>& runs) {
   }
 }
 
-double middle(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
-  return *half;
+double middle(const std::vector<double>& values) {
+  return values.empty() ? std::nan("") : statistics::median(values);
 }
 
 }  // namespace
@@ -155,10 +153,13 @@ Agreement agreement(const std::vector<Limit>& limits, bool cancel) {
   for (const Limit& limit : limits) {
     if (limit.cancel != cancel) continue;
     if (limit.ended_m_s2_rad == kInfinite) {
-      if (limit.predicted.high_m_s2_rad >= limit.stable_m_s2_rad) ++out.beyond;
+      ++(limit.predicted.gain_m_s2_rad >= limit.stable_m_s2_rad ? out.beyond : out.never_ended);
       continue;
     }
-    if (!(limit.stable_m_s2_rad > 0.0)) continue;
+    if (!(limit.stable_m_s2_rad > 0.0)) {
+      ++out.at_once;
+      continue;
+    }
     ratios.push_back(limit.predicted.gain_m_s2_rad /
                      std::sqrt(limit.stable_m_s2_rad * limit.ended_m_s2_rad));
     if (limit.predicted.low_m_s2_rad <= limit.ended_m_s2_rad &&

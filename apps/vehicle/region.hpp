@@ -62,6 +62,8 @@ Region map_region(const RegionOptions& options,
 struct Agreement {
   int limits = 0;       ///< compared
   int beyond = 0;       ///< no drive was ended within the grid, and none was predicted to be
+  int never_ended = 0;  ///< predicted within the grid, and no drive was ended
+  int at_once = 0;      ///< the first gain's drive was ended: no step to compare with
   int within = 0;       ///< the interval of the prediction meets the step of the grid at the limit
   double median = 0.0;  ///< predicted over run, geometric middle of the step
   double least = 0.0;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/report/text.hpp"
+#include "services/statistics/descriptive.hpp"
 
 namespace stillhand::vehicle {
 namespace {
@@ -97,11 +98,19 @@ nlohmann::json or_null(double value) {
 nlohmann::json agreement_json(const Agreement& agreed) {
   return {{"limits", agreed.limits},
           {"beyond_grid", agreed.beyond},
+          {"predicted_but_never_ended", agreed.never_ended},
+          {"ended_at_the_first_gain", agreed.at_once},
           {"interval_meets_step", agreed.within},
           {"predicted_over_run",
            {{"median", or_null(agreed.median)},
             {"least", or_null(agreed.least)},
             {"most", or_null(agreed.most)}}}};
+}
+
+// A limit may be infinite: then there is no ratio.
+std::vector<double> finite(std::vector<double> ratios) {
+  std::erase_if(ratios, [](double ratio) { return !std::isfinite(ratio); });
+  return ratios;
 }
 
 // How much larger the critical gain is with cancellation: of each subject and delay.
@@ -114,8 +123,7 @@ std::vector<double> gain_ratios(const Region& region) {
     });
     ratios.push_back(with->predicted.gain_m_s2_rad / without.predicted.gain_m_s2_rad);
   }
-  std::ranges::sort(ratios);
-  return ratios;
+  return finite(std::move(ratios));
 }
 
 std::vector<double> pegged_ratios(const Region& region) {
@@ -123,14 +131,23 @@ std::vector<double> pegged_ratios(const Region& region) {
   for (const Limit& limit : region.limits) {
     if (!limit.cancel) ratios.push_back(limit.pegged_m_s2_rad / limit.predicted.gain_m_s2_rad);
   }
-  std::ranges::sort(ratios);
-  return ratios;
+  return finite(std::move(ratios));
 }
 
-nlohmann::json range_json(const std::vector<double>& sorted) {
-  return {{"median", or_null(sorted[sorted.size() / 2])},
-          {"least", or_null(sorted.front())},
-          {"most", or_null(sorted.back())}};
+nlohmann::json range_json(const std::vector<double>& ratios) {
+  if (ratios.empty()) return nullptr;
+  const auto [least, most] = std::ranges::minmax(ratios);
+  return {{"median", statistics::median(ratios)},
+          {"least", least},
+          {"most", most},
+          {"of", ratios.size()}};
+}
+
+std::string range_text(const std::vector<double>& ratios) {
+  if (ratios.empty()) return "no limit is finite";
+  const auto [least, most] = std::ranges::minmax(ratios);
+  return fmt::format("median {:.2f}, {:.2f} to {:.2f} of {}", statistics::median(ratios), least,
+                     most, ratios.size());
 }
 
 }  // namespace
@@ -219,19 +236,16 @@ std::string region_text(const RegionOptions& options, const Region& region) {
     const Agreement agreed = agreement(region.limits, cancel);
     out += fmt::format(
         "{:<21} predicted / run limit: median {:.2f}, {:.2f} to {:.2f} ({} limits; "
-        "interval meets the grid's step in {}; beyond the grid {})\n",
+        "interval meets the grid's step in {}; beyond the grid {}, predicted but never ended {}, "
+        "ended "
+        "at the first gain {})\n",
         condition_words(cancel), agreed.median, agreed.least, agreed.most, agreed.limits,
-        agreed.within, agreed.beyond);
+        agreed.within, agreed.beyond, agreed.never_ended, agreed.at_once);
   }
-  const auto ratios = gain_ratios(region);
-  const auto pegged = pegged_ratios(region);
   const Stops stopped = stops(region);
-  out += fmt::format("critical gain with / without cancellation: median {:.2f}, {:.2f} to {:.2f}\n",
-                     ratios[ratios.size() / 2], ratios.front(), ratios.back());
-  out += fmt::format(
-      "critical gain by the pegged route / by the free stick: median {:.2f}, {:.2f} "
-      "to {:.2f}\n",
-      pegged[pegged.size() / 2], pegged.front(), pegged.back());
+  out += "critical gain with / without cancellation: " + range_text(gain_ratios(region)) + "\n";
+  out += "critical gain by the pegged route / by the free stick: " +
+         range_text(pegged_ratios(region)) + "\n";
   out += fmt::format(
       "ended {} of {} drives; within two periods of the floor {:.1f} %, median "
       "{:.2f} periods; of the ceiling at most {:.2f} periods\n",

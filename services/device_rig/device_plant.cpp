@@ -134,6 +134,7 @@ void DevicePlant::wait() noexcept {
 }
 
 void DevicePlant::begin(const Trial& trial, Tick tick) noexcept {
+  if (trial.number != trial_.number) side_.reset();
   trial_ = trial;
   tick_ = tick;
   now_ns_ = runtime::monotonic_ns();
@@ -173,6 +174,7 @@ void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput
   const double motion = input.command_acceleration_m_s2;
   if (parts_.acceleration != Parts::Source::kSimulated) {
     acceleration_.step(output.raw.accel_y_v, motion);
+    side_.step(output.raw.accel_y_v, motion);
   }
   if (parts_.force != Parts::Source::kSimulated) force_.step(output.raw.load_cell_v, motion);
 }
@@ -292,6 +294,7 @@ void DevicePlant::judge() noexcept {
                                     : "the accelerometer is silent, or at its end";
   }
   if (acceleration_.repeats()) why_ = "the accelerometer repeats one number while the seat moves";
+  if (side_.opposed()) why_ = "the accelerometer moves against the platform: its sign is wrong";
   if (force_.repeats()) why_ = "the load cell repeats one number while the seat moves";
   if (!drive_) return;
   if (rail_ticks_ >= kRail_ticks) why_ = "an analogue input of the drive stands at its end";

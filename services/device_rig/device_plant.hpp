@@ -10,6 +10,7 @@
 #include "services/device_rig/core/arming.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/device_rig/core/repeated_number.hpp"
+#include "services/device_rig/core/same_side.hpp"
 #include "services/device_rig/core/set_point_guard.hpp"
 #include "services/device_rig/drive_link.hpp"
 #include "services/device_rig/iio_link.hpp"
@@ -75,6 +76,7 @@ class DevicePlant final : public rig::Plant {
   double accel_y_m_s2_ = 0.0;  ///< of the accelerometer; NaN: unknown
   double load_cell_v_ = 0.0;
   RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
+  SameSide side_;                     ///< of the accelerometer, over a trial
   RepeatedNumber force_{2.0};         ///< a free stick moves a load cell by its own 0.2 kg, 0.4 N
   Tick unknown_ticks_ = 0;            ///< one of the two is unknown for so long
   bool jumped_ = false;               ///< the angle jumped; until this process is started again

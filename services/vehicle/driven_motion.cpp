@@ -2,6 +2,7 @@
 #include "services/vehicle/driven_motion.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace stillhand::vehicle {
@@ -34,7 +35,9 @@ motion::PlatformCommand DrivenMotion::step(const StickSample& sample) noexcept {
   motion::GuardInput input;
   input.valid = true;
   if (driven_ && !ended_ && trial_.covers(tick)) {
-    const bool found = sample.sound && oscillation_.step(sample.theta_rad);
+    // Every tick counts for the length of a half wave; an unsound angle holds the one before.
+    const bool found = oscillation_.step(sample.sound ? sample.theta_rad
+                                                      : std::numeric_limits<double>::quiet_NaN());
     const motion::PlatformCommand& at = guard_.state();
     const VehicleMotion moved = vehicle_.step(
         {sample.theta_rad, sample.sound, share(tick), at.position_m, at.velocity_m_s});

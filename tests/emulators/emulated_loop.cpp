@@ -137,6 +137,8 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     laboratory_.hold_acceleration(value != 0.0);
   } else if (word == "swapped") {
     laboratory_.swap_wires(value != 0.0);
+  } else if (word == "turned") {
+    laboratory_.turn_round(value != 0.0);
   } else if (word == "pull") {
     laboratory_.pull(value);
   } else if (word == "tilt") {

@@ -97,7 +97,8 @@ void Laboratory::step(std::int64_t now_ns, Person* person) {
   const rig::RigTruth& truth = output_.truth;
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   constexpr double kCounts = 4096.0;  // rig.yaml
-  const double accel_v = output_.raw.accel_y_v + kAccel_v_m_s2 * tilt_m_s2_;
+  const double accel_v =
+      (turned_ ? -1.0 : 1.0) * output_.raw.accel_y_v + kAccel_v_m_s2 * tilt_m_s2_;
   if (!held_) accel_v_ = saturated_ ? kSupply_v : kMiddle_v + kAccelGain * accel_v;
   const double force_v = output_.raw.load_cell_v + kForce_v_n * pull_n_;
   turn_rad_ += std::clamp(wanted_turn_rad_ - turn_rad_, -kTurn_rad_tick, kTurn_rad_tick);

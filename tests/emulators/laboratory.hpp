@@ -60,6 +60,8 @@ class Laboratory {
   void turn(double angle_rad) { wanted_turn_rad_ = angle_rad; }
   /// The load cell's wires are the wrong way round.
   void swap_wires(bool swapped) { swapped_ = swapped; }
+  /// The accelerometer is turned round.
+  void turn_round(bool turned) { turned_ = turned; }
   /// The accelerometer's amplifier sticks at its end.
   void saturate(bool saturated) { saturated_ = saturated; }
   /// The accelerometer's input gives the number that it gave last.
@@ -79,6 +81,7 @@ class Laboratory {
   bool saturated_ = false;
   bool held_ = false;
   bool swapped_ = false;
+  bool turned_ = false;
   double accel_v_ = 0.0;
 };
 

@@ -124,6 +124,17 @@ class DevicesTest(DevicesCase):
         self.assertIn("an idle hand stays behind the seat", lab.errors()[-1])
         self.assertEqual(laboratory.report()["most_torque_n_m"], 0.0)
 
+    def test_two_sensors_of_the_wrong_sign_end_the_session_before_any_force(self):
+        arguments = quick_session(self.folder / "config")
+        domain = next_domain()
+        laboratory = self.laboratory(domain=domain)
+        laboratory.order("swapped", 1)
+        laboratory.order("turned", 1)
+        lab = self.lab("--rig", "devices", *arguments, domain=domain)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 1, lab.errors())
+        self.assertIn("the accelerometer moves against the platform", lab.summary()["trials"][-1]["aborted"])
+        self.assertEqual(laboratory.report()["most_torque_n_m"], 0.0)
+
     def test_a_port_that_is_not_there_is_refused(self):
         laboratory = self.laboratory()
         laboratory.close()

@@ -64,6 +64,7 @@ Outcome outcome_of(const Side& side, const Condition& condition, std::size_t m) 
   if (moving == nullptr) return out;
   const auto gained = known(gains(kMetrics[m], moving->values[m], condition.values[m]));
   if (gained.empty()) return out;
+  out.compared = gained.size();
   out.least_gain = *std::ranges::min_element(gained);
   out.harmed = static_cast<std::size_t>(
       std::ranges::count_if(gained, [](double gain) { return gain < 0.0; }));

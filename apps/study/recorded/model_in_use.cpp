@@ -96,7 +96,11 @@ std::string other_model_in(const SessionRecording& recorded, const SessionTrial&
   if (commands == 0) {
     return refused ? "had a model that the canceller refused: " + *refused : "";
   }
-  if (!given) return ran.contains(-1) ? "ran no model" : "";
+  if (!given) {
+    return static_cast<double>(ran[-1]) > kMostOther * static_cast<double>(commands)
+               ? "ran no model"
+               : "";
+  }
   const auto other = std::ranges::max_element(ran, {}, [&](const auto& each) {
     return each.first == *given ? std::int64_t{0} : each.second;
   });

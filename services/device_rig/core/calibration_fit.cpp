@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "services/contract/config_error.hpp"
 
@@ -13,21 +14,26 @@ namespace stillhand::device_rig {
 namespace {
 
 void check(std::span<const CalibrationStep> steps) {
-  std::set<double> known;
+  std::vector<double> known;
   for (const CalibrationStep& step : steps) {
-    if (!std::isfinite(step.known) || !std::isfinite(step.reading)) {
+    if (!std::isfinite(step.reading)) {
       throw ConfigError("calibration step", "a reading that is no number",
                         "a sensor that measures");
     }
-    known.insert(step.known);
+    known.push_back(step.known);
   }
-  if (known.size() < 3 || *known.begin() >= 0.0 || *known.rbegin() <= 0.0) {
-    throw ConfigError("known quantities", fmt::format("{} different ones", known.size()),
-                      "three or more, to both sides of 0");
-  }
+  check_known(known);
 }
 
 }  // namespace
+
+void check_known(std::span<const double> known) {
+  const std::set<double> different(known.begin(), known.end());
+  if (different.size() < 3 || *different.begin() >= 0.0 || *different.rbegin() <= 0.0) {
+    throw ConfigError("known quantities", fmt::format("{} different ones", different.size()),
+                      "three or more, to both sides of 0");
+  }
+}
 
 CalibrationFit calibration_fit(std::span<const CalibrationStep> steps) {
   check(steps);

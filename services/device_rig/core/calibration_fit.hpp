@@ -27,6 +27,9 @@ struct CalibrationFit {
   double low = 0.0, high = 0.0;  ///< the known quantities reach from here to there
 };
 
+/// @throws ConfigError for fewer than three quantities, or quantities to one side of 0 alone
+void check_known(std::span<const double> known);
+
 /// Least squares of y = zero + sensitivity x over the steps, each with the same weight.
 /// @param steps  the last one repeats the quantity of the first one
 /// @throws ConfigError for fewer than three quantities, quantities of one sign alone, a reading

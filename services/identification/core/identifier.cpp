@@ -29,7 +29,8 @@ void convert_refined(IdentificationSteps& steps, int order, const ConversionBand
   }
 }
 
-// Eq. ID-21.  A sensor of the wrong sign turns the model round, and the motor would help the seat.
+// Eq. ID-21.  A load cell of the wrong sign turns the model round, and the motor would help the
+// seat.
 void check_sign(const DifferenceModel& model, std::int64_t expected) {
   constexpr double kLowest_hz = 0.7;  // of the identification motion, paper III-A
   const double gain = signal::response_at(model, kLowest_hz).real();

@@ -34,7 +34,7 @@ IioFormat format_of(const iio_channel* channel) {
 
 std::string serial_of(const iio_context* context, const iio_device* device) {
   std::array<char, 128> text{};
-  if (iio_device_debug_attr_read(device, "serial_number", text.data(), text.size()) > 0) {
+  if (iio_device_debug_attr_read(device, "serial_number", text.data(), text.size() - 1) > 0) {
     return text.data();
   }
   const char* value = iio_context_get_attr_value(context, "hw_serial");

@@ -50,7 +50,8 @@ struct VehicleConfig {
           "[-] true: the stick sets a speed; false: an acceleration");
     visit("order", self.order, Range{1.0, 2.0}, "[-] of the vehicle's dynamics, Eq. VH-2, VH-3");
     visit("gain_m_s2_rad", self.gain_m_s2_rad, Range{0.0, 100.0},
-          "[m/s^2 per rad] largest response of acceleration to stick, over all frequencies");
+          "[m/s^2 per rad] acceleration per stick angle, at 0 Hz; of a speed, the largest over "
+          "frequency");
     visit("delay_s", self.delay_s, Range{0.02, 1.0},
           "[s] from the stick's sample to the command, the 20 ticks of lead included");
     visit("lag_s", self.lag_s, Range{0.005, 10.0}, "[s] T of a vehicle of first order");

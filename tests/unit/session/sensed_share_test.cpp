@@ -68,6 +68,17 @@ TEST(SensedShareTest, AShortTrialAndAStandingPlatformSayNothing) {
   EXPECT_FALSE(sensed_share(still, still, kRate_hz));
 }
 
+TEST(SensedShareTest, AnAngleThatIsNoNumberSaysNothing) {
+  const SensedMotion good = motion(1, 0.01, 0.0, 60.0);
+  SensedMotion bad = good;
+  bad.theta_rad[100] = std::nan("");
+  EXPECT_FALSE(sensed_share(good, bad, kRate_hz));
+  EXPECT_FALSE(sensed_share(bad, good, kRate_hz));
+  bad = good;
+  bad.theta_rad.pop_back();
+  EXPECT_FALSE(sensed_share(good, bad, kRate_hz));
+}
+
 TEST(SensedShareTest, TrialsOfTwoLengthsAreComparedOverTheShorterOne) {
   const auto sut =
       sensed_share(motion(1, 0.01, 0.01, 60.0), motion(2, 0.005, 0.01, 45.0), kRate_hz);

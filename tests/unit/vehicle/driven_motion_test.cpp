@@ -93,6 +93,21 @@ TEST(DrivenMotionTest, AGrowingOscillationBrakesThePlatformAndHoldsItUntilAnothe
   EXPECT_FALSE(sut.step({n++, 0.0, true}).flags & kFault);
 }
 
+// The length of a half wave counts every tick: of 6 Hz 83, and not the half of it, which would be
+// out of the detector's band.
+TEST(DrivenMotionTest, SamplesThatAreUnsoundDoNotHideAnOscillation) {
+  DrivenMotion sut{DrivenConfig{}};
+  sut.arm({}, driven_trial(), true);
+  Tick n = 1000;
+  for (; !sut.ended() && n < 20'000; ++n) {
+    const double t = static_cast<double>(n - 1000) * kControlPeriod_s;
+    const double theta_rad = 0.002 * std::exp(2.0 * t) * std::sin(kTwoPi * 6.0 * t);
+    sut.step({n, std::clamp(theta_rad, -0.3, 0.3), n % 2 != 0});
+  }
+  EXPECT_TRUE(sut.ended());
+  EXPECT_LT(n, 4000);
+}
+
 // A preset gives dynamics and delay; gain, bounds and detector stay those of the settings.
 TEST(DrivenMotionTest, APresetReplacesTheDynamicsAlone) {
   VehicleSettings settings;

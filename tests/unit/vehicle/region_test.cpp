@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "apps/vehicle/region_output.hpp"
@@ -117,6 +118,23 @@ TEST(AgreementTest, ComparesPredictionAndStep) {
   EXPECT_NEAR(sut.least, 0.6, 1e-12);
   EXPECT_NEAR(sut.most, 1.0, 1e-12);
   EXPECT_EQ(agreement({near, far}, true).limits, 0);
+}
+
+TEST(AgreementTest, CountsWhatHasNoStepToCompareWith) {
+  Limit never;
+  never.predicted = {30.0, 29.0, 31.0};
+  never.stable_m_s2_rad = 100.0;
+  never.ended_m_s2_rad = std::numeric_limits<double>::infinity();
+  Limit beyond = never;
+  beyond.predicted = {120.0, 80.0, 160.0};
+  Limit at_once = never;
+  at_once.stable_m_s2_rad = 0.0;
+  at_once.ended_m_s2_rad = 1.0;
+  const Agreement sut = agreement({never, beyond, at_once}, false);
+  EXPECT_EQ(sut.limits, 0);
+  EXPECT_EQ(sut.never_ended, 1);
+  EXPECT_EQ(sut.beyond, 1);
+  EXPECT_EQ(sut.at_once, 1);
 }
 
 }  // namespace

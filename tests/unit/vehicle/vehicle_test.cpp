@@ -64,6 +64,7 @@ TEST(VehicleTest, TheResponseIsTheClosedForm) {
 
 // G is the largest |V| without the washout: at high frequency where the speed follows with one lag,
 // at the natural frequency with two, at 0 Hz where the acceleration follows.
+// Where the stick sets an acceleration, the gain is that at 0 Hz: the largest without a resonance.
 TEST(VehicleTest, TheGainIsTheLargestResponse) {
   for (const std::string& name : preset_names()) {
     VehicleConfig config = preset(name);
