@@ -281,7 +281,7 @@ class RecordedConditionsTest(SampleExperimentCase):
         all_refuse("plus.json: got no file")
         model.write_text(whole)
         digests.write_text(lines.splitlines(keepends=True)[0])  # as one that did not register the model
-        all_refuse("plus.json: got SHA-256")
+        all_refuse("experiment.sha256: got no line of plus.json")
         digests.write_text(lines)
         stillhand("experiment", "status", self.experiment)
 
