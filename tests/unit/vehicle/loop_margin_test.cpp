@@ -70,6 +70,7 @@ double growth(const VehicleConfig& config, const Hand& hand) {
 // squared is well above 1.
 TEST(LoopMarginTest, ALoopSteppedInTimeChangesSidesAtTheCriticalGain) {
   const Hand hand;
+  int both_sides = 0;
   for (const std::string& name : preset_names()) {
     for (const double delay_s : {0.02, 0.08, 0.15, 0.3}) {
       VehicleConfig config = preset(name);
@@ -85,8 +86,10 @@ TEST(LoopMarginTest, ALoopSteppedInTimeChangesSidesAtTheCriticalGain) {
       if (above.gain_m_s2_rad > 100.0) continue;  // beyond the setting's range
       EXPECT_GT(growth(above, hand), 1.0) << name << ", " << delay_s << " s";
       EXPECT_FALSE(margin(above, response_of(hand, 400)).stable);
+      ++both_sides;
     }
   }
+  EXPECT_GE(both_sides, 10);  // of 20
 }
 
 TEST(LoopMarginTest, TheModulusFallsToZeroAtTheCriticalGain) {
@@ -119,6 +122,9 @@ TEST(LoopMarginTest, TheIntervalHoldsTheTruth) {
     }
     const GainInterval interval = critical_gain(config, measured, 200, seed);
     inside += interval.low_m_s2_rad <= gain && gain <= interval.high_m_s2_rad ? 1 : 0;
+    // An interval that holds everything says nothing.
+    EXPECT_GT(interval.low_m_s2_rad, gain / 3.0);
+    EXPECT_LT(interval.high_m_s2_rad, gain * 3.0);
   }
   EXPECT_GE(inside, 50);
 }
