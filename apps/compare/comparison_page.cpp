@@ -50,16 +50,16 @@ report::Panel restored_panel(const Comparison& all, std::size_t m) {
     const double at = static_cast<double>(i) + 1.0;
     panel.x.ticks.push_back({at, fmt::format("{}", i + 1)});
     const Outcome& outcome = all.options[i].outcomes[m];
-    if (!outcome.restored) continue;
+    if (!outcome.restored.share) continue;
     report::Series series;
     series.colour = colour_of(all.options[i].condition);
     series.x = {at};
-    series.y = {100.0 * *outcome.restored};
+    series.y = {100.0 * *outcome.restored.share};
     series.kind = report::Kind::kPoints;
-    if (outcome.restored_interval) {
+    if (outcome.restored.interval) {
       series.kind = report::Kind::kErrorBars;
-      series.y_low = {100.0 * outcome.restored_interval->low};
-      series.y_high = {100.0 * outcome.restored_interval->high};
+      series.y_low = {100.0 * outcome.restored.interval->low};
+      series.y_high = {100.0 * outcome.restored.interval->high};
     }
     panel.series.push_back(std::move(series));
   }
@@ -118,10 +118,10 @@ report::Table conditions_table(const Comparison& all, std::size_t m) {
     const bool best = all.rankings[m].best == i;
     std::string mean = number(outcome.mean);
     if (outcome.interval) mean += interval_text(outcome.interval->low, outcome.interval->high);
-    std::string restored = outcome.restored ? number(100.0 * *outcome.restored) : "–";
-    if (outcome.restored_interval) {
-      restored += interval_text(100.0 * outcome.restored_interval->low,
-                                100.0 * outcome.restored_interval->high);
+    std::string restored = outcome.restored.share ? number(100.0 * *outcome.restored.share) : "–";
+    if (outcome.restored.interval) {
+      restored += interval_text(100.0 * outcome.restored.interval->low,
+                                100.0 * outcome.restored.interval->high);
     }
     table.rows.push_back(
         {{name_of(all, i), best ? report::Emphasis::kStrong : report::Emphasis::kNone},

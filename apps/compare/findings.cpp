@@ -34,11 +34,12 @@ std::string best_sentence(const Comparison& all, std::size_t m, std::size_t best
   std::string text =
       fmt::format("For the {}, {} is the best on average ({}, {})", metric.words,
                   name_of(all, best), with_unit(outcome.mean, metric), people_text(outcome.people));
-  if (outcome.restored) text += fmt::format("; it restores {} %", percent(*outcome.restored));
-  if (outcome.restored_interval) {
+  if (outcome.restored.share)
+    text += fmt::format("; it restores {} %", percent(*outcome.restored.share));
+  if (outcome.restored.interval) {
     text += fmt::format(" ({} to {} %) of what the motion takes",
-                        percent(outcome.restored_interval->low),
-                        percent(outcome.restored_interval->high));
+                        percent(outcome.restored.interval->low),
+                        percent(outcome.restored.interval->high));
   }
   if (outcome.harmed) {
     text += fmt::format("; {} of {} are worse off with it than without", *outcome.harmed,
@@ -79,9 +80,9 @@ ordered_json outcome_json(const Outcome& outcome) {
   out["mean"] = outcome.people > 0 ? ordered_json(outcome.mean) : ordered_json(nullptr);
   out["ci95"] = outcome.interval ? ordered_json{outcome.interval->low, outcome.interval->high}
                                  : ordered_json(nullptr);
-  out["restored"] = or_null(outcome.restored);
-  out["restored_ci95"] = outcome.restored_interval ? ordered_json{outcome.restored_interval->low,
-                                                                  outcome.restored_interval->high}
+  out["restored"] = or_null(outcome.restored.share);
+  out["restored_ci95"] = outcome.restored.interval ? ordered_json{outcome.restored.interval->low,
+                                                                  outcome.restored.interval->high}
                                                    : ordered_json(nullptr);
   out["compared"] = outcome.compared;
   out["harmed"] = outcome.harmed ? ordered_json(*outcome.harmed) : ordered_json(nullptr);
@@ -133,7 +134,7 @@ std::string table_text(const Comparison& all) {
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
       const Outcome& outcome = all.options[i].outcomes[m];
       std::string cell = outcome.people == 0 ? "-" : with_unit(outcome.mean, kMetrics[m]);
-      if (outcome.restored) cell += fmt::format(" ({} %)", percent(*outcome.restored));
+      if (outcome.restored.share) cell += fmt::format(" ({} %)", percent(*outcome.restored.share));
       text += fmt::format("{:>30}", cell);
     }
     text += '\n';

@@ -133,20 +133,9 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
 Restoration restoration_by(const Analysis& analysis, char cancelled) {
   Restoration out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const auto& a = analysis.conditions.at('A')[k].per_subject;
-    const auto& b = analysis.conditions.at('B')[k].per_subject;
-    const auto& c = analysis.conditions.at(cancelled)[k].per_subject;
-    std::vector<double> gained;
-    std::vector<double> lost;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      if (!std::isfinite(a[i] + b[i] + c[i])) continue;
-      gained.push_back(b[i] - c[i]);
-      lost.push_back(b[i] - a[i]);
-    }
-    if (gained.empty()) continue;
-    const double all = statistics::mean(lost);
-    if (all != 0.0) out.share[k] = statistics::mean(gained) / all;
-    if (gained.size() > 1) out.interval[k] = statistics::ratio_interval(gained, lost);
+    out[k] = statistics::restored_share(analysis.conditions.at('A')[k].per_subject,
+                                        analysis.conditions.at('B')[k].per_subject,
+                                        analysis.conditions.at(cancelled)[k].per_subject);
   }
   return out;
 }

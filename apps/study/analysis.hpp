@@ -62,11 +62,7 @@ struct WrongModel {
 };
 
 /// Eq. SU-5, of each metric.
-struct Restoration {
-  std::array<std::optional<double>, kMetricCount> share;
-  /// 95 % interval over the subjects; none for one subject, or where B may equal A.
-  std::array<std::optional<statistics::RatioInterval>, kMetricCount> interval;
-};
+using Restoration = std::array<statistics::RestoredShare, kMetricCount>;
 
 /// All numbers of the report and the summary.
 struct Analysis {

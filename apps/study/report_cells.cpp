@@ -26,9 +26,9 @@ std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 
 std::string restored_text(const Analysis& analysis, std::size_t metric, char condition) {
   const auto found = analysis.restoration.find(condition);
-  if (found == analysis.restoration.end() || !found->second.share[metric]) return "–";
-  std::string out = percent(*found->second.share[metric]);
-  if (const auto& interval = found->second.interval[metric]) {
+  if (found == analysis.restoration.end() || !found->second[metric].share) return "–";
+  std::string out = percent(*found->second[metric].share);
+  if (const auto& interval = found->second[metric].interval) {
     out += fmt::format(" [{:.0f}, {:.0f}]", 100.0 * interval->low, 100.0 * interval->high);
   }
   return out;

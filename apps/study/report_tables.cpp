@@ -97,7 +97,7 @@ report::Table restoration_table(const Analysis& analysis) {
 }
 
 void add_outcome(report::Page& page, const Analysis& analysis) {
-  const double restored = analysis.restoration.at('C').share[0].value_or(NAN);
+  const double restored = analysis.restoration.at('C')[0].share.value_or(NAN);
   const double paper = kMetrics[0].paper_restored_percent / 100.0;
   page.paragraph(fmt::format(
       "The motor cancels {} of the feedthrough force and restores {} of the RMS error. {}",

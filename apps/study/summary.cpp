@@ -107,7 +107,7 @@ void add_all_conditions(const Analysis& analysis, ordered_json& summary) {
 ordered_json restoration_interval_json(const Restoration& restoration) {
   ordered_json out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const auto& interval = restoration.interval[k];
+    const auto& interval = restoration[k].interval;
     out[kMetrics[k].restoration_key] =
         interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
   }
@@ -117,7 +117,7 @@ ordered_json restoration_interval_json(const Restoration& restoration) {
 ordered_json restoration_json(const Restoration& restoration) {
   ordered_json out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    out[kMetrics[k].restoration_key] = or_null(restoration.share[k]);
+    out[kMetrics[k].restoration_key] = or_null(restoration[k].share);
   }
   return out;
 }

@@ -42,4 +42,21 @@ std::optional<RatioInterval> ratio_interval(const std::vector<double>& x,
   return RatioInterval{mean_x / mean_y, (b - root) / a, (b + root) / a};
 }
 
+RestoredShare restored_share(const std::vector<double>& before, const std::vector<double>& after,
+                             const std::vector<double>& mended) {
+  std::vector<double> gained;
+  std::vector<double> lost;
+  for (std::size_t i = 0; i < std::min({before.size(), after.size(), mended.size()}); ++i) {
+    if (!std::isfinite(before[i] + after[i] + mended[i])) continue;
+    gained.push_back(after[i] - mended[i]);
+    lost.push_back(after[i] - before[i]);
+  }
+  RestoredShare out;
+  if (gained.empty()) return out;
+  const double all = mean(lost);
+  if (all != 0.0) out.share = mean(gained) / all;
+  if (gained.size() > 1) out.interval = ratio_interval(gained, lost);
+  return out;
+}
+
 }  // namespace stillhand::statistics

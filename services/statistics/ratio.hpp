@@ -22,4 +22,16 @@ struct RatioInterval {
 std::optional<RatioInterval> ratio_interval(const std::vector<double>& x,
                                             const std::vector<double>& y, double confidence = 0.95);
 
+/// How much of a loss a remedy gives back.
+struct RestoredShare {
+  std::optional<double> share;            ///< [-] none without a person, or without a loss
+  std::optional<RatioInterval> interval;  ///< 95 %; none for one person, or where a loss may be 0
+};
+
+/// Share of the mean loss from `before` to `after` that `mended` gives back, README Eq. ST-19: 0 is
+/// none, 1 is all.  Over the people of whom all three are finite.  Pure.
+/// @param before, after, mended  one value a person, same unit; the shortest length counts
+RestoredShare restored_share(const std::vector<double>& before, const std::vector<double>& after,
+                             const std::vector<double>& mended);
+
 }  // namespace stillhand::statistics

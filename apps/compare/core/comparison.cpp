@@ -43,16 +43,6 @@ std::vector<double> gains(const Metric& metric, const std::vector<double>& movin
   return out;
 }
 
-// Eq. CO-1: the paper's share over the people of whom all three are known.
-void restore(const Metric& metric, const std::vector<double>& still,
-             const std::vector<double>& moving, const std::vector<double>& with, Outcome& out) {
-  const auto [gained, lost] = pairs(gains(metric, moving, with), gains(metric, moving, still));
-  if (gained.empty()) return;
-  const double all = statistics::mean(lost);
-  if (all != 0.0) out.restored = statistics::mean(gained) / all;
-  if (gained.size() > 1) out.restored_interval = statistics::ratio_interval(gained, lost);
-}
-
 Outcome outcome_of(const Side& side, const Condition& condition, std::size_t m) {
   Outcome out;
   const std::vector<double> values = known(condition.values[m]);
@@ -69,7 +59,8 @@ Outcome outcome_of(const Side& side, const Condition& condition, std::size_t m) 
   out.harmed = static_cast<std::size_t>(
       std::ranges::count_if(gained, [](double gain) { return gain < 0.0; }));
   if (const Condition* still = side.find("A")) {
-    restore(kMetrics[m], still->values[m], moving->values[m], condition.values[m], out);
+    out.restored =
+        statistics::restored_share(still->values[m], moving->values[m], condition.values[m]);
   }
   return out;
 }

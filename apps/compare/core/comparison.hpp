@@ -47,8 +47,7 @@ struct Outcome {
   double mean = 0.0;
   std::optional<statistics::MeanInterval> interval;  ///< two people or more
   /// Eq. CO-1, with A and B of the same side.
-  std::optional<double> restored;
-  std::optional<statistics::RatioInterval> restored_interval;
+  statistics::RestoredShare restored;
   std::size_t compared = 0;           ///< people with a value in B too
   std::optional<std::size_t> harmed;  ///< of these, whom it leaves worse than B
   std::optional<double> least_gain;   ///< of the worst person over B, + better

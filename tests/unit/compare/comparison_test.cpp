@@ -40,7 +40,7 @@ TEST(ComparisonTest, StatesTheRestoredShareAndWhomItHarms) {
   ASSERT_THAT(sut.options, SizeIs(1));
   const Outcome& outcome = sut.options[0].outcomes[kError];
   EXPECT_DOUBLE_EQ(outcome.mean, 18.125);
-  EXPECT_DOUBLE_EQ(*outcome.restored, (33.0 - 18.125) / 23.0);
+  EXPECT_DOUBLE_EQ(*outcome.restored.share, (33.0 - 18.125) / 23.0);
   EXPECT_EQ(outcome.harmed, 1u);
   EXPECT_DOUBLE_EQ(*outcome.least_gain, -0.5);
 }
@@ -98,7 +98,7 @@ TEST(ComparisonTest, OnePersonSaysNothingAboutOthers) {
   EXPECT_THAT(sut.rankings[kError].contrasts, SizeIs(0));
   EXPECT_THAT(sut.rankings[kError].as_good, ElementsAre(1));
   EXPECT_THAT(findings(sut).at(0), HasSubstr("says nothing about others"));
-  EXPECT_FALSE(sut.options[1].outcomes[kError].restored);
+  EXPECT_FALSE(sut.options[1].outcomes[kError].restored.share);
 }
 
 TEST(ComparisonTest, UnknownValuesAreLeftOut) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -13,6 +14,24 @@
 
 namespace stillhand::statistics {
 namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Eq. ST-19: four people have all three values, a fifth and a sixth do not.
+TEST(RestoredShareTest, IsOfTheMeansOverThePeopleOfWhomAllThreeAreKnown) {
+  const RestoredShare sut =
+      restored_share({1.0, 2.0, 1.0, 2.0, 9.0, kNan}, {5.0, 6.5, 5.5, 6.0, 9.5, 3.0},
+                     {3.0, 4.0, 3.0, 3.5, kNan, 2.0});
+  EXPECT_DOUBLE_EQ(sut.share.value(), (2.0 + 2.5 + 2.5 + 2.5) / (4.0 + 4.5 + 4.5 + 4.0));
+  ASSERT_TRUE(sut.interval);
+  EXPECT_DOUBLE_EQ(sut.interval->ratio, *sut.share);
+}
+
+TEST(RestoredShareTest, WithoutALossOrAPersonThereIsNone) {
+  EXPECT_FALSE(restored_share({1.0}, {1.0}, {0.0}).share);
+  EXPECT_FALSE(restored_share({kNan}, {1.0}, {0.0}).share);
+  EXPECT_FALSE(restored_share({1.0}, {2.0}, {1.5}).interval);
+}
 
 // With a denominator that does not vary, the interval is that of the numerator's mean over it.
 TEST(RatioIntervalTest, IsTheMeansIntervalForAConstantDenominator) {

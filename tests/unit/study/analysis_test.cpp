@@ -97,25 +97,25 @@ TEST(SummarisedTest, TheOrderOfSubjectsDoesNotMoveTheBox) {
 // Eq. SU-5 by hand: (B - C) / (B - A) of the means.
 TEST(AnalyseTest, RestorationIsTheShareOfTheLossThatComesBack) {
   const Analysis sut = analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25),
+  EXPECT_NEAR(sut.restoration.at('C')[kCrossover].share.value(), (0.1 - 0.15) / (0.1 - 0.25),
               kRounding);
-  EXPECT_NEAR(sut.restoration.at('C').share[kError].value(), (50.1 - 30.15) / (50.1 - 20.25),
+  EXPECT_NEAR(sut.restoration.at('C')[kError].share.value(), (50.1 - 30.15) / (50.1 - 20.25),
               kRounding);
 }
 
 TEST(AnalyseTest, ASubjectWhoseCrossoverIsMissingInOneConditionIsLeftOutOfItsRestoration) {
   const Analysis sut =
       analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, kNan, 0.50}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration.at('C').share[kCrossover].value(), (0.1 - 0.15) / (0.1 - 0.25),
+  EXPECT_NEAR(sut.restoration.at('C')[kCrossover].share.value(), (0.1 - 0.15) / (0.1 - 0.25),
               kRounding);
   EXPECT_EQ(sut.conditions.at('B')[kCrossover].known, 2u);
 }
 
 TEST(AnalyseTest, WithoutALossThereIsNoRestoration) {
   const Analysis same = analyse(with_crossovers({{0.25, 0.25, 0.5}, {0.5, 0.5, 0.5}}));
-  EXPECT_FALSE(same.restoration.at('C').share[kCrossover].has_value());
+  EXPECT_FALSE(same.restoration.at('C')[kCrossover].share.has_value());
   const Analysis unknown = analyse(with_crossovers({{kNan, 0.25, 0.5}, {0.5, kNan, 0.5}}));
-  EXPECT_FALSE(unknown.restoration.at('C').share[kCrossover].has_value());
+  EXPECT_FALSE(unknown.restoration.at('C')[kCrossover].share.has_value());
 }
 
 TEST(AnalyseTest, CPrimeAndCPlusAreComparedWithBAndWithTheCancellerBeforeThem) {
@@ -128,8 +128,8 @@ TEST(AnalyseTest, CPrimeAndCPlusAreComparedWithBAndWithTheCancellerBeforeThem) {
   std::vector<std::string> pairs;
   for (const Comparison& each : sut.comparisons) pairs.push_back(pair_word(each.from, each.to));
   EXPECT_THAT(pairs, ElementsAre("A-B", "B-C", "B-C'", "B-C+", "C-C'", "C'-C+", "C-C+"));
-  EXPECT_NEAR(sut.restoration.at(kFollowing).share[kError].value(), 1.0, 1e-9);
-  EXPECT_NEAR(sut.restoration.at(kAugmented).share[kError].value(), 0.0, 1e-9);
+  EXPECT_NEAR(sut.restoration.at(kFollowing)[kError].share.value(), 1.0, 1e-9);
+  EXPECT_NEAR(sut.restoration.at(kAugmented)[kError].share.value(), 0.0, 1e-9);
   EXPECT_TRUE(sut.cancelled_share.contains(kAugmented));
 }
 
@@ -138,12 +138,15 @@ TEST(AnalyseTest, RestorationIsOneForConditionAAgainAndZeroForConditionBAgain) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     auto results = random_results(5, "ABC", seed);
     for (SubjectResult& result : results) result.trials['C'] = result.trials['A'];
-    for (const auto& restored : analyse(results).restoration.at('C').share) {
-      ASSERT_NEAR(restored.value(), 1.0, 1e-9);
+    // A copy: the analysis lives until the end of the statement.
+    const Restoration whole = analyse(results).restoration.at('C');
+    for (const auto& restored : whole) {
+      ASSERT_NEAR(restored.share.value(), 1.0, 1e-9);
     }
     for (SubjectResult& result : results) result.trials['C'] = result.trials['B'];
-    for (const auto& restored : analyse(results).restoration.at('C').share) {
-      ASSERT_NEAR(restored.value(), 0.0, 1e-9);
+    const Restoration none = analyse(results).restoration.at('C');
+    for (const auto& restored : none) {
+      ASSERT_NEAR(restored.share.value(), 0.0, 1e-9);
     }
   }
 }

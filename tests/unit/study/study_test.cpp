@@ -74,10 +74,10 @@ TEST_F(PaperStudyTest, EverySignificanceOfThePaperIsFoundBelowOnePercent) {
 
 // C is a prediction: bounded only by what any cancellation must do, on both sides.
 TEST_F(PaperStudyTest, CancellationRestoresPartOfWhatMotionTook) {
-  for (const auto& restored : analysis_->restoration.at('C').share) {
-    ASSERT_TRUE(restored.has_value());
-    EXPECT_GT(*restored, 0.2);
-    EXPECT_LT(*restored, 1.0);
+  for (const auto& restored : analysis_->restoration.at('C')) {
+    ASSERT_TRUE(restored.share.has_value());
+    EXPECT_GT(*restored.share, 0.2);
+    EXPECT_LT(*restored.share, 1.0);
   }
 }
 

@@ -61,7 +61,7 @@ TEST(SummaryTest, EveryNumberIsReadBackBitForBit) {
   }
   EXPECT_EQ(b.at("mean").get<double>(), record.analysis.conditions.at('B')[0].mean);
   EXPECT_EQ(sut.at("restoration").at("dwell_ratio").get<double>(),
-            record.analysis.restoration.at('C').share[1].value());
+            record.analysis.restoration.at('C')[1].share.value());
 }
 
 TEST(SummaryTest, AValueThatCouldNotBeComputedIsNullAndKeepsItsPlace) {
