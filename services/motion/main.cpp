@@ -24,5 +24,7 @@ int main(int argc, char** argv) {
         cli.add_option("--perturb-period-s", way.perturbation.period_s,
                        "period of the platform's multisine while the motor perturbs the hand");
         cli.add_option("--perturb-seed", way.perturbation.seed, "seed of its phases");
+        cli.add_flag("--perturb-swapped", way.perturbation.swapped,
+                     "platform and motor take each other's lines");
       });
 }

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
 #include "services/motion/codec.hpp"
 
 namespace stillhand::motion {
@@ -15,43 +14,26 @@ Shell::Shell(runtime::Service& service, RideAndRoad way)
       config_(service.config<MotionGenerator::Config>()),
       core_(config_),
       way_(std::move(way)),
-      command_(service.bus().publisher<stillhand_msgs::PlatformCommand>(topics::kPlatformCommand)) {
-  if (!way_.ride.empty()) ride_ = read_ride(way_.ride.string());
-  service.on_trial([this](const Trial& trial, const auto&) {
-    // Another trial, or none: what the platform follows is over, ended or not.
-    if (armed_ != trial.number) core_.disarm();
-    prepare_when_complete();
-  });
-  service.bus().subscribe<stillhand_msgs::TrialAssignment>(
-      topics::kTrialAssignment, [this](const auto& message, const auto&) {
-        assignment_ = message;
-        prepare_when_complete();
-      });
+      ride_(way_.ride.empty() ? RideRecord{} : read_ride(way_.ride.string())),
+      command_(service.bus().publisher<stillhand_msgs::PlatformCommand>(topics::kPlatformCommand)),
+      trial_(
+          service,
+          [this](const auto& assignment, const auto& trial) { return plan(assignment, trial); },
+          [this] { core_.disarm(); }) {
   service.bus().subscribe<stillhand_msgs::Sensed>(
       topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message.tick()); });
 }
 
-// Control and assignment come in either order.
-void Shell::prepare_when_complete() {
-  const Trial trial = service_.trial();
-  if (!assignment_ || trial.number < 0 || assignment_->trial() != trial.number ||
-      prepared_trial_ == trial.number) {
-    return;
-  }
-  prepared_trial_ = trial.number;
-  MotionProfile profile = from_idl(*assignment_, trial);
+AssignedTrial<Shell::Prepared>::Make Shell::plan(const stillhand_msgs::TrialAssignment& assignment,
+                                                 const Trial& trial) {
+  MotionProfile profile = from_idl(assignment, trial);
   complete(profile);
-  handover_.prepare([this, profile = std::move(profile), trial]() -> std::unique_ptr<Prepared> {
-    try {
-      auto prepared =
-          std::make_unique<Prepared>(Prepared{MotionTrajectory(profile, config_.limits), trial});
-      report_motion(profile, prepared->trajectory.report());
-      return prepared;
-    } catch (const ConfigError& error) {
-      service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
-      return nullptr;  // the platform stands still and the trial is never armed
-    }
-  });
+  return [this, profile = std::move(profile), trial] {
+    auto prepared =
+        std::make_unique<Prepared>(Prepared{MotionTrajectory(profile, config_.limits), trial});
+    report_motion(profile, prepared->trajectory.report());
+    return prepared;
+  };
 }
 
 // What the assignment leaves open.
@@ -87,17 +69,13 @@ void Shell::report_motion(const MotionProfile& profile, const MotionReport& repo
 }
 
 void Shell::on_sensed(Tick tick) {
-  if (Prepared* newest = handover_.current(); newest != nullptr &&
-                                              newest->trial.number == service_.trial().number &&
-                                              newest->trial.number != armed_) {
-    armed_ = newest->trial.number;
+  if (Prepared* newest = trial_.newly_armed()) {
     core_.arm(std::move(newest->trajectory), newest->trial);
-    service_.note_armed(armed_);
   }
   // Lost sensed samples leave a gap here; the rig needs every command, within reason.
   const Tick first = std::max(last_ + 1, tick + 1);
   for (Tick next = first; next <= tick + kLead; ++next) {
-    auto message = to_idl(core_.step(next), next, armed_);
+    auto message = to_idl(core_.step(next), next, trial_.armed());
     command_.write(message);
     last_ = next;
   }

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "idl/control_loop.h"
-#include "idl/session.h"
 #include "services/admittance/core/session_excitation.hpp"
+#include "services/motion/assigned_trial.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/motion/ride_file.hpp"
-#include "services/runtime/process/handover.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::motion {
@@ -41,8 +39,9 @@ class Shell {
     Trial trial;
   };
 
+  AssignedTrial<Prepared>::Make plan(const stillhand_msgs::TrialAssignment& assignment,
+                                     const Trial& trial);
   void on_sensed(Tick tick);
-  void prepare_when_complete();
   void complete(MotionProfile& profile) const;
   void report_motion(const MotionProfile& profile, const MotionReport& report) const;
 
@@ -52,10 +51,7 @@ class Shell {
   RideAndRoad way_;
   RideRecord ride_;
   runtime::Publisher<stillhand_msgs::PlatformCommand> command_;
-  runtime::Handover<Prepared> handover_;
-  std::int64_t armed_ = -1;  // number of a trial
-  std::optional<stillhand_msgs::TrialAssignment> assignment_;
-  std::int64_t prepared_trial_ = -1;
+  AssignedTrial<Prepared> trial_;
   Tick last_ = -1;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string_view>
+
 #include "services/contract/tick.hpp"
 #include "services/contract/trial.hpp"
 #include "services/motion/core/motion_trajectory.hpp"
@@ -10,6 +12,9 @@
 #include "services/vehicle/core/vehicle.hpp"
 
 namespace stillhand::vehicle {
+
+/// Event of a trial in which the stick drives; the trial's number follows.
+inline constexpr std::string_view kDrivenEvent = "the stick drives the platform in trial ";
 
 /// Settings of the process in the place of the motion process.
 struct DrivenConfig {

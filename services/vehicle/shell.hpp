@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
 #include "idl/control_loop.h"
-#include "idl/session.h"
-#include "services/runtime/process/handover.hpp"
+#include "services/motion/assigned_trial.hpp"
 #include "services/runtime/service.hpp"
 #include "services/vehicle/driven_motion.hpp"
 
@@ -25,18 +22,16 @@ class Shell {
     bool driven = false;
   };
 
+  motion::AssignedTrial<Prepared>::Make plan(const stillhand_msgs::TrialAssignment& assignment,
+                                             const Trial& trial) const;
   void on_sensed(const stillhand_msgs::Sensed& sample);
-  void prepare_when_complete();
   void report_end();
 
   runtime::Service& service_;
   DrivenConfig config_;
   DrivenMotion core_;
   runtime::Publisher<stillhand_msgs::PlatformCommand> command_;
-  runtime::Handover<Prepared> handover_;
-  std::int64_t armed_ = -1;  // number of a trial
-  std::optional<stillhand_msgs::TrialAssignment> assignment_;
-  std::int64_t prepared_trial_ = -1;
+  motion::AssignedTrial<Prepared> trial_;
   std::int64_t ended_trial_ = -1;  // reported
   Tick last_ = -1;
 };

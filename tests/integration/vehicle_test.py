@@ -77,6 +77,10 @@ class VehicleTest(LabTestCase):
             command = lab.measured_signals(trial)["command"]
             self.assertGreater(max(abs(row[2]) for row in command), 0.1)  # it moved
         self.assert_same_in_one_process(lab)
+        study = subprocess.run([lab_process.STILLHAND, "study", "--sessions", lab.out, "--out", self.folder / "study"],
+                               capture_output=True, text=True, check=False)
+        self.assertEqual(study.returncode, 2, study.stdout)
+        self.assertIn("was driven by the stick", study.stderr)
 
 
 if __name__ == "__main__":

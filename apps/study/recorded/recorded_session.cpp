@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "services/contract/flag.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/vehicle/driven_motion.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -134,6 +136,18 @@ std::optional<std::int64_t> number_after(std::string_view text, std::string_view
   return read.ec == std::errc() ? std::optional(number) : std::nullopt;
 }
 
+// Trials whose motion the stick made: their condition B is not that of a ride.
+std::set<std::int64_t> driven_in(const SessionRecording& recorded) {
+  std::set<std::int64_t> out;
+  for (const auto& event : recorded.events) {
+    if (event.kind() != stillhand_msgs::EVENT_NOTE) continue;
+    if (const auto number = number_after(event.text().c_str(), vehicle::kDrivenEvent)) {
+      out.insert(*number);
+    }
+  }
+  return out;
+}
+
 // "experiment: trial 4, practice" or "experiment: trial 4, block 1, place 2, label X", by number.
 std::map<std::int64_t, Announced> announced_in(const SessionRecording& recorded) {
   std::map<std::int64_t, Announced> out;
@@ -160,6 +174,7 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
   RecordedSession out;
   keep_valid(recorded, trials.rig);
   const std::map<std::int64_t, Announced> announced = announced_in(recorded);
+  const std::set<std::int64_t> driven = driven_in(recorded);
   for (const SessionTrial& trial : trials.trials) {
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
@@ -168,6 +183,7 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
       why = other_model_in(recorded, trial, trials.rig);
       if (!why.empty()) out.other_model.insert(trial.trial.number);
     }
+    if (why.empty() && driven.contains(trial.trial.number)) why = "was driven by the stick";
     const auto note = announced.find(trial.trial.number);
     const Announced plan = note == announced.end() ? Announced{} : note->second;
     const bool practised = plan.practice;

@@ -76,7 +76,7 @@ void refuse_nobody(const Selection& selection, const std::vector<std::string>& w
   if (!selection.results.empty()) return;
   throw ConfigError(
       "--sessions",
-      "no complete participant (" + (why.empty() ? "no tracking trial" : why.back()) + ")",
+      "no complete participant (" + (why.empty() ? "no tracking trial" : why.front()) + ")",
       "a pegged trial and the same conditions for each participant");
 }
 
