@@ -2,13 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/report/plot/figure.hpp"
 #include "services/admittance/core/arm_fit.hpp"
+#include "services/admittance/core/relation.hpp"
 #include "services/admittance/core/session_excitation.hpp"
 
 namespace stillhand::identify {
+
+/// Sessions of `stillhand lab --identify admittance,feedthrough` with one period and seed.
+struct AdmittanceRecordings {
+  std::string free;
+  /// For the relation (AD-16), both or neither: with --held-stick, and with --swap-lines.
+  std::string held, swapped;
+};
 
 /// What a session's perturbed trial says of the arm.
 struct AdmittanceResult {
@@ -19,13 +29,16 @@ struct AdmittanceResult {
   double largest_force_n = 0.0;  ///< of the motor's commands
   admittance::LineEstimates lines;
   admittance::ArmFit arm;
+  std::vector<admittance::LineResponse> held_feedthrough;  ///< F/A of the held stick, or empty
+  std::optional<admittance::RelationTest> relation;
 };
 
-/// Reads the last perturbed trial (`stillhand lab --identify admittance,feedthrough`) of a session.
-/// Displacement and motor command pass the low-pass of sensing, as acceleration and force did.
+/// Reads the last perturbed trial of each session.  Displacement and motor command pass the
+/// low-pass of sensing, as acceleration and force did.
 /// @param lever_m  hand to pivot
-/// @throws stillhand::ConfigError when there is no such trial, or one tick in a thousand is lost.
-AdmittanceResult identify_admittance(const std::string& recording, double lever_m);
+/// @throws stillhand::ConfigError when there is no such trial, one tick in a thousand is lost, or
+///         the sessions do not belong together.
+AdmittanceResult identify_admittance(const AdmittanceRecordings& recordings, double lever_m);
 
 /// README, "Admittance: out.json".
 std::string result_json(const AdmittanceResult& result);

@@ -63,6 +63,22 @@ ordered_json arm_json(const admittance::ArmFit& arm) {
           {"correlation", correlation}};
 }
 
+ordered_json relation_json(const std::optional<admittance::RelationTest>& relation) {
+  if (!relation) return nullptr;
+  ordered_json lines = ordered_json::array();
+  for (const admittance::Mismatch& at : relation->lines) {
+    lines.push_back({{"frequency_hz", at.line.frequency_hz},
+                     {"real", at.line.response.real()},
+                     {"imaginary", at.line.response.imag()},
+                     {"radius95", or_null(at.line.radius95)},
+                     {"within", at.within}});
+  }
+  return {{"share_within", or_null(relation->share_within)},
+          {"median_mismatch", or_null(relation->median_mismatch)},
+          {"median_radius", or_null(relation->median_radius)},
+          {"lines", lines}};
+}
+
 using Response = std::function<std::complex<double>(double)>;
 
 report::Panel magnitude(const std::string& title, const std::string& unit,
@@ -127,7 +143,10 @@ std::string result_json(const AdmittanceResult& result) {
       {"stick_per_commanded_force_m_n", lines_json(result.lines.stick_per_force)},
       {"feedthrough_to_force_n_s2_m", lines_json(result.lines.feedthrough_to_force)},
       {"feedthrough_to_position_s2", lines_json(result.lines.feedthrough_to_position)},
-      {"arm", arm_json(result.arm)}};
+      {"arm", arm_json(result.arm)},
+      {"held_feedthrough_to_force_n_s2_m",
+       result.relation ? lines_json(result.held_feedthrough) : ordered_json(nullptr)},
+      {"relation", relation_json(result.relation)}};
   return json.dump(2) + "\n";
 }
 
@@ -143,6 +162,13 @@ std::string result_table(const AdmittanceResult& result) {
     out += fmt::format("{:<24} {:>11.5g} +- {:<9.3g} {}{}\n", name.name, result.arm.values[p],
                        result.arm.standard_error[p], name.unit,
                        undetermined(result.arm, p) ? "  (not determined)" : "");
+  }
+  if (result.relation) {
+    out += fmt::format(
+        "position feedthrough = force feedthrough x deflection per force (AD-16): off by {:.0f} % "
+        "in the median, the 95 % circles are {:.0f} % wide; {:.0f} % of {} lines agree\n",
+        100.0 * result.relation->median_mismatch, 100.0 * result.relation->median_radius,
+        100.0 * result.relation->share_within, result.relation->lines.size());
   }
   return out;
 }

@@ -24,6 +24,7 @@ struct Words {
   bool admittance = false;
   double lever_m = 0.1;  // of the paper's stick
   std::filesystem::path picture;
+  std::string held, swapped;
   std::string recording;
   measurement::ReadOptions read;
   IdentifyOptions identify;
@@ -35,9 +36,14 @@ int run_admittance(const Words& words) {
   if (!words.save.empty()) {
     throw ConfigError("--save", "it with --admittance", "it without: a model for the canceller");
   }
+  if (words.held.empty() != words.swapped.empty()) {
+    throw ConfigError(words.held.empty() ? "--held" : "--swapped", "nothing",
+                      "both or neither: their relation needs three sessions");
+  }
   report::ResultFiles files({{"--json", words.json}, {"--picture", words.picture}},
-                            {words.recording});
-  const AdmittanceResult result = identify_admittance(words.recording, words.lever_m);
+                            {words.recording, words.held, words.swapped});
+  const AdmittanceResult result =
+      identify_admittance({words.recording, words.held, words.swapped}, words.lever_m);
   if (files.wants("--json")) files.set("--json", result_json(result));
   if (files.wants("--picture")) {
     const std::vector<report::Figure> figures{figure(result)};
@@ -50,8 +56,11 @@ int run_admittance(const Words& words) {
 
 int run(const Words& words) {
   if (words.admittance) return run_admittance(words);
-  if (!words.picture.empty()) {
-    throw ConfigError("--picture", "it without --admittance", "it with --admittance");
+  if (!words.picture.empty() || !words.held.empty() || !words.swapped.empty()) {
+    throw ConfigError(!words.picture.empty() ? "--picture"
+                      : !words.held.empty()  ? "--held"
+                                             : "--swapped",
+                      "it without --admittance", "it with --admittance");
   }
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.recording, words.read.map_file});
@@ -112,6 +121,10 @@ void add_identify_command(CLI::App& cli, int& status) {
       ->capture_default_str();
   verb->add_option("--picture", words->picture, "of --admittance: PNG file for the responses")
       ->check(settings::check_name);
+  verb->add_option("--held", words->held,
+                   "of --admittance: session with --held-stick; with --swapped it tests that "
+                   "feedthrough to position is feedthrough to force times deflection per force");
+  verb->add_option("--swapped", words->swapped, "of --admittance: session with --swap-lines");
   verb->callback([words, &status] { status = run(*words); });
 }
 

@@ -72,8 +72,8 @@ const session::TrialOutcome& ConductedTrials::run_once(const session::PlannedTri
 
 const session::TrialOutcome& ConductedTrials::finished() {
   session::TrialOutcome& outcome = outcomes_.back();
-  const bool pegged = outcome.planned.trial.phase == TrialPhase::kPegged;
-  if (outcome.completed && pegged) take_model(outcome);
+  // A perturbed trial on the peg is for `stillhand identify`: no model of it is needed here.
+  if (outcome.completed && outcome.planned.label == session::kIdentification) take_model(outcome);
   return outcome;
 }
 

@@ -30,17 +30,25 @@ struct Words {
   std::string identify;
   std::optional<double> perturb_period_s;
   std::optional<std::string> task;
+  bool held = false;
+  bool swapped = false;
 };
 
 // The options of the perturbed trial have no effect without --identify: they are refused.
 void take_perturbation(const Words& words, LabOptions& options) {
   if (words.identify.empty()) {
-    if (!words.perturb_period_s && !words.task) return;
-    throw ConfigError(words.perturb_period_s ? "--perturb-period-s" : "--task",
-                      "it without --identify", "it with --identify admittance,feedthrough");
+    const char* const given = words.perturb_period_s ? "--perturb-period-s"
+                              : words.task           ? "--task"
+                              : words.held           ? "--held-stick"
+                              : words.swapped        ? "--swap-lines"
+                                                     : nullptr;
+    if (given == nullptr) return;
+    throw ConfigError(given, "it without --identify", "it with --identify admittance,feedthrough");
   }
   options.protocol.conditions = {session::Condition::kPerturbed};
   options.protocol.perturb_period_s = words.perturb_period_s.value_or(20.0);
+  options.protocol.stick_held = words.held;
+  options.protocol.perturb_swapped = words.swapped;
   options.task = words.task.value_or(options.task);
 }
 
@@ -97,6 +105,12 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
   lab.add_option("--task", words.task,
                  "of --identify: what the simulated person does: hold, relax or give-way [hold]")
       ->check(CLI::IsMember({"hold", "relax", "give-way"}));
+  lab.add_flag(
+      "--held-stick", words.held,
+      "of --identify: the stick stays on its peg; `identify --admittance --held` reads it");
+  lab.add_flag("--swap-lines", words.swapped,
+               "of --identify: motor and platform take each other's lines; `identify --admittance "
+               "--swapped` reads it");
   lab.add_option("--seed", options.protocol.seed, "seed of everything random")
       ->check(session::check_seed)
       ->capture_default_str();

@@ -42,8 +42,10 @@ Arguments recorder_words(const LabOptions& options, const Place& place) {
 
 // What the assignment on the bus does not say.
 Arguments perturb_words(const session::ProtocolOptions& protocol) {
-  return {"--perturb-period-s", fmt::format("{:.17g}", protocol.perturb_period_s), "--perturb-seed",
-          fmt::to_string(protocol.seed)};
+  Arguments words{"--perturb-period-s", fmt::format("{:.17g}", protocol.perturb_period_s),
+                  "--perturb-seed", fmt::to_string(protocol.seed)};
+  if (protocol.perturb_swapped) words.push_back("--perturb-swapped");
+  return words;
 }
 
 Arguments motion_words(const LabOptions& options) {

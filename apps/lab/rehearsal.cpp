@@ -23,8 +23,8 @@ motion::MotionProfile profile_of(const session::PlannedTrial& planned,
   profile.ride_rate_hz = ride.rate_hz;
   profile.ride_accel_m_s2 = ride.accel_m_s2;
   if (planned.motion == session::Motion::kInterleaved) {
-    profile.components = admittance::motion_components({options.perturb_period_s, options.seed},
-                                                       profile.duration_ticks);
+    profile.components = admittance::motion_components(
+        {options.perturb_period_s, options.seed, options.perturb_swapped}, profile.duration_ticks);
   }
   return profile;
 }

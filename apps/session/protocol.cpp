@@ -134,7 +134,7 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   planned.trial.phase = TrialPhase::kPegged;
   planned.trial.duration_ticks = ticks_in(options.identify_s);
   planned.trial.ramp_ticks = ticks_in(options.ramp_s);
-  planned.label = 'I';
+  planned.label = kIdentification;
   planned.moving = true;
   planned.motion = Motion::kBandNoise;  // white noise whatever the trials use: paper III-A
   planned.band_low_hz = 0.7;
@@ -166,6 +166,10 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
   planned.cancellation =
       condition == Condition::kMovingCancelled || condition == Condition::kPerturbed;
+  if (condition == Condition::kPerturbed && options.stick_held) {
+    planned.trial.phase = TrialPhase::kPegged;
+    planned.cancellation = false;
+  }
   planned.command_filter = condition == Condition::kCommandFilter;
   return planned;
 }

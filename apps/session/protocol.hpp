@@ -22,6 +22,9 @@ enum class Condition : char {
   kPerturbed = 'P',        ///< platform and motor move the hand at once, to identify it
 };
 
+/// Label of the pegged trial that gives the session its model.
+inline constexpr char kIdentification = 'I';
+
 /// Conditions of a session over the bus, and of a study.
 inline constexpr const char* kLabConditions = "ABC";
 inline constexpr const char* kStudyConditions = "ABCDEF";
@@ -41,6 +44,8 @@ struct ProtocolOptions {
   double road_speed_m_s = 20.0;  ///< [m/s] Motion::kRoad: speed of the vehicle
   /// [s] period of both multisines of P, which then is the one trial after the pegged one; 0: none
   double perturb_period_s = 0.0;
+  bool perturb_swapped = false;  ///< P: the platform takes the lines of the motor, and the reverse
+  bool stick_held = false;       ///< P: on the peg, without the motor
 };
 
 /// One trial of the session: the part that every process may know, and the part that stays blinded.

@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
         cli.add_option("--perturb-period-s", perturbation.period_s,
                        "perturb the hand by a multisine of this period in place of cancelling");
         cli.add_option("--perturb-seed", perturbation.seed, "seed of its phases");
+        cli.add_flag("--perturb-swapped", perturbation.swapped,
+                     "platform and motor take each other's lines");
         cli.add_flag("--answer-replay", options.answers_replay,
                      "answer a replayed recording; no rig takes the answers");
       });

@@ -19,6 +19,7 @@ constexpr std::int64_t kMostLines = 20;
 constexpr double kLowest_hz = 0.05;
 constexpr std::string_view kBeforePeriod = "interleaved multisines: period ";
 constexpr std::string_view kBeforeSeed = " s, seed ";
+constexpr std::string_view kSwapped = ", lines swapped";
 constexpr std::int64_t kFewestPeriods = 5;  // four to analyse, after one that is left out
 
 }  // namespace
@@ -31,6 +32,7 @@ ExcitationConfig session_excitation(const SessionPerturbation& perturbation) {
   config.period_s = perturbation.period_s;
   config.lowest_hz = std::max(kLowest_hz, 1.0 / perturbation.period_s);
   config.seed = static_cast<std::int64_t>(perturbation.seed);
+  config.swapped = perturbation.swapped;
   for (config.lines = kMostLines; config.lines > 2; --config.lines) {
     try {
       interleaved_harmonics(config);
@@ -59,8 +61,9 @@ std::vector<signal::Component> motion_components(const SessionPerturbation& pert
 
 std::string in_words(const SessionPerturbation& perturbation) {
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "%s%.17g%s%" PRIu64, kBeforePeriod.data(),
-                perturbation.period_s, kBeforeSeed.data(), perturbation.seed);
+  std::snprintf(text.data(), text.size(), "%s%.17g%s%" PRIu64 "%s", kBeforePeriod.data(),
+                perturbation.period_s, kBeforeSeed.data(), perturbation.seed,
+                perturbation.swapped ? kSwapped.data() : "");
   return text.data();
 }
 
@@ -72,7 +75,10 @@ SessionPerturbation perturbation_in(const std::string& words) {
   const std::string_view rest(period.ptr, static_cast<std::size_t>(end - period.ptr));
   if (period.ec != std::errc() || !rest.starts_with(kBeforeSeed)) return {};
   const auto seed = std::from_chars(rest.data() + kBeforeSeed.size(), end, out.seed);
-  return seed.ec == std::errc() && seed.ptr == end ? out : SessionPerturbation{};
+  if (seed.ec != std::errc()) return {};
+  const std::string_view last(seed.ptr, static_cast<std::size_t>(end - seed.ptr));
+  out.swapped = last == kSwapped;
+  return out.swapped || last.empty() ? out : SessionPerturbation{};
 }
 
 }  // namespace stillhand::admittance

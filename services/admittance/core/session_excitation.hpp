@@ -13,6 +13,7 @@ namespace stillhand::admittance {
 struct SessionPerturbation {
   double period_s = 0.0;   ///< [s] of both multisines; 0: none
   std::uint64_t seed = 1;  ///< of the phases
+  bool swapped = false;    ///< the platform takes the lines of the motor, and the reverse
 };
 
 /// Settings for 1 kHz: from one cycle in the period, not below 0.05 Hz, to 20 Hz, with as many

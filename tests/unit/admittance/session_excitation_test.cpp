@@ -23,6 +23,8 @@ TEST(SessionExcitationTest, TheTextInTheRecordingGivesItBack) {
   const SessionPerturbation read = perturbation_in(in_words(said));
   EXPECT_EQ(read.period_s, said.period_s);
   EXPECT_EQ(read.seed, said.seed);
+  EXPECT_TRUE(perturbation_in(in_words({4.0, 7, true})).swapped);
+  EXPECT_EQ(perturbation_in("interleaved multisines: period 4 s, seed 7, more").period_s, 0.0);
   EXPECT_EQ(perturbation_in("ride: high-pass at 0.1 Hz").period_s, 0.0);
 }
 

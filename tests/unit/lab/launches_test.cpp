@@ -137,6 +137,23 @@ TEST_F(LaunchesTest, MotionGetsTheRideOrTheRoadWithEveryBitOfItsSpeed) {
   EXPECT_THAT(of("rig").arguments, Not(Contains("--road-class")));  // blinded, like the assignment
 }
 
+TEST_F(LaunchesTest, MotionAndCancellationGetTheSamePerturbation) {
+  options_.protocol.perturb_period_s = 4.0;
+  for (const bool swapped : {false, true}) {
+    options_.protocol.perturb_swapped = swapped;
+    for (const Launch& launch : all()) {
+      const bool perturbs = launch.name == "motion" || launch.name == "cancellation";
+      EXPECT_EQ(value_of(launch, "--perturb-period-s"), perturbs ? "4" : "") << launch.name;
+      const auto has = Contains("--perturb-swapped");
+      if (perturbs && swapped) {
+        EXPECT_THAT(launch.arguments, has) << launch.name;
+      } else {
+        EXPECT_THAT(launch.arguments, Not(has)) << launch.name;
+      }
+    }
+  }
+}
+
 TEST_F(LaunchesTest, AMouseIsThePointerOfDisplayAndOperator) {
   EXPECT_THAT(of("display").arguments, Not(Contains("--pointer")));
   options_.who = Operator::kMouse;

@@ -74,6 +74,18 @@ TEST(ProtocolTest, OnlyCMovesAndCancels) {
   }
 }
 
+TEST(ProtocolTest, APerturbedTrialIsOnThePegAndWithoutTheMotorIfTheStickIsHeld) {
+  for (const bool held : {false, true}) {
+    ProtocolOptions options;
+    options.conditions = {Condition::kPerturbed};
+    options.stick_held = held;
+    const PlannedTrial sut = plan(options).back();
+    EXPECT_EQ(sut.trial.phase, held ? TrialPhase::kPegged : TrialPhase::kTracking);
+    EXPECT_EQ(sut.cancellation, !held);
+    EXPECT_EQ(sut.motion, Motion::kInterleaved);
+  }
+}
+
 const PlannedTrial& moving_trial(const std::vector<PlannedTrial>& trials) {
   for (const PlannedTrial& trial : trials) {
     if (trial.label == 'B') return trial;
