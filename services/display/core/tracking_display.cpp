@@ -54,7 +54,10 @@ signal::ReferenceSignal reference_on_screen(const TrackingDisplay::Config& confi
   }
   throw ConfigError(
       "display.reference_scale_m", std::to_string(config.reference_scale_m),
-      "a smaller scale: with every draw of phases the target's box leaves the screen");
+      "a smaller scale: in " +
+          std::to_string(static_cast<double>(duration_ticks) * kControlPeriod_s) +
+          " s the target's box leaves the screen with every draw of phases (a trial of a whole "
+          "multiple of 180 s allows the largest scale)");
 }
 
 TrackingDisplay::TrackingDisplay(const Config& config) : config_(checked(config)) {}
