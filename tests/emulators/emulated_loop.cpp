@@ -53,7 +53,7 @@ EmulatedLoop::~EmulatedLoop() { close(socket_); }
 
 void EmulatedLoop::run(Person* person) {
   std::int64_t due_ns = runtime::monotonic_ns() + kPeriod_ns;
-  std::int64_t stepped_ns = due_ns;
+  stepped_ns_ = due_ns;
   std::puts("ready");
   std::fflush(stdout);
   while (true) {
@@ -71,8 +71,9 @@ void EmulatedLoop::run(Person* person) {
     laboratory_.step(now_ns, person);
     if (iio_) iio_->write(laboratory_.raw());
     if (drive_.torque_n_m() != 0.0) torque_until_ns_ = now_ns;
-    worst_step_ns_ = std::max(worst_step_ns_, now_ns - stepped_ns);
-    stepped_ns = now_ns;
+    if (platform_.wish(now_ns)) platform_until_ns_ = now_ns;
+    worst_step_ns_ = std::max(worst_step_ns_, now_ns - stepped_ns_);
+    stepped_ns_ = now_ns;
     due_ns += kPeriod_ns;
     // Far behind, it goes on from now; a little behind, it catches up.
     if (now_ns - due_ns > 100 * kPeriod_ns) due_ns = now_ns;
@@ -80,7 +81,18 @@ void EmulatedLoop::run(Person* person) {
 }
 
 void EmulatedLoop::hear_drive(std::int64_t now_ns) {
-  serial_.write(drive_.take(serial_.read(), now_ns), now_ns);
+  const std::uint64_t before = drive_.record().commands;
+  const std::string answer = drive_.take(serial_.read(), now_ns);
+  const std::int64_t acted_ns = runtime::monotonic_ns();
+  serial_.write(answer, now_ns);
+  if (drive_.record().commands > before) trace_.torque(acted_ns, drive_.forward_n_m());
+  if (!answer.empty()) {
+    trace_.reply({.sampled_ns = stepped_ns_,
+                  .sent_ns = runtime::monotonic_ns(),
+                  .analog1 = drive_.reported(0x60),
+                  .analog2 = drive_.reported(0x68),
+                  .position_rev = drive_.reported(0x01)});
+  }
 }
 
 void EmulatedLoop::hear_platform(std::int64_t now_ns) {
@@ -90,8 +102,10 @@ void EmulatedLoop::hear_platform(std::int64_t now_ns) {
   auto* address = reinterpret_cast<sockaddr*>(&from);
   const ssize_t count = recvfrom(socket_, bytes.data(), bytes.size(), 0, address, &size);
   if (count <= 0) return;
+  std::bernoulli_distribution lost(platform_loses_);
+  if (lost(dice_)) return;
   const auto reply = platform_.take({bytes.data(), static_cast<std::size_t>(count)}, now_ns);
-  if (!reply.empty() && !platform_silent_) {
+  if (!reply.empty() && !platform_silent_ && !lost(dice_)) {
     sendto(socket_, reply.data(), reply.size(), 0, address, size);
   }
 }
@@ -120,19 +134,42 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     words >> name >> text;
     return drive_.set(name, text);
   }
+  if (word == "trace") return trace_.begin();
+  if (word == "write_trace") {
+    std::string file;
+    words >> file;
+    return trace_.write(file);
+  }
   words >> value;
   fault_ns_ = now_ns;
   fault_torque_n_m_ = drive_.torque_n_m();
+  if (word == "mark") return;  // a fault that is made elsewhere begins now
+  if (!obey_platform(word, value) && !obey_laboratory(word, value) &&
+      !obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value)) {
+    std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
+  }
+}
+
+bool EmulatedLoop::obey_platform(const std::string& word, double value) {
   if (word == "platform_silent") {
     platform_silent_ = value != 0.0;
+  } else if (word == "platform_loses") {
+    platform_loses_ = std::clamp(value, 0.0, 1.0);
   } else if (word == "platform_fault") {
     platform_.fault(static_cast<std::uint32_t>(value));
-  } else if (word == "mark") {
-    // A fault that is made elsewhere begins now.
-  } else if (word == "slip") {
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool EmulatedLoop::obey_laboratory(const std::string& word, double value) {
+  if (word == "slip") {
     laboratory_.slip(value);
   } else if (word == "saturate") {
     laboratory_.saturate(value != 0.0);
+  } else if (word == "seat_unknown") {
+    laboratory_.lose_acceleration(value != 0.0);
   } else if (word == "hold") {
     laboratory_.hold_acceleration(value != 0.0);
   } else if (word == "swapped") {
@@ -145,9 +182,10 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
     laboratory_.tilt(value);
   } else if (word == "turn") {
     laboratory_.turn(value);
-  } else if (!obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value)) {
-    std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
+  } else {
+    return false;
   }
+  return true;
 }
 
 bool EmulatedLoop::obey_drive(const std::string& word, double value, std::int64_t now_ns) {
@@ -219,6 +257,7 @@ void EmulatedLoop::report(std::int64_t now_ns) const {
       {"torque_after_fault_ms", std::max(0.0, since_fault_ms(torque_until_ns_))},
       {"since_fault_ms", since_fault_ms(now_ns)},
       {"worst_step_ms", 1e-6 * static_cast<double>(worst_step_ns_)},
+      {"platform_after_fault_ms", std::max(0.0, since_fault_ms(platform_until_ns_))},
       {"platform_commands", platform_.commands()},
       {"platform_refused", platform_.refused()},
       {"platform_most_step_m", platform_.most_step_m()},

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/emulators/iio_side.hpp"
 #include "tests/emulators/laboratory.hpp"
 #include "tests/emulators/serial_side.hpp"
+#include "tests/emulators/trace.hpp"
 
 namespace stillhand::emulators {
 
@@ -42,6 +44,8 @@ class EmulatedLoop {
   bool hear_orders(std::int64_t now_ns);
   void obey(const std::string& line, std::int64_t now_ns);
   bool obey_drive(const std::string& word, double value, std::int64_t now_ns);
+  bool obey_platform(const std::string& word, double value);
+  bool obey_laboratory(const std::string& word, double value);
   bool obey_iio(const std::string& word, double value);
   bool obey_way(const std::string& word, double value);
   void report(std::int64_t now_ns) const;
@@ -53,11 +57,16 @@ class EmulatedLoop {
   std::optional<IioSide> iio_;
   int socket_ = -1;
   bool platform_silent_ = false;
+  double platform_loses_ = 0.0;  ///< share of the datagrams, each way
+  std::mt19937 dice_{1};
   std::string orders_;
-  std::int64_t fault_ns_ = 0;         ///< of the newest order that makes a fault
-  double fault_torque_n_m_ = 0.0;     ///< at that moment
-  std::int64_t torque_until_ns_ = 0;  ///< newest time with a torque
-  std::int64_t worst_step_ns_ = 0;    ///< longest time between two steps
+  std::int64_t fault_ns_ = 0;           ///< of the newest order that makes a fault
+  double fault_torque_n_m_ = 0.0;       ///< at that moment
+  std::int64_t torque_until_ns_ = 0;    ///< newest time with a torque
+  std::int64_t platform_until_ns_ = 0;  ///< newest time at which the platform followed
+  std::int64_t stepped_ns_ = 0;         ///< newest step
+  std::int64_t worst_step_ns_ = 0;      ///< longest time between two steps
+  Trace trace_;
 };
 
 }  // namespace stillhand::emulators

@@ -2,6 +2,7 @@
 #include "tests/emulators/laboratory.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -110,7 +111,8 @@ void Laboratory::step(std::int64_t now_ns, Person* person) {
        .analog2 = accel_v_ / kSupply_v});
   platform_.stand({.position_m = truth.platform_position_m,
                    .velocity_m_s = truth.platform_velocity_m_s,
-                   .acceleration_m_s2 = truth.platform_acceleration_m_s2});
+                   .acceleration_m_s2 = seat_unknown_ ? std::numeric_limits<double>::quiet_NaN()
+                                                      : truth.platform_acceleration_m_s2});
   drive_.tick(now_ns);
 }
 

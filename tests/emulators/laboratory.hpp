@@ -66,6 +66,8 @@ class Laboratory {
   void saturate(bool saturated) { saturated_ = saturated; }
   /// The accelerometer's input gives the number that it gave last.
   void hold_acceleration(bool held) { held_ = held; }
+  /// The platform's own accelerometer gives no number.
+  void lose_acceleration(bool lost) { seat_unknown_ = lost; }
   [[nodiscard]] const rig::RawSample& raw() const { return output_.raw; }
   [[nodiscard]] const rig::RigTruth& truth() const { return output_.truth; }
 
@@ -80,6 +82,7 @@ class Laboratory {
   double turn_rad_ = 0.0, wanted_turn_rad_ = 0.0;
   bool saturated_ = false;
   bool held_ = false;
+  bool seat_unknown_ = false;
   bool swapped_ = false;
   bool turned_ = false;
   double accel_v_ = 0.0;

@@ -355,6 +355,11 @@ void MoteusEmulator::console(std::string_view text) {
   }
 }
 
+double MoteusEmulator::reported(std::uint32_t address) const {
+  const double step = scale(address, address == 0x01 ? 2 : 1);
+  return step * static_cast<double>(std::lround(of_register(address, began_ns_) / step));
+}
+
 double MoteusEmulator::of_register(std::uint32_t address, std::int64_t now_ns) const {
   // Converters of 12 bit.
   const auto converted = [](double share) {

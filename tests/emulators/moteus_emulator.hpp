@@ -48,6 +48,10 @@ class MoteusEmulator {
   void sense(const DriveSenses& senses) { senses_ = senses; }
   [[nodiscard]] double torque_n_m() const { return torque_n_m_; }
   [[nodiscard]] int mode() const { return mode_; }
+  /// Torque of the newest command in mode 10.
+  [[nodiscard]] double forward_n_m() const { return forward_n_m_; }
+  /// Value of a register as a reply carries it in int16 (analogue inputs) or int32 (position).
+  [[nodiscard]] double reported(std::uint32_t address) const;
   [[nodiscard]] const DriveRecord& record() const { return record_; }
 
   /// Its counter is 0 now.

@@ -3,10 +3,9 @@
 
 By default: a session whose rig process is stopped while the motor pushes, so that the drive's own watchdog has to end
 the torque; a drive and a port that are refused before the session. `--campaign`: conditions A, B and C next to the
-simulated rig, a mixture, and every fault of FAULTS; each prints what the drive saw in its own clock. STILLHAND_WATCHDOG_MS and
-STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine; STILLHAND_FAULTS names some of the faults.
+simulated rig, and a mixture. The faults are in tests/faults/device_faults.py. STILLHAND_WATCHDOG_MS and
+STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine.
 """
-import contextlib
 import os
 import signal
 
@@ -20,31 +19,6 @@ from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick
 HOST_LIMIT_MS = MAX_AGE_MS + 20 + 40 + 5
 DRIVE_LIMIT_MS = WATCHDOG_MS + 5
 PUSH_N_M = 0.1  # 1 N at the hand
-# Orders to the emulator, and what the session says of them; None: it goes on.
-FAULTS = {
-    "silent": (["silent", 1], "the drive is silent"),
-    "deaf": (["deaf", 1], "the drive is silent"),
-    "garbage": (["garbage", 1], "the drive is silent"),
-    "truncated": (["truncated", 1], "the drive is silent"),
-    "wrong_checksum": (["damaged", 1], "the drive is silent"),
-    "digit_changed": (["damaged", 1], "mode that Stillhand does not command"),
-    "repeated": (["repeated", 1], "the drive is silent"),
-    "late_5_ms": (["late", 5], None),
-    "late_50_ms": (["late", 50], "the drive is silent"),
-    "late_500_ms": (["late", 500], "the drive is silent"),
-    "cable_out": (["cable", 0], "the drive is silent|the drive was away"),
-    "reboot": (["reboot"], "the drive was away or started again"),
-    "drive_fault": (["fault", 38], "the drive reports fault 38"),
-    "other_firmware": (["firmware", 3], "the drive is silent"),
-    "no_position": (["nan", 1], "the drive is silent"),
-    "encoder_slips": (["slip", 0.25], "the angle of the drive jumped"),
-    "accelerometer_sticks": (["saturate", 1], "an analogue input of the drive stands at its end"),
-    "accelerometer_repeats": (["hold", 1], "the accelerometer repeats one number while the seat moves"),
-    "platform_silent": (["platform_silent", 1], "the platform is silent"),
-    "platform_fault": (["platform_fault", 2], "the platform reports fault 0x2"),
-}
-# DR-14 waits for 200 ticks and for a seat that moves.
-LONGER_MS = {"accelerometer_repeats": 1000}
 
 
 class DevicesCase(LabTestCase):
@@ -52,16 +26,6 @@ class DevicesCase(LabTestCase):
         laboratory = EmulatedLaboratory(config or self.folder / "config", **keywords)
         self.addCleanup(laboratory.close)
         return laboratory
-
-    @contextlib.contextmanager
-    def apart(self, name):
-        """A case of its own, with a folder of its own and nothing left from the one before."""
-        with self.subTest(name):
-            try:
-                yield
-            finally:
-                self.doCleanups()
-                self.setUp()
 
     def pushing_session(self, **keywords):
         """A session in condition C, in which the emulated drive pushes."""
@@ -142,46 +106,6 @@ class DevicesTest(DevicesCase):
         lab = self.lab("--rig", "devices", "--config", self.folder / "config")
         self.assertEqual(lab.end_status(), 2, lab.errors())
         self.assertIn(f"serial port {self.folder / 'drive'}: got No such file or directory", lab.errors()[-1])
-
-    def fault(self, name):
-        orders, reason = FAULTS[name]
-        lab, laboratory = self.pushing_session(uart=name == "wrong_checksum")
-        laboratory.order(*orders)
-        if reason is None:
-            wait_for("a second with the fault", lambda: laboratory.report()["since_fault_ms"] > 1000, 10)
-            self.assertIsNone(lab.process.poll(), lab.errors())
-            self.assertEqual(laboratory.report()["mode"], 10)
-            lab.interrupt()
-            lab.end_status()
-            return self.assert_rules(laboratory.report())
-        limit_ms = max(HOST_LIMIT_MS, DRIVE_LIMIT_MS) + LONGER_MS.get(name, 0)
-        self.assert_torque_ended(laboratory, limit_ms, name)
-        self.assertEqual(lab.end_status(), 1, lab.errors())
-        self.assert_nothing_left(lab)
-        self.assertRegex(lab.summary()["trials"][-1]["aborted"], reason)
-        return None
-
-    @campaign
-    def test_no_fault_leaves_torque(self):
-        for name in os.environ.get("STILLHAND_FAULTS", ",".join(FAULTS)).split(","):
-            with self.apart(name):
-                self.fault(name)
-
-    @campaign
-    def test_neither_a_killed_rig_nor_a_frozen_host_leaves_torque(self):
-        for name, everybody in (("killed", False), ("frozen", True)):
-            with self.apart(name):
-                lab, laboratory = self.pushing_session()
-                pids = lab_process.running(lab.domain) if everybody else {lab.pid_of("device_rig"): ""}
-                laboratory.order("mark")
-                for pid in pids:
-                    os.kill(pid, signal.SIGSTOP if everybody else signal.SIGKILL)
-                seen = self.assert_torque_ended(laboratory, DRIVE_LIMIT_MS, name)
-                self.assertEqual(seen["timeouts"], 1)
-                for pid in pids:
-                    if everybody:
-                        os.kill(pid, signal.SIGCONT)
-                self.assertEqual(lab.end_status(), 1, lab.errors())
 
     # A stick on a desk, its power stage off: condition B with a simulated platform.
     @campaign

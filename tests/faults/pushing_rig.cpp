@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// pushing_rig: the rig of devices without a session.  It pushes the stick with a constant force and
+// moves the platform, each millisecond, as long as no part is unsound; as in a session, a force
+// that was taken away stays away.  device_faults.py makes the faults.  Prints
+//
+//   pushing          from the first tick with a force on
+//   unsound WHY      once, when a part is unsound first
+//
+// and ends with its standard input.
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <numbers>
+
+#include "services/device_rig/device_plant.hpp"
+#include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/real_time.hpp"
+#include "services/settings/load.hpp"
+
+namespace {
+
+using namespace stillhand;  // NOLINT(google-build-using-namespace): a program of one file
+
+constexpr std::int64_t kTick_ns = 1'000'000;
+constexpr double kForce_n = 5.0;
+constexpr double kAmplitude_m = 0.02;
+constexpr double kMotion_rad_s = 2.0 * std::numbers::pi * 1.5;
+
+bool input_ended() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (poll(&input, 1, 0) <= 0) return false;
+  char bytes[64];
+  return ::read(STDIN_FILENO, bytes, sizeof(bytes)) <= 0;
+}
+
+/// Constant force, and a platform that swings.
+rig::RigInput wanted(Tick tick) {
+  const double phase_rad = kMotion_rad_s * kControlPeriod_s * static_cast<double>(tick);
+  rig::RigInput input;
+  input.command_valid = true;
+  input.command_position_m = kAmplitude_m * std::sin(phase_rad);
+  input.command_velocity_m_s = kMotion_rad_s * kAmplitude_m * std::cos(phase_rad);
+  input.command_acceleration_m_s2 = -kMotion_rad_s * kMotion_rad_s * input.command_position_m;
+  input.motor_valid = true;
+  input.motor_force_n = kForce_n;
+  return input;
+}
+
+void push(device_rig::DevicePlant& plant) {
+  const Trial trial{.number = 1, .phase = TrialPhase::kTracking, .duration_ticks = Tick{1} << 40};
+  std::int64_t due_ns = runtime::monotonic_ns();
+  bool prepared = false;
+  bool said = false;
+  const char* why = nullptr;
+  for (Tick tick = 0; !input_ended();) {
+    due_ns += kTick_ns;
+    runtime::sleep_until_ns(due_ns);
+    // A process that stood still goes on from now, as the shell does.
+    due_ns = std::max(due_ns, runtime::monotonic_ns() - 5 * kTick_ns);
+    prepared = prepared || plant.prepared();
+    plant.begin(prepared ? trial : Trial{}, tick);
+    rig::RigInput input = prepared ? wanted(tick) : rig::RigInput{};
+    rig::RigOutput output = plant.sample(input);
+    if (prepared && why == nullptr && plant.unsound() != nullptr) {
+      why = plant.unsound();
+      std::printf("unsound %s\n", why);
+      std::fflush(stdout);
+    }
+    input.motor_permitted = prepared && why == nullptr;
+    plant.drive(input, output);
+    if (!said && output.truth.motor_force_n != 0.0) {
+      std::puts("pushing");
+      std::fflush(stdout);
+      said = true;
+    }
+    ++tick;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::filesystem::path config;
+  CLI::App cli("pushing_rig: the rig of devices, pushing, without a session");
+  cli.add_option("--config", config, "folder with rig.yaml and devices.yaml")->required();
+  CLI11_PARSE(cli, argc, argv);
+  try {
+    std::signal(SIGPIPE, SIG_IGN);  // as every process of a session
+    runtime::end_with_parent();
+    runtime::become_real_time();
+    device_rig::DevicePlant plant(
+        settings::load<rig::RigConfig>(config / "rig.yaml", "rig"),
+        settings::load<device_rig::DevicesConfig>(config / "devices.yaml", "devices"));
+    push(plant);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "pushing_rig: " << error.what() << '\n';
+    return 2;
+  }
+}
