@@ -14,6 +14,7 @@ rule, or nobody said what happened.
 import argparse
 import contextlib
 import datetime
+import functools
 import json
 import os
 import pathlib
@@ -78,16 +79,22 @@ class Fault:
         if self.orders:
             bench.laboratory.order(*self.orders)
         else:
+            act = self.hurt(bench)  # what takes time comes before the mark
             bench.laboratory.order("mark")
-            self.hurt(bench)
+            act()
+
+
+def to_all(pids, number):
+    for pid in pids:
+        os.kill(pid, number)
 
 
 def kill(service):
-    return lambda bench: [os.kill(pid, signal.SIGKILL) for pid in bench.pids(service)]
+    return lambda bench: functools.partial(to_all, bench.pids(service), signal.SIGKILL)
 
 
 def freeze(service):
-    return lambda bench: [os.kill(pid, signal.SIGSTOP) for pid in bench.pids(service)]
+    return lambda bench: functools.partial(to_all, bench.pids(service), signal.SIGSTOP)
 
 
 def open_again(bench):
@@ -105,12 +112,13 @@ FAULTS = {
                         said="the rig ended: signal 9|ended"),
     "all_killed": Fault("every process is killed", hurt=kill(""), drive_alone=True, alone=False, said=None),
     "rig_stopped": Fault("the rig's process is stopped", hurt=freeze("device_rig"), drive_alone=True, quick=True,
-                         said="life sign"),
+                         said="life sign|the drive is silent"),
     "host_frozen": Fault("every process is stopped (SIGSTOP)", hurt=freeze(""), drive_alone=True, alone=False, said=""),
     "cancellation_killed": Fault("the process that cancels is killed", hurt=kill("cancellation"), alone=False,
                                  said="cancellation"),
     "sensing_killed": Fault("the process that senses is killed", hurt=kill("sensing"), alone=False, said="sensing"),
-    "two_processes": Fault("a second process opens the drive's port", hurt=open_again, quick=True, said=None),
+    "two_processes": Fault("a second process opens the drive's port", quick=True, said=None,
+                           hurt=lambda bench: functools.partial(open_again, bench)),
     "cable_out": Fault("cable out (terminal closed)", "cable", 0, quick=True, said=SILENT + "|the drive was away"),
     "silent": Fault("silent, port open", "silent", 1, quick=True, said=SILENT),
     "deaf": Fault("deaf", "deaf", 1, said=SILENT),
@@ -142,7 +150,7 @@ FAULTS = {
                          said="the (load cell|accelerometer) is silent, or at its end"),
     "iio_saturated": Fault("IIO: the accelerometer's converter at its end", "iio_saturated", 1, iio=True, more_ms=20,
                            said="the accelerometer is silent, or at its end"),
-    "iiod_died": Fault("IIO: iiod dies", hurt=lambda bench: bench.iio.end(), iio=True, more_ms=20,
+    "iiod_died": Fault("IIO: iiod dies", hurt=lambda bench: bench.iio.end, iio=True, more_ms=20,
                        said="the (load cell|accelerometer) is silent, or at its end"),
 }
 
@@ -206,7 +214,11 @@ class Session(Bench):
         self.wait_for_push(lambda: self.lab.process.poll() is not None and f"the lab ended: {self.lab.errors()}")
 
     def pids(self, service):
-        return [self.lab.pid_of(service)] if service else list(lab_process.running(self.lab.domain))
+        """Of all processes the rig comes first: from then on nobody commands the drive."""
+        if service:
+            return [self.lab.pid_of(service)]
+        everybody = lab_process.running(self.lab.domain)
+        return sorted(everybody, key=lambda pid: everybody[pid] != "stillhand-device_rig")
 
     def says(self):
         """The reason of the trial's mark, once the session is over; of a session that was killed its last line."""
@@ -351,7 +363,7 @@ def main(words):
         (words.out / "device_faults.json").write_text(json.dumps(results, indent=1) + "\n")
         (words.out / "device_faults.md").write_text(table(results))
     broken = [result["fault"] for result in results if result["findings"]]
-    print(f"{len(results)} faults, {len(broken)} broke a rule: {', '.join(broken)}" if broken else f"{len(results)} faults, none broke a rule")
+    print(f"{len(results)} faults, {len(broken) or 'none'} broke a rule{': ' if broken else ''}{', '.join(broken)}")
     return 1 if broken else 0
 
 
