@@ -2,26 +2,20 @@
 #include "apps/calibrate/calibrate.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <numbers>
 #include <vector>
 
+#include "apps/calibrate/ask.hpp"
+#include "apps/calibrate/calibration_files.hpp"
 #include "apps/calibrate/known_quantity.hpp"
 #include "apps/calibrate/station.hpp"
-#include "apps/report/result_files.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/calibration_fit.hpp"
-#include "services/settings/edit_text.hpp"
 #include "services/settings/load.hpp"
-#include "services/settings/yaml_text.hpp"
 
 namespace stillhand::calibrate {
 namespace {
@@ -45,41 +39,7 @@ const char* default_quantities(CalibratedSignal signal) {
   return "0,10deg,20deg,-10deg,-20deg";
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A line on standard input; false at its end or after an interrupt.
-bool enter_came(const runtime::Stop& interrupted) {
-  // What was typed during a reading is no answer to this step.
-  if (isatty(STDIN_FILENO) == 1) tcflush(STDIN_FILENO, TCIFLUSH);
-  constexpr int kLook_ms = 50;
-  while (!interrupted.requested()) {
-    pollfd input{STDIN_FILENO, POLLIN, 0};
-    if (poll(&input, 1, kLook_ms) <= 0) continue;
-    char letter = 0;
-    if (::read(STDIN_FILENO, &letter, 1) <= 0) return false;
-    if (letter == '\n') return true;
-  }
-  return false;
-}
-
 std::size_t index_of(CalibratedSignal signal) { return static_cast<std::size_t>(signal); }
-
-/// What a sensor gave, in the unit of its signal, by the calibration that is in use.
-double in_units(CalibratedSignal signal, double reading, const sensing::Config& sensing) {
-  switch (signal) {
-    case CalibratedSignal::kForce:
-      return (reading - sensing.load_cell_offset_v) / sensing.load_cell_sensitivity_v_n;
-    case CalibratedSignal::kAcceleration:
-      return (reading - sensing.accel_y_offset_v) / sensing.accel_sensitivity_v_m_s2;
-    case CalibratedSignal::kAngle:
-      break;
-  }
-  return 2.0 * std::numbers::pi * (reading - static_cast<double>(sensing.encoder_zero_counts)) /
-         sensing.encoder_counts_per_rev;
-}
 
 /// The steps of one calibration.
 class Steps {
@@ -89,10 +49,9 @@ class Steps {
   /// @returns false: broken off
   bool take(const std::vector<double>& known, const runtime::Stop& interrupted) {
     for (std::size_t i = 0; i < known.size(); ++i) {
-      std::cout << fmt::format("step {} of {}: {} Then press Enter.\n", i + 1, known.size(),
-                               instruction(options_.signal, known[i]))
-                << std::flush;
-      if (!enter_came(interrupted)) return false;
+      const std::string step = fmt::format("step {} of {}: {}", i + 1, known.size(),
+                                           instruction(options_.signal, known[i]));
+      if (!done_by_person(step, interrupted)) return false;
       take_one(known[i]);
       if (interrupted.requested()) return false;
     }
@@ -172,30 +131,38 @@ std::string gain_fault(const CalibrateOptions& options, const CalibrationFit& fi
       turn_counts, sensing.encoder_counts_per_rev);
 }
 
-void write(const CalibrateOptions& options, const CalibrationFit& fit, const std::string& device,
+device_rig::CalibrationRecord record_of(const CalibrateOptions& options, const CalibrationFit& fit,
+                                        const std::string& device, const Steps& steps,
+                                        const sensing::Config& sensing) {
+  device_rig::CalibrationRecord record;
+  record.date = device_rig::today();
+  record.person = options.person;
+  record.device = device;
+  record.sensor = options.sensor;
+  record.fit = fit;
+  const auto cross = [&](CalibratedSignal other) {
+    return other == options.signal ? 0.0 : steps.most_change(other, sensing);
+  };
+  record.cross_force_n = cross(CalibratedSignal::kForce);
+  record.cross_acceleration_m_s2 = cross(CalibratedSignal::kAcceleration);
+  record.cross_angle_rad = cross(CalibratedSignal::kAngle);
+  if (options.signal != CalibratedSignal::kAngle) {
+    record.input_low = (-sensing.adc_range_v - fit.zero) / fit.sensitivity;
+    record.input_high = (sensing.adc_range_v - fit.zero) / fit.sensitivity;
+  }
+  return record;
+}
+
+void write(const CalibrateOptions& options, const device_rig::CalibrationRecord& record,
            const sensing::Config& sensing) {
-  const auto sensing_file = options.config / "sensing.yaml";
-  const auto file = options.config / "calibration.yaml";
-  std::string text = text_of(sensing_file);
-  for (const auto& number : device_rig::sensing_numbers(options.signal, fit, sensing)) {
+  const auto numbers = device_rig::sensing_numbers(options.signal, record.fit, sensing);
+  for (const auto& number : numbers) {
     std::cout << fmt::format("  {}: {:.9g}, before {:.9g}\n", number.key, number.calibrated,
                              number.in_use);
-    text =
-        settings::with_setting(std::move(text), number.key, fmt::format("{}", number.calibrated));
   }
-  // Its numbers must be ones that sensing accepts.
-  settings::load_text<sensing::Config>(text, "sensing", "calibration");
-  device_rig::Calibrations all = device_rig::load_calibrations(file);
-  all.of(options.signal) = {device_rig::today(), options.person, device, options.sensor, fit};
-  const std::string calibrations =
-      "# Written by `stillhand calibrate`; services/device_rig/README.md, Eq. DR-16.\n" +
-      settings::yaml_text(all);
-  settings::load_text<device_rig::Calibrations>(calibrations, "calibration", "calibration");
-  report::ResultFiles files({{"sensing.yaml", sensing_file}, {"calibration.yaml", file}}, {});
-  files.set("sensing.yaml", text);
-  files.set("calibration.yaml", calibrations);
-  files.publish();
-  std::cout << "wrote " << sensing_file.string() << " and " << file.string() << '\n';
+  device_rig::Calibrations all = device_rig::load_calibrations(options.config / "calibration.yaml");
+  all.of(options.signal) = record;
+  write_calibrations(options.config, all, numbers);
 }
 
 }  // namespace
@@ -230,7 +197,7 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
     std::cerr << "stillhand calibrate: " << words.name << ": " << fault << "; nothing is written\n";
     return 1;
   }
-  write(options, fit, device, sensing);
+  write(options, record_of(options, fit, device, steps, sensing), sensing);
   return 0;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -16,7 +17,11 @@ struct CalibrateOptions {
   std::string sensor;
   std::string known;  ///< empty: those of the signal
   double seconds = 2.0;
-  double tolerance = 0.02;  ///< of the largest quantity
+  double tolerance = 0.02;    ///< of the largest quantity
+  double motion_m = 0.01;     ///< `platform`: largest distance from where it stands
+  std::int64_t periods = 10;  ///< `platform`: of 2 s, that are measured
+  double push_n = 1.0;        ///< `check`: weight, and largest force of the motor
+  double step_m = 0.001;      ///< `check`: step of the platform
 };
 
 /// Guides a person through the steps, prints the result, and writes it into sensing.yaml and

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "apps/calibrate/calibrate.hpp"
+#include "apps/calibrate/hand_off_steps.hpp"
+#include "apps/calibrate/platform_steps.hpp"
 #include "services/settings/check_name.hpp"
 
 namespace stillhand::calibrate {
@@ -28,12 +30,16 @@ void add_calibrate_command(CLI::App& cli, int& status) {
   CLI::App* calibrate = cli.add_subcommand(
       "calibrate",
       "Calibrates a sensor of a rig of devices, by steps that a person makes: zero, gain, sign,\n"
-      "noise, and what the other sensors see. No motor is armed. Writes the result into\n"
-      "sensing.yaml and calibration.yaml of --config; a session with devices asks for it.\n"
+      "noise, and what the other sensors see. No motor is armed. \"platform\" moves the platform "
+      "and\n"
+      "identifies its lag and bandwidth. \"check\" checks travel, signs and scales with the hand "
+      "off;\n"
+      "it arms the motor for two pushes of 1 N. Writes the result into sensing.yaml and\n"
+      "calibration.yaml of --config; a session with devices asks for it.\n"
       "Example: stillhand calibrate force --config hall --person kl --known 0,5,10,-5,-10");
-  calibrate->add_option("signal", *signal, "force, acceleration or angle")
+  calibrate->add_option("signal", *signal, "force, acceleration, angle, platform or check")
       ->required()
-      ->check(CLI::IsMember({"force", "acceleration", "angle"}));
+      ->check(CLI::IsMember({"force", "acceleration", "angle", "platform", "check"}));
   calibrate
       ->add_option("--config", options->config,
                    "your folder of settings, with devices.yaml; a copy of deploy/config to begin "
@@ -59,13 +65,38 @@ void add_calibrate_command(CLI::App& cli, int& status) {
                    "largest quantity [-]")
       ->check(CLI::Range(0.0001, 0.5))
       ->capture_default_str();
+  calibrate
+      ->add_option("--motion", options->motion_m,
+                   "platform: largest distance from where it stands [m]")
+      ->check(CLI::Range(0.001, 0.1))
+      ->capture_default_str();
+  calibrate
+      ->add_option("--periods", options->periods, "platform: periods of 2 s that are measured [-]")
+      ->check(CLI::Range(2, 200))
+      ->capture_default_str();
+  calibrate
+      ->add_option("--push", options->push_n,
+                   "check: weight on the cord, and the motor's largest force [N]")
+      ->check(CLI::Range(0.2, 5.0))
+      ->capture_default_str();
+  calibrate->add_option("--step", options->step_m, "check: step of the platform [m]")
+      ->check(CLI::Range(0.0005, 0.02))
+      ->capture_default_str();
   calibrate->callback([options, signal, &status] {
     const std::map<std::string, device_rig::CalibratedSignal> signals{
         {"force", device_rig::CalibratedSignal::kForce},
         {"acceleration", device_rig::CalibratedSignal::kAcceleration},
         {"angle", device_rig::CalibratedSignal::kAngle}};
-    options->signal = signals.at(*signal);
     const runtime::Stop interrupted;
+    if (*signal == "platform") {
+      status = run_calibrate_platform(*options, interrupted);
+      return;
+    }
+    if (*signal == "check") {
+      status = run_hand_off_check(*options, interrupted);
+      return;
+    }
+    options->signal = signals.at(*signal);
     status = run_calibrate(*options, interrupted);
   });
 }

@@ -28,11 +28,50 @@ std::optional<std::chrono::sys_days> day_of(const std::string& date) {
   return std::chrono::sys_days(whole);
 }
 
-std::string mends(CalibratedSignal signal) {
+std::string mends(const char* what) {
+  const bool check = std::string(what) == "check";
   return fmt::format(
-      "`stillhand calibrate {}`; calibration.max_age_days: 0 in devices.yaml asks "
-      "for none",
-      words_of(signal).name);
+      "`stillhand calibrate {}`; calibration.{}max_age_days: 0 in devices.yaml asks for none", what,
+      check ? "check_" : "");
+}
+
+/// What every record of calibration.yaml needs.
+struct Made {
+  const char* name;  ///< in the file, and for the verb
+  std::string date;
+  std::string device;  ///< with which it was made
+};
+
+void check_made(const Made& made_record, const std::string& device, std::int64_t max_age_days,
+                const std::string& today) {
+  const std::string key = fmt::format("calibration.yaml: {}", made_record.name);
+  const auto made = day_of(made_record.date);
+  const auto now = day_of(today);
+  if (!made || !now) throw ConfigError(key, "no calibration of " + device, mends(made_record.name));
+  const auto age_days = (*now - *made).count();
+  if (age_days > max_age_days || age_days < 0) {
+    throw ConfigError(
+        key, fmt::format("a calibration of {}, {} days ago", made_record.date, age_days),
+        fmt::format("one of the last {} days: {}", max_age_days, mends(made_record.name)));
+  }
+  if (made_record.device != device) {
+    throw ConfigError(key, "a calibration of \"" + made_record.device + "\"",
+                      "one of \"" + device + "\": " + mends(made_record.name));
+  }
+}
+
+// `all` is const or not, as its record.
+template <typename All>
+auto& record_in(All& all, CalibratedSignal signal) noexcept {
+  switch (signal) {
+    case CalibratedSignal::kForce:
+      return all.force;
+    case CalibratedSignal::kAcceleration:
+      return all.acceleration;
+    case CalibratedSignal::kAngle:
+      break;
+  }
+  return all.angle;
 }
 
 }  // namespace
@@ -50,13 +89,11 @@ SignalWords words_of(CalibratedSignal signal) noexcept {
 }
 
 CalibrationRecord& Calibrations::of(CalibratedSignal signal) noexcept {
-  return signal == CalibratedSignal::kForce          ? force
-         : signal == CalibratedSignal::kAcceleration ? acceleration
-                                                     : angle;
+  return record_in(*this, signal);
 }
 
 const CalibrationRecord& Calibrations::of(CalibratedSignal signal) const noexcept {
-  return const_cast<Calibrations*>(this)->of(signal);
+  return record_in(*this, signal);
 }
 
 Calibrations load_calibrations(const std::filesystem::path& file) {
@@ -84,19 +121,8 @@ void check_calibration(CalibratedSignal signal, const CalibrationRecord& record,
                        const std::string& device, const sensing::Config& sensing,
                        std::int64_t max_age_days, const std::string& today) {
   if (device.empty() || max_age_days == 0) return;
-  const std::string key = fmt::format("calibration.yaml: {}", words_of(signal).name);
-  const auto made = day_of(record.date);
-  const auto now = day_of(today);
-  if (!made || !now) throw ConfigError(key, "no calibration of " + device, mends(signal));
-  const auto age_days = (*now - *made).count();
-  if (age_days > max_age_days || age_days < 0) {
-    throw ConfigError(key, fmt::format("a calibration of {}, {} days ago", record.date, age_days),
-                      fmt::format("one of the last {} days: {}", max_age_days, mends(signal)));
-  }
-  if (record.device != device) {
-    throw ConfigError(key, "a calibration of \"" + record.device + "\"",
-                      "one of \"" + device + "\": " + mends(signal));
-  }
+  const char* name = words_of(signal).name;
+  check_made({name, record.date, record.device}, device, max_age_days, today);
   for (const SensingNumber& number : sensing_numbers(signal, record.fit, sensing)) {
     // Written with every bit, but a person may have typed it again.
     constexpr double kSame = 1e-9;
@@ -105,8 +131,20 @@ void check_calibration(CalibratedSignal signal, const CalibrationRecord& record,
     }
     throw ConfigError(
         fmt::format("sensing.yaml: {}", number.key), fmt::format("{}", number.in_use),
-        fmt::format("{}, as calibrated on {}: {}", number.calibrated, record.date, mends(signal)));
+        fmt::format("{}, as calibrated on {}: {}", number.calibrated, record.date, mends(name)));
   }
+}
+
+void check_platform(const PlatformRecord& record, const std::string& device,
+                    std::int64_t max_age_days, const std::string& today) {
+  if (device.empty() || max_age_days == 0) return;
+  check_made({"platform", record.date, record.device}, device, max_age_days, today);
+}
+
+void check_hand_off(const HandOffRecord& record, const std::string& devices,
+                    std::int64_t max_age_days, const std::string& today) {
+  if (devices.empty() || max_age_days == 0) return;
+  check_made({"check", record.date, record.devices}, devices, max_age_days, today);
 }
 
 std::string today() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "services/contract/config_field.hpp"
+#include "services/device_rig/calibration_records.hpp"
 #include "services/device_rig/core/calibration_fit.hpp"
 #include "services/sensing/core/conditioner.hpp"
 
@@ -33,35 +34,52 @@ struct CalibrationRecord {
   std::string device;  ///< DevicePlant::device_of()
   std::string sensor;  ///< number on the sensor itself, which no interface reports
   CalibrationFit fit;
+  /// Largest change of the other signals over the steps, in their present calibration.
+  double cross_force_n = 0.0, cross_acceleration_m_s2 = 0.0, cross_angle_rad = 0.0;
+  double input_low = 0.0, input_high = 0.0;  ///< what the input can hold; both 0: not known
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    constexpr Range kAny{-1e12, 1e12};
     visit("date", self.date, Range{0.0, 10.0}, "day of the calibration, YYYY-MM-DD");
     visit("person", self.person, Range{0.0, 100.0}, "who did it");
     visit("device", self.device, Range{0.0, 300.0}, "device that was read, with its serial number");
     visit("sensor", self.sensor, Range{0.0, 100.0}, "number on the sensor itself");
-    visit("zero", self.fit.zero, kAny, "[V, counts] reading at 0");
-    visit("sensitivity", self.fit.sensitivity, kAny, "[V, counts a unit] of the reading");
-    visit("zero_error", self.fit.zero_error, kAny, "standard error of zero");
-    visit("sensitivity_error", self.fit.sensitivity_error, kAny, "standard error of sensitivity");
-    visit("residual", self.fit.residual, kAny, "[N, m/s^2, rad] largest distance from the line");
-    visit("noise", self.fit.noise, kAny, "[N, m/s^2, rad] largest RMS noise of a step");
-    visit("drift", self.fit.drift, kAny, "[N, m/s^2, rad] of the first quantity, applied again");
-    visit("low", self.fit.low, kAny, "[N, m/s^2, rad] lowest known quantity");
-    visit("high", self.fit.high, kAny, "[N, m/s^2, rad] highest");
+    visit("zero", self.fit.zero, kAnyNumber, "[V, counts] reading at 0");
+    visit("sensitivity", self.fit.sensitivity, kAnyNumber, "[V, counts a unit] of the reading");
+    visit("zero_error", self.fit.zero_error, kAnyNumber, "standard error of zero");
+    visit("sensitivity_error", self.fit.sensitivity_error, kAnyNumber,
+          "standard error of sensitivity");
+    visit("residual", self.fit.residual, kAnyNumber,
+          "[N, m/s^2, rad] largest distance from the line");
+    visit("noise", self.fit.noise, kAnyNumber, "[N, m/s^2, rad] largest RMS noise of a step");
+    visit("drift", self.fit.drift, kAnyNumber,
+          "[N, m/s^2, rad] of the first quantity, applied again");
+    visit("low", self.fit.low, kAnyNumber, "[N, m/s^2, rad] lowest known quantity");
+    visit("high", self.fit.high, kAnyNumber, "[N, m/s^2, rad] highest");
+    visit("cross_force_n", self.cross_force_n, kAnyNumber,
+          "[N] largest change of the force meanwhile");
+    visit("cross_acceleration_m_s2", self.cross_acceleration_m_s2, kAnyNumber,
+          "[m/s^2] the same of the acceleration");
+    visit("cross_angle_rad", self.cross_angle_rad, kAnyNumber, "[rad] the same of the angle");
+    visit("input_low", self.input_low, kAnyNumber,
+          "[N, m/s^2] lowest quantity that the input can hold");
+    visit("input_high", self.input_high, kAnyNumber, "[N, m/s^2] highest");
   }
 };
 
 /// calibration.yaml: the newest calibration of each signal.
 struct Calibrations {
   CalibrationRecord force, acceleration, angle;
+  PlatformRecord platform;
+  HandOffRecord check;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit.group("force", self.force);
     visit.group("acceleration", self.acceleration);
     visit.group("angle", self.angle);
+    visit.group("platform", self.platform);
+    visit.group("check", self.check);
   }
   [[nodiscard]] CalibrationRecord& of(CalibratedSignal signal) noexcept;
   [[nodiscard]] const CalibrationRecord& of(CalibratedSignal signal) const noexcept;
@@ -87,6 +105,14 @@ std::vector<SensingNumber> sensing_numbers(CalibratedSignal signal, const Calibr
 void check_calibration(CalibratedSignal signal, const CalibrationRecord& record,
                        const std::string& device, const sensing::Config& sensing,
                        std::int64_t max_age_days, const std::string& today);
+
+/// The same for a platform's lag and bandwidth.  @param device  empty: it is simulated
+void check_platform(const PlatformRecord& record, const std::string& device,
+                    std::int64_t max_age_days, const std::string& today);
+
+/// The same for the check with the hand off.  @param devices  empty: none of them is checked
+void check_hand_off(const HandOffRecord& record, const std::string& devices,
+                    std::int64_t max_age_days, const std::string& today);
 
 /// Today's date, UTC.
 std::string today();

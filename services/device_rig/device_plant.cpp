@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "services/device_rig/core/parts_note.hpp"
 #include "services/device_rig/plant_limits.hpp"
 #include "services/runtime/process/clock.hpp"
 
@@ -27,16 +28,24 @@ bool is_young(std::uint64_t count, std::int64_t at_ns, std::int64_t now_ns,
   return count > 0 && now_ns - at_ns <= most_ticks * 1'000'000;
 }
 
+// A platform that lags by more is no platform of a person's.
+std::size_t lag_ticks(double lag_s) {
+  constexpr double kMost_ticks = 500.0;
+  return static_cast<std::size_t>(std::lround(std::clamp(1e3 * lag_s, 0.0, kMost_ticks)));
+}
+
 }  // namespace
 
-DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices)
+DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices,
+                         double platform_lag_s)
     : rig_config_(rig),
       devices_(devices),
       parts_(parts_of(devices)),
       simulated_(rig),
       motor_(barrier(rig.motor), rig.stick.lever_m),
       guard_(set_point_limits(rig.platform)),
-      words_("rig of devices: " + in_words(devices.signals)) {
+      asked_(lag_ticks(platform_lag_s)),
+      words_(std::string(kPartsNote) + in_words(devices.signals)) {
   if (parts_.needs_drive()) {
     drive_ = std::make_unique<DriveLink>(devices.drive, setting_limits(rig, devices));
   }
@@ -73,6 +82,28 @@ std::string DevicePlant::device_of(CalibratedSignal signal) const {
     }
   }
   return {};
+}
+
+std::string DevicePlant::platform_device() const {
+  if (parts_.platform == Parts::Platform::kSimulated) return {};
+  return devices_.signals.platform + " at " + devices_.platform.address + ", port " +
+         std::to_string(devices_.platform.port);
+}
+
+std::string DevicePlant::pushing_devices() const {
+  if (parts_.motor != Parts::Motor::kDrive) return {};
+  std::string all = "drive, serial " + drive_->serial();
+  for (const CalibratedSignal signal : kCalibratedSignals) {
+    const std::string device = device_of(signal);
+    all += "; " + (device.empty() ? std::string("simulated") : device);
+  }
+  return all + "; " + (platform_ ? platform_device() : "simulated");
+}
+
+double DevicePlant::measured_force_n() const noexcept {
+  if (!drive_ || !drive_fresh()) return kUnknown;
+  return static_cast<double>(devices_.drive.torque_sign) * stick_.reply.torque_n_m /
+         rig_config_.stick.lever_m;
 }
 
 bool DevicePlant::drive_fresh() const noexcept {
@@ -174,7 +205,7 @@ void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput
   const double motion = input.command_acceleration_m_s2;
   if (parts_.acceleration != Parts::Source::kSimulated) {
     acceleration_.step(output.raw.accel_y_v, motion);
-    side_.step(output.raw.accel_y_v, motion);
+    side_.step(output.raw.accel_y_v, asked_.step(motion));
   }
   if (parts_.force != Parts::Source::kSimulated) force_.step(output.raw.load_cell_v, motion);
 }

@@ -16,6 +16,7 @@
 #include "services/device_rig/iio_link.hpp"
 #include "services/device_rig/platform_link.hpp"
 #include "services/rig/plant.hpp"
+#include "services/signal/delay_line.hpp"
 
 namespace stillhand::device_rig {
 
@@ -26,7 +27,8 @@ class DevicePlant final : public rig::Plant {
  public:
   /// Opens and checks every device.
   /// @throws ConfigError for settings that do not fit, or a device that is missing or refused
-  DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices);
+  /// @param platform_lag_s  of the platform, Eq. DR-18; 0: not known
+  DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices, double platform_lag_s = 0.0);
 
   void wait() noexcept override;
   void begin(const Trial& trial, Tick tick) noexcept override;
@@ -38,6 +40,12 @@ class DevicePlant final : public rig::Plant {
   [[nodiscard]] const char* parts() const noexcept override { return words_.c_str(); }
   /// The device that measures a signal, with its serial number; empty: the signal is simulated.
   [[nodiscard]] std::string device_of(CalibratedSignal signal) const;
+  /// The platform; empty: it is simulated.
+  [[nodiscard]] std::string platform_device() const;
+  /// All that the check with the hand off is of; empty where no drive pushes.
+  [[nodiscard]] std::string pushing_devices() const;
+  /// Torque that the drive measures, as a force at the hand, + right [N]; NaN: unknown.
+  [[nodiscard]] double measured_force_n() const noexcept;
 
  private:
   void take_drive() noexcept;
@@ -77,6 +85,7 @@ class DevicePlant final : public rig::Plant {
   double load_cell_v_ = 0.0;
   RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
   SameSide side_;                     ///< of the accelerometer, over a trial
+  signal::DelayLine asked_;           ///< acceleration of the set-point, as late as the platform
   RepeatedNumber force_{2.0};         ///< a free stick moves a load cell by its own 0.2 kg, 0.4 N
   Tick unknown_ticks_ = 0;            ///< one of the two is unknown for so long
   bool jumped_ = false;               ///< the angle jumped; until this process is started again

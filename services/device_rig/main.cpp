@@ -17,10 +17,20 @@ void refuse_uncalibrated(const stillhand::device_rig::DevicePlant& plant,
   if (devices.calibration.max_age_days == 0) return;
   const auto calibrations = device_rig::load_calibrations(folder / "calibration.yaml");
   const auto sensing = settings::load<sensing::Config>(folder / "sensing.yaml", "sensing");
+  const std::int64_t days = devices.calibration.max_age_days;
+  const std::string today = device_rig::today();
   for (const device_rig::CalibratedSignal signal : device_rig::kCalibratedSignals) {
     device_rig::check_calibration(signal, calibrations.of(signal), plant.device_of(signal), sensing,
-                                  devices.calibration.max_age_days, device_rig::today());
+                                  days, today);
   }
+  device_rig::check_platform(calibrations.platform, plant.platform_device(), days, today);
+  device_rig::check_hand_off(calibrations.check, plant.pushing_devices(),
+                             devices.calibration.check_max_age_days, today);
+}
+
+// README Eq. DR-17, DR-18: 0 where nobody identified a platform.
+double platform_lag_s(const std::filesystem::path& folder) {
+  return stillhand::device_rig::load_calibrations(folder / "calibration.yaml").platform.lag_s;
 }
 
 }  // namespace
@@ -35,8 +45,9 @@ int main(int argc, char** argv) {
         const auto rig = rig::seeded(service.config<rig::RigConfig>(), service.options().seed);
         if (file.empty()) file = service.options().config / "devices.yaml";
         const auto devices = settings::load<device_rig::DevicesConfig>(file, "devices");
-        device_rig::DevicePlant plant(rig, devices);
-        refuse_uncalibrated(plant, devices, service.options().config);
+        const auto& folder = service.options().config;
+        device_rig::DevicePlant plant(rig, devices, platform_lag_s(folder));
+        refuse_uncalibrated(plant, devices, folder);
         rig::Shell(service, plant, rig.motor).run();
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {

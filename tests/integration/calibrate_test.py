@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`stillhand calibrate` reads the sensors of an emulated drive; a session then asks for the calibration. About 30 s.
+"""`stillhand calibrate` on an emulated drive and platform; a session then asks for the calibration. About 70 s.
 
 The emulator's amplifiers are those of tests/emulators/laboratory.cpp; their numbers in sensing.yaml are what the verb
 has to find again from numbers that are wrong by up to 20 %.
 """
+import cmath
+import math
 import shutil
 import subprocess
 import unittest
@@ -31,7 +33,10 @@ class CalibrateTest(LabTestCase):
         self.addCleanup(self.laboratory.close)
 
     def calibrate(self, signal, order, quantities, *words):
-        """Makes the steps of a person; `quantities` are what the emulator's `order` gets at each step."""
+        """Makes the steps of a person; `quantities` are what the emulator's `order` gets at each step.
+
+        A quantity that is a tuple is an order of its own.
+        """
         process = subprocess.Popen(
             [str(STILLHAND), "calibrate", signal, "--config", str(self.config), "--person", "kl", "--seconds", "0.5",
              *map(str, words)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -40,13 +45,14 @@ class CalibrateTest(LabTestCase):
             for line in process.stdout:
                 said.append(line)
                 if line.startswith("step ") and quantities:
-                    self.laboratory.order(order, quantities.pop(0))
+                    wanted = quantities.pop(0)
+                    self.laboratory.order(*(wanted if isinstance(wanted, tuple) else (order, wanted)))
                     process.stdin.write("\n")
                     process.stdin.flush()
                 elif line.startswith("step "):
                     process.stdin.close()
         finally:
-            status = process.wait(30)
+            status = process.wait(60)
             errors = process.stderr.read()
             for stream in (process.stdin, process.stdout, process.stderr):
                 stream.close()
@@ -88,6 +94,13 @@ class CalibrateTest(LabTestCase):
         self.assertEqual(kept["force"]["person"], "kl")
         self.assertEqual(kept["force"]["sensor"], "LC-7")
         self.assertEqual(kept["force"]["sensitivity"], found["load_cell_sensitivity_v_n"])
+        # Nothing but the force changed, and the input holds 82 N: (3.3 - 1.651) V at 0.02 V/N.
+        self.assertLess(kept["force"]["cross_acceleration_m_s2"], 0.02)
+        self.assertLess(kept["force"]["cross_angle_rad"], 0.01)
+        self.assertGreater(kept["force"]["input_high"], 50)
+        status, line = self.session_says()
+        self.assertEqual(status, 2, line)
+        self.assertIn("calibration.yaml: platform: got no calibration of plain_udp at 127.0.0.1", line)
 
         # A number that somebody types over, and another drive.
         text = (self.config / "sensing.yaml").read_text()
@@ -126,6 +139,87 @@ class CalibrateTest(LabTestCase):
         status, _, errors = self.calibrate("force", "pull", [])
         self.assertEqual(status, 2)
         self.assertIn("signals.force: got simulated, want a device", errors)
+
+    PLATFORM = {"loop_frequency_hz": 3.0, "loop_damping": 0.8, "acceleration_feedforward": 0.0, "torque_lag_s": 0.002}
+
+    def other_rig(self, **groups):
+        """The emulators again, with another body or platform behind them."""
+        self.laboratory.close()
+        settings = {"body": {"neuromuscular": {"involuntary_force_n": 0, "tremor_force_n": 0}}} | groups
+        (self.config / "rig.yaml").write_text(yaml.safe_dump(settings))
+        self.laboratory = EmulatedLaboratory(self.config)
+        self.addCleanup(self.laboratory.close)
+
+    def response(self, frequency_hz):
+        """Closed form of the emulated platform (services/rig, Eq. RG-1)."""
+        s = 2j * math.pi * frequency_hz
+        w, z = 2 * math.pi * self.PLATFORM["loop_frequency_hz"], self.PLATFORM["loop_damping"]
+        return (2 * z * w * s + w * w) / (self.PLATFORM["torque_lag_s"] * s ** 3 + s * s + 2 * z * w * s + w * w)
+
+    def test_a_platforms_lag_and_bandwidth_are_those_of_its_closed_form(self):
+        self.other_rig(platform=self.PLATFORM)
+        status, said, errors = self.calibrate("platform", "mark", [0], "--periods", 3)
+        self.assertEqual((status, errors), (0, ""), said)
+        found = self.settings("calibration.yaml")["platform"]
+        self.assertEqual((found["person"], found["device"].split(",")[0]), ("kl", "plain_udp at 127.0.0.1"))
+        low, high = 0.5, 20.0
+        while high - low > 1e-6:
+            middle = math.sqrt(low * high)
+            below = abs(self.response(middle)) < abs(self.response(0.5)) / math.sqrt(2)
+            low, high = (low, middle) if below else (middle, high)
+        # Between two lines of the test the response is taken as straight in the logarithms.
+        self.assertAlmostEqual(found["bandwidth_hz"] / low, 1.0, delta=0.05)
+        lines = [0.5, 1, 1.5, 2, 3, 4]
+        lag_s = sum(-cmath.phase(self.response(f)) * f for f in lines) / (2 * math.pi * sum(f * f for f in lines))
+        # The exchange itself: a set-point leaves in one tick, and its state is read in the next one or two.
+        self.assertGreater(found["lag_s"], lag_s)
+        self.assertLess(found["lag_s"], lag_s + 0.004)
+        self.assertAlmostEqual(found["seat_gain"], 1.0, delta=0.05)
+        self.assertLess(self.laboratory.report()["platform_most_step_m"], 0.001)
+        # An accelerometer that is turned round.
+        self.laboratory.order("turned", 1)
+        status, said, errors = self.calibrate("platform", "mark", [0], "--periods", 2)
+        self.assertEqual(errors.count("\n"), 1)
+        self.assertNotEqual(status, 0)
+        self.assertIn("the accelerometer moves against the platform", errors)
+
+    STEPS = [("turn", 0.5236), ("turn", -0.5236), ("turn", 0), ("pull", 1), ("pull", 0), ("mark", 0)]
+    # A light hand, which the rig cannot be without.
+    SOFT = {"shoulder_stiffness_n_m": 50, "shoulder_damping_n_s_m": 1, "grip_stiffness_n_m": 200, "arm_mass_kg": 0.3,
+            "cocontraction_stiffness_factor": 1, "cocontraction_damping_factor": 1,
+            "neuromuscular": {"involuntary_force_n": 0, "tremor_force_n": 0}}
+
+    def test_the_check_with_the_hand_off_refuses_every_wrong_sign(self):
+        self.other_rig(body=self.SOFT)
+        status, said, errors = self.calibrate("check", "", list(self.STEPS))
+        self.assertEqual((status, errors), (0, ""), said)
+        found = self.settings("calibration.yaml")["check"]
+        self.assertIn("AUX1", found["devices"])
+        for name in ("force_gain", "torque_gain", "platform_gain", "seat_gain"):
+            self.assertAlmostEqual(found[name], 1.0, delta=0.25, msg=name)
+        self.assertGreater(found["pushed_right_m"], 0.001)
+        self.assertLess(found["pushed_left_m"], -0.001)
+        seen = self.laboratory.report()
+        self.assertEqual((seen["first_torque_n_m"], seen["mode"]), (0.0, 0))
+        self.assertLess(seen["most_torque_n_m"], 0.11)
+        for rule in ("other_modes", "without_watchdog", "with_gains", "without_bound"):
+            self.assertEqual(seen[rule], 0, rule)
+
+        devices = self.config / "devices.yaml"
+        plain = devices.read_text()
+        for name, steps, text, why in (
+                ("the other side", [("turn", -0.5236), ("turn", 0.5236)], plain, "change drive.angle_sign"),
+                ("wires the wrong way round", [*self.STEPS[:3], ("pull", -1)], plain, "the sign is wrong"),
+                ("torque", self.STEPS[:5], plain.replace("drive:\n  port", "drive:\n  torque_sign: -1\n  port"),
+                 "change drive.torque_sign")):
+            with self.subTest(name):
+                devices.write_text(text)
+                status, said, errors = self.calibrate("check", "", list(steps))
+                self.assertEqual(status, 1, said)
+                self.assertIn(why, errors)
+                self.laboratory.order("pull", 0)
+        # What was right before does not count any more.
+        self.assertEqual(self.settings("calibration.yaml")["check"]["date"], "")
 
 
 if __name__ == "__main__":

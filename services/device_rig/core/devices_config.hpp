@@ -133,11 +133,15 @@ struct IioConfig {
 /// What a session asks of the calibration of its devices.
 struct CalibrationRule {
   std::int64_t max_age_days = 90;
+  std::int64_t check_max_age_days = 1;
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("max_age_days", self.max_age_days, Range{0.0, 3650.0},
           "[days] oldest calibration (stillhand calibrate) of a device; 0: none is asked for");
+    visit("check_max_age_days", self.check_max_age_days, Range{0.0, 3650.0},
+          "[days] oldest check with the hand off (stillhand calibrate check) before the drive "
+          "pushes; 0, or max_age_days 0: none is asked for");
   }
 };
 

@@ -76,6 +76,36 @@ TEST_F(CalibrationFileTest, ASimulatedSignalAndAnAgeOfZeroAskForNone) {
   EXPECT_THAT(refusal(), IsEmpty());
 }
 
+TEST_F(CalibrationFileTest, APlatformNeedsItsIdentificationAndAPushItsCheck) {
+  const auto platform = [](const PlatformRecord& record, const char* device,
+                           std::int64_t days = 90) {
+    try {
+      check_platform(record, device, days, "2026-11-30");
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const PlatformRecord made{
+      .date = "2026-11-25", .person = "kl", .device = "plain_udp at 10.0.0.2, port 16991"};
+  EXPECT_THAT(platform(made, "plain_udp at 10.0.0.2, port 16991"), IsEmpty());
+  EXPECT_THAT(platform(made, ""), IsEmpty());
+  EXPECT_THAT(platform({}, "plain_udp at 10.0.0.2, port 16991", 0), IsEmpty());
+  EXPECT_THAT(
+      platform({}, "plain_udp at 10.0.0.2, port 16991"),
+      HasSubstr("calibration.yaml: platform: got no calibration of plain_udp at 10.0.0.2, port "
+                "16991, want `stillhand calibrate platform`"));
+  EXPECT_THAT(platform(made, "moog_udp at 10.0.0.2, port 16991"), HasSubstr("one of \"moog_udp"));
+  EXPECT_THAT(platform(made, "plain_udp at 10.0.0.2, port 16991", 4), HasSubstr("5 days ago"));
+
+  const HandOffRecord checked{.date = "2026-11-29", .person = "kl", .devices = kDrive};
+  EXPECT_NO_THROW(check_hand_off(checked, kDrive, 1, "2026-11-30"));
+  EXPECT_NO_THROW(check_hand_off({}, "", 1, "2026-11-30"));
+  EXPECT_THROW(check_hand_off(checked, kDrive, 1, "2026-12-01"), ConfigError);
+  EXPECT_THROW(check_hand_off(checked, "another drive", 1, "2026-11-30"), ConfigError);
+  EXPECT_THROW(check_hand_off({}, kDrive, 1, "2026-11-30"), ConfigError);
+}
+
 TEST_F(CalibrationFileTest, TheFileKeepsEveryBit) {
   Calibrations all;
   record_.fit.sensitivity = 0.1 + 1e-17;

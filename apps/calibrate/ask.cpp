@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/calibrate/ask.hpp"
+
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <iostream>
+
+namespace stillhand::calibrate {
+
+bool done_by_person(const std::string& step, const runtime::Stop& interrupted) {
+  std::cout << step << " Then press Enter.\n" << std::flush;
+  if (isatty(STDIN_FILENO) == 1) tcflush(STDIN_FILENO, TCIFLUSH);
+  constexpr int kLook_ms = 50;
+  while (!interrupted.requested()) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (poll(&input, 1, kLook_ms) <= 0) continue;
+    char letter = 0;
+    if (::read(STDIN_FILENO, &letter, 1) <= 0) return false;
+    if (letter == '\n') return true;
+  }
+  return false;
+}
+
+}  // namespace stillhand::calibrate
