@@ -6,8 +6,11 @@
 #include <string_view>
 
 #include "idl/processes.hpp"
+#include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/core/parts_note.hpp"
 #include "services/recording/keep_options.hpp"
 #include "services/recording/of_experiment.hpp"
+#include "services/settings/load.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -73,6 +76,11 @@ Arguments display_words(const LabOptions& options, const Place& place) {
   if (options.who == Operator::kMouse) words.push_back("--pointer");
   if (!options.gamepad.empty()) {
     words.insert(words.end(), {"--gamepad", options.gamepad.string()});
+  }
+  if (!options.devices.empty()) {
+    const auto devices = settings::load<device_rig::DevicesConfig>(options.devices, "devices");
+    words.insert(words.end(), {"--rig-parts", std::string(device_rig::kPartsNote) +
+                                                  device_rig::in_words(devices.signals)});
   }
   return words;
 }

@@ -27,13 +27,18 @@ report::Panel panel(std::string title, std::string unit, double extent) {
   return panel;
 }
 
-std::string title_of(const session::TrialResult& trial) {
-  return std::string(1, trial.label) + (trial.label == 'B' ? ", moving" : ", cancelled");
+// A picture is shown without its page: it says of which parts the rig was.
+std::string title_of(const session::TrialResult& trial, const std::string& rig_parts) {
+  const std::string title =
+      std::string(1, trial.label) + (trial.label == 'B' ? ", moving" : ", cancelled");
+  if (rig_parts.empty()) return title;
+  const std::size_t at = rig_parts.find("simulated: ");
+  return title + " (devices" + (at == std::string::npos ? "" : "; " + rig_parts.substr(at)) + ")";
 }
 
-report::Panel force_panel(const session::TrialResult& trial) {
+report::Panel force_panel(const session::TrialResult& trial, const std::string& rig_parts) {
   const session::Excerpt& excerpt = trial.excerpt;
-  report::Panel out = panel(title_of(trial), "force [N]", kForceExtent_n);
+  report::Panel out = panel(title_of(trial, rig_parts), "force [N]", kForceExtent_n);
   // Of a rig of devices nobody knows the feedthrough.
   const bool known = !excerpt.feedthrough_n.empty() && std::isfinite(excerpt.feedthrough_n.front());
   out.series = {
@@ -69,7 +74,7 @@ std::vector<report::Drawing> draw_session(const session::SessionResult& result,
   figure.name = kSessionFigure;
   figure.columns = static_cast<int>(shown.size());
   figure.height_px = 520;
-  for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial));
+  for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial, result.rig_parts));
   for (const auto* trial : shown) {
     figure.panels.push_back(
         hand_panel(*trial, trial->label == 'B' ? Colour::kConditionB : Colour::kConditionC));

@@ -49,6 +49,7 @@ report::Page session_page(const session::SessionResult& result,
   report::Page page("One session",
                     "A: the platform stands. B: it moves. C: it moves, and the motor cancels what "
                     "the body passes on to the stick.");
+  if (!result.rig_parts.empty()) page.paragraph("The " + result.rig_parts + ".");
   page.section("The three figures");
   report::Table table{"This session and the paper (Gillespie and Sövényi, Tables I and II).",
                       {"", "A", "B", "C", "restored (B - C)/(B - A)"}};

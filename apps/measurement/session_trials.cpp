@@ -11,6 +11,7 @@
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/core/parts_note.hpp"
 #include "services/recording/sample_clock.hpp"
 
 namespace stillhand::measurement {
@@ -69,6 +70,13 @@ class TrialFinder {
     letters_[assignment.trial()] = assignment.motion() == stillhand_msgs::MOTION_STILL ? 'A'
                                    : assignment.cancellation()                         ? 'C'
                                                                                        : 'B';
+  }
+
+  void take(const stillhand_msgs::Event& event) {
+    const std::string text = event.text().c_str();
+    if (event.source() == "rig" && text.starts_with(device_rig::kPartsNote)) {
+      found_.rig_parts = text;
+    }
   }
 
   SessionTrials finish(const std::string& path) {
@@ -144,7 +152,7 @@ SessionTrials find_trials(recording::McapReader& reader, const std::string& path
   TrialFinder finder;
   recording::MessageFilter filter;
   filter.topics = {std::string(topics::kSensed.name), std::string(topics::kTrialControl.name),
-                   std::string(topics::kTrialAssignment.name)};
+                   std::string(topics::kTrialAssignment.name), std::string(topics::kEvent.name)};
   const recording::Status status =
       reader.for_each_message(filter, [&](const recording::MessageView& view) {
         if (view.channel.topic == topics::kSensed.name) {
@@ -152,6 +160,9 @@ SessionTrials find_trials(recording::McapReader& reader, const std::string& path
         } else if (view.channel.topic == topics::kTrialControl.name) {
           stillhand_msgs::TrialControl control;
           if (from_cdr(view.bytes, control)) finder.take(control);
+        } else if (view.channel.topic == topics::kEvent.name) {
+          stillhand_msgs::Event event;
+          if (from_cdr(view.bytes, event)) finder.take(event);
         } else {
           stillhand_msgs::TrialAssignment assignment;
           if (from_cdr(view.bytes, assignment)) finder.take(assignment);
@@ -197,6 +208,7 @@ std::vector<std::string> notes_of(const SessionTrials& trials, const SessionTria
                                   chosen.trial.duration_ticks));
     }
   }
+  if (!trials.rig_parts.empty()) notes.push_back("The " + trials.rig_parts + ".");
   if (trials.other_rigs) {
     notes.push_back("Rig " + std::to_string(trials.rig) + "; samples of other rigs are left out.");
   }

@@ -29,6 +29,7 @@ struct SessionTrials {
   bool other_rigs = false;           ///< the file also holds samples of other rigs
   std::vector<SessionTrial> trials;  ///< recorded ones, in order of their numbers
   std::string broken;                ///< why reading ended early, or empty
+  std::string rig_parts;             ///< which were devices, in the rig's words; empty: none
 };
 
 /// First pass over a session's recording: finds its trials.  A recording that announces none is one

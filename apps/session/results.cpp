@@ -190,6 +190,7 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
   SessionResult result;
   result.lost_ticks = session.lost_ticks;
   result.damage = session.damage;
+  result.rig_parts = rig_parts_in(session);
   for (const auto& offset : session.clock_offsets) {
     result.clocks[offset.service().c_str()] = offset;
   }

@@ -68,6 +68,7 @@ struct SessionResult {
   std::optional<RateConversionCost> conversion;
   std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic
   std::vector<std::string> damage;
+  std::string rig_parts;  ///< as the recording says it (parts_note.hpp); empty: all simulated
   std::map<std::string, stillhand_msgs::ClockOffset> clocks;  ///< by process, the last that came
 };
 

@@ -8,6 +8,7 @@
 #include "idl/cdr.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/core/parts_note.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
 #include "services/recording/file_io.hpp"
 
@@ -101,6 +102,14 @@ SessionRecording read_session(const std::string& path) {
   count(topics::kTrackingSample, gaps_in(session.tracking_samples));
   count(topics::kOperatorForce, gaps_in(session.operator_forces));
   return session;
+}
+
+std::string rig_parts_in(const SessionRecording& recording) {
+  for (const auto& event : recording.events) {
+    const std::string text = event.text().c_str();
+    if (event.source() == "rig" && text.starts_with(device_rig::kPartsNote)) return text;
+  }
+  return {};
 }
 
 }  // namespace stillhand::session

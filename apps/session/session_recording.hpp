@@ -41,4 +41,7 @@ struct SessionRecording {
 /// @throws ConfigError when the file cannot be opened or is no recording of Stillhand.
 SessionRecording read_session(const std::string& path);
 
+/// Which parts of the rig were devices, in the rig's own words; empty: all were simulated.
+std::string rig_parts_in(const SessionRecording& recording);
+
 }  // namespace stillhand::session

@@ -22,5 +22,7 @@ int main(int argc, char** argv) {
         cli.add_option(
             "--gamepad", screen.gamepad,
             "with --pointer: input device of a gamepad or joystick, in place of the mouse");
+        cli.add_option("--rig-parts", screen.rig,
+                       "words on the screen's lower edge: which parts of the rig are devices");
       });
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "services/display/view_opencv.hpp"
@@ -36,7 +37,10 @@ Moment moment_of(const Shown& shown, bool fresh, bool gamepad) {
 class ScreenLoop::Screen {
  public:
   Screen(Shell& shell, const ScreenOptions& options)
-      : shell_(shell), view_(shell.config(), kColumns, kRows), gamepad_(!options.gamepad.empty()) {
+      : shell_(shell),
+        view_(shell.config(), kColumns, kRows),
+        gamepad_(!options.gamepad.empty()),
+        rig_(options.rig) {
     if (!options.video.empty()) file_.emplace(options.video.string(), kRate_hz, kColumns, kRows);
     if (options.window) window_.emplace("Stillhand", view_.projection(), false);
   }
@@ -45,7 +49,8 @@ class ScreenLoop::Screen {
   /// @return false once the window was closed.
   bool show(const Shown& shown, bool fresh, const std::vector<PadAct>& pressed) {
     take_prompt();
-    const Page page = page_of(prompt_, moment_of(shown, fresh, gamepad_), answering_);
+    Page page = page_of(prompt_, moment_of(shown, fresh, gamepad_), answering_);
+    page.rig = rig_;
     const cv::Mat& frame = view_.draw(shown.sample, page);
     // Frames of a session that has not begun, or of a disk that is full, are not kept.
     if (file_ && shown.tick >= 0 && !file_->write(frame)) {
@@ -104,6 +109,7 @@ class ScreenLoop::Screen {
   Shell& shell_;
   TrackingView view_;
   bool gamepad_;
+  std::string rig_;
   Prompt prompt_;
   Answering answering_;
   std::optional<FrameFile> file_;

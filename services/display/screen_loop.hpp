@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "services/display/gamepad.hpp"
 #include "services/display/shell.hpp"
@@ -17,6 +18,7 @@ struct ScreenOptions {
   bool pointer = false;           ///< publish the mouse over the window
   std::filesystem::path gamepad;  ///< publish this device instead; empty: none
   std::filesystem::path video;    ///< write them here, or empty
+  std::string rig;                ///< which parts of the rig are devices; empty: none
 };
 
 /// Draws 60 frames a second from the newest data, in the calling thread, until stopped or the

@@ -82,9 +82,7 @@ void Shell::run() {
         plant_.wait();
         continue;
       }
-      if (const char* parts = plant_.parts(); tick == 0 && parts != nullptr) {
-        service_.note_event(stillhand_msgs::EVENT_NOTE, parts);
-      }
+      note_parts(tick);
       const std::int64_t late_ns = runtime::monotonic_ns() - due_ns;
       if (late_ns > kMaxCatchUp_ns) {
         due_ns += late_ns;
@@ -94,6 +92,14 @@ void Shell::run() {
       tick_once(tick++, due_ns);
     }
   });
+}
+
+// Once more at each trial: who joins later hears it, too.
+void Shell::note_parts(Tick tick) {
+  const std::int64_t trial = announced_.load().trial.number;
+  if (tick != 0 && trial == noted_trial_) return;
+  noted_trial_ = trial;
+  if (const char* parts = plant_.parts()) service_.note_event(stillhand_msgs::EVENT_NOTE, parts);
 }
 
 bool Shell::goes_on(Tick tick) {

@@ -36,6 +36,8 @@ class Shell {
 
   /// False once the process may end: at a stop the motor goes to zero and the platform to rest.
   bool goes_on(Tick tick);
+  /// Says at the first tick and at each trial which parts are devices.
+  void note_parts(Tick tick);
   void tick_once(Tick tick, std::int64_t due_ns);
   /// Waits, with the limit of the settings, for the motor command that answers this tick.
   void await_answer(Tick tick, std::int64_t due_ns);
@@ -74,6 +76,7 @@ class Shell {
   std::int64_t ended_trial_ = -1;  ///< of a platform command with kFault: a drive that was ended
   Tick stop_tick_ = -1;            ///< of the request to end; -1: none
   bool at_rest_ = true;            ///< no motor force, and the platform stands
+  std::int64_t noted_trial_ = -1;  ///< newest trial at which the parts were noted
 };
 
 }  // namespace stillhand::rig

@@ -352,16 +352,16 @@ def main(words):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="stillhand-fault-"))
         try:
             results.append(run(name, form, folder))
-        except (AssertionError, subprocess.TimeoutExpired) as error:
+        except (AssertionError, OSError, subprocess.TimeoutExpired) as error:
             results.append({"fault": name, "title": FAULTS[name].title, "until_ms": -1, "ended_by": "not reached",
                             "after_command_ms": -1, "emulator_ms": -1, "said": "", "recorded": "", "findings": [str(error)]})
         finally:
             shutil.rmtree(folder, ignore_errors=True)
         print(line(results[-1]), flush=True)
-    if words.out:
-        words.out.mkdir(parents=True, exist_ok=True)
-        (words.out / "device_faults.json").write_text(json.dumps(results, indent=1) + "\n")
-        (words.out / "device_faults.md").write_text(table(results))
+        if words.out:  # after each one: a campaign that is ended keeps what it has
+            words.out.mkdir(parents=True, exist_ok=True)
+            (words.out / "device_faults.json").write_text(json.dumps(results, indent=1) + "\n")
+            (words.out / "device_faults.md").write_text(table(results))
     broken = [result["fault"] for result in results if result["findings"]]
     print(f"{len(results)} faults, {len(broken) or 'none'} broke a rule{': ' if broken else ''}{', '.join(broken)}")
     return 1 if broken else 0

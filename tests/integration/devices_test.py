@@ -123,6 +123,7 @@ class DevicesTest(DevicesCase):
         words = "force drive, angle drive, motor off; simulated: acceleration, platform"
         self.assertIn(f"rig: {words}\n", lab.output())
         self.assertIn(["rig", f"rig of devices: {words}"], lab.recording(1)["notes"])
+        self.assertIn(f"rig of devices: {words}", (lab.out / "session.html").read_text())
         self.assertIsNone(lab.summary()["conditions"]["B"]["cancelled_share"])
 
     @campaign

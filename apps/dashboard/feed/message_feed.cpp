@@ -10,6 +10,7 @@
 #include "idl/session_state.hpp"
 #include "services/contract/time_difference.hpp"
 #include "services/contract/units.hpp"
+#include "services/device_rig/core/parts_note.hpp"
 #include "services/recording/sample_clock.hpp"
 
 namespace stillhand::dashboard {
@@ -136,8 +137,11 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
     if (rig_writer_ && *rig_writer_ != message.source) {
       health_.chain().clear();
       forces_ = {};
-      // A process that starts now has not been stopped.
-      if (message.source > *rig_writer_) emergency_ns_ = 0;
+      // A process that starts now has not been stopped, and may be another rig.
+      if (message.source > *rig_writer_) {
+        emergency_ns_ = 0;
+        rig_parts_.clear();
+      }
     }
     rig_writer_ = message.source;
     decode<stillhand_msgs::RigTruth>(message, [this](const auto& truth) {
@@ -184,6 +188,10 @@ void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at
   if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED &&
       event.text() == topics::kEmergencyStop.data()) {
     emergency_ns_ = at_ns;
+  }
+  if (const std::string text = event.text().to_string();
+      event.source() == "rig" && text.starts_with(device_rig::kPartsNote)) {
+    rig_parts_ = text.substr(device_rig::kPartsNote.size());
   }
   if (event.kind() == stillhand_msgs::EVENT_INCOMPATIBLE_QOS) {
     qos_mismatches_.note(event.source().to_string(), event.topic().to_string(),

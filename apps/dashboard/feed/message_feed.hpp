@@ -120,6 +120,8 @@ class MessageFeed {
   [[nodiscard]] const ForceRecord& forces() const noexcept { return forces_; }
   [[nodiscard]] const QosMismatches& qos_mismatches() const noexcept { return qos_mismatches_; }
   [[nodiscard]] bool replayed() const noexcept { return replayed_; }
+  /// Which parts of the rig are devices, in its own words; empty: none, or it has not said so yet.
+  [[nodiscard]] const std::string& rig_parts() const noexcept { return rig_parts_; }
   [[nodiscard]] Tick newest_tick() const noexcept { return newest_tick_; }
   /// Messages that are none of their type.
   [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
@@ -161,6 +163,7 @@ class MessageFeed {
   ForceRecord forces_;
   QosMismatches qos_mismatches_;
   std::optional<std::uint32_t> rig_writer_;
+  std::string rig_parts_;
   bool replayed_ = false, session_heard_ = false;
   Tick newest_tick_ = -1;
   std::uint64_t malformed_ = 0;

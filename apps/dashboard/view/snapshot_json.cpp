@@ -78,6 +78,7 @@ Json session_json(const MessageFeed& feed) {
                {"blinded", feed.options().blinded},
                {"replayed", feed.replayed()},
                {"paused", false},
+               {"rig_parts", feed.rig_parts()},
                {"emergency", feed.emergency_ns() != 0},
                {"emergency_ms", instant(feed.emergency_ns())}};
   const auto& control = feed.control();

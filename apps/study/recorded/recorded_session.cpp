@@ -173,6 +173,7 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
   SessionRecording recorded = session::read_session(file.path.string());
   RecordedSession out;
   keep_valid(recorded, trials.rig);
+  out.rig_parts = trials.rig_parts;
   const std::map<std::int64_t, Announced> announced = announced_in(recorded);
   const std::set<std::int64_t> driven = driven_in(recorded);
   for (const SessionTrial& trial : trials.trials) {

@@ -31,6 +31,10 @@ void read_session_of(const SessionFile& file, double least_share, Person& person
   }
   std::ranges::move(session.pegged, std::back_inserter(source.pegged));
   std::ranges::move(session.left_out, std::back_inserter(source.left_out));
+  if (!session.rig_parts.empty()) {
+    source.remarks.push_back(
+        fmt::format("{}, session {}: {}", file.participant, file.session, session.rig_parts));
+  }
 }
 
 // Means over trials and people need one length.

@@ -38,6 +38,7 @@ struct Page {
   std::string button;        ///< empty: none
   bool button_works = true;  ///< something is chosen
   std::string hint;          ///< at the foot
+  std::string rig;           ///< below it: which parts of the rig are devices; empty: none
 
   bool operator==(const Page&) const = default;
 };

@@ -20,6 +20,7 @@ constexpr double kCaption = 0.030;
 constexpr double kLarge = 0.150;
 constexpr double kWord = 0.030;
 constexpr double kHint = 0.026;
+constexpr double kRig = 0.0245;  // the rig's parts, in the lower margin
 constexpr double kBox = 0.084;
 constexpr double kGap = 0.055;      // between two parts of the column
 constexpr double kLeading = 1.35;   // of a line to the next, in ems
@@ -221,6 +222,9 @@ PageLayout lay_out(const Page& page, const ScreenConfig& screen, const TextWidth
   add(page.corner_left, -edge_m, 0.0, corner_baseline_m, corner_m);
   add(page.corner_right, edge_m, 1.0, corner_baseline_m, corner_m);
   add(page.hint, 0.0, 0.5, -screen.height_m / 2 + margin_m, hint_m);
+  // The margin is 0.035 of the height, of which the hint's descenders take 0.005.
+  constexpr double kRigBaseline = 0.008;
+  add(page.rig, 0.0, 0.5, (kRigBaseline - 0.5) * screen.height_m, kRig * screen.height_m);
   return layout;
 }
 

@@ -97,6 +97,24 @@ TEST_F(MessageFeedTest, AnotherRigsMessagesAreNotCounted) {
   EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).samples, 2u);
 }
 
+TEST_F(MessageFeedTest, TheRigSaysOfWhichPartsItIsAndAnotherRigsWordsAreForgotten) {
+  const std::uint32_t events = add(topics::kEvent), rig = add(topics::kRigTruth);
+  truth(rig, 0);
+  stillhand_msgs::Event event;
+  event.rig(1);
+  event.kind(stillhand_msgs::EVENT_NOTE);
+  event.source("experiment");
+  event.text("rig of devices: a note of a person");
+  take(sut_, events, event, 0);
+  EXPECT_EQ(sut_.rig_parts(), "");
+  event.source("rig");
+  event.text("rig of devices: force drive; simulated: platform");
+  take(sut_, events, event, 0);
+  EXPECT_EQ(sut_.rig_parts(), "force drive; simulated: platform");
+  truth(add(topics::kRigTruth), 1);
+  EXPECT_EQ(sut_.rig_parts(), "");
+}
+
 TEST_F(MessageFeedTest, AReplayBesideASessionIsNotCounted) {
   const std::uint32_t replay = add(topics::kRigTruth, sut_, true);
   truth(replay, 500);

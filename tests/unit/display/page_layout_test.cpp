@@ -70,6 +70,9 @@ std::vector<Page> pages() {
   resting.task = false;
   resting.below = "Next: trial 4 of 12";
   all.push_back(resting);
+  for (Page& page : all) {
+    page.rig = "rig of devices: force drive, angle drive, motor off; simulated: acceleration";
+  }
   return all;
 }
 

@@ -90,6 +90,18 @@ TEST(SessionTest, TheMeasuredPartOfTheIdentificationIsTakenUnlessTold) {
                                      "1 (B, 0.3 s), 2 (A, 0.4 s)."));
 }
 
+TEST(SessionTest, ARigOfDevicesIsNamed) {
+  SessionFile file(16384);
+  stillhand_msgs::Event event;
+  event.source("rig");
+  event.text("rig of devices: force drive; simulated: platform");
+  file.add(topics::kEvent, event);
+  file.control(0, PHASE_PEGGED, 0, 200);
+  run_ticks(file, 0, 200);
+  EXPECT_THAT(read_measurement(file_of(file.close())).notes,
+              Contains("The rig of devices: force drive; simulated: platform."));
+}
+
 TEST(SessionTest, ATrackingTrialHasTargetAndCursorToo) {
   const Measurement sut = read_measurement(file_of(session()), {"1"});
   EXPECT_EQ(sut.size(), 300u);
