@@ -213,7 +213,7 @@ void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput
 void DevicePlant::put_stick(rig::RigOutput& output) const noexcept {
   if (!drive_) return;
   const bool fresh = drive_fresh();
-  const moteus::DriveReply& reply = stick_.reply;
+  const DriveReply& reply = stick_.reply;
   const auto volts = [&](std::int64_t input) {
     const double share = input == 1 ? reply.analog1 : reply.analog2;
     return fresh && !ends(share) ? devices_.drive.analogue_v * share : kUnknown;
@@ -285,6 +285,7 @@ void DevicePlant::drive_motor(const rig::RigInput& input, rig::RigOutput& output
        .jumped = jumped_,
        .mode = stick_.reply.mode,
        .fault = stick_.reply.fault,
+       .fault_word = stick_.reply.fault_word,
        .wanted = parts_.motor == Parts::Motor::kDrive && input.motor_permitted && free_trial,
        .force_zero = force_n_ == 0.0,
        .trial = trial_.number});
@@ -332,7 +333,11 @@ void DevicePlant::judge() noexcept {
   if (!drive_fresh()) why_ = text_of(Reason::kSilent);
   if (jumped_) why_ = text_of(Reason::kEncoder);
   if (arming_.stage() != Stage::kFaulted || trial_.number != arming_.trial()) return;
-  if (arming_.fault() != 0) {
+  if (arming_.fault() != 0 && arming_.fault_word() != nullptr) {
+    std::snprintf(text_.data(), text_.size(), "the drive reports 0x%x in %s",
+                  static_cast<unsigned>(arming_.fault()), arming_.fault_word());
+    why_ = text_.data();
+  } else if (arming_.fault() != 0) {
     std::snprintf(text_.data(), text_.size(), "the drive reports fault %d", arming_.fault());
     why_ = text_.data();
   } else {

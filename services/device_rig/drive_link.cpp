@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/device_rig/drive_link.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/core/drive_protocols.hpp"
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::device_rig {
@@ -26,15 +25,14 @@ constexpr int kWait_ms = 100;
 
 }  // namespace
 
-DriveLink::DriveLink(const DriveConfig& config, const moteus::SettingLimits& limits)
-    : config_(config), limits_(limits), port_(std::make_unique<runtime::SerialPort>(config.port)) {
-  const std::string drive = "drive " + std::to_string(config.id) + " at " + config.port;
-  // The adapter's bus may be off; a drive's UART does not know this command, which does no harm.
-  if (!config.checksum) port_->write("\ncan on\n");
+DriveLink::DriveLink(const DriveConfig& config, const SettingLimits& limits)
+    : config_(config),
+      protocol_(protocol_of(config, limits)),
+      port_(std::make_unique<runtime::SerialPort>(config.port)) {
+  const std::string drive = protocol_->name() + " at " + config.port;
+  port_->write(protocol_->greeting());
   const auto trip_ms = round_trip_ms();
-  if (!trip_ms) {
-    throw ConfigError(drive, "no answer", "a moteus with power, the right id, and its cables");
-  }
+  if (!trip_ms) throw ConfigError(drive, "no answer", std::string(protocol_->needs()));
   if (*trip_ms > kSlowest_ms) {
     throw ConfigError(drive, "an answer after " + std::to_string(*trip_ms) + " ms",
                       "at most 10 ms (latency_timer of a USB serial chip: 1)");
@@ -71,7 +69,7 @@ void DriveLink::work(const std::stop_token& stop) noexcept {
       send_demand();
     }
   }
-  if (port_) send(moteus::stop_frame());
+  if (port_) send(protocol_->order(Order::kStop, 0.0));
 }
 
 // A cable that was pulled and put in again: the drive may be another one.
@@ -89,8 +87,9 @@ void DriveLink::open_again() {
 }
 
 bool DriveLink::check_again() {
+  protocol_->clear();
   // A command that was under way may have armed the drive that started again.
-  send(moteus::stop_frame());
+  send(protocol_->order(Order::kStop, 0.0));
   // What is still under way does not answer what is asked now.
   receive_until(runtime::monotonic_ns() + kAnswerLimit_ns, [] { return false; });
   if (port_->gone()) return false;
@@ -104,16 +103,15 @@ bool DriveLink::check_again() {
   return good;
 }
 
-void DriveLink::send(const moteus::Frame& frame) noexcept {
-  constexpr std::uint32_t kReplyWanted = 0x8000;
-  const auto line = moteus::send_line(kReplyWanted | static_cast<std::uint32_t>(config_.id), frame,
-                                      config_.checksum);
-  // A newline first ends the piece of a line that the port took before.
-  if (piece_sent_ && !port_->write("\n")) {
+void DriveLink::send(std::string_view bytes) noexcept {
+  if (bytes.empty()) return;
+  // What the port took of the message before ends first.
+  const std::string_view end = protocol_->end_of_piece();
+  if (piece_sent_ && !end.empty() && !port_->write(end)) {
     ++sample_.unsent;
     return;
   }
-  piece_sent_ = !port_->write(line.view());
+  piece_sent_ = !port_->write(bytes);
   if (piece_sent_) ++sample_.unsent;
 }
 
@@ -125,16 +123,7 @@ void DriveLink::send_demand() noexcept {
     ++sample_.unsent;
     return;
   }
-  switch (demand.order) {
-    case Order::kQuery:
-      return send(moteus::query_frame());
-    case Order::kStop:
-      return send(moteus::stop_frame());
-    case Order::kTorque:
-      return send(moteus::torque_frame({.torque_n_m = demand.torque_n_m,
-                                        .max_torque_n_m = config_.max_torque_n_m,
-                                        .watchdog_s = config_.watchdog_s}));
-  }
+  send(protocol_->order(demand.order, demand.torque_n_m));
 }
 
 void DriveLink::receive() noexcept {
@@ -143,38 +132,11 @@ void DriveLink::receive() noexcept {
   for (int turn = 0; turn < 8; ++turn) {
     const std::string_view text = port_->read(bytes);
     if (text.empty()) return;
-    splitter_.take(
-        text, [this](std::string_view line) { take(moteus::read_line(line, config_.checksum)); });
+    protocol_->take(text, *this);
   }
 }
 
-void DriveLink::take(const moteus::Received& received) noexcept {
-  using Kind = moteus::Received::Kind;
-  if (received.kind == Kind::kDamaged) ++sample_.damaged;
-  if (received.kind != Kind::kFrame) return;
-  constexpr std::uint32_t kNumber = 0x7f;
-  if ((received.identifier >> 8 & kNumber) != static_cast<std::uint32_t>(config_.id)) return;
-  moteus::FrameReader reader(received.frame.payload());
-  bool console = false;
-  while (const auto item = reader.next()) {
-    if (item->kind != moteus::FrameReader::Kind::kConsole) continue;
-    console = true;
-    answer_.take(item->console);
-  }
-  if (console) return;
-  if (const auto serial = moteus::read_serial(received.frame.payload())) {
-    serial_ = serial;
-    return;
-  }
-  const auto reply = moteus::read_reply(received.frame.payload());
-  if (reply.whole) {
-    take_state(reply);
-  } else {
-    ++sample_.damaged;
-  }
-}
-
-void DriveLink::take_state(const moteus::DriveReply& reply) noexcept {
+void DriveLink::state(const DriveReply& reply) noexcept {
   const std::int64_t now_ns = runtime::monotonic_ns();
   switch (reply_clock_.step(reply.milliseconds, 1e-6 * static_cast<double>(now_ns))) {
     case ReplyClock::Verdict::kYoung:
@@ -211,7 +173,7 @@ std::optional<double> DriveLink::round_trip_ms() {
   for (int attempt = 0; attempt < 2 * kTrips && trips < kTrips; ++attempt) {
     const std::uint64_t before = sample_.sequence;
     const std::int64_t sent_ns = runtime::monotonic_ns();
-    send(moteus::stop_frame());
+    send(protocol_->order(Order::kStop, 0.0));
     if (receive_until(sent_ns + kAnswerLimit_ns / 10, [&] { return sample_.sequence > before; })) {
       const double trip_ms = 1e-6 * static_cast<double>(runtime::monotonic_ns() - sent_ns);
       quickest_ms = std::min(trip_ms, quickest_ms.value_or(trip_ms));
@@ -221,42 +183,38 @@ std::optional<double> DriveLink::round_trip_ms() {
   return quickest_ms;
 }
 
-std::optional<moteus::SettingFault> DriveLink::wrong_setting() {
-  for (const std::string_view name : moteus::kSettings) {
+std::optional<SettingFault> DriveLink::wrong_setting() {
+  for (const std::string_view name : protocol_->settings()) {
     const auto answer = ask(name);
-    if (auto fault = moteus::judge_setting(name, answer.value_or("no answer"), limits_)) {
-      return fault;
-    }
+    if (auto fault = protocol_->judge(name, answer.value_or("no answer"))) return fault;
   }
   return std::nullopt;
 }
 
 std::optional<std::string> DriveLink::ask(std::string_view name) {
-  answer_.clear();
-  send(moteus::ask_setting(name));
+  send(protocol_->ask(name));
   const std::int64_t until_ns = runtime::monotonic_ns() + kAnswerLimit_ns;
   while (runtime::monotonic_ns() < until_ns && !port_->gone()) {
-    send(moteus::poll_setting());
+    send(protocol_->poll());
     const std::int64_t next_ns = runtime::monotonic_ns() + kPollEach_ns;
-    if (receive_until(next_ns, [&] { return answer_.line().has_value(); })) return answer_.line();
+    if (receive_until(next_ns, [&] { return protocol_->answer().has_value(); })) {
+      return protocol_->answer();
+    }
   }
   return std::nullopt;
 }
 
-std::optional<moteus::SerialNumber> DriveLink::ask_serial() {
-  serial_.reset();
-  // A firmware that does not know these registers answers with an error.
-  for (int attempt = 0; attempt < kTrips && !serial_ && !port_->gone(); ++attempt) {
-    send(moteus::serial_frame());
-    receive_until(runtime::monotonic_ns() + kAnswerLimit_ns / 10,
-                  [&] { return serial_.has_value(); });
+std::optional<std::string> DriveLink::ask_serial() {
+  // A firmware that does not know its serial number answers with an error.
+  std::optional<std::string> serial;
+  for (int attempt = 0; attempt < kTrips && !serial && !port_->gone(); ++attempt) {
+    send(protocol_->ask_serial());
+    receive_until(runtime::monotonic_ns() + kAnswerLimit_ns / 10, [&] {
+      serial = protocol_->serial();
+      return serial.has_value();
+    });
   }
-  return serial_;
-}
-
-std::string DriveLink::serial() const {
-  if (!opened_) return "unknown";
-  return fmt::format("{:08x}-{:08x}-{:08x}", (*opened_)[2], (*opened_)[1], (*opened_)[0]);
+  return serial;
 }
 
 }  // namespace stillhand::device_rig

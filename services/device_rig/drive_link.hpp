@@ -5,14 +5,12 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <thread>
 
-#include "services/device_rig/core/arming.hpp"
 #include "services/device_rig/core/devices_config.hpp"
-#include "services/device_rig/core/fdcanusb_line.hpp"
-#include "services/device_rig/core/moteus_drive.hpp"
-#include "services/device_rig/core/moteus_settings.hpp"
+#include "services/device_rig/core/drive_protocol.hpp"
 #include "services/device_rig/core/reply_clock.hpp"
 #include "services/runtime/process/latest_value.hpp"
 #include "services/runtime/transport/bell.hpp"
@@ -25,22 +23,22 @@ struct DriveSample {
   std::uint64_t sequence = 0;  ///< of whole replies; 0: none yet
   std::int64_t at_ns = 0;      ///< CLOCK_MONOTONIC when the reply was read
   bool checked = false;        ///< its settings are read back and right
-  moteus::DriveReply reply;
-  std::uint64_t damaged = 0;  ///< lines and frames that were not understood
+  DriveReply reply;
+  std::uint64_t damaged = 0;  ///< answers that were not understood, or not whole
   std::uint64_t late = 0;     ///< replies that were held up, or came again and again
   std::uint64_t unsent = 0;   ///< commands that were too old, or that the port did not take
 };
 
-/// A moteus drive behind a serial port, in a thread of its own.  The loop only stores a demand and
-/// takes the newest sample: no lock, no allocation, one system call.  The thread sends each demand
-/// once and none by itself, so a loop that stops stops the drive (its watchdog).  A demand that is
-/// older than 5 ms is not sent.
-class DriveLink {
+/// A drive behind a port, in a thread of its own; core/drive_protocols has its language.  The loop
+/// only stores a demand and takes the newest sample: no lock, no allocation, one system call.  The
+/// thread sends each demand once and none by itself, so a loop that stops stops the drive (its
+/// watchdog).  A demand that is older than 5 ms is not sent.
+class DriveLink final : private DriveListener {
  public:
   /// Opens the port, switches the driver off, and reads the drive's settings back; 3 s at most.
   /// @throws ConfigError if there is no drive, or a setting is wrong, with the command that mends
   /// it
-  DriveLink(const DriveConfig& config, const moteus::SettingLimits& limits);
+  DriveLink(const DriveConfig& config, const SettingLimits& limits);
   /// Switches the driver off.
   ~DriveLink();
   DriveLink(const DriveLink&) = delete;
@@ -49,7 +47,7 @@ class DriveLink {
   void demand(Order order, double torque_n_m) noexcept;
   const DriveSample& newest() noexcept { return samples_.load(); }
   /// Serial number of the drive that was opened, in hexadecimal digits; "unknown" if it has none.
-  [[nodiscard]] std::string serial() const;
+  [[nodiscard]] std::string serial() const { return opened_.value_or("unknown"); }
 
  private:
   struct Demand {
@@ -62,11 +60,11 @@ class DriveLink {
   void work(const std::stop_token& stop) noexcept;
   void open_again();
   bool check_again();
-  void send(const moteus::Frame& frame) noexcept;
+  void send(std::string_view bytes) noexcept;
   void send_demand() noexcept;
   void receive() noexcept;
-  void take(const moteus::Received& received) noexcept;
-  void take_state(const moteus::DriveReply& reply) noexcept;
+  void state(const DriveReply& reply) noexcept override;
+  void damaged() noexcept override { ++sample_.damaged; }
   /// Waits for what comes, at most until a time of CLOCK_MONOTONIC.
   template <typename IsThere>
   bool receive_until(std::int64_t until_ns, IsThere is_there) noexcept;
@@ -74,27 +72,24 @@ class DriveLink {
   /// no reply came
   std::optional<double> round_trip_ms();
   /// Reads the settings back.  @returns the first that is wrong
-  std::optional<moteus::SettingFault> wrong_setting();
+  std::optional<SettingFault> wrong_setting();
   std::optional<std::string> ask(std::string_view name);
   /// Asks the drive who it is.
-  std::optional<moteus::SerialNumber> ask_serial();
+  std::optional<std::string> ask_serial();
 
   DriveConfig config_;
-  moteus::SettingLimits limits_;
+  std::unique_ptr<DriveProtocol> protocol_;
   std::unique_ptr<runtime::SerialPort> port_;
   runtime::Bell bell_;
   runtime::LatestValue<Demand> demands_;
   runtime::LatestValue<DriveSample> samples_;
-  std::uint64_t demand_number_ = 0;             // the loop's
-  std::optional<moteus::SerialNumber> opened_;  ///< of the drive that was opened; then constant
+  std::uint64_t demand_number_ = 0;    // the loop's
+  std::optional<std::string> opened_;  ///< serial number of the drive that was opened; constant
   // The thread's.
-  moteus::LineSplitter splitter_;
   ReplyClock reply_clock_;
-  moteus::ConsoleAnswer answer_;
-  std::optional<moteus::SerialNumber> serial_;  ///< newest answer
   DriveSample sample_;
   std::uint64_t sent_number_ = 0;
-  bool piece_sent_ = false;  ///< the port took a part of a line
+  bool piece_sent_ = false;  ///< the port took a part of a message
   bool unchecked_ = false;   ///< the settings are to be read back once more
   std::jthread thread_;      // last
 };

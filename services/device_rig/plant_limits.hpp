@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "services/device_rig/core/devices_config.hpp"
-#include "services/device_rig/core/moteus_settings.hpp"
+#include "services/device_rig/core/drive_protocol.hpp"
 #include "services/device_rig/core/set_point_guard.hpp"
 #include "services/rig/core/rig.hpp"
 
@@ -23,8 +23,7 @@ inline rig::MotorConfig barrier(rig::MotorConfig config) {
 }
 
 /// What the drive's own settings must be on this stick.
-inline moteus::SettingLimits setting_limits(const rig::RigConfig& rig,
-                                            const DevicesConfig& devices) {
+inline SettingLimits setting_limits(const rig::RigConfig& rig, const DevicesConfig& devices) {
   return {.max_current_a = devices.drive.max_current_a,
           .travel_rev = rig.stick.stop_angle_rad / (2.0 * std::numbers::pi)};
 }

@@ -15,6 +15,8 @@
 #include <stdexcept>
 
 #include "services/runtime/process/clock.hpp"
+#include "tests/emulators/moteus_emulator.hpp"
+#include "tests/emulators/odrive_emulator.hpp"
 
 namespace stillhand::emulators {
 namespace {
@@ -33,11 +35,17 @@ int listen_at(std::uint16_t port) {
   return descriptor;
 }
 
+std::unique_ptr<DriveEmulator> drive_of(const LoopOptions& options) {
+  if (options.odrive) return std::make_unique<OdriveEmulator>();
+  return std::make_unique<MoteusEmulator>(options.uart);
+}
+
 }  // namespace
 
 EmulatedLoop::EmulatedLoop(const LoopOptions& options, const rig::RigConfig& rig)
-    : drive_(options.uart),
-      serial_(options.drive_link),
+    : made_(drive_of(options)),
+      drive_(*made_),
+      serial_(options.drive_link, options.odrive ? Answers::kLines : Answers::kFrames),
       laboratory_(rig, drive_, platform_),
       socket_(listen_at(options.platform_port)) {
   for (const std::string& each : options.settings) {
@@ -87,11 +95,12 @@ void EmulatedLoop::hear_drive(std::int64_t now_ns) {
   serial_.write(answer, now_ns);
   if (drive_.record().commands > before) trace_.torque(acted_ns, drive_.forward_n_m());
   if (!answer.empty()) {
+    const DriveSenses reported = drive_.reported();
     trace_.reply({.sampled_ns = stepped_ns_,
                   .sent_ns = runtime::monotonic_ns(),
-                  .analog1 = drive_.reported(0x60),
-                  .analog2 = drive_.reported(0x68),
-                  .position_rev = drive_.reported(0x01)});
+                  .analog1 = reported.analog1,
+                  .analog2 = reported.analog2,
+                  .position_rev = reported.position_rev});
   }
 }
 
@@ -221,7 +230,8 @@ bool EmulatedLoop::obey_way(const std::string& word, double value) {
   const std::map<std::string, bool*> switches{
       {"silent", &serial_.mischief.silent},       {"deaf", &serial_.mischief.deaf},
       {"garbage", &serial_.mischief.garbage},     {"damaged", &serial_.mischief.damaged},
-      {"truncated", &serial_.mischief.truncated}, {"repeated", &serial_.mischief.repeated}};
+      {"truncated", &serial_.mischief.truncated}, {"repeated", &serial_.mischief.repeated},
+      {"mixed", &serial_.mischief.mixed},         {"lost", &serial_.mischief.lost}};
   if (const auto found = switches.find(word); found != switches.end()) {
     *found->second = value != 0.0;
   } else if (word == "late") {
@@ -241,6 +251,7 @@ void EmulatedLoop::report(std::int64_t now_ns) const {
   };
   const nlohmann::json json{
       {"mode", drive_.mode()},
+      {"follows", drive_.follows()},
       {"torque_n_m", drive_.torque_n_m()},
       {"commands", drive.commands},
       {"stops", drive.stops},

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
@@ -20,6 +21,7 @@ struct LoopOptions {
   std::filesystem::path drive_link;
   std::uint16_t platform_port = 0;
   bool uart = false;
+  bool odrive = false;                ///< the drive is an ODrive, not a moteus
   std::vector<std::string> settings;  ///< NAME=VALUE
   /// FIFOs of an IIO accelerometer and of a bridge converter; empty: neither
   std::filesystem::path accelerometer, bridge;
@@ -50,7 +52,8 @@ class EmulatedLoop {
   bool obey_way(const std::string& word, double value);
   void report(std::int64_t now_ns) const;
 
-  MoteusEmulator drive_;
+  std::unique_ptr<DriveEmulator> made_;
+  DriveEmulator& drive_;
   PlatformEmulator platform_;
   SerialSide serial_;
   Laboratory laboratory_;

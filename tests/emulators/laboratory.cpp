@@ -74,7 +74,7 @@ void Person::put(rig::RigInput& input) {
   input.pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
 }
 
-Laboratory::Laboratory(const rig::RigConfig& config, MoteusEmulator& drive,
+Laboratory::Laboratory(const rig::RigConfig& config, DriveEmulator& drive,
                        PlatformEmulator& platform)
     : lever_m_(config.stick.lever_m),
       rig_(without_barrier(config)),
@@ -91,7 +91,7 @@ void Laboratory::step(std::int64_t now_ns, Person* person) {
   }
   if (person != nullptr) person->put(input);
   input.motor_valid = true;
-  input.motor_permitted = drive_.torque_n_m() != 0.0 || drive_.mode() == 10;
+  input.motor_permitted = drive_.torque_n_m() != 0.0 || drive_.follows();
   input.motor_force_n = drive_.torque_n_m() / lever_m_;
   output_ = rig_.step(input);
 

@@ -10,7 +10,7 @@
 #include "services/rig/core/rig.hpp"
 #include "services/runtime/bus/tap.hpp"
 #include "services/runtime/process/latest_value.hpp"
-#include "tests/emulators/moteus_emulator.hpp"
+#include "tests/emulators/drive_emulator.hpp"
 #include "tests/emulators/platform_emulator.hpp"
 
 namespace stillhand::emulators {
@@ -47,7 +47,7 @@ class Person {
 /// torque of the emulated drive and the set-points of the emulated platform.
 class Laboratory {
  public:
-  Laboratory(const rig::RigConfig& config, MoteusEmulator& drive, PlatformEmulator& platform);
+  Laboratory(const rig::RigConfig& config, DriveEmulator& drive, PlatformEmulator& platform);
 
   /// One millisecond.
   void step(std::int64_t now_ns, Person* person);
@@ -74,7 +74,7 @@ class Laboratory {
  private:
   double lever_m_;
   rig::Rig rig_;
-  MoteusEmulator& drive_;
+  DriveEmulator& drive_;
   PlatformEmulator& platform_;
   rig::RigOutput output_{};
   double slip_rev_ = 0.0;

@@ -355,9 +355,16 @@ void MoteusEmulator::console(std::string_view text) {
   }
 }
 
-double MoteusEmulator::reported(std::uint32_t address) const {
-  const double step = scale(address, address == 0x01 ? 2 : 1);
-  return step * static_cast<double>(std::lround(of_register(address, began_ns_) / step));
+DriveSenses MoteusEmulator::reported() const {
+  const auto rounded = [this](std::uint32_t address, int format) {
+    const double step = scale(address, format);
+    return step * static_cast<double>(std::lround(of_register(address, began_ns_) / step));
+  };
+  DriveSenses out = senses_;
+  out.position_rev = rounded(0x01, 2);
+  out.analog1 = rounded(0x60, 1);
+  out.analog2 = rounded(0x68, 1);
+  return out;
 }
 
 double MoteusEmulator::of_register(std::uint32_t address, std::int64_t now_ns) const {

@@ -43,7 +43,7 @@ def free_port():
         return one.getsockname()[1]
 
 
-def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, **signals):
+def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, odrive=False, **signals):
     """Settings in which every signal is a device's, but those that are given. `iio`: uri of an IIO context."""
     if iio:
         signals = {"acceleration": "iio", "force": "iio"} | signals
@@ -51,6 +51,7 @@ def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, **signals):
     lines = ["signals:"] + [f"  {name}: {part}" for name, part in (parts | signals).items()]
     lines += ["drive:", f"  port: {link}", f"  watchdog_s: {WATCHDOG_MS / 1000}", f"  max_age_ticks: {MAX_AGE_MS}",
               f"  checksum: {'true' if uart else 'false'}"]
+    lines += ["  kind: odrive"] if odrive else []
     lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}"]
     for group in ("accelerometer", "load_cell") if iio else ():
         lines += [f"{group}:", f"  uri: {iio}", f"  max_age_ticks: {MAX_AGE_MS}"]
@@ -62,17 +63,18 @@ def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, **signals):
 class EmulatedLaboratory:
     """The emulator's process. `config` is a settings folder, which gets the devices' settings. `iio`: an IioContext."""
 
-    def __init__(self, config, domain=None, uart=False, settings=(), iio=None, **signals):
+    def __init__(self, config, domain=None, uart=False, settings=(), iio=None, odrive=False, **signals):
         self.config = pathlib.Path(config)
         if not self.config.is_dir():
             shutil.copytree(SOURCE / "deploy" / "config", self.config)
         link = self.config.parent / "drive"
         port = free_port()
-        (self.config / "devices.yaml").write_text(devices_yaml(link, port, uart, iio and iio.uri, **signals))
+        (self.config / "devices.yaml").write_text(devices_yaml(link, port, uart, iio and iio.uri, odrive=odrive, **signals))
         (self.config / "sensing.yaml").write_text(SENSING_IIO if iio else SENSING)
         words = [str(PROGRAM), "--drive-link", str(link), "--platform-port", str(port), "--config", str(self.config)]
         words += ["--domain", str(domain), "--profiles", str(PROFILES)] if domain is not None else []
         words += ["--uart"] if uart else []
+        words += ["--odrive"] if odrive else []
         words += ["--accelerometer", str(iio.fifos["accelerometer"]), "--bridge", str(iio.fifos["bridge"])] if iio else []
         for each in settings:
             words += ["--set", each]

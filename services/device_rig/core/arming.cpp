@@ -41,11 +41,11 @@ Arming::Output Arming::step(const Input& input) noexcept {
 Reason Arming::trouble(const Input& input) const noexcept {
   if (!input.fresh) return Reason::kSilent;
   if (input.jumped) return Reason::kEncoder;
-  if (input.mode == moteus::kFaulted) return Reason::kFault;
-  if (input.mode == moteus::kTimedOut) return Reason::kTimedOut;
+  if (input.mode == DriveMode::kFault) return Reason::kFault;
+  if (input.mode == DriveMode::kTimedOut) return Reason::kTimedOut;
   if (!input.checked) return Reason::kUnchecked;
-  if (confirmed_ && input.mode == moteus::kStopped) return Reason::kOff;
-  if (confirmed_ && input.mode != moteus::kInPosition) return Reason::kOtherMode;
+  if (confirmed_ && input.mode == DriveMode::kOff) return Reason::kOff;
+  if (confirmed_ && input.mode != DriveMode::kTorque) return Reason::kOtherMode;
   if (!confirmed_ && since_ticks_ > kPatience_ticks) return Reason::kNotArmed;
   return Reason::kNone;
 }
@@ -53,14 +53,15 @@ Reason Arming::trouble(const Input& input) const noexcept {
 Arming::Output Arming::fail(const Input& input, Reason reason) noexcept {
   stage_ = Stage::kFaulted;
   reason_ = reason;
-  fault_ = input.mode == moteus::kFaulted ? input.fault : 0;
+  fault_ = input.mode == DriveMode::kFault ? input.fault : 0;
+  fault_word_ = input.fault_word;
   blocked_trial_ = input.trial;
   return {stage_, Order::kStop, reason_, true, false};
 }
 
 Arming::Output Arming::idle(const Input& input) noexcept {
   stage_ = !input.fresh ? Stage::kAbsent : input.checked ? Stage::kChecked : Stage::kFound;
-  if (stage_ == Stage::kChecked && input.mode != moteus::kStopped) {
+  if (stage_ == Stage::kChecked && input.mode != DriveMode::kOff) {
     // Whatever it does, it was not asked to: driver off, which clears a latched timeout, too.
     return {stage_, Order::kStop, Reason::kNone, false, false};
   }
@@ -76,7 +77,7 @@ Arming::Output Arming::idle(const Input& input) noexcept {
 Arming::Output Arming::armed(const Input& input) noexcept {
   ++since_ticks_;
   if (const Reason reason = trouble(input); reason != Reason::kNone) return fail(input, reason);
-  confirmed_ = confirmed_ || input.mode == moteus::kInPosition;
+  confirmed_ = confirmed_ || input.mode == DriveMode::kTorque;
   // Without permission the force ramps down first, then the driver goes off.
   if (!input.wanted && input.force_zero) {
     stage_ = Stage::kChecked;
@@ -86,7 +87,7 @@ Arming::Output Arming::armed(const Input& input) noexcept {
 }
 
 Arming::Output Arming::faulted(const Input& input) noexcept {
-  const bool quiet = input.fresh && input.mode == moteus::kStopped && !input.jumped;
+  const bool quiet = input.fresh && input.mode == DriveMode::kOff && !input.jumped;
   // Another trial, and a drive that is off and free of faults: it counts as found again.
   if (quiet && input.trial != blocked_trial_) {
     stage_ = Stage::kFound;

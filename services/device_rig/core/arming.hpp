@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "services/device_rig/core/moteus_drive.hpp"
+#include "services/device_rig/core/drive_protocol.hpp"
 
 namespace stillhand::device_rig {
 
@@ -15,9 +15,6 @@ enum class Stage : std::uint8_t {
   kArmed,    ///< it follows torque commands
   kFaulted   ///< it lost its permission for this trial
 };
-
-/// What the drive is sent.
-enum class Order : std::uint8_t { kQuery, kStop, kTorque };
 
 /// Why a drive is faulted; text_of() says it.
 enum class Reason : std::uint8_t {
@@ -39,11 +36,12 @@ const char* text_of(Reason reason) noexcept;
 class Arming {
  public:
   struct Input {
-    bool fresh = false;      ///< the newest reply is young enough
-    bool checked = false;    ///< the drive's settings are read back and right
-    bool jumped = false;     ///< the angle jumped
-    int mode = 0;            ///< of the newest reply
-    int fault = 0;           ///< same
+    bool fresh = false;                ///< the newest reply is young enough
+    bool checked = false;              ///< the drive's settings are read back and right
+    bool jumped = false;               ///< the angle jumped
+    DriveMode mode = DriveMode::kOff;  ///< of the newest reply
+    int fault = 0;                     ///< same
+    const char* fault_word = nullptr;  ///< same
     bool wanted = false;     ///< a trial with a free stick, interlock closed, power stage on
     bool force_zero = true;  ///< the force after all limits is exactly 0
     std::int64_t trial = -1;
@@ -63,9 +61,11 @@ class Arming {
   [[nodiscard]] std::int64_t trial() const noexcept { return blocked_trial_; }
   /// Fault code of the drive when it was faulted; 0: none.
   [[nodiscard]] int fault() const noexcept { return fault_; }
+  /// Where the bits of that code are explained; null: it is a number.
+  [[nodiscard]] const char* fault_word() const noexcept { return fault_word_; }
 
  private:
-  /// Until the drive says that it is in mode 10, and that it is off [ticks].
+  /// Until the drive says that it follows, and that it is off [ticks].
   static constexpr std::int64_t kPatience_ticks = 50;
 
   Output idle(const Input& input) noexcept;
@@ -77,6 +77,7 @@ class Arming {
   Stage stage_ = Stage::kAbsent;
   Reason reason_ = Reason::kNone;
   int fault_ = 0;
+  const char* fault_word_ = nullptr;
   std::int64_t blocked_trial_ = -2;
   std::int64_t since_ticks_ = 0;  ///< in mode-changing states
   bool confirmed_ = false;        ///< the drive has said that it follows

@@ -30,10 +30,13 @@ struct SignalsConfig {
   }
 };
 
-/// The servo drive of the stick: a moteus behind an fdcanusb or a UART.
+/// The servo drive of the stick: a moteus behind an fdcanusb or a UART, or an axis of an ODrive.
 struct DriveConfig {
+  std::string kind = "moteus";
   std::string port = "/dev/fdcanusb";
   std::int64_t id = 1;
+  std::int64_t axis = 0;
+  double ratio = 1.0;
   bool checksum = false;
   std::int64_t period_ticks = 1;
   double watchdog_s = 0.02;
@@ -50,11 +53,16 @@ struct DriveConfig {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
+    visit("kind", self.kind, Range{1.0, 20.0}, "what it is: moteus or odrive");
     visit("port", self.port, Range{1.0, 200.0},
           "serial port of the adapter or of the drive's UART");
-    visit("id", self.id, Range{1.0, 127.0}, "[-] number of the drive on its bus");
+    visit("id", self.id, Range{1.0, 127.0}, "[-] number of a moteus on its bus");
+    visit("axis", self.axis, Range{0.0, 1.0}, "[-] axis of an ODrive");
+    visit("ratio", self.ratio, Range{0.1, 200.0},
+          "[rev/rev] turns of an ODrive's motor in a turn of the stick; a moteus knows its own");
     visit("checksum", self.checksum, Range{0.0, 1.0},
-          "every line has a checksum; a drive's UART always answers with one");
+          "every line has a checksum; a moteus's UART always answers with one, an ODrive always "
+          "gets and gives one");
     visit("period_ticks", self.period_ticks, Range{1.0, 10.0},
           "[ticks] one exchange each so many ticks; as fast as the transport carries");
     visit("watchdog_s", self.watchdog_s, Range{0.005, 0.1},

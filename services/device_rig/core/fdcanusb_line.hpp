@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "services/device_rig/core/line_splitter.hpp"
 #include "services/device_rig/core/moteus_frame.hpp"
 
 namespace stillhand::device_rig::moteus {
@@ -42,34 +43,5 @@ struct Received {
 
 /// @param checked  a checksum is required
 Received read_line(std::string_view line, bool checked) noexcept;
-
-/// Bytes of a serial port to lines, without allocation.  A line that is too long is dropped up to
-/// its end and counted.
-class LineSplitter {
- public:
-  /// Calls `on_line(std::string_view)` for each line that the bytes complete.
-  template <typename OnLine>
-  void take(std::string_view bytes, OnLine&& on_line) noexcept {
-    for (const char c : bytes) {
-      if (c == '\n' || c == '\r') {
-        if (!overrun_ && size_ > 0) on_line(std::string_view(line_.data(), size_));
-        overrun_ = false;
-        size_ = 0;
-      } else if (size_ < line_.size()) {
-        line_[size_++] = c;
-      } else {
-        if (!overrun_) ++dropped_;
-        overrun_ = true;
-      }
-    }
-  }
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
-
- private:
-  std::array<char, 256> line_{};
-  std::size_t size_ = 0;
-  bool overrun_ = false;
-  std::uint64_t dropped_ = 0;
-};
 
 }  // namespace stillhand::device_rig::moteus

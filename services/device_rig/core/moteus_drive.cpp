@@ -28,17 +28,39 @@ std::optional<int> whole_number(double value) noexcept {
   return static_cast<int>(value);
 }
 
-// The drive's mode or fault: without a number, the reply is not whole.
-void take_whole(double value, int& to, unsigned bit, unsigned& seen) noexcept {
+DriveMode mode_of(int number) noexcept {
+  switch (number) {
+    case kStopped:
+      return DriveMode::kOff;
+    case kFaulted:
+      return DriveMode::kFault;
+    case kInPosition:
+      return DriveMode::kTorque;
+    case kTimedOut:
+      return DriveMode::kTimedOut;
+    default:
+      return DriveMode::kOther;
+  }
+}
+
+// The drive's mode and fault: without a number, the reply is not whole.
+void take_mode(double value, DriveReply& reply, unsigned bit, unsigned& seen) noexcept {
   const auto number = whole_number(value);
-  to = number.value_or(to);
+  if (!number) return;
+  reply.mode = mode_of(*number);
+  seen |= bit;
+}
+
+void take_fault(double value, DriveReply& reply, unsigned bit, unsigned& seen) noexcept {
+  const auto number = whole_number(value);
+  reply.fault = number.value_or(0);
   if (number) seen |= bit;
 }
 
 void take(const FrameReader::Item& item, DriveReply& reply, unsigned& seen) noexcept {
   switch (item.address) {
     case kMode:
-      take_whole(item.value, reply.mode, 1u, seen);
+      take_mode(item.value, reply, 1u, seen);
       break;
     case kPosition:
       reply.position_rev = item.value;
@@ -59,7 +81,7 @@ void take(const FrameReader::Item& item, DriveReply& reply, unsigned& seen) noex
       reply.temperature_c = item.value;
       break;
     case kFault:
-      take_whole(item.value, reply.fault, 16u, seen);
+      take_fault(item.value, reply, 16u, seen);
       break;
     case kAnalog1:
       reply.analog1 = item.value;

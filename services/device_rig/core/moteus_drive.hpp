@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 
+#include "services/device_rig/core/drive_reply.hpp"
 #include "services/device_rig/core/moteus_frame.hpp"
 
 namespace stillhand::device_rig::moteus {
@@ -38,24 +38,8 @@ Frame stop_frame() noexcept;
 /// Asks for the state alone.  It does not feed the watchdog.
 Frame query_frame() noexcept;
 
-/// State of the drive, as one reply reports it.
-struct DriveReply {
-  int mode = kStopped;
-  int fault = 0;                ///< 32 to 50: of a fault; 96 to 103: what limits at present
-  double position_rev = kNone;  ///< of the output
-  double velocity_rev_s = kNone;
-  double torque_n_m = kNone;  ///< measured
-  double voltage_v = kNone;
-  double temperature_c = kNone;
-  double analog1 = kNone;  ///< AUX1, 0 to 1
-  double analog2 = kNone;  ///< AUX2, 0 to 1
-  int milliseconds = 0;    ///< counter of 16 bit
-  bool whole = false;      ///< mode, position, velocity, torque and fault were in it
-  bool refused = false;    ///< it holds an error: another firmware does not know a register
-
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-};
-
+/// State of the drive, as one reply reports it.  Whole: mode, position, velocity, torque and fault
+/// were in it.
 DriveReply read_reply(std::span<const std::uint8_t> payload) noexcept;
 
 /// The drive's serial number, least significant word first.

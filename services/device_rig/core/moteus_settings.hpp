@@ -7,25 +7,15 @@
 #include <string>
 #include <string_view>
 
+#include "services/device_rig/core/drive_protocol.hpp"
 #include "services/device_rig/core/moteus_frame.hpp"
 
 namespace stillhand::device_rig::moteus {
-
-/// What a drive's own settings must be before it may be armed, README "The drive's settings".
-struct SettingLimits {
-  double max_current_a = 10.0;  ///< servo.max_current_A, at most
-  double travel_rev = 0.1;      ///< of the stick to each side: the position limits lie outside
-};
 
 /// Names that are read back through the configuration console.
 inline constexpr std::array<std::string_view, 6> kSettings{
     "servo.timeout_mode",       "servo.default_timeout_s", "servo.max_current_A",
     "servo.fixed_voltage_mode", "servopos.position_min",   "servopos.position_max"};
-
-/// What is wrong with a setting, and the console's command that mends it.
-struct SettingFault {
-  std::string name, got, want, mend;
-};
 
 /// @param text  the console's answer to "conf get NAME"
 /// @returns nothing if the setting is right

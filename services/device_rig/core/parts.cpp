@@ -11,14 +11,25 @@ namespace {
 
 /// Place of a word in a list.  @throws ConfigError with the list
 template <typename Value, std::size_t N>
-Value chosen(const char* signal, const std::string& word,
+Value chosen(const char* setting, const std::string& word,
              const std::array<std::pair<std::string_view, Value>, N>& words) {
   std::string list;
   for (const auto& [name, value] : words) {
     if (word == name) return value;
     list += (list.empty() ? "" : ", ") + std::string(name);
   }
-  throw ConfigError("devices.signals." + std::string(signal), word, "one of " + list);
+  throw ConfigError("devices." + std::string(setting), word, "one of " + list);
+}
+
+// An ODrive's ASCII protocol reads no analogue input.
+void check_inputs(const Parts& parts) {
+  if (parts.drive != Parts::Drive::kOdrive) return;
+  const char* const signal = parts.force == Parts::Source::kDrive          ? "force"
+                             : parts.acceleration == Parts::Source::kDrive ? "acceleration"
+                                                                           : nullptr;
+  if (signal == nullptr) return;
+  throw ConfigError("devices.signals." + std::string(signal), "drive, which is an ODrive",
+                    "iio: the ASCII protocol of an ODrive reads no analogue input");
 }
 
 void check_sign(const char* name, std::int64_t sign) {
@@ -26,6 +37,13 @@ void check_sign(const char* name, std::int64_t sign) {
 }
 
 }  // namespace
+
+Parts::Drive drive_of(const DriveConfig& config) {
+  using Drive = Parts::Drive;
+  constexpr std::array kDrives{std::pair{std::string_view("moteus"), Drive::kMoteus},
+                               std::pair{std::string_view("odrive"), Drive::kOdrive}};
+  return chosen("drive.kind", config.kind, kDrives);
+}
 
 Parts parts_of(const DevicesConfig& config) {
   using Source = Parts::Source;
@@ -49,11 +67,13 @@ Parts parts_of(const DevicesConfig& config) {
   const SignalsConfig& signals = config.signals;
   validate(config, "devices");
   Parts parts{};
-  parts.acceleration = chosen("acceleration", signals.acceleration, kAccelerometers);
-  parts.force = chosen("force", signals.force, kForces);
-  parts.angle = chosen("angle", signals.angle, kStick);
-  parts.motor = chosen("motor", signals.motor, kMotors);
-  parts.platform = chosen("platform", signals.platform, kPlatforms);
+  parts.acceleration = chosen("signals.acceleration", signals.acceleration, kAccelerometers);
+  parts.force = chosen("signals.force", signals.force, kForces);
+  parts.angle = chosen("signals.angle", signals.angle, kStick);
+  parts.motor = chosen("signals.motor", signals.motor, kMotors);
+  parts.platform = chosen("signals.platform", signals.platform, kPlatforms);
+  parts.drive = drive_of(config.drive);
+  check_inputs(parts);
   check_sign("drive.torque_sign", config.drive.torque_sign);
   check_sign("drive.angle_sign", config.drive.angle_sign);
   check_sign("accelerometer.sign", config.accelerometer.sign);

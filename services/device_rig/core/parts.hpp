@@ -15,10 +15,12 @@ struct Parts {
   enum class Source : unsigned char { kSimulated, kDrive, kPlatform, kIio };
   enum class Motor : unsigned char { kSimulated, kDrive, kOff };
   enum class Platform : unsigned char { kSimulated, kPlain, kMoog };
+  enum class Drive : unsigned char { kMoteus, kOdrive };
 
   Source acceleration, force, angle;
   Motor motor;
   Platform platform;
+  Drive drive;  ///< which one, where a signal needs it
 
   [[nodiscard]] bool needs_drive() const noexcept {
     return acceleration == Source::kDrive || force == Source::kDrive || angle == Source::kDrive ||
@@ -30,6 +32,9 @@ struct Parts {
 /// @throws ConfigError for a word that names no part, a sign of 0, one analogue input for two
 ///         signals, or parts that do not fit
 Parts parts_of(const DevicesConfig& config);
+
+/// Which drive the settings mean.  @throws ConfigError for a word that names none
+Parts::Drive drive_of(const DriveConfig& config);
 
 /// Signal and part, for people and results: {"acceleration", "drive"}, ...
 std::vector<std::pair<std::string, std::string>> named_parts(const SignalsConfig& signals);

@@ -13,9 +13,9 @@ class ArmingTest : public testing::Test {
 
   Arming::Output step() {
     const auto out = sut_.step(in_);
-    if (obeys_ && out.order == Order::kStop) in_.mode = moteus::kStopped;
-    if (obeys_ && out.order == Order::kTorque && in_.mode == moteus::kStopped) {
-      in_.mode = moteus::kInPosition;
+    if (obeys_ && out.order == Order::kStop) in_.mode = DriveMode::kOff;
+    if (obeys_ && out.order == Order::kTorque && in_.mode == DriveMode::kOff) {
+      in_.mode = DriveMode::kTorque;
     }
     return out;
   }
@@ -56,7 +56,7 @@ TEST_F(ArmingTest, ADriveThatIsAbsentOrUncheckedIsNotArmed) {
 }
 
 TEST_F(ArmingTest, ADriveThatIsNotOffIsSwitchedOffFirst) {
-  in_.mode = moteus::kTimedOut;
+  in_.mode = DriveMode::kTimedOut;
   in_.wanted = true;
   EXPECT_EQ(step().order, Order::kStop);
   EXPECT_EQ(step().order, Order::kTorque);
@@ -86,7 +86,7 @@ TEST_F(ArmingTest, NoForceBeforeTheDriveSaysThatItFollows) {
   in_.trial = 1;
   obeys_ = false;
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(step().follows);
-  in_.mode = moteus::kInPosition;
+  in_.mode = DriveMode::kTorque;
   EXPECT_TRUE(step().follows);
 }
 
@@ -98,7 +98,7 @@ TEST_F(ArmingTest, ASilentDriveIsFaulted) {
 
 TEST_F(ArmingTest, AFaultIsKeptWithItsCode) {
   arm(1);
-  in_.mode = moteus::kFaulted;
+  in_.mode = DriveMode::kFault;
   in_.fault = 38;
   expect_faulted(Reason::kFault);
   EXPECT_EQ(sut_.fault(), 38);
@@ -115,11 +115,11 @@ TEST_F(ArmingTest, ATrippedWatchdogAJumpANewStartAndAnotherCommanderAreFaults) {
     change();
     expect_faulted(reason);
   };
-  each([&] { in_.mode = moteus::kTimedOut; }, Reason::kTimedOut);
+  each([&] { in_.mode = DriveMode::kTimedOut; }, Reason::kTimedOut);
   each([&] { in_.jumped = true; }, Reason::kEncoder);
-  each([&] { in_.mode = moteus::kStopped; }, Reason::kOff);
+  each([&] { in_.mode = DriveMode::kOff; }, Reason::kOff);
   each([&] { in_.checked = false; }, Reason::kUnchecked);
-  each([&] { in_.mode = moteus::kZeroVelocity; }, Reason::kOtherMode);
+  each([&] { in_.mode = DriveMode::kOther; }, Reason::kOtherMode);
 }
 
 TEST_F(ArmingTest, ADriveThatDoesNotFollowIsFaulted) {
@@ -143,7 +143,7 @@ TEST_F(ArmingTest, AfterAFaultTheDriveIsArmedInAnotherTrialAlone) {
 TEST_F(ArmingTest, AFaultThatStaysIsNotArmedInAnotherTrial) {
   arm(1);
   obeys_ = false;
-  in_.mode = moteus::kFaulted;
+  in_.mode = DriveMode::kFault;
   expect_faulted(Reason::kFault);
   in_.trial = 2;
   for (int i = 0; i < 200; ++i) EXPECT_EQ(step().order, Order::kStop);

@@ -10,6 +10,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "tests/emulators/odrive_emulator.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 using support::eventually;
 using testing::HasSubstr;
 
-constexpr moteus::SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
+constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
 
 class DriveLinkTest : public testing::Test {
  protected:
@@ -41,7 +42,7 @@ class DriveLinkTest : public testing::Test {
   bool orders_until(DriveLink& sut, Order order, double torque_n_m, Condition condition) {
     return eventually([&] {
       // A busy machine may trip the watchdog, which latches.
-      const bool tripped = sut.newest().reply.mode == moteus::kTimedOut;
+      const bool tripped = sut.newest().reply.mode == DriveMode::kTimedOut;
       sut.demand(tripped ? Order::kStop : order, torque_n_m);
       ++demands_;
       return condition(sut.newest());
@@ -62,7 +63,7 @@ TEST_F(DriveLinkTest, ReadsTheSettingsBackAndFollowsOrders) {
   DriveLink sut(config_, kLimits);
   EXPECT_TRUE(sut.newest().checked);
   EXPECT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
-    return sample.reply.mode == moteus::kInPosition && sample.reply.torque_n_m > 0.49;
+    return sample.reply.mode == DriveMode::kTorque && sample.reply.torque_n_m > 0.49;
   }));
   EXPECT_EQ(emulated_.record().without_watchdog, 0u);
 }
@@ -114,7 +115,7 @@ TEST_F(DriveLinkTest, ItsEndSwitchesTheDriverOff) {
   {
     DriveLink sut(config_, kLimits);
     ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
-      return sample.reply.mode == moteus::kInPosition;
+      return sample.reply.mode == DriveMode::kTorque;
     }));
   }
   EXPECT_TRUE(eventually(
@@ -165,6 +166,106 @@ TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {
     std::uint64_t last = 0;
     EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0, [&](const DriveSample& sample) {
       return sample.sequence == std::exchange(last, sample.sequence);
+    }));
+    emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = false; });
+    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                             [&](const DriveSample& sample) { return sample.sequence > last; }));
+  }
+}
+
+class OdriveLinkTest : public testing::Test {
+ protected:
+  OdriveLinkTest() {
+    config_.kind = "odrive";
+    config_.port = emulated_.port();
+    config_.watchdog_s = 0.1;
+  }
+  std::string refusal() {
+    try {
+      const DriveLink sut(config_, kLimits);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  template <typename Condition>
+  bool orders_until(DriveLink& sut, Order order, double torque_n_m, Condition condition) {
+    return eventually([&] {
+      const bool tripped = sut.newest().reply.mode == DriveMode::kTimedOut;
+      sut.demand(tripped ? Order::kStop : order, torque_n_m);
+      return condition(sut.newest());
+    });
+  }
+
+  EmulatedDrive emulated_{std::make_unique<emulators::OdriveEmulator>(),
+                          emulators::Answers::kLines};
+  DriveConfig config_;
+};
+
+TEST_F(OdriveLinkTest, ReadsTheSettingsBackAndFollowsOrders) {
+  DriveLink sut(config_, kLimits);
+  EXPECT_TRUE(sut.newest().checked);
+  EXPECT_EQ(sut.serial(), "2071339D4B42");
+  EXPECT_TRUE(orders_until(sut, Order::kTorque, 0.5, [](const DriveSample& sample) {
+    return sample.reply.mode == DriveMode::kTorque && sample.reply.torque_n_m > 0.49;
+  }));
+  EXPECT_EQ(emulated_.record().first_torque_n_m, 0.0);
+  EXPECT_EQ(sut.newest().damaged, 0u);
+}
+
+TEST_F(OdriveLinkTest, ADriveWithoutWatchdogOrTorqueLimitIsRefusedWithTheCommandThatMendsIt) {
+  emulated_.with([](auto& drive, auto&) { drive.set("axis0.config.enable_watchdog", "0"); });
+  EXPECT_THAT(refusal(), HasSubstr("this mends it: w axis0.config.enable_watchdog 1, then ss"));
+  emulated_.with([](auto& drive, auto&) {
+    drive.set("axis0.config.enable_watchdog", "1");
+    drive.set("axis0.motor.config.torque_lim", "inf");
+  });
+  EXPECT_THAT(refusal(), HasSubstr("axis0.motor.config.torque_lim: got inf, want more than 0"));
+}
+
+TEST_F(OdriveLinkTest, AFirmwareWithoutAPropertyIsRefused) {
+  emulated_.with([](auto& drive, auto&) { drive.forget(0); });
+  EXPECT_THAT(refusal(), HasSubstr("axis0.controller.error: got invalid property, want a number"));
+}
+
+TEST_F(OdriveLinkTest, ItsEndAndItsSilenceLeaveNoTorque) {
+  {
+    DriveLink sut(config_, kLimits);
+    ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5,
+                             [&](const DriveSample&) { return emulated_.torque_n_m() > 0.49; }));
+    // Nothing more is demanded: the watchdog of the drive ends the torque.
+    EXPECT_TRUE(eventually(
+        [&] { return emulated_.record().timeouts >= 1 && emulated_.torque_n_m() == 0.0; }));
+    ASSERT_TRUE(orders_until(sut, Order::kTorque, 0.5,
+                             [&](const DriveSample&) { return emulated_.torque_n_m() > 0.49; }));
+  }
+  EXPECT_TRUE(eventually(
+      [&] { return emulated_.with([](auto& drive, auto&) { return !drive.follows(); }); }));
+}
+
+TEST_F(OdriveLinkTest, ADriveThatStartsAgainOrComesBackIsCheckedAgain) {
+  DriveLink sut(config_, kLimits);
+  ASSERT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                           [](const DriveSample& sample) { return sample.sequence > 300; }));
+  emulated_.with([](auto& drive, auto&) { drive.reboot(runtime::monotonic_ns()); });
+  for (const bool checked : {false, true}) {
+    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,
+                             [&](const DriveSample& sample) { return sample.checked == checked; }));
+  }
+}
+
+TEST_F(OdriveLinkTest, AnswersThatAreSpoiltAreNoSamples) {
+  DriveLink sut(config_, kLimits);
+  using emulators::Mischief;
+  for (bool Mischief::*kind : {&Mischief::garbage, &Mischief::truncated, &Mischief::damaged,
+                               &Mischief::lost, &Mischief::silent}) {
+    emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = true; });
+    // What was under way before comes first.
+    std::uint64_t last = 0;
+    int still = 0;
+    EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0, [&](const DriveSample& sample) {
+      still = sample.sequence == std::exchange(last, sample.sequence) ? still + 1 : 0;
+      return still > 5;
     }));
     emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = false; });
     EXPECT_TRUE(orders_until(sut, Order::kQuery, 0.0,

@@ -46,7 +46,7 @@ TEST_F(TorqueFrameTest, IsThatTorqueWhereverTheStickIsAndHoweverItMoves) {
   drive_.sense({.position_rev = 0.07, .velocity_rev_s = -1.5});
   const DriveReply reply = command(0.8);
   EXPECT_TRUE(reply.whole);
-  EXPECT_EQ(reply.mode, kInPosition);
+  EXPECT_EQ(reply.mode, DriveMode::kTorque);
   // A float carries 0.8 with a relative error below 2^-24.
   EXPECT_NEAR(drive_.torque_n_m(), 0.8, 1e-7);
   drive_.sense({.position_rev = -0.05, .velocity_rev_s = 2.0});
@@ -88,10 +88,10 @@ TEST_F(TorqueFrameTest, EndsWithTheWatchdogAndLatchesUntilAStop) {
   EXPECT_GT(drive_.torque_n_m(), 0.0);
   wait_ms(2);
   EXPECT_EQ(drive_.torque_n_m(), 0.0);
-  EXPECT_EQ(command(0.8).mode, kTimedOut);
+  EXPECT_EQ(command(0.8).mode, DriveMode::kTimedOut);
   EXPECT_EQ(drive_.torque_n_m(), 0.0);
-  EXPECT_EQ(exchange(stop_frame()).mode, kStopped);
-  EXPECT_EQ(command(0.8).mode, kInPosition);
+  EXPECT_EQ(exchange(stop_frame()).mode, DriveMode::kOff);
+  EXPECT_EQ(command(0.8).mode, DriveMode::kTorque);
 }
 
 TEST_F(TorqueFrameTest, AQueryDoesNotFeedTheWatchdog) {

@@ -32,7 +32,7 @@ TEST(FrameReaderTest, ReadsTheReplyThatTheMakerPrints) {
   const auto payload = bytes("2404000a005000000170ff230d181400");
   const DriveReply reply = read_reply(payload);
   EXPECT_TRUE(reply.whole);
-  EXPECT_EQ(reply.mode, 10);
+  EXPECT_EQ(reply.mode, DriveMode::kTorque);
   EXPECT_NEAR(reply.position_rev * 360.0, 2.88, 0.018);
   EXPECT_NEAR(reply.velocity_rev_s * 360.0, 23.04, 0.045);
   EXPECT_NEAR(reply.torque_n_m, -1.44, 0.005);
@@ -49,7 +49,7 @@ TEST(FrameReaderTest, AModeOrFaultThatIsNoNumberMakesNoWholeReply) {
   const std::string ten = "00002041";
   const std::string none = "00000000";
   EXPECT_TRUE(reply_with(ten, none).whole);
-  EXPECT_EQ(reply_with(ten, none).mode, 10);
+  EXPECT_EQ(reply_with(ten, none).mode, DriveMode::kTorque);
   for (const std::string wrong : {"0000c07f", "0000807f", "000080ff", "0000004f"}) {  // NaN to 2^31
     EXPECT_FALSE(reply_with(wrong, none).whole) << wrong;
     EXPECT_FALSE(reply_with(ten, wrong).whole) << wrong;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "services/device_rig/core/devices_config.hpp"
+#include "services/device_rig/core/drive_protocol.hpp"
+
+namespace stillhand::device_rig::odrive {
+
+/// Properties of an axis that are read back, README "The settings of an ODrive".
+std::span<const std::string_view> settings_of(int axis) noexcept;
+
+/// @param text  the drive's answer to "r NAME"
+/// @returns nothing if the setting is right
+std::optional<SettingFault> judge_setting(std::string_view name, std::string_view text,
+                                          const DriveConfig& config);
+
+}  // namespace stillhand::device_rig::odrive
