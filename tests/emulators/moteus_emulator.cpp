@@ -356,7 +356,7 @@ void MoteusEmulator::console(std::string_view text) {
 }
 
 DriveSenses MoteusEmulator::reported() const {
-  const auto rounded = [this](std::uint32_t address, int format) {
+  const auto rounded = [this](std::uint32_t address, unsigned format) {
     const double step = scale(address, format);
     return step * static_cast<double>(std::lround(of_register(address, began_ns_) / step));
   };
