@@ -16,6 +16,7 @@
 #include "apps/report/result_files.hpp"
 #include "apps/study/explain/calibrate.hpp"
 #include "apps/study/explain/explanation_output.hpp"
+#include "apps/study/mitigations/campaign_command.hpp"
 #include "apps/study/plan_options.hpp"
 #include "apps/study/study_runs.hpp"
 #include "services/contract/config_error.hpp"
@@ -37,6 +38,7 @@ struct Words {
   std::vector<std::filesystem::path> sessions;
   bool explain_paper = false;
   bool calibrate = false;
+  CampaignWords campaign;
 };
 
 // Without --subjects: enough for the spread between subjects.
@@ -164,7 +166,7 @@ void add_parts_options(CLI::App& study, Words& words) {
                                        "--help"};
     if (std::ranges::find(kWithSessions, name) == kWithSessions.end()) sessions->excludes(name);
     if (name == "--sessions") continue;
-    if (name == "--explain-paper" || name == "--calibrate") {
+    if (name == "--explain-paper" || name == "--calibrate" || name == "--mitigations") {
       study.get_option(name)->excludes("--shard")->excludes("--merge");
     } else if (name != "--out" && name != "--threads" && name != "--merge" && name != "--help") {
       merge->excludes(name);
@@ -214,6 +216,16 @@ void add_study_command(CLI::App& cli, int& status) {
       ->excludes("--motor-delay")
       ->excludes("--answer-wait")
       ->excludes("--undeclared-effect");
+  CLI::Option* mitigations = study->add_option(
+      "--mitigations", words->campaign.mitigations,
+      "instead of a study: the table of mitigations, each in every task and motion and with own,\n"
+      "average and another's model: all, or names with commas, for example signal,force,damping;\n"
+      "48 subjects and trials of 60 s unless these are given");
+  for (const char* name :
+       {"--conditions", "--canceller", "--wrong-models", "--stick-damping", "--motor-delay",
+        "--answer-wait", "--undeclared-effect", "--explain-paper", "--calibrate"}) {
+    mitigations->excludes(name);
+  }
   add_parts_options(*study, *words);
   add_plan_options(*study, record->plan_dz);
   add_people_options(*study, *record);
@@ -236,8 +248,12 @@ void add_study_command(CLI::App& cli, int& status) {
                         "--simulated with it: recorded people have no population");
     }
     const bool subjects_given = study->count("--subjects") > 0;
+    words->campaign.subjects_given = subjects_given;
+    words->campaign.trial_given = study->count("--trial-seconds") > 0;
     status =
-        words->explain_paper       ? explain(*record, *words, subjects_given)
+        !words->campaign.mitigations.empty()
+            ? run_campaign_command(*record, words->campaign, words->out)
+        : words->explain_paper     ? explain(*record, *words, subjects_given)
         : words->calibrate         ? run_calibration(*record, *words, subjects_given)
         : !words->sessions.empty() ? run_recorded(*record, words->sessions, words->out)
         : !words->merge.empty()    ? run_merge(*record, words->merge, words->out)

@@ -28,7 +28,7 @@ struct RestoredShare {
   std::optional<RatioInterval> interval;  ///< 95 %; none for one person, or where a loss may be 0
 };
 
-/// Share of the mean loss from `before` to `after` that `mended` gives back, README Eq. ST-19: 0 is
+/// Share of the mean loss from `before` to `after` that `mended` gives back, README Eq. ST-21: 0 is
 /// none, 1 is all.  Over the people of whom all three are finite.  Pure.
 /// @param before, after, mended  one value a person, same unit; the shortest length counts
 RestoredShare restored_share(const std::vector<double>& before, const std::vector<double>& after,

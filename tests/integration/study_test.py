@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand study` as a user meets it: files, report, wrong input, a disk that fills, Ctrl-C."""
+import csv
 import html.parser
 import json
 import os
@@ -85,6 +86,39 @@ class StudyTest(unittest.TestCase):
         self.assertLess(min(costs), costs[0])
         again = study(*self.BRIEF, "--population", str(population), "--out", str(self.folder / "study"))
         self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_mitigations_writes_the_table(self):
+        out = self.folder / "table"
+        run = study("--mitigations", "force,damping", "--subjects", "3", "--trial-seconds", "6",
+                    "--identify-seconds", "20", "--seed", "5", "--out", str(out))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        with (out / "mitigations.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        # Nothing and damping once, the force with three models; three tasks and three motions.
+        self.assertEqual(len(rows), 9 * (1 + 1 + 3))
+        for row in rows:
+            self.assertGreater(float(row["error [mm]"]), 0.0)
+            self.assertLessEqual(float(row["harm low"]), float(row["harm"]))
+            self.assertLessEqual(float(row["harm"]), float(row["harm high"]))
+            moves = row["mitigation"] != "none"
+            self.assertEqual(float(row["motor [N]"]) > 0.0, moves)
+        with (out / "mitigation_people.csv").open() as file:
+            self.assertEqual(len(list(csv.DictReader(file))), 3 * len(rows))
+        self.assertEqual({path.name for path in out.iterdir()},
+                         {"mitigations.csv", "mitigation_people.csv", "report.html",
+                          *(f"mitigations_{task}.{ending}" for task in ("relax", "hold", "track")
+                            for ending in ("svg", "png"))})
+        for table in (out / "report.html").read_text().split("<table")[1:]:
+            head = len(re.findall("<th[ >]", table.split("</thead>")[0]))
+            for row in table.split("<tbody")[1].split("</tbody>")[0].split("<tr")[1:]:
+                self.assertEqual(len(re.findall("<t[dh][ >]", row)), head)
+        for words, why in ((["--mitigations", "magic"], "magic"),
+                           (["--mitigations", "force", "--subjects", "1"], "--subjects"),
+                           (["--mitigations", "force", "--conditions", "A,B"], "--conditions")):
+            run = study(*words, "--out", str(self.folder / "no"))
+            self.assertEqual(run.returncode, 2, words)
+            self.assertIn(why, run.stderr)
+            self.assertFalse((self.folder / "no").exists())
 
     def test_refuses_options_that_these_runs_cannot_use(self):
         for arguments, words in ((["--explain-paper", "--canceller", "paper"], "--canceller"),

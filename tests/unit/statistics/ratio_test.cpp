@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Eq. ST-19: four people have all three values, a fifth and a sixth do not.
+// Eq. ST-21: four people have all three values, a fifth and a sixth do not.
 TEST(RestoredShareTest, IsOfTheMeansOverThePeopleOfWhomAllThreeAreKnown) {
   const RestoredShare sut =
       restored_share({1.0, 2.0, 1.0, 2.0, 9.0, kNan}, {5.0, 6.5, 5.5, 6.0, 9.5, 3.0},

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "apps/study/output.hpp"
+
+namespace stillhand::study {
+
+/// What the command line says of a table of mitigations.
+struct CampaignWords {
+  std::string mitigations;  ///< "all" or names; empty: no such table
+  bool subjects_given = false;
+  bool trial_given = false;
+};
+
+/// Runs the table with the options of a study, prints it and writes it to the folder.
+/// @return exit status
+int run_campaign_command(const StudyRecord& record, const CampaignWords& words,
+                         const std::filesystem::path& out);
+
+}  // namespace stillhand::study

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/study/mitigations/campaign_output.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/study/csv_cells.hpp"
+
+namespace stillhand::study {
+namespace {
+
+const char* name_of(const CellKey& key) { return mitigation_kinds()[key.mitigation].name; }
+const char* model_of(const CellKey& key) {
+  return kModelOfNames[static_cast<std::size_t>(key.model)];
+}
+const char* task_of(const CellKey& key) {
+  return kTrialTaskNames[static_cast<std::size_t>(key.task)];
+}
+const char* motion_of(const CellKey& key) {
+  return kTrialMotionNames[static_cast<std::size_t>(key.motion)];
+}
+
+}  // namespace
+
+std::string mitigations_csv(const Campaign& campaign) {
+  using csv::text;
+  std::string out =
+      "mitigation,model,task,motion,people,error [mm],restored,restored low,restored high,"
+      "median restored,median low,median high,worst restored,worst person,harmed,harm,harm low,"
+      "harm high,motor [N],effort [N]\n";
+  for (const CellFigures& cell : campaign.cells) {
+    const auto& mean = cell.restored_mean;
+    out += csv::row({name_of(cell.key),
+                     model_of(cell.key),
+                     task_of(cell.key),
+                     motion_of(cell.key),
+                     std::to_string(cell.people.size()),
+                     text(cell.error_mm),
+                     text(mean ? mean->ratio : NAN),
+                     text(mean ? mean->low : NAN),
+                     text(mean ? mean->high : NAN),
+                     text(cell.restored_median.median),
+                     text(cell.restored_median.low),
+                     text(cell.restored_median.high),
+                     text(cell.worst_restored),
+                     std::to_string(cell.worst_person + 1),
+                     std::to_string(cell.harmed),
+                     text(cell.harm.share),
+                     text(cell.harm.low),
+                     text(cell.harm.high),
+                     text(cell.motor_n),
+                     text(cell.effort_n)});
+  }
+  return out;
+}
+
+std::string mitigation_people_csv(const Campaign& campaign) {
+  using csv::text;
+  std::string out =
+      "mitigation,model,task,motion,person,error [mm],still [mm],restored,motor [N],effort [N],"
+      "schedule weight\n";
+  for (const CellFigures& cell : campaign.cells) {
+    std::size_t task = 0;
+    while (campaign.options.tasks[task] != cell.key.task) ++task;
+    for (std::size_t i = 0; i < cell.people.size(); ++i) {
+      const TrialFigures& one = cell.people[i];
+      out += csv::row({name_of(cell.key), model_of(cell.key), task_of(cell.key),
+                       motion_of(cell.key), std::to_string(i + 1), text(one.error_mm),
+                       text(campaign.still_mm[task][i]), text(cell.restored[i]), text(one.motor_n),
+                       text(one.effort_n), text(one.weight)});
+    }
+  }
+  return out;
+}
+
+void write_campaign(const Campaign& campaign, const std::string& command_line,
+                    report::StagedFolder& folder) {
+  folder.write("mitigations.csv", mitigations_csv(campaign));
+  folder.write("mitigation_people.csv", mitigation_people_csv(campaign));
+  const auto drawings = report::render(campaign_figures(campaign), folder.path());
+  campaign_page(campaign, command_line, drawings).write(folder.path() / "report.html");
+  std::vector<std::string> own{"report.html", "mitigations.csv", "mitigation_people.csv"};
+  for (const char* task : kTrialTaskNames) {
+    for (const char* ending : {".svg", ".png"}) {
+      own.push_back(fmt::format("mitigations_{}{}", task, ending));
+    }
+  }
+  folder.publish(own);
+}
+
+void print_campaign(const Campaign& campaign) {
+  const TrialTask task = campaign.options.tasks.back();
+  fmt::print(
+      "\n{}, RMS error restored, (B - M)/(B - A)\n{:<15} {:<8} {:<9} {:>18}  {:>18} {:>6} "
+      "{:>16} {:>6} {:>7}\n",
+      kTrialTaskNames[static_cast<std::size_t>(task)], "mitigation", "model", "motion",
+      "mean [95 %]", "median [95 %]", "worst", "harmed [95 %]", "motor", "effort");
+  for (const CellFigures& cell : campaign.cells) {
+    if (cell.key.task != task || cell.key.mitigation == 0) continue;
+    const auto& mean = cell.restored_mean;
+    const auto percent = [](double share) { return 100.0 * share; };
+    fmt::print(
+        "{:<15} {:<8} {:<9} {:>4.0f} [{:>4.0f}, {:>4.0f}] %  {:>4.0f} [{:>4.0f}, {:>4.0f}] % "
+        "{:>4.0f} % {:>4.0f} [{:>2.0f}, {:>3.0f}] % {:>4.1f} N {:>5.1f} N\n",
+        name_of(cell.key), model_of(cell.key), motion_of(cell.key),
+        percent(mean ? mean->ratio : NAN), percent(mean ? mean->low : NAN),
+        percent(mean ? mean->high : NAN), percent(cell.restored_median.median),
+        percent(cell.restored_median.low), percent(cell.restored_median.high),
+        percent(cell.worst_restored), percent(cell.harm.share), percent(cell.harm.low),
+        percent(cell.harm.high), cell.motor_n, cell.effort_n);
+  }
+  for (const std::string& line : campaign.chosen.log) fmt::print("{}\n", line);
+  fmt::print("chosen on {} other people; {:.0f} s of processor time, {:.0f} s on the clock\n",
+             campaign.chosen_on, campaign.processor_s, campaign.wall_s);
+}
+
+}  // namespace stillhand::study

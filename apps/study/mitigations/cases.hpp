@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/study/mitigations/person_models.hpp"
+#include "services/mitigation/design.hpp"
+#include "services/mitigation/mitigation.hpp"
+
+/// The cells of the table of mitigations: what is done, in which task, with whose model, in which
+/// motion.
+namespace stillhand::study {
+
+/// What the person does in a trial.
+enum class TrialTask : std::uint8_t { kRelax, kHold, kTrack };
+inline constexpr std::array kTrialTasks{TrialTask::kRelax, TrialTask::kHold, TrialTask::kTrack};
+inline constexpr std::array<const char*, 3> kTrialTaskNames{"relax", "hold", "track"};
+
+/// How the platform moves.
+enum class TrialMotion : std::uint8_t { kBand, kRoad, kRide };
+inline constexpr std::array kTrialMotions{TrialMotion::kBand, TrialMotion::kRoad,
+                                          TrialMotion::kRide};
+inline constexpr std::array<const char*, 3> kTrialMotionNames{"0.7-2 Hz", "road", "ride"};
+
+/// Whose model a mitigation has; kNone: it needs none.
+enum class ModelOf : std::uint8_t { kNone, kOwn, kAverage, kOther };
+inline constexpr std::array<const char*, 4> kModelOfNames{"none", "own", "average", "other"};
+
+/// Parameters that were chosen on other people, README Eq. SU-18.
+struct Chosen {
+  mitigation::ShapingConfig low_pass;
+  mitigation::ShapingConfig notch;
+  double damping_n_s_m = 0.0;
+  mitigation::ImpedanceChoice impedance;
+  mitigation::ReducedChoice reduced;
+  double lms_signal_step = 0.0;
+  double lms_force_step = 0.0;
+  std::vector<std::string> log;  ///< one line a choice
+};
+
+/// What the parts of a mitigation are made of.
+struct Ingredients {
+  const PersonModels& models;  ///< of the person whose model it is
+  const Chosen& chosen;
+  cancellation::HandCompliance average_hand;  ///< of the population
+  TrialTask task;                             ///< known to `task-force` alone
+};
+
+/// One mitigation.
+struct MitigationKind {
+  const char* name;  ///< as on the command line
+  const char* words;
+  bool needs_model;
+  bool arm_rest;
+  std::function<mitigation::Recipe(const Ingredients&)> recipe;
+};
+
+/// All, in the order of the table; the first is "none".
+const std::vector<MitigationKind>& mitigation_kinds();
+
+/// Indices into mitigation_kinds() in their order, "none" always among them.
+/// @param names  "all", or a list of names with commas
+/// @throws ConfigError for an unknown or repeated name
+std::vector<std::size_t> mitigations_named(const std::string& names);
+
+}  // namespace stillhand::study

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/mitigation/design.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::mitigation {
+namespace {
+
+using Complex = std::complex<double>;
+
+Complex s_at(double frequency_hz) { return {0.0, 2.0 * std::numbers::pi * frequency_hz}; }
+
+Complex stick_impedance_at(const admittance::StickValues& stick, Complex s) {
+  return stick.drive_mass_kg * s * s + stick.viscous_damping_n_s_m * s +
+         stick.centring_stiffness_n_m;
+}
+
+// Eq. MI-8: one of the three parts of Z_+ each, per unit.
+struct AddedParts {
+  Complex stiffness, damping, mass;
+};
+
+AddedParts added_at(Complex s, const LoopTiming& timing) {
+  const Complex loop = std::exp(-s * timing.delay_s) / (1.0 + s * timing.lag_s);
+  const double w = 2.0 * std::numbers::pi * timing.rate_filter_hz;
+  const Complex rate = w * w / (s * s + std::numbers::sqrt2 * w * s + w * w);
+  const Complex inertia = 1.0 / (1.0 + s / (2.0 * std::numbers::pi * kInertiaCorner_hz));
+  return {loop, loop * s * rate, loop * s * s * rate * inertia};
+}
+
+Complex added(const AddedParts& parts, const ImpedanceConfig& impedance) {
+  return impedance.stiffness_n_m * parts.stiffness + impedance.damping_n_s_m * parts.damping +
+         impedance.mass_kg * parts.mass;
+}
+
+void need_people(const std::vector<KnownPerson>& people) {
+  const bool known = !people.empty() && std::ranges::all_of(people, [](const KnownPerson& one) {
+    return !one.arms.empty();
+  });
+  if (!known) throw ConfigError("mitigation.people", "nobody with an arm", "one person or more");
+}
+
+// An arm at the lines of a motion.
+struct ArmLines {
+  std::vector<admittance::ArmResponse> at;
+};
+
+ArmLines lines_of(const admittance::ArmValues& arm, const std::vector<PowerLine>& lines) {
+  ArmLines out;
+  for (const PowerLine& line : lines) {
+    out.at.push_back(admittance::arm_response(arm, line.frequency_hz));
+  }
+  return out;
+}
+
+std::vector<ArmLines> all_lines(const std::vector<KnownPerson>& people,
+                                const std::vector<PowerLine>& lines) {
+  std::vector<ArmLines> out;
+  for (const KnownPerson& person : people) {
+    for (const auto& arm : person.arms) out.push_back(lines_of(arm, lines));
+  }
+  return out;
+}
+
+}  // namespace
+
+ReducedChoice choose_reduced(const std::vector<KnownPerson>& people,
+                             const std::vector<PowerLine>& motion,
+                             const admittance::StickValues& stick) {
+  need_people(people);
+  constexpr int kGains = 25;
+  constexpr double kGainStep = 0.05;
+  const std::vector<ArmLines> arms = all_lines(people, motion);
+  std::size_t orders = 12;
+  for (const KnownPerson& one : people) orders = std::min(orders, one.reduced.size());
+  if (orders == 0) throw ConfigError("mitigation.people", "no models", "a model of each person");
+  ReducedChoice best{.order = 1, .gain = 0.0, .worst = 1.0};
+  for (std::size_t order = 1; order <= orders; ++order) {
+    std::array<double, kGains> worst{};
+    for (const KnownPerson& made_for : people) {
+      std::vector<Complex> model;
+      for (const PowerLine& line : motion) {
+        model.push_back(signal::response_at(made_for.reduced[order - 1], line.frequency_hz));
+      }
+      for (const ArmLines& arm : arms) {
+        // || P (H - g M) ||^2 = a - 2 b g + c g^2.
+        double a = 0.0;
+        double b = 0.0;
+        double c = 0.0;
+        for (std::size_t k = 0; k < motion.size(); ++k) {
+          const Complex whole =
+              stick_impedance_at(stick, s_at(motion[k].frequency_hz)) + arm.at[k].impedance;
+          const double weight = motion[k].power / std::norm(whole);
+          const Complex h = arm.at[k].feedthrough;
+          a += weight * std::norm(h);
+          b += weight * (std::conj(h) * model[k]).real();
+          c += weight * std::norm(model[k]);
+        }
+        for (int i = 0; i < kGains; ++i) {
+          const double g = kGainStep * i;
+          const double left = std::sqrt(std::max(0.0, a - 2.0 * b * g + c * g * g) / a);
+          worst[static_cast<std::size_t>(i)] = std::max(worst[static_cast<std::size_t>(i)], left);
+        }
+      }
+    }
+    for (int i = 0; i < kGains; ++i) {
+      // A lower order wins a draw.
+      if (worst[static_cast<std::size_t>(i)] < best.worst - 1e-9) {
+        best = {order, kGainStep * i, worst[static_cast<std::size_t>(i)]};
+      }
+    }
+  }
+  return best;
+}
+
+double passive_up_to_hz(const ImpedanceConfig& impedance, const admittance::StickValues& stick,
+                        const LoopTiming& timing) {
+  constexpr int kLast = 1000;
+  for (int step = 1; step <= kLast; ++step) {
+    const double f = 0.1 * step;
+    const Complex s = s_at(f);
+    const Complex whole = stick_impedance_at(stick, s) + added(added_at(s, timing), impedance);
+    if ((whole / s).real() < 0.0) return f;
+  }
+  return 0.1 * kLast;
+}
+
+ImpedanceChoice choose_impedance(const std::vector<KnownPerson>& people,
+                                 const std::vector<PowerLine>& motion,
+                                 const std::vector<PowerLine>& wanted,
+                                 const admittance::StickValues& stick, const LoopTiming& timing,
+                                 const ImpedanceBounds& bounds) {
+  need_people(people);
+  const std::vector<ArmLines> moved = all_lines(people, motion);
+  const std::vector<ArmLines> willed = all_lines(people, wanted);
+  const auto parts_of = [&](const std::vector<PowerLine>& lines) {
+    std::vector<AddedParts> out;
+    for (const PowerLine& line : lines) out.push_back(added_at(s_at(line.frequency_hz), timing));
+    return out;
+  };
+  const auto moved_parts = parts_of(motion);
+  const auto willed_parts = parts_of(wanted);
+  const auto worst_of = [&](const ImpedanceConfig& impedance) {
+    double worst = 0.0;
+    for (const ArmLines& arm : moved) {
+      double with = 0.0;
+      double without = 0.0;
+      for (std::size_t k = 0; k < motion.size(); ++k) {
+        const Complex alone =
+            stick_impedance_at(stick, s_at(motion[k].frequency_hz)) + arm.at[k].impedance;
+        const double power = motion[k].power * std::norm(arm.at[k].feedthrough);
+        without += power / std::norm(alone);
+        with += power / std::norm(alone + added(moved_parts[k], impedance));
+      }
+      worst = std::max(worst, std::sqrt(with / without));
+    }
+    return worst;
+  };
+  const auto effort_of = [&](const ImpedanceConfig& impedance) {
+    double most = 0.0;
+    for (const ArmLines& arm : willed) {
+      double with = 0.0;
+      double without = 0.0;
+      for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const Complex alone =
+            stick_impedance_at(stick, s_at(wanted[k].frequency_hz)) + arm.at[k].impedance;
+        without += wanted[k].power * std::norm(alone);
+        with += wanted[k].power * std::norm(alone + added(willed_parts[k], impedance));
+      }
+      most = std::max(most, std::sqrt(with / without));
+    }
+    return most;
+  };
+  ImpedanceChoice best{.worst = 1.0, .effort = 1.0};
+  best.passive_hz = passive_up_to_hz(best.impedance, stick, timing);
+  constexpr int kStiffnesses = 15;
+  constexpr int kDampings = 12;
+  constexpr int kMasses = 4;
+  for (int k = 0; k <= kStiffnesses; ++k) {
+    for (int b = 0; b <= kDampings; ++b) {
+      for (int m = 0; m <= kMasses; ++m) {
+        const ImpedanceConfig impedance{bounds.most_mass * m / kMasses,
+                                        bounds.most_damping * b / kDampings,
+                                        bounds.most_stiffness * k / kStiffnesses};
+        const double passive_hz = passive_up_to_hz(impedance, stick, timing);
+        if (passive_hz < bounds.passive_to_hz) continue;
+        const double effort = effort_of(impedance);
+        if (effort > bounds.most_effort) continue;
+        const double worst = worst_of(impedance);
+        if (worst < best.worst) best = {impedance, worst, effort, passive_hz};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace stillhand::mitigation
