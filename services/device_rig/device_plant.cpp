@@ -53,11 +53,18 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
     platform_ = std::make_unique<PlatformLink>(devices.platform, parts_.platform);
   }
   if (parts_.acceleration == Parts::Source::kIio) {
-    accelerometer_ = std::make_unique<IioLink>(devices.accelerometer, 1.0);
+    const AccelerometerConfig& config = devices.accelerometer;
+    std::vector<std::string> channels{config.channel};
+    if (!config.mount.empty()) {
+      mount_.emplace("devices.accelerometer.mount", config.mount);
+      channels = {"accel_x", "accel_y", "accel_z"};
+    }
+    accelerometer_ = std::make_unique<IioLink>(config, std::move(channels), 1.0);
   }
   if (parts_.force == Parts::Source::kIio) {
     constexpr double kVoltPerMillivolt = 1e-3;
-    load_cell_ = std::make_unique<IioLink>(devices.load_cell, kVoltPerMillivolt);
+    load_cell_ = std::make_unique<IioLink>(
+        devices.load_cell, std::vector{devices.load_cell.channel}, kVoltPerMillivolt);
   }
 }
 
@@ -78,7 +85,10 @@ std::string DevicePlant::device_of(CalibratedSignal signal) const {
     case Parts::Source::kIio: {
       const IioConfig& config = force ? devices_.load_cell : devices_.accelerometer;
       const IioLink& link = force ? *load_cell_ : *accelerometer_;
-      return "IIO " + config.device + ", serial " + link.serial() + ", " + config.channel;
+      // Another mount is another calibration.
+      const std::string input =
+          !force && mount_ ? "mount " + devices_.accelerometer.mount : config.channel;
+      return "IIO " + config.device + ", serial " + link.serial() + ", " + input;
     }
   }
   return {};
@@ -143,11 +153,21 @@ void DevicePlant::take_platform() noexcept {
 double DevicePlant::iio_value(IioLink& link, const IioConfig& config) noexcept {
   const IioSample& newest = link.newest();
   const bool young = is_young(newest.count, newest.at_ns, now_ns_, config.max_age_ticks);
-  return young ? static_cast<double>(config.sign) * newest.value : kUnknown;
+  return young ? static_cast<double>(config.sign) * newest.values[0] : kUnknown;
+}
+
+void DevicePlant::take_accelerometer() noexcept {
+  accel_y_m_s2_ = iio_value(*accelerometer_, devices_.accelerometer);
+  if (!mount_) return;
+  const bool young = !std::isnan(accel_y_m_s2_);
+  const auto turned = mount_->turned(accelerometer_->newest().values);
+  accel_x_m_s2_ = young ? turned[0] : kUnknown;
+  accel_y_m_s2_ = young ? turned[1] : kUnknown;
+  accel_z_m_s2_ = young ? turned[2] : kUnknown;
 }
 
 void DevicePlant::take_iio() noexcept {
-  if (accelerometer_) accel_y_m_s2_ = iio_value(*accelerometer_, devices_.accelerometer);
+  if (accelerometer_) take_accelerometer();
   if (load_cell_) load_cell_v_ = iio_value(*load_cell_, devices_.load_cell);
   const bool known = !std::isnan(accel_y_m_s2_) && !std::isnan(load_cell_v_);
   unknown_ticks_ = known ? 0 : unknown_ticks_ + 1;
@@ -252,8 +272,9 @@ void DevicePlant::put_platform(rig::RigOutput& output) const noexcept {
 
 void DevicePlant::put_iio(rig::RigOutput& output) const noexcept {
   if (accelerometer_) {
-    output.raw.accel_x_v = output.raw.accel_z_v = 0.0;
+    output.raw.accel_x_v = accel_x_m_s2_;
     output.raw.accel_y_v = accel_y_m_s2_;
+    output.raw.accel_z_v = accel_z_m_s2_;
   }
   if (load_cell_) output.raw.load_cell_v = load_cell_v_;
   if (unknown_ticks_ > 0) output.flags |= kInputStale;

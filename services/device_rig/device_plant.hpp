@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "services/device_rig/calibration_file.hpp"
 #include "services/device_rig/core/arming.hpp"
+#include "services/device_rig/core/mount.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/device_rig/core/repeated_number.hpp"
 #include "services/device_rig/core/same_side.hpp"
@@ -63,6 +65,7 @@ class DevicePlant final : public rig::Plant {
   [[nodiscard]] bool platform_fresh() const noexcept;
   /// NaN: no young sample, or one at an end of the converter's range (DR-12).
   [[nodiscard]] double iio_value(IioLink& link, const IioConfig& config) noexcept;
+  void take_accelerometer() noexcept;
 
   rig::RigConfig rig_config_;
   DevicesConfig devices_;
@@ -74,6 +77,7 @@ class DevicePlant final : public rig::Plant {
   std::unique_ptr<DriveLink> drive_;  ///< null: no part is the drive's
   std::unique_ptr<PlatformLink> platform_;
   std::unique_ptr<IioLink> accelerometer_;
+  std::optional<Mount> mount_;  ///< of an accelerometer of three axes
   std::unique_ptr<IioLink> load_cell_;
 
   Trial trial_;
@@ -81,7 +85,8 @@ class DevicePlant final : public rig::Plant {
   std::int64_t now_ns_ = 0;
   DriveSample stick_;
   PlatformSample seat_;
-  double accel_y_m_s2_ = 0.0;  ///< of the accelerometer; NaN: unknown
+  double accel_y_m_s2_ = 0.0;                       ///< of the accelerometer; NaN: unknown
+  double accel_x_m_s2_ = 0.0, accel_z_m_s2_ = 0.0;  ///< 0 of an accelerometer of one axis
   double load_cell_v_ = 0.0;
   RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
   SameSide side_;                     ///< of the accelerometer, over a trial

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/iio_value.hpp"
@@ -16,8 +17,8 @@ constexpr double kNsPerMs = 1e6;
 
 }  // namespace
 
-IioLink::IioLink(const IioConfig& config, double factor)
-    : factor_(factor), device_(config.uri, config.device, config.channel) {
+IioLink::IioLink(const IioConfig& config, std::vector<std::string> channels, double factor)
+    : factor_(factor), device_(config.uri, config.device, std::move(channels)) {
   // Slower than the loop, and a sample would count twice as a new one.
   if (device_.rate_hz() > 0.0 && device_.rate_hz() < kTick_hz) {
     throw ConfigError("sampling_frequency of IIO device " + config.device,
@@ -36,8 +37,9 @@ IioLink::~IioLink() {
 void IioLink::work(const std::stop_token& stop) {
   constexpr std::int64_t kAgain_ns = 200'000'000;
   while (!stop.stop_requested()) {
-    if (const auto raw = device_.read()) {
-      take(*raw);
+    std::array<std::int64_t, kMostChannels> raw{};
+    if (device_.read(raw)) {
+      take(raw);
       continue;
     }
     ++sample_.opened;
@@ -47,7 +49,7 @@ void IioLink::work(const std::stop_token& stop) {
   }
 }
 
-void IioLink::take(std::int64_t raw) noexcept {
+void IioLink::take(std::span<const std::int64_t> raw) noexcept {
   const std::int64_t now_ns = runtime::monotonic_ns();
   // The samples themselves count the device's time: one that waited in a buffer falls behind.
   const double rate_hz = device_.rate_hz() > 0.0 ? device_.rate_hz() : kTick_hz;
@@ -58,9 +60,11 @@ void IioLink::take(std::int64_t raw) noexcept {
     ++sample_.old;
     return samples_.store(sample_);
   }
-  const runtime::IioFormat& format = device_.format();
-  sample_.value =
-      factor_ * iio_value(raw, format.offset, format.scale, format.lowest, format.highest);
+  for (std::size_t i = 0; i < device_.formats().size() && i < raw.size(); ++i) {
+    const runtime::IioFormat& format = device_.formats()[i];
+    sample_.values[i] =
+        factor_ * iio_value(raw[i], format.offset, format.scale, format.lowest, format.highest);
+  }
   ++sample_.count;
   sample_.at_ns = now_ns;
   samples_.store(sample_);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <stop_token>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "services/device_rig/core/devices_config.hpp"
 #include "services/device_rig/core/reply_clock.hpp"
@@ -12,11 +16,14 @@
 
 namespace stillhand::device_rig {
 
+inline constexpr std::size_t kMostChannels = 3;
+
 /// What the thread of an IIO device knows.
 struct IioSample {
-  std::uint64_t count = 0;   ///< of young samples; 0: none yet
-  std::int64_t at_ns = 0;    ///< CLOCK_MONOTONIC when the newest was read
-  double value = 0.0;        ///< [m/s^2] or [V]; NaN: at an end of the converter's range
+  std::uint64_t count = 0;  ///< of young samples; 0: none yet
+  std::int64_t at_ns = 0;   ///< CLOCK_MONOTONIC when the newest was read
+  /// [m/s^2] or [V], one a channel; NaN: at an end of the converter's range
+  std::array<double, kMostChannels> values{};
   std::uint64_t old = 0;     ///< samples that waited in a buffer (DR-10)
   std::uint64_t opened = 0;  ///< times that the buffer was opened again
 };
@@ -25,9 +32,10 @@ struct IioSample {
 /// sample without lock or allocation and judges its age by itself.
 class IioLink {
  public:
-  /// @param factor  of libiio's unit: 1 for an acceleration, 0.001 for mV
+  /// @param channels  at most three, sampled together
+  /// @param factor    of libiio's unit: 1 for an acceleration, 0.001 for mV
   /// @throws ConfigError for a device that is not there, or that gives less than one sample a tick
-  IioLink(const IioConfig& config, double factor);
+  IioLink(const IioConfig& config, std::vector<std::string> channels, double factor);
   ~IioLink();
   IioLink(const IioLink&) = delete;
   IioLink& operator=(const IioLink&) = delete;
@@ -38,7 +46,7 @@ class IioLink {
 
  private:
   void work(const std::stop_token& stop);
-  void take(std::int64_t raw) noexcept;
+  void take(std::span<const std::int64_t> raw) noexcept;
 
   double factor_;
   runtime::IioDevice device_;

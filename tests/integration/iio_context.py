@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An IIO accelerometer and a bridge ADC that are not there, served by Debian's own iiod.
+"""IIO accelerometers and a bridge ADC that are not there, served by Debian's own iiod.
 
 A folder stands for the kernel: its `bus` is what iiod sees as /sys/bus, its `dev` as /dev, in a mount namespace of its
 own. A FIFO is the buffer of each device; who writes samples into it is the device.
@@ -14,9 +14,10 @@ from waiting import wait_for
 
 IIOD = "/usr/sbin/iiod"
 START_LIMIT_S = 10.0
-# Name of each device, its channel, its format, and what one count is: m/s^2 for an acceleration, mV for a voltage
+# Name of each device, its channels, their format, and what one count is: m/s^2 for an acceleration, mV for a voltage
 # (Linux, Documentation/ABI/testing/sysfs-bus-iio).
-DEVICES = {"accelerometer": ("accel_y", "le:s20/32>>12", 3.9e-5), "bridge": ("voltage0", "le:s24/32>>8", 2.5e-4)}
+DEVICES = {"accelerometer": (["accel_y"], "le:s20/32>>12", 3.9e-5), "bridge": (["voltage0"], "le:s24/32>>8", 2.5e-4),
+           "three_axes": (["accel_x", "accel_y", "accel_z"], "le:s20/32>>12", 3.9e-5)}
 MOUNTED = """
 set -e
 mount --bind "$1/bus" /sys/bus
@@ -51,20 +52,21 @@ class IioContext:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
         self.fifos = {}
-        for number, (name, (channel, form, scale)) in enumerate(DEVICES.items()):
-            self._device(number, name, channel, form, scale)
+        for number, (name, (channels, form, scale)) in enumerate(DEVICES.items()):
+            self._device(number, name, channels, form, scale)
         self.port = free_port()
         self.uri = f"ip:127.0.0.1:{self.port}"
         self.begin()
 
-    def _device(self, number, name, channel, form, scale):
+    def _device(self, number, name, channels, form, scale):
         device = self.folder / "bus" / "iio" / "devices" / f"iio:device{number}"
         for part in ("scan_elements", "buffer"):
             (device / part).mkdir(parents=True)
-        files = {"name": name, f"in_{channel}_raw": 0, f"in_{channel}_scale": scale, "sampling_frequency": 1000,
-                 f"scan_elements/in_{channel}_en": 0, f"scan_elements/in_{channel}_index": 0,
-                 f"scan_elements/in_{channel}_type": form, "buffer/enable": 0, "buffer/length": 128,
+        files = {"name": name, "sampling_frequency": 1000, "buffer/enable": 0, "buffer/length": 128,
                  "buffer/watermark": 1, "buffer/data_available": 0}
+        for index, channel in enumerate(channels):
+            files |= {f"in_{channel}_raw": 0, f"in_{channel}_scale": scale, f"scan_elements/in_{channel}_en": 0,
+                      f"scan_elements/in_{channel}_index": index, f"scan_elements/in_{channel}_type": form}
         for file, value in files.items():
             (device / file).write_text(f"{value}\n")
         (self.folder / "dev").mkdir(exist_ok=True)

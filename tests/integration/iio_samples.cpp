@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// iio_samples URI DEVICE CHANNEL COUNT: the converter's numbers that Stillhand's transport reads,
-// one a line, for iio_test.py.
+// iio_samples URI DEVICE CHANNEL[,CHANNEL...] COUNT: the converter's numbers that Stillhand's
+// transport reads, a line for each sample, for iio_test.py.
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "services/runtime/transport/iio_device.hpp"
 
@@ -12,12 +15,16 @@ int main(int argc, char** argv) {
   if (argc != 5) return 2;
   std::signal(SIGPIPE, SIG_IGN);  // as each service does
   try {
-    stillhand::runtime::IioDevice sut(argv[1], argv[2], argv[3]);
-    std::cout << sut.format().scale << ' ' << sut.rate_hz() << std::endl;
+    std::vector<std::string> channels;
+    std::istringstream list(argv[3]);
+    for (std::string each; std::getline(list, each, ',');) channels.push_back(each);
+    stillhand::runtime::IioDevice sut(argv[1], argv[2], channels);
+    std::cout << sut.formats().front().scale << ' ' << sut.rate_hz() << std::endl;
+    std::vector<std::int64_t> raw(channels.size());
     for (int left = std::atoi(argv[4]); left > 0;) {
-      const auto raw = sut.read();
-      if (!raw) continue;
-      std::cout << *raw << std::endl;
+      if (!sut.read(raw)) continue;
+      for (std::size_t i = 0; i < raw.size(); ++i) std::cout << (i == 0 ? "" : " ") << raw[i];
+      std::cout << std::endl;
       --left;
     }
     return 0;

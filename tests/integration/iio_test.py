@@ -53,6 +53,23 @@ class DriverTest(LabTestCase):
         self.assertEqual(theirs, NUMBERS)
         self.assertEqual([int(line) for line in lines], NUMBERS)
 
+    def test_three_axes_of_one_device_are_sampled_together(self):
+        samples = [[number, -number, number + 1] for number in range(1, COUNT + 1)]
+        words = [number for sample in samples for number in sample]
+
+        def write():
+            with open(self.context.fifos["three_axes"], "wb", buffering=0) as fifo:
+                for sample in samples:
+                    fifo.write(struct.pack("<3I", *((number << SHIFT) & 0xffffffff for number in sample)))
+                    hold(0.001, poll_s=0.001)
+        feeder = threading.Thread(target=write, daemon=True)
+        feeder.start()
+        names = ["accel_x", "accel_y", "accel_z"]
+        done = subprocess.run([str(SAMPLES), self.context.uri, "three_axes", ",".join(names), str(COUNT)],
+                              capture_output=True, text=True, timeout=LIMIT_S, check=True)
+        feeder.join(LIMIT_S)
+        self.assertEqual([int(word) for line in done.stdout.splitlines()[1:] for word in line.split()], words)
+
     def test_a_context_that_comes_back_is_opened_again(self):
         words = [str(SAMPLES), self.context.uri, "accelerometer", "accel_y", str(COUNT)]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as driver:
@@ -71,7 +88,7 @@ class DriverTest(LabTestCase):
             done = subprocess.run([str(SAMPLES), *words, "1"], capture_output=True, text=True, timeout=LIMIT_S, check=False)
             self.assertEqual(done.returncode, 2)
             return done.stderr.strip()
-        self.assertIn("got gyro, want one of accelerometer, bridge", refusal(self.context.uri, "gyro", "accel_y"))
+        self.assertIn("got gyro, want one of accelerometer, bridge, three_axes", refusal(self.context.uri, "gyro", "accel_y"))
         self.assertIn("got accel_x, want one of accel_y", refusal(self.context.uri, "accelerometer", "accel_x"))
         self.assertIn("iio_info -u ip:127.0.0.1:1", refusal("ip:127.0.0.1:1", "accelerometer", "accel_y"))
 

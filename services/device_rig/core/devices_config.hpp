@@ -138,6 +138,19 @@ struct IioConfig {
   }
 };
 
+/// An accelerometer of one axis, or of three that sit on the platform as `mount` says.
+struct AccelerometerConfig : IioConfig {
+  std::string mount;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    IioConfig::fields(visit, self);
+    visit("mount", self.mount, Range{0.0, 200.0},
+          "of three axes: the directions forward, right and up in those of its channels accel_x, "
+          "accel_y, accel_z, nine numbers row by row; empty: `channel` alone is read");
+  }
+};
+
 /// What a session asks of the calibration of its devices.
 struct CalibrationRule {
   std::int64_t max_age_days = 90;
@@ -158,7 +171,7 @@ struct DevicesConfig {
   SignalsConfig signals;
   DriveConfig drive;
   PlatformLinkConfig platform;
-  IioConfig accelerometer{.device = "accelerometer", .channel = "accel_y"};
+  AccelerometerConfig accelerometer{{.device = "accelerometer", .channel = "accel_y"}, ""};
   IioConfig load_cell{.device = "bridge", .channel = "voltage0"};
   CalibrationRule calibration;
 

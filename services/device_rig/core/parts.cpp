@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/core/mount.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -78,6 +79,13 @@ Parts parts_of(const DevicesConfig& config) {
   check_sign("drive.angle_sign", config.drive.angle_sign);
   check_sign("accelerometer.sign", config.accelerometer.sign);
   check_sign("load_cell.sign", config.load_cell.sign);
+  if (!config.accelerometer.mount.empty()) {
+    const Mount mount("devices.accelerometer.mount", config.accelerometer.mount);
+    if (config.accelerometer.sign != 1) {
+      throw ConfigError("devices.accelerometer.sign", "-1 with a mount",
+                        "1: the mount says which way each axis points");
+    }
+  }
   // Without its angle, nobody would see where a motor moves a real stick to.
   if (parts.motor == Motor::kDrive && parts.angle != Source::kDrive) {
     throw ConfigError("devices.signals.angle", signals.angle,

@@ -69,8 +69,8 @@ std::int64_t converted(const iio_channel* channel, const void* sample) {
 
 }  // namespace
 
-IioDevice::IioDevice(std::string uri, std::string device, std::string channel)
-    : uri_(std::move(uri)), name_(std::move(device)), channel_name_(std::move(channel)) {
+IioDevice::IioDevice(std::string uri, std::string device, std::vector<std::string> channels)
+    : uri_(std::move(uri)), name_(std::move(device)), channel_names_(std::move(channels)) {
   try {
     open();
   } catch (...) {
@@ -95,8 +95,8 @@ iio_device* IioDevice::find_device() const {
       there.empty() ? "a context with devices; this one has none" : "one of " + there);
 }
 
-iio_channel* IioDevice::find_channel() const {
-  iio_channel* channel = iio_device_find_channel(device_, channel_name_.c_str(), false);
+iio_channel* IioDevice::find_channel(const std::string& wanted) const {
+  iio_channel* channel = iio_device_find_channel(device_, wanted.c_str(), false);
   if (channel != nullptr && iio_channel_is_scan_element(channel)) return channel;
   std::string there;
   for (unsigned i = 0; i < iio_device_get_channels_count(device_); ++i) {
@@ -105,7 +105,7 @@ iio_channel* IioDevice::find_channel() const {
     if (fits) there = listed(there, iio_channel_get_id(each));
   }
   throw ConfigError(
-      "IIO channel of " + name_, channel_name_,
+      "IIO channel of " + name_, wanted,
       there.empty() ? "a device with a buffer; this one has none" : "one of " + there);
 }
 
@@ -120,9 +120,12 @@ void IioDevice::open() {
   // A local context has no time-out of its own; the loop judges the age of a sample by itself.
   [[maybe_unused]] const int unknown = iio_context_set_timeout(context_, kTimeout_ms);
   device_ = find_device();
-  channel_ = find_channel();
-  iio_channel_enable(channel_);
-  format_ = format_of(channel_);
+  formats_.clear();
+  for (const std::string& each : channel_names_) {
+    channels_.push_back(find_channel(each));
+    iio_channel_enable(channels_.back());
+    formats_.push_back(format_of(channels_.back()));
+  }
   if (iio_device_attr_read_double(device_, "sampling_frequency", &rate_hz_) < 0) rate_hz_ = 0.0;
   serial_ = serial_of(context_, device_);
   const std::lock_guard lock(mutex_);
@@ -139,25 +142,28 @@ void IioDevice::close() noexcept {
     if (buffer_ != nullptr) iio_buffer_destroy(buffer_);
     buffer_ = nullptr;
   }
-  channel_ = nullptr;
+  channels_.clear();
   device_ = nullptr;
   if (context_ != nullptr) iio_context_destroy(context_);
   context_ = nullptr;
 }
 
-std::optional<std::int64_t> IioDevice::read() {
+bool IioDevice::read(std::span<std::int64_t> numbers) {
   try {
     if (buffer_ == nullptr) open();
   } catch (const ConfigError&) {
     close();
-    return std::nullopt;
+    return false;
   }
   // A starved read fails for ever after its time-out (libiio's issue 981): all is opened again.
   if (iio_buffer_refill(buffer_) <= 0) {
     close();
-    return std::nullopt;
+    return false;
   }
-  return converted(channel_, iio_buffer_first(buffer_, channel_));
+  for (std::size_t i = 0; i < channels_.size() && i < numbers.size(); ++i) {
+    numbers[i] = converted(channels_[i], iio_buffer_first(buffer_, channels_[i]));
+  }
+  return true;
 }
 
 void IioDevice::cancel() noexcept {

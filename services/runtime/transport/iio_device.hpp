@@ -3,8 +3,9 @@
 
 #include <cstdint>
 #include <mutex>
-#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 struct iio_buffer;
 struct iio_channel;
@@ -22,31 +23,32 @@ struct IioFormat {
   std::int64_t highest = 0;  ///< the same
 };
 
-/// One channel of an IIO device, on this machine or behind an iiod, by libiio.  One thread, but for
-/// cancel().  libiio 0.24 writes to connections that are gone: the process has to ignore SIGPIPE,
-/// as runtime::Stop does.
+/// Channels of an IIO device, sampled together, on this machine or behind an iiod, by libiio.  One
+/// thread, but for cancel().  libiio 0.24 writes to connections that are gone: the process has to
+/// ignore SIGPIPE, as runtime::Stop does.
 class IioDevice {
  public:
   /// Opens the device and its buffer of one sample.
   /// @param uri      libiio's: "local:", "ip:192.168.1.20"
   /// @param device   name or id
-  /// @param channel  id of an input channel, "accel_y"
+  /// @param channels  ids of input channels, {"accel_y"}; at least one
   /// @throws ConfigError for a context, a device or a channel that is not there, with those that
   /// are
-  IioDevice(std::string uri, std::string device, std::string channel);
+  IioDevice(std::string uri, std::string device, std::vector<std::string> channels);
   ~IioDevice();
   IioDevice(const IioDevice&) = delete;
   IioDevice& operator=(const IioDevice&) = delete;
 
   /// Waits for the next sample, 1 s at most where the context keeps its time-out; a pulled cable
   /// may hold it for ever, until cancel().
-  /// @returns the converter's number; nothing if none came: all is closed then, and the next call
-  ///          opens it again
-  std::optional<std::int64_t> read();
+  /// @param numbers  those of the converter, one a channel
+  /// @returns false if none came: all is closed then, and the next call opens it again
+  bool read(std::span<std::int64_t> numbers);
   /// Ends a read() that waits, and all later ones.  Any thread.
   void cancel() noexcept;
 
-  [[nodiscard]] const IioFormat& format() const noexcept { return format_; }
+  /// Of the channels, in their order.
+  [[nodiscard]] const std::vector<IioFormat>& formats() const noexcept { return formats_; }
   /// `sampling_frequency` of the device [Hz]; 0: it does not say.
   [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }
   /// `serial_number` of the device (a debug attribute of some drivers) or `hw_serial` of the
@@ -57,17 +59,17 @@ class IioDevice {
   void open();
   void close() noexcept;
   [[nodiscard]] iio_device* find_device() const;
-  [[nodiscard]] iio_channel* find_channel() const;
+  [[nodiscard]] iio_channel* find_channel(const std::string& name) const;
 
   std::string uri_;
   std::string name_;
-  std::string channel_name_;
-  IioFormat format_;
+  std::vector<std::string> channel_names_;
+  std::vector<IioFormat> formats_;
   double rate_hz_ = 0.0;
   std::string serial_ = "unknown";
   iio_context* context_ = nullptr;
   iio_device* device_ = nullptr;
-  iio_channel* channel_ = nullptr;
+  std::vector<iio_channel*> channels_;
   std::mutex mutex_;  ///< guards what follows against cancel()
   iio_buffer* buffer_ = nullptr;
   bool cancelled_ = false;

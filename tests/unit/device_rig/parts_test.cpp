@@ -53,6 +53,31 @@ TEST(PartsTest, AnIioDeviceServesAccelerationOrForceWithoutADrive) {
   EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.angle: got iio, want one of"));
 }
 
+TEST(PartsTest, AMountIsARotationAndHasNoSign) {
+  DevicesConfig config;
+  config.signals.acceleration = "iio";
+  config.accelerometer.mount = "0 1 0, -1 0 0, 0 0 1";
+  EXPECT_EQ(refusal(config), "");
+  config.accelerometer.sign = -1;
+  EXPECT_THAT(refusal(config),
+              testing::HasSubstr("devices.accelerometer.sign: got -1 with a mount"));
+  config.accelerometer.mount = "1 0 0";
+  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.accelerometer.mount: got 1 0 0, want"));
+}
+
+TEST(PartsTest, AnOdriveServesAngleAndMotorAndNoInput) {
+  DevicesConfig config;
+  config.drive.kind = "odrive";
+  config.signals.angle = config.signals.motor = "drive";
+  EXPECT_EQ(refusal(config), "");
+  config.signals.force = "drive";
+  EXPECT_THAT(refusal(config),
+              testing::HasSubstr("devices.signals.force: got drive, which is an ODrive"));
+  config.drive.kind = "vesc";
+  EXPECT_THAT(refusal(config),
+              testing::HasSubstr("devices.drive.kind: got vesc, want one of moteus, odrive"));
+}
+
 TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
   DevicesConfig config;
   config.signals.force = "platform";
