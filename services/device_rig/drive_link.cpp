@@ -6,7 +6,10 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/drive_protocols.hpp"
+#include "services/device_rig/core/parts.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "services/runtime/transport/can_socket.hpp"
+#include "services/runtime/transport/serial_port.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -23,12 +26,17 @@ constexpr int kTrips = 5;
 constexpr std::int64_t kPollEach_ns = 10 * kMs_ns;
 constexpr int kWait_ms = 100;
 
+std::unique_ptr<runtime::Port> port_of(const DriveConfig& config) {
+  if (drive_of(config) == Parts::Drive::kMoteusCan) {
+    return std::make_unique<runtime::CanSocket>(config.port);
+  }
+  return std::make_unique<runtime::SerialPort>(config.port);
+}
+
 }  // namespace
 
 DriveLink::DriveLink(const DriveConfig& config, const SettingLimits& limits)
-    : config_(config),
-      protocol_(protocol_of(config, limits)),
-      port_(std::make_unique<runtime::SerialPort>(config.port)) {
+    : config_(config), protocol_(protocol_of(config, limits)), port_(port_of(config)) {
   const std::string drive = protocol_->name() + " at " + config.port;
   port_->write(protocol_->greeting());
   const auto trip_ms = round_trip_ms();
@@ -79,7 +87,7 @@ void DriveLink::open_again() {
   samples_.store(sample_);
   unchecked_ = true;
   try {
-    port_ = std::make_unique<runtime::SerialPort>(config_.port);
+    port_ = port_of(config_);
   } catch (const std::exception&) {
     // Not there yet: the next turn tries again.  Nothing rings meanwhile as often as the loop.
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWait_ms * kMs_ns);

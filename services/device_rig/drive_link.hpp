@@ -14,7 +14,7 @@
 #include "services/device_rig/core/reply_clock.hpp"
 #include "services/runtime/process/latest_value.hpp"
 #include "services/runtime/transport/bell.hpp"
-#include "services/runtime/transport/serial_port.hpp"
+#include "services/runtime/transport/port.hpp"
 
 namespace stillhand::device_rig {
 
@@ -79,7 +79,7 @@ class DriveLink final : private DriveListener {
 
   DriveConfig config_;
   std::unique_ptr<DriveProtocol> protocol_;
-  std::unique_ptr<runtime::SerialPort> port_;
+  std::unique_ptr<runtime::Port> port_;
   runtime::Bell bell_;
   runtime::LatestValue<Demand> demands_;
   runtime::LatestValue<DriveSample> samples_;

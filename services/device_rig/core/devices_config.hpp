@@ -53,9 +53,10 @@ struct DriveConfig {
 
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
-    visit("kind", self.kind, Range{1.0, 20.0}, "what it is: moteus or odrive");
+    visit("kind", self.kind, Range{1.0, 20.0},
+          "what it is: moteus (serial port), moteus_can (a CAN interface of the kernel) or odrive");
     visit("port", self.port, Range{1.0, 200.0},
-          "serial port of the adapter or of the drive's UART");
+          "serial port of the adapter or of the drive's UART, or the CAN interface, can0");
     visit("id", self.id, Range{1.0, 127.0}, "[-] number of a moteus on its bus");
     visit("axis", self.axis, Range{0.0, 1.0}, "[-] axis of an ODrive");
     visit("ratio", self.ratio, Range{0.1, 200.0},

@@ -42,6 +42,7 @@ void check_sign(const char* name, std::int64_t sign) {
 Parts::Drive drive_of(const DriveConfig& config) {
   using Drive = Parts::Drive;
   constexpr std::array kDrives{std::pair{std::string_view("moteus"), Drive::kMoteus},
+                               std::pair{std::string_view("moteus_can"), Drive::kMoteusCan},
                                std::pair{std::string_view("odrive"), Drive::kOdrive}};
   return chosen("drive.kind", config.kind, kDrives);
 }

@@ -74,8 +74,9 @@ TEST(PartsTest, AnOdriveServesAngleAndMotorAndNoInput) {
   EXPECT_THAT(refusal(config),
               testing::HasSubstr("devices.signals.force: got drive, which is an ODrive"));
   config.drive.kind = "vesc";
-  EXPECT_THAT(refusal(config),
-              testing::HasSubstr("devices.drive.kind: got vesc, want one of moteus, odrive"));
+  EXPECT_THAT(
+      refusal(config),
+      testing::HasSubstr("devices.drive.kind: got vesc, want one of moteus, moteus_can, odrive"));
 }
 
 TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
