@@ -7,6 +7,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/drive_protocols.hpp"
 #include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/joystick_port.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/transport/can_socket.hpp"
 #include "services/runtime/transport/serial_port.hpp"
@@ -27,8 +28,14 @@ constexpr std::int64_t kPollEach_ns = 10 * kMs_ns;
 constexpr int kWait_ms = 100;
 
 std::unique_ptr<runtime::Port> port_of(const DriveConfig& config) {
-  if (drive_of(config) == Parts::Drive::kMoteusCan) {
-    return std::make_unique<runtime::CanSocket>(config.port);
+  switch (drive_of(config)) {
+    case Parts::Drive::kMoteusCan:
+      return std::make_unique<runtime::CanSocket>(config.port);
+    case Parts::Drive::kJoystick:
+      return std::make_unique<JoystickPort>(config.port, config.gain);
+    case Parts::Drive::kMoteus:
+    case Parts::Drive::kOdrive:
+      break;
   }
   return std::make_unique<runtime::SerialPort>(config.port);
 }

@@ -22,9 +22,12 @@ struct SignalsConfig {
           "lateral acceleration: simulated, drive (an analogue input of it), platform or iio");
     visit("force", self.force, Range{1.0, 20.0},
           "force of the hand on the stick: simulated, drive (an analogue input of it) or iio");
-    visit("angle", self.angle, Range{1.0, 20.0}, "angle of the stick: simulated or drive");
-    visit("motor", self.motor, Range{1.0, 20.0},
-          "the stick's motor: simulated, drive, or off (a drive whose power stage stays off)");
+    visit("angle", self.angle, Range{1.0, 30.0},
+          "angle of the stick: simulated, drive or demonstration_joystick");
+    visit(
+        "motor", self.motor, Range{1.0, 30.0},
+        "the stick's motor: simulated, drive, demonstration_joystick, or off (a drive whose power "
+        "stage stays off)");
     visit("platform", self.platform, Range{1.0, 20.0},
           "motion platform: simulated, plain_udp or moog_udp");
   }
@@ -37,6 +40,7 @@ struct DriveConfig {
   std::int64_t id = 1;
   std::int64_t axis = 0;
   double ratio = 1.0;
+  double gain = 0.5;
   bool checksum = false;
   std::int64_t period_ticks = 1;
   double watchdog_s = 0.02;
@@ -54,13 +58,16 @@ struct DriveConfig {
   template <typename Visitor, typename Self>
   static void fields(Visitor&& visit, Self& self) {
     visit("kind", self.kind, Range{1.0, 20.0},
-          "what it is: moteus (serial port), moteus_can (a CAN interface of the kernel) or odrive");
+          "what it is: moteus (serial port), moteus_can (a CAN interface of the kernel), odrive or "
+          "joystick (a demonstration)");
     visit("port", self.port, Range{1.0, 200.0},
-          "serial port of the adapter or of the drive's UART, or the CAN interface, can0");
+          "serial port of the adapter or of the drive's UART, the CAN interface (can0), or the "
+          "joystick's event device");
     visit("id", self.id, Range{1.0, 127.0}, "[-] number of a moteus on its bus");
     visit("axis", self.axis, Range{0.0, 1.0}, "[-] axis of an ODrive");
     visit("ratio", self.ratio, Range{0.1, 200.0},
           "[rev/rev] turns of an ODrive's motor in a turn of the stick; a moteus knows its own");
+    visit("gain", self.gain, Range{0.0, 1.0}, "[-] share of a joystick's strength");
     visit("checksum", self.checksum, Range{0.0, 1.0},
           "every line has a checksum; a moteus's UART always answers with one, an ODrive always "
           "gets and gives one");

@@ -15,7 +15,7 @@ struct Parts {
   enum class Source : unsigned char { kSimulated, kDrive, kPlatform, kIio };
   enum class Motor : unsigned char { kSimulated, kDrive, kOff };
   enum class Platform : unsigned char { kSimulated, kPlain, kMoog };
-  enum class Drive : unsigned char { kMoteus, kMoteusCan, kOdrive };
+  enum class Drive : unsigned char { kMoteus, kMoteusCan, kOdrive, kJoystick };
 
   Source acceleration, force, angle;
   Motor motor;

@@ -71,12 +71,31 @@ TEST(PartsTest, AnOdriveServesAngleAndMotorAndNoInput) {
   config.signals.angle = config.signals.motor = "drive";
   EXPECT_EQ(refusal(config), "");
   config.signals.force = "drive";
-  EXPECT_THAT(refusal(config),
-              testing::HasSubstr("devices.signals.force: got drive, which is an ODrive"));
+  EXPECT_THAT(
+      refusal(config),
+      testing::HasSubstr("devices.signals.force: got drive, which is an ODrive or a joystick"));
   config.drive.kind = "vesc";
   EXPECT_THAT(
       refusal(config),
-      testing::HasSubstr("devices.drive.kind: got vesc, want one of moteus, moteus_can, odrive"));
+      testing::HasSubstr(
+          "devices.drive.kind: got vesc, want one of moteus, moteus_can, odrive, joystick"));
+}
+
+TEST(PartsTest, AJoystickNamesItselfADemonstrationWhereverPartsAreNamed) {
+  DevicesConfig config;
+  config.drive.kind = "joystick";
+  config.signals.angle = config.signals.motor = "demonstration_joystick";
+  EXPECT_EQ(parts_of(config).motor, Parts::Motor::kDrive);
+  EXPECT_EQ(in_words(config.signals),
+            "angle demonstration_joystick, motor demonstration_joystick; simulated: acceleration, "
+            "force, platform");
+  EXPECT_EQ(named_parts(config.signals)[3].second, "demonstration_joystick");
+  config.signals.motor = "drive";
+  EXPECT_THAT(refusal(config),
+              testing::HasSubstr("got drive, which is a joystick, want demonstration_joystick"));
+  config.signals.motor = "demonstration_joystick";
+  config.drive.kind = "moteus";
+  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.drive.kind: got no joystick"));
 }
 
 TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
