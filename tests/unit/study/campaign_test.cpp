@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of mitigations: Eqs. SU-16 to SU-20.  About 4 s.
+// The table of mitigations: Eqs. SU-16 to SU-20.  About 12 s of processor time.
 #include "apps/study/mitigations/campaign.hpp"
 
 #include <gtest/gtest.h>
