@@ -240,7 +240,7 @@ class Session(Bench):
 
     def recorded(self):
         seen = self.lab.recording(1)
-        words = [f"force zero {ticks} ticks after the interlock opened" for ticks in seen.get("force_zero_ticks", [])[-1:]]
+        words = ["the tick of zero force"] if seen.get("force_zero_ticks") else []
         marked = pathlib.Path(self.lab.out / "summary.json").is_file() and self.lab.summary()["trials"][-1]["aborted"]
         words = (["the trial is marked"] if marked else []) + words
         damage = seen["damage"] or []

@@ -17,7 +17,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <numbers>
 
 #include "services/device_rig/device_plant.hpp"
@@ -85,24 +84,28 @@ void push(device_rig::DevicePlant& plant) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   std::filesystem::path config;
   CLI::App cli("pushing_rig: the rig of devices, pushing, without a session");
   cli.add_option("--config", config, "folder with rig.yaml and devices.yaml")->required();
   CLI11_PARSE(cli, argc, argv);
+  std::signal(SIGPIPE, SIG_IGN);  // as every process of a session
+  runtime::end_with_parent();
+  runtime::become_real_time();
+  device_rig::DevicePlant plant(
+      settings::load<rig::RigConfig>(config / "rig.yaml", "rig"),
+      settings::load<device_rig::DevicesConfig>(config / "devices.yaml", "devices"));
+  push(plant);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    std::signal(SIGPIPE, SIG_IGN);  // as every process of a session
-    runtime::end_with_parent();
-    runtime::become_real_time();
-    device_rig::DevicePlant plant(
-        settings::load<rig::RigConfig>(config / "rig.yaml", "rig"),
-        settings::load<device_rig::DevicesConfig>(config / "devices.yaml", "devices"));
-    push(plant);
-    return 0;
+    return run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "pushing_rig: " << error.what() << '\n';
+    std::fprintf(stderr, "pushing_rig: %s\n", error.what());
     return 2;
   }
 }
