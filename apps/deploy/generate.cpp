@@ -57,6 +57,7 @@ std::vector<GeneratedFile> files_of(const Inventory& inventory, const Host& host
   std::ranges::move(units_of(inventory, host), std::back_inserter(files));
   files.push_back(firewall_of(inventory, host));
   files.push_back(sysctl_of(inventory, host, profiles.buffers()));
+  if (auto rules = device_rules_of(inventory, host)) files.push_back(std::move(*rules));
   return files;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "apps/deploy/generated_file.hpp"
@@ -18,5 +19,9 @@ GeneratedFile firewall_of(const Inventory& inventory, const Host& host);
 /// Kernel settings: limits for the buffers that the profiles ask for, and the domain's ports
 /// reserved.
 GeneratedFile sysctl_of(const Inventory& inventory, const Host& host, const Buffers& buffers);
+
+/// udev rules for the devices of a rig: names, rights, and a serial chip that hands its bytes on at
+/// once.  Nothing where the host runs no rig of devices.
+std::optional<GeneratedFile> device_rules_of(const Inventory& inventory, const Host& host);
 
 }  // namespace stillhand::deploy

@@ -22,6 +22,7 @@ std::string_view name_of(Discovery discovery);
 struct Rig {
   std::string name;      ///< for people and for names of files
   std::uint32_t number;  ///< key on the bus
+  bool devices = false;  ///< `made_of: devices`: stillhand-device_rig in the place of stillhand-rig
 };
 
 /// One process that a host runs.

@@ -98,19 +98,26 @@ class Reader {
 
   void read_rigs(const Entry& list) {
     const std::string want = "a list of rigs, each {name: left, number: 1}";
+    const std::string kinds = "simulation or devices";
     const auto& items = items_of(list, "inventory.rigs", want);
     if (items.empty()) refuse(list, "inventory.rigs", want);
     std::vector<std::pair<const Entry*, const Entry*>> seen;  // name and number
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string path = item_path("rigs", i);
       SectionReader reader(items[i], path);
-      allow_only(reader, {"name", "number"});
+      allow_only(reader, {"name", "number", "made_of"});
       const Entry& name = required(reader, items[i], path, "name", "name: the rig's name");
       const Entry& number =
           required(reader, items[i], path, "number", "number: the rig's key on the bus");
       std::int64_t value = 0;
       reader("number", value, Range{1, std::numeric_limits<std::uint32_t>::max()}, "key");
-      inventory_.rigs.push_back({name_in(name, path + ".name"), static_cast<std::uint32_t>(value)});
+      const Entry* kind = reader.find("made_of");
+      const bool devices = kind != nullptr && kind->text == "devices";
+      if (kind != nullptr && !devices && kind->text != "simulation") {
+        refuse(*kind, path + ".made_of", kinds);
+      }
+      inventory_.rigs.push_back(
+          {name_in(name, path + ".name"), static_cast<std::uint32_t>(value), devices});
       for (std::size_t k = 0; k < i; ++k) {
         if (inventory_.rigs[k].name == inventory_.rigs[i].name) {
           refuse_second(name, path + ".name", *seen[k].first, "a different name for each rig");

@@ -11,7 +11,7 @@ namespace {
 
 // Fast DDS lists the interfaces by netlink.  A program in a home could not start if homes were
 // hidden.
-std::string hardening(const Host& host, bool shows_a_screen) {
+std::string hardening(const Host& host, bool shows_a_screen, bool has_devices = false) {
   const std::filesystem::path inside = host.prefix.relative_path();
   const std::string top = inside.empty() ? "" : inside.begin()->string();
   const bool at_home = top == "home" || top == "root";
@@ -27,22 +27,45 @@ ProtectControlGroups=yes
 ProtectClock=yes
 RestrictNamespaces=yes
 RestrictSUIDSGID=yes
-RestrictAddressFamilies=AF_INET AF_INET6 AF_NETLINK AF_UNIX
+RestrictAddressFamilies=AF_INET AF_INET6 AF_NETLINK AF_UNIX{}
 LockPersonality=yes
 SystemCallArchitectures=native
 )",
                      at_home || shows_a_screen ? "read-only" : "yes",
-                     shows_a_screen ? "no" : "yes");  // the screen's socket is in /tmp
+                     shows_a_screen ? "no" : "yes",  // the screen's socket is in /tmp
+                     has_devices ? " AF_CAN" : "");
 }
 
+// The service is the rig, whichever process it is.
+bool is_of_devices(const Inventory& inventory, const Placement& placement) {
+  return placement.service == "rig" && inventory.rig(placement.rig).devices;
+}
+
+std::string process_of(const Inventory& inventory, const Placement& placement) {
+  return is_of_devices(inventory, placement) ? "device_rig" : placement.service;
+}
+
+// ProtectKernelTunables makes /sys read-only, and libiio writes there to open a local device: iiod,
+// which has that right, stands between.
+constexpr const char* kDevices =
+    R"(# Serial ports alone; IIO devices of this machine through iiod (accelerometer.uri: ip:127.0.0.1).
+SupplementaryGroups=dialout
+DevicePolicy=closed
+DeviceAllow=char-ttyACM rw
+DeviceAllow=char-ttyUSB rw
+DeviceAllow=char-ttyS rw
+DeviceAllow=char-ttyAMA rw
+)";
+
 // Restart=always: a service ends with each session and begins the next one without old state.
-std::string head(const Inventory& inventory, const Host& host, const std::string& description) {
+std::string head(const Inventory& inventory, const Host& host, const std::string& description,
+                 const std::string& after = "") {
   return fmt::format(R"(# {}
 [Unit]
 Description={}, lab {}
 Documentation=man:stillhand(1)
 Wants=network-online.target
-After=network-online.target time-sync.target
+After=network-online.target time-sync.target{}
 PartOf=stillhand.target
 {}
 [Service]
@@ -51,7 +74,7 @@ User=stillhand
 Restart=always
 RestartSec=1
 )",
-                     generated_note(inventory, host), description, inventory.lab,
+                     generated_note(inventory, host), description, inventory.lab, after,
                      "StartLimitIntervalSec=60\nStartLimitBurst=10\n");
 }
 
@@ -60,7 +83,8 @@ std::string command_of(const Inventory& inventory, const Host& host, const Place
   std::string command = fmt::format(
       "{0}/bin/stillhand-{1} --domain {2} --rig {3} --profiles {4}/profiles.xml "
       "--config ${{STILLHAND_CONFIG}} --real-time --one-session",
-      host.prefix.string(), placement.service, inventory.domain, placement.rig, folder);
+      host.prefix.string(), process_of(inventory, placement), inventory.domain, placement.rig,
+      folder);
   if (!inventory.security.empty()) command += " --security " + folder + "/security";
   return command;
 }
@@ -75,9 +99,12 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
   const std::string& rig = inventory.rig(placement.rig).name;
   const bool screen = placement.service == "display";
   const bool recorder = placement.service == "recorder";
-  std::string text =
-      head(inventory, host, fmt::format("Stillhand {} of rig {}", placement.service, rig));
-  // 2: a setting, file or certificate is refused; a restart would not help.
+  const bool devices = is_of_devices(inventory, placement);
+  std::string text = head(inventory, host,
+                          fmt::format("Stillhand {} of rig {}{}", placement.service, rig,
+                                      devices ? ", made of devices" : ""),
+                          devices ? " iiod.service" : "");
+  // 2: a setting, file, certificate or device is refused; a restart would not help.
   text += "RestartPreventExitStatus=2\n";
   text += fmt::format("Environment=STILLHAND_CONFIG={}/share/stillhand/deploy/config\n",
                       host.prefix.string());
@@ -94,8 +121,10 @@ GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placem
       "CPUSchedulingPolicy=fifo\nCPUSchedulingPriority={0}\nLimitRTPRIO={0}\n"
       "LimitMEMLOCK=infinity\n",
       runtime::kControlPriority);
-  text += hardening(host, screen) + "\n[Install]\nWantedBy=stillhand.target\n";
-  return {fmt::format("stillhand-{}@{}.service", placement.service, rig), std::move(text)};
+  if (devices) text += kDevices;
+  text += hardening(host, screen, devices) + "\n[Install]\nWantedBy=stillhand.target\n";
+  return {fmt::format("stillhand-{}@{}.service", process_of(inventory, placement), rig),
+          std::move(text)};
 }
 
 GeneratedFile server_unit(const Inventory& inventory, const Host& host) {

@@ -200,6 +200,60 @@ TEST(UnitsTest, AProgramInAHomeCanBeReached) {
   EXPECT_EQ(unit_named(inventory, "rig-pc", "stillhand-rig@1.service")["ProtectHome"], "read-only");
 }
 
+Inventory with_devices() {
+  Inventory inventory = example();
+  inventory.rigs[0].devices = true;
+  return inventory;
+}
+
+TEST(UnitsTest, ARigOfDevicesIsItsOwnProcessWithItsPortsAlone) {
+  auto sut = unit_named(with_devices(), "rig-pc", "stillhand-device_rig@1.service");
+  EXPECT_THAT(sut["ExecStart"], HasSubstr("/bin/stillhand-device_rig --domain 12 --rig 1 "));
+  EXPECT_THAT(sut["After"], HasSubstr("iiod.service"));
+  EXPECT_EQ(sut["DevicePolicy"], "closed");
+  EXPECT_THAT(sut["DeviceAllow"], HasSubstr("char-ttyACM rw\nchar-ttyUSB rw"));
+  EXPECT_EQ(sut["SupplementaryGroups"], "dialout");
+  EXPECT_THAT(sut["RestrictAddressFamilies"], HasSubstr("AF_CAN"));
+  EXPECT_EQ(sut["LimitRTPRIO"], sut["CPUSchedulingPriority"]);
+  auto other = unit_named(with_devices(), "rig-pc", "stillhand-sensing@1.service");
+  EXPECT_EQ(other.count("DevicePolicy"), 0u);
+  EXPECT_THAT(other["RestrictAddressFamilies"], Not(HasSubstr("AF_CAN")));
+}
+
+// systemd's own judge reads every unit of the host.
+TEST(UnitsTest, SystemdFindsNothingWrongWithTheUnits) {
+  if (!fs::exists("/usr/bin/systemd-analyze")) GTEST_SKIP() << "no systemd-analyze here";
+  const SampleFolder folder;
+  Inventory inventory = with_devices();
+  inventory.hosts[0].prefix = folder.path();
+  fs::create_directory(folder.path() / "bin");
+  std::string units;
+  for (const GeneratedFile& unit : units_of(inventory, inventory.hosts[0])) {
+    std::ofstream(folder.path() / unit.name) << unit.text;
+    units += ' ' + (folder.path() / unit.name).string();
+  }
+  for (const char* program : {"device_rig", "sensing", "motion", "cancellation"}) {
+    fs::create_symlink("/bin/true", folder.path() / "bin" / (std::string("stillhand-") + program));
+  }
+  const fs::path said = folder.path() / "said";
+  const std::string command =
+      "systemd-analyze --man=no verify" + units + " > " + said.string() + " 2>&1";
+  const int status = std::system(command.c_str());
+  // The man page is not installed next to a build; a warning of another unit is not ours.
+  EXPECT_EQ(status, 0) << text_of(said);
+  EXPECT_THAT(text_of(said), Not(HasSubstr("stillhand-device_rig"))) << text_of(said);
+}
+
+TEST(HostFilesTest, UdevGetsRulesWhereARigOfDevicesRuns) {
+  const Inventory inventory = with_devices();
+  const auto sut = device_rules_of(inventory, inventory.hosts[0]);
+  ASSERT_TRUE(sut);
+  EXPECT_THAT(sut->text, HasSubstr("SYMLINK+=\"fdcanusb\""));
+  EXPECT_THAT(sut->text, HasSubstr("ATTR{latency_timer}=\"1\""));
+  EXPECT_FALSE(device_rules_of(inventory, inventory.hosts[1]));
+  EXPECT_FALSE(device_rules_of(example(), example().hosts[0]));
+}
+
 TEST(HostFilesTest, TheFirewallLetsTheLabsHostsToItsPortsAlone) {
   const Inventory inventory = example();
   const std::string sut = firewall_of(inventory, inventory.hosts[0]).text;
