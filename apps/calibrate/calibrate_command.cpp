@@ -34,7 +34,7 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       "and\n"
       "identifies its lag and bandwidth. \"check\" checks travel, signs and scales with the hand "
       "off;\n"
-      "it arms the motor for two pushes of 1 N. Writes the result into sensing.yaml and\n"
+      "it arms the motor for two pushes of --push. Writes the result into sensing.yaml and\n"
       "calibration.yaml of --config; a session with devices asks for it.\n"
       "Example: stillhand calibrate force --config hall --person kl --known 0,5,10,-5,-10");
   calibrate->add_option("signal", *signal, "force, acceleration, angle, platform or check")
@@ -80,7 +80,7 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       ->check(CLI::Range(0.2, 5.0))
       ->capture_default_str();
   calibrate->add_option("--step", options->step_m, "check: step of the platform [m]")
-      ->check(CLI::Range(0.0005, 0.02))
+      ->check(CLI::Range(0.0005, 0.01))
       ->capture_default_str();
   calibrate->callback([options, signal, &status] {
     const std::map<std::string, device_rig::CalibratedSignal> signals{

@@ -138,6 +138,8 @@ class HandOff {
   device_rig::Push push(double most_n) {
     station_.restart_clock();
     const double from_m = place_m(station_.rest(kArm_ticks));
+    check_devices();
+    if (!std::isfinite(from_m)) throw Wrong{"the angle is not known"};
     const Trial trial{.number = ++trial_,
                       .phase = TrialPhase::kTracking,
                       .start_tick = station_.next_tick(),
@@ -154,7 +156,8 @@ class HandOff {
       seen.asked_n = output.truth.motor_force_n;
       seen.measured_n = station_.plant().measured_force_n();
       seen.moved_m = place_m(output) - from_m;
-      if (std::abs(seen.moved_m) >= kMoved_m) break;
+      // An unknown place ends the push too.
+      if (!(std::abs(seen.moved_m) < kMoved_m)) break;
     }
     for (Tick tick = 0; tick < kEnd_ticks; ++tick) station_.tick({}, trial);
     check_devices();
@@ -249,6 +252,12 @@ int run_hand_off_check(const CalibrateOptions& options, const runtime::Stop& int
       settings::load<device_rig::DevicesConfig>(options.config / "devices.yaml", "devices");
   const auto sensing = settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing");
   HandOff check(options, rig, devices, sensing, interrupted);
+  const auto forget_earlier_check = [&] {
+    auto all = device_rig::load_calibrations(options.config / "calibration.yaml");
+    if (all.check.date.empty()) return;
+    all.check = {};
+    write_calibrations(options.config, all);
+  };
   try {
     auto all = device_rig::load_calibrations(options.config / "calibration.yaml");
     all.check = check.run();
@@ -257,12 +266,11 @@ int run_hand_off_check(const CalibrateOptions& options, const runtime::Stop& int
   } catch (const Wrong& wrong) {
     std::cerr << "stillhand calibrate: check: " << wrong.what
               << "; no session pushes before it is right\n";
-    // An earlier check does not count any more.
-    auto all = device_rig::load_calibrations(options.config / "calibration.yaml");
-    if (!all.check.date.empty()) {
-      all.check = {};
-      write_calibrations(options.config, all);
-    }
+    forget_earlier_check();
+  } catch (const ConfigError&) {
+    // A figure that is no number: nothing is known.
+    forget_earlier_check();
+    throw;
   } catch (const BrokenOff&) {
     std::cerr << "stillhand calibrate: broken off; nothing is written\n";
   }

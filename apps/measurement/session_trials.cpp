@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "idl/cdr.hpp"
 #include "idl/session.h"
@@ -63,10 +64,11 @@ class TrialFinder {
   }
 
   void take(const stillhand_msgs::TrialAssignment& assignment) {
-    // The motor perturbs the hand in an identification of admittance: no condition.
-    const bool perturbs =
-        assignment.cancellation() && assignment.motion() == stillhand_msgs::MOTION_MULTISINE;
-    if (perturbs) return;
+    // An identification of admittance, on the peg too: no condition and no session's model.
+    if (assignment.motion() == stillhand_msgs::MOTION_MULTISINE) {
+      perturbed_.insert(assignment.trial());
+      return;
+    }
     letters_[assignment.trial()] = assignment.motion() == stillhand_msgs::MOTION_STILL ? 'A'
                                    : assignment.cancellation()                         ? 'C'
                                                                                        : 'B';
@@ -74,9 +76,7 @@ class TrialFinder {
 
   void take(const stillhand_msgs::Event& event) {
     const std::string text = event.text().c_str();
-    if (event.source() == "rig" && text.starts_with(device_rig::kPartsNote)) {
-      found_.rig_parts = text;
-    }
+    if (device_rig::is_parts_note(event.source().c_str(), text)) found_.rig_parts = text;
   }
 
   SessionTrials finish(const std::string& path) {
@@ -88,7 +88,9 @@ class TrialFinder {
     for (auto& [number, trial] : by_number_) {
       const auto letter = letters_.find(number);
       if (letter != letters_.end()) trial.letter = letter->second;
-      if (trial.trial.phase == TrialPhase::kPegged) trial.letter = 'I';
+      if (trial.trial.phase == TrialPhase::kPegged && !perturbed_.contains(number)) {
+        trial.letter = 'I';
+      }
       if (trial.recorded_ticks > 0) found_.trials.push_back(trial);
     }
     if (by_number_.empty()) {
@@ -115,6 +117,7 @@ class TrialFinder {
   SessionTrials found_;
   std::map<std::int64_t, SessionTrial> by_number_;
   std::map<std::int64_t, char> letters_;
+  std::set<std::int64_t> perturbed_;
   std::int64_t current_ = -1;
   std::int64_t samples_ = 0;
   Tick first_tick_ = std::numeric_limits<Tick>::max();

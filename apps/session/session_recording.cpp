@@ -107,7 +107,7 @@ SessionRecording read_session(const std::string& path) {
 std::string rig_parts_in(const SessionRecording& recording) {
   for (const auto& event : recording.events) {
     const std::string text = event.text().c_str();
-    if (event.source() == "rig" && text.starts_with(device_rig::kPartsNote)) return text;
+    if (device_rig::is_parts_note(event.source().c_str(), text)) return text;
   }
   return {};
 }

@@ -46,7 +46,7 @@ struct PlatformRecord {
 struct HandOffRecord {
   std::string date;
   std::string person;
-  std::string devices;  ///< DevicePlant::devices()
+  std::string devices;  ///< DevicePlant::pushing_devices()
   double right_stop_rad = 0.0, left_stop_rad = 0.0;
   double force_gain = 0.0;
   double pushed_right_m = 0.0, pushed_left_m = 0.0;

@@ -2,6 +2,7 @@
 #include "services/device_rig/device_plant.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -76,7 +77,7 @@ std::string DevicePlant::device_of(CalibratedSignal signal) const {
       return {};
     case Parts::Source::kDrive: {
       const std::string drive = "drive, serial " + drive_->serial();
-      if (angle) return drive + ", encoder";
+      if (angle) return drive + ", encoder, sign " + std::to_string(devices_.drive.angle_sign);
       return drive + ", AUX" +
              std::to_string(force ? devices_.drive.force_input : devices_.drive.acceleration_input);
     }
@@ -88,21 +89,26 @@ std::string DevicePlant::device_of(CalibratedSignal signal) const {
       // Another mount is another calibration.
       const std::string input =
           !force && mount_ ? "mount " + devices_.accelerometer.mount : config.channel;
-      return "IIO " + config.device + ", serial " + link.serial() + ", " + input;
+      return "IIO " + config.device + ", serial " + link.serial() + ", " + input + ", sign " +
+             std::to_string(config.sign);
     }
   }
   return {};
 }
 
-std::string DevicePlant::platform_device() const {
-  if (parts_.platform == Parts::Platform::kSimulated) return {};
-  return devices_.signals.platform + " at " + devices_.platform.address + ", port " +
-         std::to_string(devices_.platform.port);
+std::string platform_device(const DevicesConfig& devices) {
+  if (parts_of(devices).platform == Parts::Platform::kSimulated) return {};
+  return devices.signals.platform + " at " + devices.platform.address + ", port " +
+         std::to_string(devices.platform.port);
 }
 
 std::string DevicePlant::pushing_devices() const {
   if (parts_.motor != Parts::Motor::kDrive) return {};
-  std::string all = "drive, serial " + drive_->serial();
+  std::array<char, 96> own{};
+  std::snprintf(own.data(), own.size(), ", torque sign %d, ratio %.9g, lever %.9g m",
+                static_cast<int>(devices_.drive.torque_sign), devices_.drive.ratio,
+                rig_config_.stick.lever_m);
+  std::string all = "drive, serial " + drive_->serial() + own.data();
   for (const CalibratedSignal signal : kCalibratedSignals) {
     const std::string device = device_of(signal);
     all += "; " + (device.empty() ? std::string("simulated") : device);

@@ -22,6 +22,9 @@
 
 namespace stillhand::device_rig {
 
+/// The platform of the settings, as a calibration names it; empty: it is simulated.
+std::string platform_device(const DevicesConfig& devices);
+
 /// The rig made of devices: settings say which part serves which signal; the simulated rig serves
 /// the rest.  Each tick takes the newest sample of each device and gives it one demand; the links
 /// do the talking.  README Eq. DR-3 to DR-11.
@@ -43,7 +46,7 @@ class DevicePlant final : public rig::Plant {
   /// The device that measures a signal, with its serial number; empty: the signal is simulated.
   [[nodiscard]] std::string device_of(CalibratedSignal signal) const;
   /// The platform; empty: it is simulated.
-  [[nodiscard]] std::string platform_device() const;
+  [[nodiscard]] std::string platform_device() const { return device_rig::platform_device(devices_); }
   /// All that the check with the hand off is of; empty where no drive pushes.
   [[nodiscard]] std::string pushing_devices() const;
   /// Torque that the drive measures, as a force at the hand, + right [N]; NaN: unknown.

@@ -32,7 +32,7 @@ std::unique_ptr<runtime::Port> port_of(const DriveConfig& config) {
     case Parts::Drive::kMoteusCan:
       return std::make_unique<runtime::CanSocket>(config.port);
     case Parts::Drive::kJoystick:
-      return std::make_unique<JoystickPort>(config.port, config.gain);
+      return std::make_unique<JoystickPort>(config.port);
     case Parts::Drive::kMoteus:
     case Parts::Drive::kOdrive:
       break;

@@ -39,9 +39,9 @@ bool plays_constant_forces(int descriptor) {
 
 }  // namespace
 
-JoystickPort::JoystickPort(const std::string& path, double gain) {
+JoystickPort::JoystickPort(const std::string& path) {
   try {
-    open(path, gain);
+    open(path);
   } catch (...) {
     close();
     throw;
@@ -50,7 +50,7 @@ JoystickPort::JoystickPort(const std::string& path, double gain) {
 
 JoystickPort::~JoystickPort() { close(); }
 
-void JoystickPort::open(const std::string& path, double gain) {
+void JoystickPort::open(const std::string& path) {
   descriptor_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) refuse(path, error_text());
   input_absinfo axis{};
@@ -60,8 +60,9 @@ void JoystickPort::open(const std::string& path, double gain) {
   if (ioctl(descriptor_, EVIOCGRAB, 1) != 0) refuse(path, "a joystick that another process has");
   answered_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   if (answered_ < 0) refuse(path, error_text());
-  constexpr double kMost = 65535.0;
-  send(FF_GAIN, static_cast<std::int32_t>(std::lround(gain * kMost)));
+  // Whole: not every joystick has a gain of its own, so each level is scaled before (DR-35).
+  constexpr std::int32_t kWhole = 65535;
+  send(FF_GAIN, kWhole);
   // Its own spring would be a force that nobody commands; some joysticks have none to switch off.
   send(FF_AUTOCENTER, 0);
   gone_ = false;

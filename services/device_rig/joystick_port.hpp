@@ -15,9 +15,8 @@ namespace stillhand::device_rig {
 class JoystickPort final : public runtime::Port {
  public:
   /// @param path  /dev/input/by-id/...-event-joystick
-  /// @param gain  share of the device's strength, 0 to 1
   /// @throws ConfigError if it is no such joystick, or another process has it
-  JoystickPort(const std::string& path, double gain);
+  explicit JoystickPort(const std::string& path);
   ~JoystickPort() override;
 
   [[nodiscard]] int descriptor() const noexcept override { return answered_; }
@@ -26,7 +25,7 @@ class JoystickPort final : public runtime::Port {
   [[nodiscard]] bool gone() const noexcept override { return gone_; }
 
  private:
-  void open(const std::string& path, double gain);
+  void open(const std::string& path);
   void close() noexcept;
   bool play(const ForceRecord& record) noexcept;
   bool send(std::uint16_t code, std::int32_t value) noexcept;

@@ -28,9 +28,12 @@ void refuse_uncalibrated(const stillhand::device_rig::DevicePlant& plant,
                              devices.calibration.check_max_age_days, today);
 }
 
-// README Eq. DR-17, DR-18: 0 where nobody identified a platform.
-double platform_lag_s(const std::filesystem::path& folder) {
-  return stillhand::device_rig::load_calibrations(folder / "calibration.yaml").platform.lag_s;
+// README Eq. DR-17, DR-18: 0 where nobody identified this platform.
+double platform_lag_s(const stillhand::device_rig::DevicesConfig& devices,
+                      const std::filesystem::path& folder) {
+  const auto all = stillhand::device_rig::load_calibrations(folder / "calibration.yaml");
+  return all.platform.device == stillhand::device_rig::platform_device(devices) ? all.platform.lag_s
+                                                                                : 0.0;
 }
 
 }  // namespace
@@ -46,7 +49,7 @@ int main(int argc, char** argv) {
         if (file.empty()) file = service.options().config / "devices.yaml";
         const auto devices = settings::load<device_rig::DevicesConfig>(file, "devices");
         const auto& folder = service.options().config;
-        device_rig::DevicePlant plant(rig, devices, platform_lag_s(folder));
+        device_rig::DevicePlant plant(rig, devices, platform_lag_s(devices, folder));
         refuse_uncalibrated(plant, devices, folder);
         rig::Shell(service, plant, rig.motor).run();
       },

@@ -53,7 +53,7 @@ struct MitigationOutput {
 /// e rises from 0 to 1 over the canceller's fade_ticks while the parts may act.  The force leaves
 /// zero only while enabled, permitted and with a new, sound sample; it is zero within ramp_ticks
 /// otherwise, whatever the parts ask for.  A tick without a sound sample does not step the parts,
-/// and the command stays where it was; the canceller bridges it as CC-2 says.
+/// and the command stays where it was; the force begins its ramp at once, without CC-2's bridge.
 /// One thread.  step() never allocates, locks or throws.
 class Mitigation {
  public:

@@ -109,11 +109,11 @@ def open_again(bench):
 # One number for ever is noticed after 200 ticks in which the seat moves (DR-14); an input at its end after 20 (DR-12).
 FAULTS = {
     "rig_killed": Fault("the rig's process is killed", hurt=kill("device_rig"), drive_alone=True, quick=True,
-                        said="the rig ended: signal 9|ended"),
+                        said="rig.* ended: signal 9"),
     "all_killed": Fault("every process is killed", hurt=kill(""), drive_alone=True, alone=False, said=None),
     "rig_stopped": Fault("the rig's process is stopped", hurt=freeze("device_rig"), drive_alone=True, quick=True,
                          said="life sign|the drive is silent"),
-    "host_frozen": Fault("every process is stopped (SIGSTOP)", hurt=freeze(""), drive_alone=True, alone=False, said=""),
+    "host_frozen": Fault("every process is stopped (SIGSTOP)", hurt=freeze(""), drive_alone=True, alone=False, said="life sign|silent|stands still"),
     "cancellation_killed": Fault("the process that cancels is killed", hurt=kill("cancellation"), alone=False,
                                  said="cancellation"),
     "sensing_killed": Fault("the process that senses is killed", hurt=kill("sensing"), alone=False, said="sensing"),

@@ -89,6 +89,7 @@ class AdmittanceTest(unittest.TestCase):
 
 
 class RelationTest(unittest.TestCase):
+    MISMATCH = {"relax": (0.0, 0.3), "hold": (0.25, 0.9), "give-way": (0.0, 0.3)}
     KINDS = {"free": [], "held": ["--held-stick"], "swapped": ["--swap-lines"]}
 
     @campaign
@@ -107,8 +108,10 @@ class RelationTest(unittest.TestCase):
                                    out / f"{task}.json"], capture_output=True, text=True, check=True)
             print(f"{task}:", done.stdout.splitlines()[-1], flush=True)
             relation = json.loads((out / f"{task}.json").read_text())["relation"]
-            # A wrong sign, lever or unit is off by 100 % and more.
-            self.assertLess(relation["median_mismatch"], 0.7)
+            # On the peg a hand that holds has no reflex, so the relation fails for it alone. Seen: 13, 47 and 8 %.
+            low, high = self.MISMATCH[task]
+            self.assertGreater(relation["median_mismatch"], low)
+            self.assertLess(relation["median_mismatch"], high)
             mixed = subprocess.run([*identify, "--held", files["swapped"], "--swapped", files["held"]],
                                    capture_output=True, text=True, check=False)
             self.assertEqual((mixed.returncode, len(mixed.stderr.splitlines())), (2, 1), mixed.stderr)

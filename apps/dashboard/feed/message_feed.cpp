@@ -190,7 +190,7 @@ void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at
     emergency_ns_ = at_ns;
   }
   if (const std::string text = event.text().to_string();
-      event.source() == "rig" && text.starts_with(device_rig::kPartsNote)) {
+      device_rig::is_parts_note(event.source().to_string(), text)) {
     rig_parts_ = text.substr(device_rig::kPartsNote.size());
   }
   if (event.kind() == stillhand_msgs::EVENT_INCOMPATIBLE_QOS) {

@@ -36,10 +36,10 @@ void add_series(report::Panel& panel, const Campaign& campaign, TrialTask task, 
     if (key.mitigation == 0) continue;
     std::size_t row = 0;
     while (wanted[row] != key.mitigation) ++row;
-    const double beside = key.model == ModelOf::kOwn     ? 0.22
+    const double aside = key.model == ModelOf::kOwn     ? 0.22
                           : key.model == ModelOf::kOther ? -0.22
                                                          : 0.0;
-    const double at = static_cast<double>(wanted.size() - row) + beside;
+    const double at = static_cast<double>(wanted.size() - row) + aside;
     points.x.push_back(kPercent * cell.restored_median.median);
     points.y.push_back(at);
     for (const double end : {cell.restored_median.low, cell.restored_median.high}) {
@@ -71,7 +71,7 @@ report::Figure figure_of(const Campaign& campaign, TrialTask task) {
     panel.title = kTrialMotionNames[static_cast<std::size_t>(motion)];
     panel.x.label = "restored [%]";
     panel.x.low = -60.0;
-    panel.x.high = 105.0;
+    panel.x.high = 125.0;
     panel.y.low = 0.4;
     panel.y.high = static_cast<double>(wanted.size()) - 0.4;
     for (std::size_t row = 1; row < wanted.size(); ++row) {

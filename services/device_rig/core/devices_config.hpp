@@ -78,9 +78,9 @@ struct DriveConfig {
     visit("max_age_ticks", self.max_age_ticks, Range{2.0, 100.0},
           "[ticks] oldest reply that counts");
     visit("max_torque_n_m", self.max_torque_n_m, Range{0.0, 30.0},
-          "[N m] largest torque of a command; the drive gets it as its own bound, too");
+          "[N m] largest torque of a command; a bound of the drive, too");
     visit("max_current_a", self.max_current_a, Range{0.1, 100.0},
-          "[A] largest servo.max_current_A of the drive; a drive with more is refused");
+          "[A] largest current limit of the drive; a drive with more is refused");
     visit("torque_sign", self.torque_sign, Range{-1.0, 1.0},
           "[-] 1: a positive torque pushes the hand to the right; -1: to the left");
     visit("angle_sign", self.angle_sign, Range{-1.0, 1.0},

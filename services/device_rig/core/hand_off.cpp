@@ -56,7 +56,7 @@ std::string push_fault(const Push& push, double least_m) {
         "if the angle at the stops was wrong)",
         side);
   }
-  if (along_m < least_m) {
+  if (!(along_m >= least_m)) {
     return fmt::format(
         "{:+.2f} N to the {} moved the stick by {:.2g} mm, less than {:.2g}: it is held, its "
         "friction is larger, or the torque is smaller than it should be",

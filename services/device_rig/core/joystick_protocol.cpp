@@ -35,7 +35,7 @@ std::string_view JoystickProtocol::order(Order order, double torque_n_m) noexcep
                              ? std::clamp(torque_n_m / config_.max_torque_n_m, -1.0, 1.0)
                              : 0.0;
     record.kind = ForceRecord::kPlay;
-    record.level = static_cast<std::int16_t>(std::lround(kMostLevel * share));
+    record.level = static_cast<std::int16_t>(std::lround(kMostLevel * config_.gain * share));
     record.length_ms = static_cast<std::uint16_t>(std::lround(1e3 * config_.watchdog_s));
   }
   std::memcpy(record_.data(), &record, sizeof(record));

@@ -9,4 +9,9 @@ namespace stillhand::device_rig {
 /// at the first tick and at each trial.  What reads a session names its parts by this note.
 inline constexpr std::string_view kPartsNote = "rig of devices: ";
 
+/// An event's source and text are that note.
+constexpr bool is_parts_note(std::string_view source, std::string_view text) {
+  return source == "rig" && text.starts_with(kPartsNote);
+}
+
 }  // namespace stillhand::device_rig

@@ -115,6 +115,7 @@ void find_bandwidth(PlatformResponse& out) {
     const PlatformLine& low = out.lines[i - 1];
     const PlatformLine& high = out.lines[i];
     if (level(high) > down) continue;
+    if (!(std::abs(high.response) > 0.0)) return;  // no motion there at all: no place between
     const double fall = level(low) - level(high);
     const double u = (level(low) - down) / fall;
     const double octaves = std::log(high.frequency_hz / low.frequency_hz);

@@ -21,7 +21,7 @@ inline constexpr double kInertiaCorner_hz = 10.0;
 ///
 /// It needs no model of the person, and resists what the person wants as much as what shakes it.
 /// With the delay and the filter of a sampled loop it is passive only up to some frequency;
-/// impedance_choice.hpp states it.  The force has no bound of its own: the envelope follows.
+/// passive_up_to_hz() of design.hpp states it.  The force has no bound of its own: the envelope follows.
 /// Pure; step() never allocates or throws.
 class StickImpedance {
  public:

@@ -35,6 +35,8 @@ TEST(HandOffTest, APushMovesTheStickItsWayAndIsMeasured) {
   EXPECT_THAT(push_fault({-1.0, -1.0, 0.0012}, 0.001), HasSubstr("change drive.torque_sign"));
   EXPECT_THAT(push_fault({1.0, 1.0, 0.0002}, 0.001), HasSubstr("friction is larger"));
   EXPECT_THAT(push_fault({1.0, 0.1, 0.0012}, 0.001), HasSubstr("stick.lever_m"));
+  EXPECT_THAT(push_fault({1.0, 1.0, std::nan("")}, 0.001), HasSubstr("it is held"));
+  EXPECT_THAT(push_fault({1.0, std::nan(""), 0.0012}, 0.001), HasSubstr("stick.lever_m"));
 }
 
 TEST(HandOffTest, AStrokeHasItsLengthAndItsAcceleration) {

@@ -22,6 +22,7 @@ class JoystickProtocolTest : public testing::Test, protected DriveListener {
     DriveConfig config;
     config.max_torque_n_m = 2.0;
     config.watchdog_s = 0.05;
+    config.gain = 0.25;
     return config;
   }
   ForceRecord order(Order order, double torque_n_m = 0.0) {
@@ -46,8 +47,8 @@ TEST_F(JoystickProtocolTest, EveryForceHasALengthAndABound) {
   const ForceRecord half = order(Order::kTorque, 1.0);
   EXPECT_EQ(half.kind, ForceRecord::kPlay);
   EXPECT_EQ(half.length_ms, 50);
-  EXPECT_NEAR(half.level, 16384, 1);
-  EXPECT_EQ(order(Order::kTorque, -50.0).level, -32767);
+  EXPECT_NEAR(half.level, 0.25 * 16384, 1);
+  EXPECT_EQ(order(Order::kTorque, -50.0).level, -8192);
   EXPECT_EQ(order(Order::kTorque, std::nan("")).level, 0);
   EXPECT_EQ(order(Order::kStop).kind, ForceRecord::kStop);
   EXPECT_EQ(order(Order::kQuery).kind, ForceRecord::kAsk);
@@ -92,7 +93,7 @@ TEST(ForceLatchTest, AForceThatRanOutStaysAwayUntilAStop) {
 TEST(JoystickPortTest, WhatIsNoJoystickIsRefused) {
   const auto refusal = [](const char* path) -> std::string {
     try {
-      const JoystickPort sut(path, 0.5);
+      const JoystickPort sut(path);
     } catch (const ConfigError& error) {
       return error.what();
     }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "idl/processes.hpp"
 
@@ -13,6 +15,7 @@ namespace stillhand::lab {
 namespace {
 
 using testing::Contains;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
@@ -76,11 +79,14 @@ TEST_F(LaunchesTest, EveryProcessGetsBusSeedAndPlacesAndEndsWithTheLab) {
 
 TEST_F(LaunchesTest, ARigOfDevicesIsAnotherProgramWithTheFileOfItsDevices) {
   EXPECT_THAT(of("rig").arguments, Not(Contains("--devices")));
-  options_.devices = "/config/devices.yaml";
+  options_.devices = std::filesystem::path(testing::TempDir()) / "launches_test_devices.yaml";
+  std::ofstream(options_.devices) << "signals:\n  platform: plain_udp\n";
   for (const Launch& launch : all()) {
     const bool rig = launch.name == "rig";
     EXPECT_EQ(launch.executable, "/programs/stillhand-" + (rig ? "device_rig" : launch.name));
-    EXPECT_EQ(value_of(launch, "--devices"), rig ? "/config/devices.yaml" : "");
+    EXPECT_EQ(value_of(launch, "--devices"), rig ? options_.devices.string() : "");
+    EXPECT_THAT(value_of(launch, "--rig-parts"),
+                launch.name == "display" ? HasSubstr("plain_udp") : IsEmpty());
   }
 }
 
