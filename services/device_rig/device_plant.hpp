@@ -46,7 +46,9 @@ class DevicePlant final : public rig::Plant {
   /// The device that measures a signal, with its serial number; empty: the signal is simulated.
   [[nodiscard]] std::string device_of(CalibratedSignal signal) const;
   /// The platform; empty: it is simulated.
-  [[nodiscard]] std::string platform_device() const { return device_rig::platform_device(devices_); }
+  [[nodiscard]] std::string platform_device() const {
+    return device_rig::platform_device(devices_);
+  }
   /// All that the check with the hand off is of; empty where no drive pushes.
   [[nodiscard]] std::string pushing_devices() const;
   /// Torque that the drive measures, as a force at the hand, + right [N]; NaN: unknown.

@@ -37,8 +37,8 @@ void add_series(report::Panel& panel, const Campaign& campaign, TrialTask task, 
     std::size_t row = 0;
     while (wanted[row] != key.mitigation) ++row;
     const double aside = key.model == ModelOf::kOwn     ? 0.22
-                          : key.model == ModelOf::kOther ? -0.22
-                                                         : 0.0;
+                         : key.model == ModelOf::kOther ? -0.22
+                                                        : 0.0;
     const double at = static_cast<double>(wanted.size() - row) + aside;
     points.x.push_back(kPercent * cell.restored_median.median);
     points.y.push_back(at);

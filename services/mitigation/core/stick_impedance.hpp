@@ -21,8 +21,8 @@ inline constexpr double kInertiaCorner_hz = 10.0;
 ///
 /// It needs no model of the person, and resists what the person wants as much as what shakes it.
 /// With the delay and the filter of a sampled loop it is passive only up to some frequency;
-/// passive_up_to_hz() of design.hpp states it.  The force has no bound of its own: the envelope follows.
-/// Pure; step() never allocates or throws.
+/// passive_up_to_hz() of design.hpp states it.  The force has no bound of its own: the envelope
+/// follows. Pure; step() never allocates or throws.
 class StickImpedance {
  public:
   /// @throws stillhand::ConfigError unless all are finite, K and B not negative, |M| <= 2 kg and

@@ -15,7 +15,6 @@ namespace stillhand::lab {
 namespace {
 
 using testing::Contains;
-using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
@@ -85,8 +84,8 @@ TEST_F(LaunchesTest, ARigOfDevicesIsAnotherProgramWithTheFileOfItsDevices) {
     const bool rig = launch.name == "rig";
     EXPECT_EQ(launch.executable, "/programs/stillhand-" + (rig ? "device_rig" : launch.name));
     EXPECT_EQ(value_of(launch, "--devices"), rig ? options_.devices.string() : "");
-    EXPECT_THAT(value_of(launch, "--rig-parts"),
-                launch.name == "display" ? HasSubstr("plain_udp") : IsEmpty());
+    const std::string parts = value_of(launch, "--rig-parts");
+    EXPECT_EQ(parts.find("plain_udp") != std::string::npos, launch.name == "display");
   }
 }
 
