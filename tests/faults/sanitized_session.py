@@ -47,7 +47,7 @@ def session(options, service):
     # Fast DDS deletes objects through a base class of another size (tests/CMakeLists.txt).
     environment = dict(os.environ, ASAN_OPTIONS=f"new_delete_type_mismatch=0:log_path={reports}/asan",
                        UBSAN_OPTIONS=f"print_stacktrace=1:log_path={reports}/ubsan",
-                       TSAN_OPTIONS=f"log_path={reports}/tsan")
+                       TSAN_OPTIONS=f"suppressions={TESTS}/support/tsan.supp:log_path={reports}/tsan")
     lab = LabProcess(folder / "run", "--conditions", "C", "--identify-seconds", 5, "--trial-seconds", 5, "--seed", 2,
                      "--config", loose_settings(folder / "config"), "--no-real-time", program=program,
                      environment=environment)

@@ -3,9 +3,6 @@
 
 The rig process stops while the motor pushes in condition C, so that the drive's own watchdog has to end the torque.
 """
-import os
-import signal
-
 import devices_test
 import lab_process
 from iio_context import IioContext, missing
@@ -24,9 +21,9 @@ class OdriveCase(devices_test.DevicesCase):
 class OdriveTest(OdriveCase):
     def test_a_rig_process_that_stops_leaves_no_torque(self):
         lab, laboratory = self.pushing()
-        laboratory.order("mark")
-        os.kill(lab.pid_of("device_rig"), signal.SIGSTOP)
-        seen = self.assert_torque_ended(laboratory, devices_test.DRIVE_LIMIT_MS, "SIGSTOP of the rig's process")
+        took_ms = devices_test.marked_and_stopped(laboratory, lab.pid_of("device_rig"))
+        seen = self.assert_torque_ended(laboratory, devices_test.DRIVE_LIMIT_MS + took_ms,
+                                        "SIGSTOP of the rig's process")
         self.assertEqual(seen["timeouts"], 1)
         self.assertEqual(lab.end_status(), 1, lab.errors())
         self.assert_nothing_left(lab)
