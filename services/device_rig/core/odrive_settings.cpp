@@ -67,7 +67,7 @@ std::string write(std::string_view name, double value) {
 std::optional<SettingFault> at_most(std::string_view name, std::string_view text, double most,
                                     const char* unit, const char* from) {
   const auto value = real_of(text);
-  // The drive answers with six decimals, so what it was told may come back rounded up.
+  // The drive answers with six decimals, so what it was given may come back rounded up.
   constexpr double kHalfDecimal = 5e-7;
   if (value && *value > 0.0 && *value <= most + kHalfDecimal) return std::nullopt;
   return SettingFault{std::string(name), std::string(text),
