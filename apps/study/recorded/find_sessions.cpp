@@ -100,6 +100,21 @@ std::string exclusion_of(const fs::path& participant) {
   return reason;
 }
 
+// Of an experiment's folder: .../CODE/sessions/01.  A recording that does not state its participant
+// has the folder's.
+void of_participant(const fs::path& session, SessionFile& file) {
+  const fs::path participant = session.parent_path().parent_path();
+  const std::string code = name_of(participant);
+  file.excluded = exclusion_of(participant);
+  if (file.digest.empty()) {
+    file.participant = code;
+    file.session = name_of(session);
+  } else if (file.participant != code) {
+    throw ConfigError(file.path.string(), "a recording of participant " + file.participant,
+                      "one of " + code + ", whose folder it is in");
+  }
+}
+
 void check_together(const SessionFile& one, const SessionFile& next) {
   if (one.participant == next.participant && one.session == next.session) {
     throw ConfigError(next.path.string(),
@@ -120,21 +135,7 @@ std::vector<SessionFile> find_sessions(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     for (const fs::path& session : session_folders(folder)) {
       out.push_back(session_file(session));
-      const bool in_experiment = session != folder;
-      const fs::path participant = session.parent_path().parent_path();
-      const std::string code = name_of(participant);
-      if (in_experiment) out.back().excluded = exclusion_of(participant);
-      if (in_experiment && out.back().participant != code && !out.back().digest.empty()) {
-        throw ConfigError(out.back().path.string(),
-                          "a recording of participant " + out.back().participant,
-                          "one of " + code + ", whose folder it is in");
-      }
-      // In an experiment's folder, a recording that does not state its participant has the
-      // folder's.
-      if (in_experiment && out.back().digest.empty()) {
-        out.back().participant = code;
-        out.back().session = name_of(session);
-      }
+      if (session != folder) of_participant(session, out.back());
     }
   }
   std::ranges::sort(

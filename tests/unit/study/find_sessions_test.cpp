@@ -63,6 +63,16 @@ TEST_F(FindSessionsTest, ASessionWithoutAnExperimentHasTheNameOfItsFolder) {
   EXPECT_EQ(found[0].digest, "");
 }
 
+TEST_F(FindSessionsTest, AFolderMayBeNamedFromTheCurrentOne) {
+  (void)session("P01", {});
+  (void)session("runs/P02", {});
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  const std::string said = refusal({"P01", "runs/P02"});
+  fs::current_path(before);
+  EXPECT_EQ(said, "accepted");
+}
+
 TEST_F(FindSessionsTest, AnExperimentGivesItsSessionsByParticipantThenSession) {
   (void)session("e/participants/P02/sessions/01", of("P02", "01"));
   (void)session("e/participants/P01/sessions/02", of("P01", "02"));
