@@ -340,6 +340,20 @@ bool DevicePlant::prepared() const noexcept {
   return stick && seat && unknown_ticks_ == 0;
 }
 
+const char* DevicePlant::unknown_iio() noexcept {
+  const auto late = [&](IioLink& link, const IioConfig& config) {
+    const IioSample& newest = link.newest();
+    return is_young(newest.old, newest.old_at_ns, now_ns_, config.max_age_ticks);
+  };
+  if (std::isnan(load_cell_v_)) {
+    return late(*load_cell_, devices_.load_cell) ? "the samples of the load cell come too late"
+                                                 : "the load cell is silent, or at its end";
+  }
+  return late(*accelerometer_, devices_.accelerometer)
+             ? "the samples of the accelerometer come too late"
+             : "the accelerometer is silent, or at its end";
+}
+
 void DevicePlant::judge() noexcept {
   why_ = nullptr;
   if (platform_ && !platform_fresh()) why_ = "the platform is silent";
@@ -348,10 +362,7 @@ void DevicePlant::judge() noexcept {
     why_ = text_.data();
   }
   constexpr Tick kRail_ticks = 20;
-  if (unknown_ticks_ >= kRail_ticks) {
-    why_ = std::isnan(load_cell_v_) ? "the load cell is silent, or at its end"
-                                    : "the accelerometer is silent, or at its end";
-  }
+  if (unknown_ticks_ >= kRail_ticks) why_ = unknown_iio();
   if (acceleration_.repeats()) why_ = "the accelerometer repeats one number while the seat moves";
   if (side_.opposed()) why_ = "the accelerometer moves against the platform: its sign is wrong";
   if (force_.repeats()) why_ = "the load cell repeats one number while the seat moves";

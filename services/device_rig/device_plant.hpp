@@ -65,6 +65,7 @@ class DevicePlant final : public rig::Plant {
   void drive_motor(const rig::RigInput& input, rig::RigOutput& output) noexcept;
   void watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept;
   void judge() noexcept;
+  [[nodiscard]] const char* unknown_iio() noexcept;
   [[nodiscard]] bool at_rail() const noexcept;
   [[nodiscard]] bool drive_fresh() const noexcept;
   [[nodiscard]] bool platform_fresh() const noexcept;

@@ -14,11 +14,13 @@ namespace {
 
 constexpr double kTick_hz = 1000.0;
 constexpr double kNsPerMs = 1e6;
+// A reader that stood still reads what waits, as long as that takes no longer than this.
+constexpr std::int64_t kCatchUp_ns = 10'000'000;
 
 }  // namespace
 
 IioLink::IioLink(const IioConfig& config, std::vector<std::string> channels, double factor)
-    : factor_(factor), device_(config.uri, config.device, std::move(channels)) {
+    : factor_(factor), device_(config.uri, config.device, std::move(channels), kTick_hz) {
   // Slower than the loop, and a sample would count twice as a new one.
   if (device_.rate_hz() > 0.0 && device_.rate_hz() < kTick_hz) {
     throw ConfigError("sampling_frequency of IIO device " + config.device,
@@ -43,23 +45,41 @@ void IioLink::work(const std::stop_token& stop) {
       continue;
     }
     ++sample_.opened;
-    clock_.clear();
-    number_ = 0;
+    begin_again();
     if (!stop.stop_requested()) runtime::sleep_until_ns(runtime::monotonic_ns() + kAgain_ns);
   }
+}
+
+void IioLink::begin_again() noexcept {
+  clock_.clear();
+  number_ = 0;
+  behind_ns_ = 0;
+}
+
+// What waits comes one block a round trip: behind an iiod that is hardly quicker than the device,
+// old samples would come for as long as the session lasts.
+void IioLink::take_old(std::int64_t now_ns) noexcept {
+  ++sample_.old;
+  sample_.old_at_ns = now_ns;
+  if (behind_ns_ == 0) behind_ns_ = now_ns;
+  if (now_ns - behind_ns_ >= kCatchUp_ns) {
+    ++sample_.skipped;
+    device_.skip();
+    begin_again();
+  }
+  samples_.store(sample_);
 }
 
 void IioLink::take(std::span<const std::int64_t> raw) noexcept {
   const std::int64_t now_ns = runtime::monotonic_ns();
   // The samples themselves count the device's time: one that waited in a buffer falls behind.
   const double rate_hz = device_.rate_hz() > 0.0 ? device_.rate_hz() : kTick_hz;
-  const double counted_ms = 1e3 * static_cast<double>(number_++) / rate_hz;
+  const double counted_ms = 1e3 * static_cast<double>(number_) / rate_hz;
+  number_ += device_.block();
   const auto verdict = clock_.step(static_cast<std::int16_t>(std::llround(counted_ms)),
                                    static_cast<double>(now_ns) / kNsPerMs);
-  if (verdict == ReplyClock::Verdict::kOld) {
-    ++sample_.old;
-    return samples_.store(sample_);
-  }
+  if (verdict == ReplyClock::Verdict::kOld) return take_old(now_ns);
+  behind_ns_ = 0;
   for (std::size_t i = 0; i < device_.formats().size() && i < raw.size(); ++i) {
     const runtime::IioFormat& format = device_.formats()[i];
     sample_.values[i] =

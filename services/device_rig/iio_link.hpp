@@ -24,8 +24,10 @@ struct IioSample {
   std::int64_t at_ns = 0;   ///< CLOCK_MONOTONIC when the newest was read
   /// [m/s^2] or [V], one a channel; NaN: at an end of the converter's range
   std::array<double, kMostChannels> values{};
-  std::uint64_t old = 0;     ///< samples that waited in a buffer (DR-10)
-  std::uint64_t opened = 0;  ///< times that the buffer was opened again
+  std::uint64_t old = 0;       ///< samples that waited in a buffer (DR-10)
+  std::int64_t old_at_ns = 0;  ///< when the newest of these was read; 0: never
+  std::uint64_t skipped = 0;   ///< times that what waited was thrown away
+  std::uint64_t opened = 0;    ///< times that the buffer was opened again
 };
 
 /// An IIO device, in a thread of its own: a read may wait for ever.  The loop takes the newest
@@ -47,6 +49,8 @@ class IioLink {
  private:
   void work(const std::stop_token& stop);
   void take(std::span<const std::int64_t> raw) noexcept;
+  void take_old(std::int64_t now_ns) noexcept;
+  void begin_again() noexcept;
 
   double factor_;
   runtime::IioDevice device_;
@@ -55,8 +59,9 @@ class IioLink {
   // The thread's.
   IioSample sample_;
   ReplyClock clock_;
-  std::uint64_t number_ = 0;  ///< of samples since the buffer was opened
-  std::jthread thread_;       // last
+  std::uint64_t number_ = 0;    ///< of samples since the buffer was opened
+  std::int64_t behind_ns_ = 0;  ///< since when every sample is old; 0: the newest is young
+  std::jthread thread_;         // last
 };
 
 }  // namespace stillhand::device_rig

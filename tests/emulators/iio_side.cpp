@@ -2,11 +2,14 @@
 #include "tests/emulators/iio_side.hpp"
 
 #include <fcntl.h>
+#include <sys/inotify.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <utility>
 
 namespace stillhand::emulators {
@@ -29,13 +32,49 @@ std::int32_t shifted(double count, int shift) {
 }  // namespace
 
 IioSide::IioSide(std::filesystem::path accelerometer, std::filesystem::path bridge)
-    : accelerometer_{std::move(accelerometer)}, bridge_{std::move(bridge)} {
+    : readers_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
+      accelerometer_{std::move(accelerometer)},
+      bridge_{std::move(bridge)} {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves is no reason to end
+  watch(accelerometer_);
+  watch(bridge_);
 }
 
 IioSide::~IioSide() {
   for (const Fifo* fifo : {&accelerometer_, &bridge_}) {
     if (fifo->descriptor >= 0) close(fifo->descriptor);
+  }
+  close(readers_);
+}
+
+void IioSide::watch(Fifo& fifo) const {
+  fifo.watch = inotify_add_watch(readers_, fifo.path.c_str(), IN_CLOSE);
+}
+
+// A kernel empties its buffer when it is opened again; a FIFO keeps its bytes as long as this side
+// has it open.
+void IioSide::empty(const Fifo& fifo) {
+  const int reader = open(fifo.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  std::array<char, 4096> bytes{};
+  while (reader >= 0 && read(reader, bytes.data(), bytes.size()) > 0) {
+  }
+  if (reader >= 0) close(reader);
+}
+
+void IioSide::empty_those_left() {
+  alignas(inotify_event) std::array<char, 4096> events{};
+  const ssize_t size = read(readers_, events.data(), events.size());
+  if (size <= 0) return;
+  for (ssize_t at = 0; at < size;) {
+    inotify_event event{};
+    std::memcpy(&event, events.data() + at, sizeof(event));
+    at += static_cast<ssize_t>(sizeof(event) + event.len);
+    for (const Fifo* fifo : {&accelerometer_, &bridge_}) {
+      if (fifo->watch == event.wd) empty(*fifo);
+    }
+  }
+  // Its own leaving is no event.
+  while (read(readers_, events.data(), events.size()) > 0) {
   }
 }
 
@@ -50,6 +89,7 @@ void IioSide::put(Fifo& fifo, std::int32_t word) {
 }
 
 void IioSide::write(const rig::RawSample& raw) {
+  empty_those_left();
   if (starved_) return;
   const double accel = raw.accel_y_v / kBoard_v_m_s2 / kAccelStep_m_s2;
   put(accelerometer_, shifted(saturated_ ? kAccelEnd : accel, kAccelShift));

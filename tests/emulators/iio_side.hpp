@@ -10,7 +10,8 @@ namespace stillhand::emulators {
 
 /// An accelerometer and a bridge converter whose samples Debian's iiod takes from two FIFOs, in the
 /// place of a kernel's buffers (tests/integration/iio_context.py: formats and scales).  A FIFO is
-/// open only while somebody reads it: nothing is kept for a reader that comes later.
+/// open only while somebody reads it, and emptied when a reader leaves: nothing is kept for one
+/// that comes later.
 class IioSide {
  public:
   IioSide(std::filesystem::path accelerometer, std::filesystem::path bridge);
@@ -28,10 +29,15 @@ class IioSide {
  private:
   struct Fifo {
     std::filesystem::path path;
+    int watch = -1;  ///< of inotify
     int descriptor = -1;
   };
+  void watch(Fifo& fifo) const;
+  static void empty(const Fifo& fifo);
   static void put(Fifo& fifo, std::int32_t word);
+  void empty_those_left();
 
+  int readers_;  ///< inotify
   Fifo accelerometer_;
   Fifo bridge_;
   bool starved_ = false;

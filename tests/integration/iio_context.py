@@ -24,7 +24,7 @@ mount --bind "$1/bus" /sys/bus
 touch "$1/dev/null"
 mount --bind /dev/null "$1/dev/null"
 mount --rbind "$1/dev" /dev
-exec "$2" -p "$3"
+exec $4 "$2" -p "$3"
 """
 
 
@@ -74,9 +74,16 @@ class IioContext:
         os.mkfifo(self.fifos[name])
 
     def begin(self):
-        self._process = subprocess.Popen([*unshare(), "bash", "-c", MOUNTED, "iiod", str(self.folder), IIOD, str(self.port)],
+        self._process = subprocess.Popen([*unshare(), "bash", "-c", MOUNTED, "iiod", str(self.folder), IIOD, str(self.port), self.real_time()],
                                          stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         wait_for("iiod", self._answers, START_LIMIT_S)
+
+    @staticmethod
+    def real_time():
+        """Words before iiod's own. It is a stage of the control path: with ordinary priority its threads wait behind
+        every compiler, several times for each sample (services/device_rig/README.md, IIO devices)."""
+        words = ["chrt", "--fifo", "40"]
+        return " ".join(words) if subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0 else ""
 
     def _answers(self):
         with socket.socket() as one:

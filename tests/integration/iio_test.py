@@ -70,6 +70,29 @@ class DriverTest(LabTestCase):
         feeder.join(LIMIT_S)
         self.assertEqual([int(word) for line in done.stdout.splitlines()[1:] for word in line.split()], words)
 
+    def test_a_device_of_4_khz_is_read_in_blocks_of_a_tick(self):
+        (self.context.folder / "bus/iio/devices/iio:device0/sampling_frequency").write_text("4000\n")
+        lines = self.answer(SAMPLES, self.context.uri, "accelerometer", "accel_y", COUNT // 4).decode().split("\n")
+        self.assertEqual([int(line) for line in lines[1:-1]], NUMBERS[3::4])
+
+    # A buffer of the kernel is emptied when it is opened again; a FIFO, once nobody has it open.
+    def test_what_waits_is_thrown_away(self):
+        before, waiting, new = NUMBERS[:10], [100000] * 2000, NUMBERS[10:20]
+
+        def write(numbers):
+            with open(self.context.fifos["accelerometer"], "wb", buffering=0) as fifo:
+                fifo.write(b"".join(struct.pack("<I", (number << SHIFT) & 0xffffffff) for number in numbers))
+        feeder = threading.Thread(target=write, args=(before + waiting,), daemon=True)
+        feeder.start()
+        words = [str(SAMPLES), self.context.uri, "accelerometer", "accel_y", str(len(before + new)), str(len(before))]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as driver:
+            self.addCleanup(driver.kill)
+            lines = [driver.stdout.readline() for _ in range(len(before) + 2)]
+            self.assertEqual([int(line) for line in lines[1:-1]], before)
+            self.assertEqual(lines[-1], "skipped\n")
+            write(new)
+            self.assertEqual([int(driver.stdout.readline()) for _ in new], new)
+
     def test_a_context_that_comes_back_is_opened_again(self):
         words = [str(SAMPLES), self.context.uri, "accelerometer", "accel_y", str(COUNT)]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as driver:

@@ -3,8 +3,10 @@
 
 #include <iio.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -69,8 +71,12 @@ std::int64_t converted(const iio_channel* channel, const void* sample) {
 
 }  // namespace
 
-IioDevice::IioDevice(std::string uri, std::string device, std::vector<std::string> channels)
-    : uri_(std::move(uri)), name_(std::move(device)), channel_names_(std::move(channels)) {
+IioDevice::IioDevice(std::string uri, std::string device, std::vector<std::string> channels,
+                     double reads_hz)
+    : uri_(std::move(uri)),
+      name_(std::move(device)),
+      channel_names_(std::move(channels)),
+      reads_hz_(reads_hz) {
   try {
     open();
   } catch (...) {
@@ -128,12 +134,28 @@ void IioDevice::open() {
   }
   if (iio_device_attr_read_double(device_, "sampling_frequency", &rate_hz_) < 0) rate_hz_ = 0.0;
   serial_ = serial_of(context_, device_);
-  const std::lock_guard lock(mutex_);
-  if (!cancelled_) buffer_ = iio_device_create_buffer(device_, 1, false);
+  block_ = static_cast<std::size_t>(std::max(1.0, rate_hz_ / reads_hz_));
+  make_buffer();
   if (buffer_ == nullptr) {
     throw ConfigError("buffer of IIO device " + name_, error_text(),
                       "one that no other program has, with a trigger where the device needs one");
   }
+}
+
+void IioDevice::make_buffer() noexcept {
+  const std::lock_guard lock(mutex_);
+  if (!cancelled_) buffer_ = iio_device_create_buffer(device_, block_, false);
+}
+
+void IioDevice::skip() noexcept {
+  if (buffer_ == nullptr) return;
+  {
+    const std::lock_guard lock(mutex_);
+    iio_buffer_destroy(buffer_);
+    buffer_ = nullptr;
+  }
+  make_buffer();
+  if (buffer_ == nullptr) close();
 }
 
 void IioDevice::close() noexcept {
@@ -160,8 +182,10 @@ bool IioDevice::read(std::span<std::int64_t> numbers) {
     close();
     return false;
   }
+  const std::ptrdiff_t newest = static_cast<std::ptrdiff_t>(block_ - 1) * iio_buffer_step(buffer_);
   for (std::size_t i = 0; i < channels_.size() && i < numbers.size(); ++i) {
-    numbers[i] = converted(channels_[i], iio_buffer_first(buffer_, channels_[i]));
+    const void* first = iio_buffer_first(buffer_, channels_[i]);
+    numbers[i] = converted(channels_[i], static_cast<const char*>(first) + newest);
   }
   return true;
 }

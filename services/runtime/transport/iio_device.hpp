@@ -28,22 +28,29 @@ struct IioFormat {
 /// ignore SIGPIPE, as runtime::Stop does.
 class IioDevice {
  public:
-  /// Opens the device and its buffer of one sample.
+  /// Opens the device and its buffer.
   /// @param uri      libiio's: "local:", "ip:192.168.1.20"
   /// @param device   name or id
   /// @param channels  ids of input channels, {"accel_y"}; at least one
+  /// @param reads_hz  a device that samples more often is read in blocks: behind an iiod each read
+  ///                  is a round trip
   /// @throws ConfigError for a context, a device or a channel that is not there, with those that
   /// are
-  IioDevice(std::string uri, std::string device, std::vector<std::string> channels);
+  IioDevice(std::string uri, std::string device, std::vector<std::string> channels,
+            double reads_hz);
   ~IioDevice();
   IioDevice(const IioDevice&) = delete;
   IioDevice& operator=(const IioDevice&) = delete;
 
-  /// Waits for the next sample, 1 s at most where the context keeps its time-out; a pulled cable
-  /// may hold it for ever, until cancel().
-  /// @param numbers  those of the converter, one a channel
+  /// Waits for the next block of samples, 1 s at most where the context keeps its time-out; a
+  /// pulled cable may hold it for ever, until cancel().
+  /// @param numbers  those of the converter in the newest sample, one a channel
   /// @returns false if none came: all is closed then, and the next call opens it again
   bool read(std::span<std::int64_t> numbers);
+  /// Samples that a read takes.
+  [[nodiscard]] std::size_t block() const noexcept { return block_; }
+  /// Throws away what waits in the buffers on the way: the next sample is taken after this call.
+  void skip() noexcept;
   /// Ends a read() that waits, and all later ones.  Any thread.
   void cancel() noexcept;
 
@@ -58,6 +65,7 @@ class IioDevice {
  private:
   void open();
   void close() noexcept;
+  void make_buffer() noexcept;
   [[nodiscard]] iio_device* find_device() const;
   [[nodiscard]] iio_channel* find_channel(const std::string& name) const;
 
@@ -65,7 +73,9 @@ class IioDevice {
   std::string name_;
   std::vector<std::string> channel_names_;
   std::vector<IioFormat> formats_;
+  double reads_hz_;
   double rate_hz_ = 0.0;
+  std::size_t block_ = 1;
   std::string serial_ = "unknown";
   iio_context* context_ = nullptr;
   iio_device* device_ = nullptr;
