@@ -152,7 +152,34 @@ FAULTS = {
                            said="the accelerometer is silent, or at its end"),
     "iiod_died": Fault("IIO: iiod dies", hurt=lambda bench: bench.iio.end, iio=True, more_ms=20,
                        said="the (load cell|accelerometer) is silent, or at its end"),
+    "iiod_stands": Fault("IIO: iiod stands still (SIGSTOP)", hurt=lambda bench: bench.iio.stand_still, iio=True, more_ms=20,
+                         said="the (load cell|accelerometer) is silent, or at its end"),
 }
+
+# The same of an ODrive, whose lines, watchdog and error words are others. Acceleration and force come from IIO devices.
+ODRIVE = {
+    "rig_killed": Fault("the rig's process is killed", hurt=kill("device_rig"), drive_alone=True, said="rig.* ended: signal 9"),
+    "rig_stopped": Fault("the rig's process is stopped", hurt=freeze("device_rig"), drive_alone=True,
+                         said="life sign|the drive is silent"),
+    "cable_out": Fault("cable out (terminal closed)", "cable", 0, said=SILENT + "|the drive was away"),
+    "silent": Fault("silent, port open", "silent", 1, said=SILENT),
+    "deaf": Fault("deaf", "deaf", 1, said=SILENT),
+    "late_5_ms": Fault("answers 5 ms late", "late", 5, said=None),
+    "late_50_ms": Fault("answers 50 ms late", "late", 50, said=SILENT),
+    "repeated": Fault("the same answer again and again", "repeated", 1, said=SILENT),
+    "garbage": Fault("garbage", "garbage", 1, said=SILENT),
+    "wrong_checksum": Fault("wrong checksum", "damaged", 1, said=SILENT),
+    "truncated": Fault("answers cut", "truncated", 1, said=SILENT),
+    "mixed": Fault("two lines of each answer change places", "mixed", 1, said=SILENT + "|the drive was away"),
+    "lost": Fault("a line of each answer is missing", "lost", 1, said=SILENT),
+    "reboot": Fault("the drive starts again", "reboot", said="the drive was away or started again"),
+    "axis_error": Fault("an error of the axis (0x40000)", "fault", 0x40000, said="the drive reports 0x40000 in axis0.error"),
+    "no_position": Fault("the encoder does not respond", "nan", 1, said="the drive reports 0x|the drive went off by itself"),
+    "encoder_jump": Fault("the encoder jumps by a quarter turn", "slip", 0.25, said="the angle of the drive jumped"),
+}
+for _name, _fault in ODRIVE.items():
+    _fault.title, _fault.iio, _fault.keywords = "ODrive: " + _fault.title, True, {"odrive": True}
+    FAULTS["odrive_" + _name] = _fault
 
 
 class Bench:
@@ -252,13 +279,14 @@ class Session(Bench):
 
 
 def ended_by(seen, fault):
-    if fault.said is None and fault.alone and seen["mode"] == 10:
+    if fault.said is None and fault.alone and seen["follows"]:
         return "goes on"
     if seen["timeouts"] > 0:
         return "the drive's watchdog"
     if seen["torque_after_fault_ms"] == 0.0:
         return "the drive itself"
-    return {0: "a stop of the host", 10: "the host's ramp"}.get(seen["mode"], f"mode {seen['mode']}")
+    off = 1 if "odrive" in fault.keywords else 0
+    return "the host's ramp" if seen["follows"] else "a stop of the host" if seen["mode"] == off else f"mode {seen['mode']}"
 
 
 def rules(seen):
@@ -290,7 +318,7 @@ def run(name, form, folder):
         if fault.drive_alone and seen["timeouts"] != 1:
             findings.append(f"the watchdog tripped {seen['timeouts']} times")
         if fault.said is None and not fault.drive_alone:
-            pushes = seen["mode"] == 10 and (form is Session or seen["torque_n_m"] != 0.0)
+            pushes = seen["follows"] and (form is Session or seen["torque_n_m"] != 0.0)
             if not bench.goes_on() or (fault.alone and not pushes):
                 findings.append("the work does not go on")
         said = "" if fault.said is None and not fault.drive_alone else bench.says()

@@ -35,8 +35,12 @@ class DevicesCase(LabTestCase):
         laboratory = self.laboratory(domain=domain, **keywords)
         lab = self.lab("--rig", "devices", *arguments, domain=domain)
         lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
-        lab.wait_for("a torque of the drive", lambda: abs(laboratory.report()["torque_n_m"]) > PUSH_N_M, 10, 0.002)
+        self.wait_for_push(lab, laboratory)
         return lab, laboratory
+
+    @staticmethod
+    def wait_for_push(lab, laboratory):
+        lab.wait_for("a torque of the drive", lambda: abs(laboratory.report()["torque_n_m"]) > PUSH_N_M, 10, 0.002)
 
     def assert_torque_ended(self, laboratory, limit_ms, what):
         """The torque ended in time and stays away; every command kept the rules."""
@@ -57,6 +61,29 @@ class DevicesCase(LabTestCase):
             self.assertEqual(seen[rule], 0, rule)
         self.assertLessEqual(seen["most_torque_n_m"], 2.5)
         self.assertEqual(seen["first_torque_n_m"], 0.0)  # of the command that arms
+
+    def assert_like_the_simulated_rig(self, **keywords):
+        """A whole session, conditions A, B and C, over the devices and over the simulated rig."""
+        session = ["--conditions", "A,B,C", "--trial-seconds", 20, "--identify-seconds", 40, "--seed", 5]
+        simulated = self.lab(*session, out=self.folder / "simulated")
+        self.assertEqual(simulated.end_status(200), 0, simulated.errors())
+        domain = next_domain()
+        laboratory = self.laboratory(domain=domain, **keywords)
+        devices = self.lab("--rig", "devices", *session, "--config", self.folder / "config",
+                           out=self.folder / "devices", domain=domain)
+        self.assertEqual(devices.end_status(200), 0, devices.errors())
+        seen = laboratory.report()
+        self.assert_rules(seen)
+        self.assertEqual(seen["timeouts"], 0)
+        for name, key in (("RMS error [mm]", "rms_error_mm"), ("dwell ratio", "dwell_ratio"), ("f_c [Hz]", "crossover_hz")):
+            rows = [[lab.summary()["conditions"][each][key]["mean"] for each in "ABC"] for lab in (simulated, devices)]
+            print(f"{name}: simulated {rows[0]}, devices {rows[1]}", flush=True)
+        print("held-out VAF:", [lab.summary()["identification"]["heldout_vaf_percent"] for lab in (simulated, devices)],
+              "latency [us]:", [lab.summary()["conditions"]["C"]["sensor_to_force_us"] for lab in (simulated, devices)],
+              flush=True)
+        for each in "ABC":
+            errors = [lab.summary()["conditions"][each]["rms_error_mm"]["mean"] for lab in (simulated, devices)]
+            self.assertLess(abs(errors[1] / errors[0] - 1.0), RMS_TOLERANCE, each)
 
 
 def marked_and_stopped(laboratory, pid):
@@ -136,26 +163,7 @@ class DevicesTest(DevicesCase):
 
     @campaign
     def test_a_session_over_the_devices_is_like_one_of_the_simulated_rig(self):
-        session = ["--conditions", "A,B,C", "--trial-seconds", 20, "--identify-seconds", 40, "--seed", 5]
-        simulated = self.lab(*session, out=self.folder / "simulated")
-        self.assertEqual(simulated.end_status(200), 0, simulated.errors())
-        domain = next_domain()
-        laboratory = self.laboratory(domain=domain)
-        devices = self.lab("--rig", "devices", *session, "--config", self.folder / "config",
-                           out=self.folder / "devices", domain=domain)
-        self.assertEqual(devices.end_status(200), 0, devices.errors())
-        seen = laboratory.report()
-        self.assert_rules(seen)
-        self.assertEqual(seen["timeouts"], 0)
-        for name, key in (("RMS error [mm]", "rms_error_mm"), ("dwell ratio", "dwell_ratio"), ("f_c [Hz]", "crossover_hz")):
-            rows = [[lab.summary()["conditions"][each][key]["mean"] for each in "ABC"] for lab in (simulated, devices)]
-            print(f"{name}: simulated {rows[0]}, devices {rows[1]}", flush=True)
-        print("held-out VAF:", [lab.summary()["identification"]["heldout_vaf_percent"] for lab in (simulated, devices)],
-              "latency [us]:", [lab.summary()["conditions"]["C"]["sensor_to_force_us"] for lab in (simulated, devices)],
-              flush=True)
-        for each in "ABC":
-            errors = [lab.summary()["conditions"][each]["rms_error_mm"]["mean"] for lab in (simulated, devices)]
-            self.assertLess(abs(errors[1] / errors[0] - 1.0), RMS_TOLERANCE, each)
+        self.assert_like_the_simulated_rig()
 
 
 # The RMS error of a trial of 20 s varies from repeat to repeat; see tests/emulators/README.md.

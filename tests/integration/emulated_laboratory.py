@@ -51,7 +51,8 @@ def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, odrive=False,
     lines = ["signals:"] + [f"  {name}: {part}" for name, part in (parts | signals).items()]
     lines += ["drive:", f"  port: {link}", f"  watchdog_s: {WATCHDOG_MS / 1000}", f"  max_age_ticks: {MAX_AGE_MS}",
               f"  checksum: {'true' if uart else 'false'}"]
-    lines += ["  kind: odrive"] if odrive else []
+    # What 921600 baud carry: services/device_rig/README.md, "The drive's settings".
+    lines += ["  kind: odrive", "  period_ticks: 3"] if odrive else []
     lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}"]
     for group in ("accelerometer", "load_cell") if iio else ():
         lines += [f"{group}:", f"  uri: {iio}", f"  max_age_ticks: {MAX_AGE_MS}"]
@@ -74,7 +75,7 @@ class EmulatedLaboratory:
         words = [str(PROGRAM), "--drive-link", str(link), "--platform-port", str(port), "--config", str(self.config)]
         words += ["--domain", str(domain), "--profiles", str(PROFILES)] if domain is not None else []
         words += ["--uart"] if uart else []
-        words += ["--odrive"] if odrive else []
+        words += ["--odrive", "--set", f"axis0.config.watchdog_timeout={WATCHDOG_MS / 1000}"] if odrive else []
         words += ["--accelerometer", str(iio.fifos["accelerometer"]), "--bridge", str(iio.fifos["bridge"])] if iio else []
         for each in settings:
             words += ["--set", each]

@@ -7,6 +7,7 @@ own. A FIFO is the buffer of each device; who writes samples into it is the devi
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 
@@ -92,6 +93,9 @@ class IioContext:
     def end(self):
         self._process.kill()
         self._process.wait()
+
+    def stand_still(self):
+        self._process.send_signal(signal.SIGSTOP)
 
     def close(self):
         self.end()
