@@ -76,7 +76,7 @@ class TrialFinder {
 
   void take(const stillhand_msgs::Event& event) {
     const std::string text = event.text().c_str();
-    if (device_rig::is_parts_note(event.source().c_str(), text)) found_.rig_parts = text;
+    if (device_rig::is_parts_note(event.source().c_str(), text)) parts_[event.rig()] = text;
   }
 
   SessionTrials finish(const std::string& path) {
@@ -84,6 +84,9 @@ class TrialFinder {
       throw ConfigError(path,
                         "an MCAP file without samples of " + std::string(topics::kSensed.name),
                         "the recording of a Stillhand session, or CSV");
+    }
+    if (const auto parts = parts_.find(found_.rig); parts != parts_.end()) {
+      found_.rig_parts = parts->second;
     }
     for (auto& [number, trial] : by_number_) {
       const auto letter = letters_.find(number);
@@ -117,6 +120,7 @@ class TrialFinder {
   SessionTrials found_;
   std::map<std::int64_t, SessionTrial> by_number_;
   std::map<std::int64_t, char> letters_;
+  std::map<std::uint32_t, std::string> parts_;  ///< of each rig
   std::set<std::int64_t> perturbed_;
   std::int64_t current_ = -1;
   std::int64_t samples_ = 0;

@@ -31,7 +31,7 @@ struct IioSample {
 };
 
 /// An IIO device, in a thread of its own: a read may wait for ever.  The loop takes the newest
-/// sample without lock or allocation and judges its age by itself.
+/// sample without lock or allocation and judges its age by itself (README Eq. DR-13).
 class IioLink {
  public:
   /// @param channels  at most three, sampled together

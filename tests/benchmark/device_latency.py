@@ -12,7 +12,6 @@ Prints one table in microseconds: p50, p99 and worst. What could not be matched 
 """
 import argparse
 import bisect
-import csv
 import datetime
 import json
 import os
@@ -29,6 +28,7 @@ sys.path[:0] = [str(TESTS / "integration"), str(TESTS / "support")]
 
 from emulated_laboratory import MAX_AGE_MS, PROGRAM, WATCHDOG_MS, EmulatedLaboratory  # noqa: E402
 from lab_process import BUILD, STILLHAND, LabProcess, loose_settings, next_domain  # noqa: E402
+from tables import columns  # noqa: E402
 
 LOOP_STAMPS = BUILD / "tests" / "loop_stamps"
 LEVER_M = 0.10        # rig.yaml
@@ -73,13 +73,8 @@ def simulated(folder, seconds):
     return folder / "simulated"
 
 
-def columns(path, *names):
-    """Columns by their names; a title also has the unit: "tick [-]"."""
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = csv.reader(file)
-        titles = [title.split(" [")[0] for title in next(rows)]
-        places = [titles.index(name) for name in names]
-        return [{name: row[place] for name, place in zip(names, places)} for row in rows]
+def named(path, *names):
+    return [dict(zip(names, row)) for row in columns(path, *names)]
 
 
 def table(recording, topic, *names):
@@ -87,7 +82,7 @@ def table(recording, topic, *names):
     if not tables.is_dir():
         subprocess.run([str(STILLHAND), "export", str(recording), "--csv", str(tables), "--topics",
                         "stillhand/raw_sample,stillhand/rig_truth"], check=True, stdout=subprocess.DEVNULL)
-    return columns(tables / f"stillhand_{topic}.csv", *names)
+    return named(tables / f"stillhand_{topic}.csv", *names)
 
 
 def torque_bits(torque_n_m):
@@ -96,7 +91,7 @@ def torque_bits(torque_n_m):
 
 def matched(folder, recording):
     """Times in ns: device to device, from the answer that carried the sample, and their counts."""
-    replies = columns(pathlib.Path(f"{folder}/trace_replies.csv"), "sampled_ns", "sent_ns", "analog1", "analog2", "position_rev")
+    replies = named(pathlib.Path(f"{folder}/trace_replies.csv"), "sampled_ns", "sent_ns", "analog1", "analog2", "position_rev")
     # What the rig published of an answer: volts and counts (device_plant.cpp, put_stick).
     carried = {}
     for each in replies:
@@ -104,7 +99,7 @@ def matched(folder, recording):
                int(np.rint(float(each["position_rev"]) * COUNTS_REV)))
         carried.setdefault(key, []).append((int(each["sent_ns"]), int(each["sampled_ns"])))
     commands = {}
-    for each in columns(pathlib.Path(f"{folder}/trace_torques.csv"), "at_ns", "torque_n_m"):
+    for each in named(pathlib.Path(f"{folder}/trace_torques.csv"), "at_ns", "torque_n_m"):
         commands.setdefault(torque_bits(float(each["torque_n_m"])), []).append(int(each["at_ns"]))
 
     raw = {int(each["tick"]): each for each in table(recording, "raw_sample", "tick", "stamp_ns", "accel_y_v", "load_cell_v",

@@ -10,7 +10,6 @@ cell gave, as a rig without truth does, and once on the true feedthrough force o
 person, whether the truth lies in the estimate's 95 % interval, and the mean difference. Two minutes of processor time.
 """
 import argparse
-import csv
 import datetime
 import json
 import pathlib
@@ -24,20 +23,12 @@ sys.path[:0] = [str(TESTS / "integration"), str(TESTS / "support")]
 
 from lab_process import STILLHAND  # noqa: E402
 from sample_experiment import conduct, stillhand  # noqa: E402
+from tables import columns  # noqa: E402
 
 FITTED = 0.7
 IDENTIFY_S = 150  # of which the last 45 s are four blocks of CL-6
 UNITS = {"accel_x_m_s2": "a_x [m/s^2]", "accel_y_m_s2": "a_y [m/s^2]", "accel_z_m_s2": "a_z [m/s^2]", "roll_rad": "roll [rad]",
          "theta_rad": "theta [rad]", "omega_rad_s": "omega [rad/s]"}
-
-
-def rows(table, *names):
-    """Columns by their names; a title also has the unit: "tick [-]"."""
-    with open(table, encoding="utf-8", newline="") as file:
-        lines = csv.reader(file)
-        titles = [title.split(" [")[0] for title in next(lines)]
-        places = [titles.index(name) for name in names]
-        return [[row[place] for place in places] for row in lines]
 
 
 def write(path, samples, forces):
@@ -54,10 +45,10 @@ def parts(recording, folder):
     tables = folder / "csv"
     subprocess.run([str(STILLHAND), "export", str(recording), "--csv", str(tables), "--topics",
                     "stillhand/sensed,stillhand/rig_truth,stillhand/trial_control"], check=True, stdout=subprocess.DEVNULL)
-    controls = rows(tables / "stillhand_trial_control.csv", "trial", "start_tick", "duration_ticks")
+    controls = columns(tables / "stillhand_trial_control.csv", "trial", "start_tick", "duration_ticks")
     start, length = next((int(start), int(length)) for trial, start, length in controls if int(trial) == 0)
-    truth = dict(rows(tables / "stillhand_rig_truth.csv", "tick", "feedthrough_force_n"))
-    samples = [row for row in rows(tables / "stillhand_sensed.csv", "tick", *UNITS, "force_n")
+    truth = dict(columns(tables / "stillhand_rig_truth.csv", "tick", "feedthrough_force_n"))
+    samples = [row for row in columns(tables / "stillhand_sensed.csv", "tick", *UNITS, "force_n")
                if start <= int(row[0]) < start + length and row[0] in truth]
     cut = int(FITTED * len(samples))
     unseen = samples[cut:]

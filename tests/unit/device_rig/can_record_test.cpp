@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges: the frames that the maker of moteus prints (mjbots/moteus, docs/protocol/can.md), and the
-// kernel's own struct canfd_frame.
+// Eq. DR-34.  Judges: the frames that the maker of moteus prints (mjbots/moteus,
+// docs/protocol/can.md), and the kernel's own struct canfd_frame.
 #include "services/device_rig/core/can_record.hpp"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -22,13 +24,9 @@ using testing::HasSubstr;
 
 constexpr SettingLimits kLimits{.max_current_a = 10.0, .travel_rev = 0.083};
 
-class DriveLinkTest : public testing::Test {
+/// A link to an emulated drive.
+class LinkTest : public testing::Test {
  protected:
-  explicit DriveLinkTest(bool uart = false) : emulated_(uart) {
-    config_.port = emulated_.port();
-    config_.checksum = uart;
-    config_.watchdog_s = 0.1;
-  }
   std::string refusal() {
     try {
       const DriveLink sut(config_, kLimits);
@@ -48,10 +46,20 @@ class DriveLinkTest : public testing::Test {
       return condition(sut.newest());
     });
   }
+  template <typename... Words>
+  explicit LinkTest(Words&&... drive) : emulated_(std::forward<Words>(drive)...) {
+    config_.port = emulated_.port();
+    config_.watchdog_s = 0.1;
+  }
 
   EmulatedDrive emulated_;
   DriveConfig config_;
   std::uint64_t demands_ = 0;
+};
+
+class DriveLinkTest : public LinkTest {
+ protected:
+  explicit DriveLinkTest(bool uart = false) : LinkTest(uart) { config_.checksum = uart; }
 };
 
 class UartLinkTest : public DriveLinkTest {
@@ -173,33 +181,12 @@ TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {
   }
 }
 
-class OdriveLinkTest : public testing::Test {
+class OdriveLinkTest : public LinkTest {
  protected:
-  OdriveLinkTest() {
+  OdriveLinkTest()
+      : LinkTest(std::make_unique<emulators::OdriveEmulator>(), emulators::Answers::kLines) {
     config_.kind = "odrive";
-    config_.port = emulated_.port();
-    config_.watchdog_s = 0.1;
   }
-  std::string refusal() {
-    try {
-      const DriveLink sut(config_, kLimits);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
-  }
-  template <typename Condition>
-  bool orders_until(DriveLink& sut, Order order, double torque_n_m, Condition condition) {
-    return eventually([&] {
-      const bool tripped = sut.newest().reply.mode == DriveMode::kTimedOut;
-      sut.demand(tripped ? Order::kStop : order, torque_n_m);
-      return condition(sut.newest());
-    });
-  }
-
-  EmulatedDrive emulated_{std::make_unique<emulators::OdriveEmulator>(),
-                          emulators::Answers::kLines};
-  DriveConfig config_;
 };
 
 TEST_F(OdriveLinkTest, ReadsTheSettingsBackAndFollowsOrders) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Eq. DR-13.
 #include "services/device_rig/core/iio_value.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A joystick's records.  No joystick was tried: a machine without /dev/uinput has none to stand in.
+// Eq. DR-35: a joystick's records.  No joystick was tried: a machine without /dev/uinput has none
+// to stand in.
 #include "services/device_rig/core/joystick_protocol.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Eq. DR-33.
 #include "services/device_rig/core/mount.hpp"
 
 #include <gmock/gmock.h>

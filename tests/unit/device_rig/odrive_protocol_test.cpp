@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver's language next to the emulator, which is written from the maker's document and shares
-// no code with it.
+// Eq. DR-32: the driver's language next to the emulator, which is written from the maker's document
+// and shares no code with it.
 #include "services/device_rig/core/odrive_protocol.hpp"
 
 #include <gtest/gtest.h>

@@ -21,9 +21,11 @@ using stillhand_msgs::MOTION_BAND_NOISE;
 using stillhand_msgs::MOTION_STILL;
 using stillhand_msgs::PHASE_PEGGED;
 using stillhand_msgs::PHASE_TRACKING;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using tests::SessionFile;
 
 std::string file_of(const std::vector<std::byte>& bytes) {
@@ -96,10 +98,14 @@ TEST(SessionTest, ARigOfDevicesIsNamed) {
   event.source("rig");
   event.text("rig of devices: force drive; simulated: platform");
   file.add(topics::kEvent, event);
+  event.rig(event.rig() + 1);
+  event.text("rig of devices: of another rig");
+  file.add(topics::kEvent, event);
   file.control(0, PHASE_PEGGED, 0, 200);
   run_ticks(file, 0, 200);
   EXPECT_THAT(read_measurement(file_of(file.close())).notes,
-              Contains("The rig of devices: force drive; simulated: platform."));
+              AllOf(Contains("The rig of devices: force drive; simulated: platform."),
+                    Not(Contains(HasSubstr("of another rig")))));
 }
 
 TEST(SessionTest, ATrackingTrialHasTargetAndCursorToo) {
