@@ -22,6 +22,35 @@ std::string check_short(const std::string& word) {
                                           : "got a long text, want at most 100 bytes in one line";
 }
 
+void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
+  calibrate.add_option("--seconds", options.seconds, "time of each step [s]")
+      ->check(CLI::Range(0.1, 60.0))
+      ->capture_default_str();
+  calibrate
+      .add_option("--tolerance", options.tolerance,
+                  "largest distance from the straight line, and largest drift, as a share of the "
+                  "largest quantity [-]")
+      ->check(CLI::Range(0.0001, 0.5))
+      ->capture_default_str();
+  calibrate
+      .add_option("--motion", options.motion_m,
+                  "platform: largest distance from where it stands [m]")
+      ->check(CLI::Range(0.001, 0.1))
+      ->capture_default_str();
+  calibrate
+      .add_option("--periods", options.periods, "platform: periods of 2 s that are measured [-]")
+      ->check(CLI::Range(2, 200))
+      ->capture_default_str();
+  calibrate
+      .add_option("--push", options.push_n,
+                  "check: weight on the cord, and the motor's largest force [N]")
+      ->check(CLI::Range(0.2, 5.0))
+      ->capture_default_str();
+  calibrate.add_option("--step", options.step_m, "check: step of the platform [m]")
+      ->check(CLI::Range(0.0005, 0.01))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_calibrate_command(CLI::App& cli, int& status) {
@@ -56,32 +85,7 @@ void add_calibrate_command(CLI::App& cli, int& status) {
       "--known", options->known,
       "quantities that act, + right, in N or kg, m/s^2 or g, rad or deg; the first one comes again "
       "at the end [0,5,10,-5,-10 N; 0,1g,-1g; 0,10deg,20deg,-10deg,-20deg]");
-  calibrate->add_option("--seconds", options->seconds, "time of each step [s]")
-      ->check(CLI::Range(0.1, 60.0))
-      ->capture_default_str();
-  calibrate
-      ->add_option("--tolerance", options->tolerance,
-                   "largest distance from the straight line, and largest drift, as a share of the "
-                   "largest quantity [-]")
-      ->check(CLI::Range(0.0001, 0.5))
-      ->capture_default_str();
-  calibrate
-      ->add_option("--motion", options->motion_m,
-                   "platform: largest distance from where it stands [m]")
-      ->check(CLI::Range(0.001, 0.1))
-      ->capture_default_str();
-  calibrate
-      ->add_option("--periods", options->periods, "platform: periods of 2 s that are measured [-]")
-      ->check(CLI::Range(2, 200))
-      ->capture_default_str();
-  calibrate
-      ->add_option("--push", options->push_n,
-                   "check: weight on the cord, and the motor's largest force [N]")
-      ->check(CLI::Range(0.2, 5.0))
-      ->capture_default_str();
-  calibrate->add_option("--step", options->step_m, "check: step of the platform [m]")
-      ->check(CLI::Range(0.0005, 0.01))
-      ->capture_default_str();
+  add_measures(*calibrate, *options);
   calibrate->callback([options, signal, &status] {
     const std::map<std::string, device_rig::CalibratedSignal> signals{
         {"force", device_rig::CalibratedSignal::kForce},

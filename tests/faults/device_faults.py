@@ -68,12 +68,14 @@ class Fault:
     """One fault. `said`: what names it, as a regular expression; None: nothing, since the work goes on.
 
     `drive_alone`: no host is left that could help. `more_ms`: beyond the host's limit. `alone`: also without a session.
+    `session`: also with one, unless others show the same there.
     """
 
-    def __init__(self, title, *orders, said, hurt=None, drive_alone=False, more_ms=0, alone=True, quick=False, iio=False, **keywords):
+    def __init__(self, title, *orders, said, hurt=None, drive_alone=False, more_ms=0, alone=True, quick=False, iio=False,
+                 session=True, **keywords):
         self.title, self.orders, self.said, self.hurt = title, orders, said, hurt
         self.drive_alone, self.more_ms, self.alone, self.quick = drive_alone, more_ms, alone, quick
-        self.iio, self.keywords = iio, keywords
+        self.iio, self.session, self.keywords = iio, session, keywords
 
     def strike(self, bench):
         if self.orders:
@@ -158,7 +160,8 @@ FAULTS = {
 
 # The same of an ODrive, whose lines, watchdog and error words are others. Acceleration and force come from IIO devices.
 ODRIVE = {
-    "rig_killed": Fault("the rig's process is killed", hurt=kill("device_rig"), drive_alone=True, said="rig.* ended: signal 9"),
+    "rig_killed": Fault("the rig's process is killed", hurt=kill("device_rig"), drive_alone=True, quick=True,
+                        said="rig.* ended: signal 9"),
     "rig_stopped": Fault("the rig's process is stopped", hurt=freeze("device_rig"), drive_alone=True,
                          said="life sign|the drive is silent"),
     "cable_out": Fault("cable out (terminal closed)", "cable", 0, said=SILENT + "|the drive was away"),
@@ -170,15 +173,19 @@ ODRIVE = {
     "garbage": Fault("garbage", "garbage", 1, said=SILENT),
     "wrong_checksum": Fault("wrong checksum", "damaged", 1, said=SILENT),
     "truncated": Fault("answers cut", "truncated", 1, said=SILENT),
-    "mixed": Fault("two lines of each answer change places", "mixed", 1, said=SILENT + "|the drive was away"),
+    "mixed": Fault("two lines of each answer change places", "mixed", 1, quick=True,
+                   said=SILENT + "|the drive was away"),
     "lost": Fault("a line of each answer is missing", "lost", 1, said=SILENT),
     "reboot": Fault("the drive starts again", "reboot", said="the drive was away or started again"),
-    "axis_error": Fault("an error of the axis (0x40000)", "fault", 0x40000, said="the drive reports 0x40000 in axis0.error"),
+    "axis_error": Fault("an error of the axis (0x40000)", "fault", 0x40000, quick=True,
+                        said="the drive reports 0x40000 in axis0.error"),
     "no_position": Fault("the encoder does not respond", "nan", 1, said="the drive reports 0x|the drive went off by itself"),
     "encoder_jump": Fault("the encoder jumps by a quarter turn", "slip", 0.25, said="the angle of the drive jumped"),
 }
 for _name, _fault in ODRIVE.items():
     _fault.title, _fault.iio, _fault.keywords = "ODrive: " + _fault.title, True, {"odrive": True}
+    # Of the others the session sees a drive that is silent, as it does of a moteus.
+    _fault.session = _name in ("rig_killed", "cable_out", "mixed", "reboot", "axis_error", "encoder_jump")
     FAULTS["odrive_" + _name] = _fault
 
 
@@ -356,7 +363,7 @@ def table(results):
 
 def chosen(words):
     form = Alone if words.alone else Session
-    names = [name for name, fault in FAULTS.items() if form is Session or fault.alone]
+    names = [name for name, fault in FAULTS.items() if (fault.session if form is Session else fault.alone)]
     if words.only == "quick":
         names = [name for name in names if FAULTS[name].quick]
     elif words.only:

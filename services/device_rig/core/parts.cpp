@@ -56,6 +56,45 @@ void check_sign(const char* name, std::int64_t sign) {
   if (sign == 0) throw ConfigError("devices." + std::string(name), "0", "1 or -1");
 }
 
+void check_signs(const DevicesConfig& config) {
+  check_sign("drive.torque_sign", config.drive.torque_sign);
+  check_sign("drive.angle_sign", config.drive.angle_sign);
+  check_sign("accelerometer.sign", config.accelerometer.sign);
+  check_sign("load_cell.sign", config.load_cell.sign);
+  if (!config.accelerometer.mount.empty()) {
+    const Mount mount("devices.accelerometer.mount", config.accelerometer.mount);
+    if (config.accelerometer.sign != 1) {
+      throw ConfigError("devices.accelerometer.sign", "-1 with a mount",
+                        "1: the mount says which way each axis points");
+    }
+  }
+}
+
+void check_mixture(const Parts& parts, const DevicesConfig& config) {
+  using Source = Parts::Source;
+  // Without its angle, nobody would see where a motor moves a real stick to.
+  if (parts.motor == Parts::Motor::kDrive && parts.angle != Source::kDrive) {
+    throw ConfigError("devices.signals.angle", config.signals.angle,
+                      "drive, where the motor is the drive");
+  }
+  if (parts.acceleration == Source::kPlatform && parts.platform != Parts::Platform::kPlain) {
+    throw ConfigError("devices.signals.acceleration",
+                      "platform with platform " + config.signals.platform,
+                      "plain_udp as the platform: no other protocol carries an acceleration");
+  }
+  if (parts.acceleration == Source::kDrive && parts.force == Source::kDrive &&
+      config.drive.acceleration_input == config.drive.force_input) {
+    throw ConfigError("devices.drive.acceleration_input",
+                      std::to_string(config.drive.acceleration_input) + ", which the force has",
+                      "the other connector");
+  }
+  // A watchdog shorter than two exchanges would trip by itself.
+  if (1e3 * config.drive.watchdog_s < 3.0 * static_cast<double>(config.drive.period_ticks)) {
+    throw ConfigError("devices.drive.watchdog_s", std::to_string(config.drive.watchdog_s),
+                      "at least three times period_ticks");
+  }
+}
+
 }  // namespace
 
 Parts::Drive drive_of(const DriveConfig& config) {
@@ -99,37 +138,8 @@ Parts parts_of(const DevicesConfig& config) {
   parts.drive = drive_of(config.drive);
   check_inputs(parts);
   check_joystick(parts, signals);
-  check_sign("drive.torque_sign", config.drive.torque_sign);
-  check_sign("drive.angle_sign", config.drive.angle_sign);
-  check_sign("accelerometer.sign", config.accelerometer.sign);
-  check_sign("load_cell.sign", config.load_cell.sign);
-  if (!config.accelerometer.mount.empty()) {
-    const Mount mount("devices.accelerometer.mount", config.accelerometer.mount);
-    if (config.accelerometer.sign != 1) {
-      throw ConfigError("devices.accelerometer.sign", "-1 with a mount",
-                        "1: the mount says which way each axis points");
-    }
-  }
-  // Without its angle, nobody would see where a motor moves a real stick to.
-  if (parts.motor == Motor::kDrive && parts.angle != Source::kDrive) {
-    throw ConfigError("devices.signals.angle", signals.angle,
-                      "drive, where the motor is the drive");
-  }
-  if (parts.acceleration == Source::kPlatform && parts.platform != Platform::kPlain) {
-    throw ConfigError("devices.signals.acceleration", "platform with platform " + signals.platform,
-                      "plain_udp as the platform: no other protocol carries an acceleration");
-  }
-  if (parts.acceleration == Source::kDrive && parts.force == Source::kDrive &&
-      config.drive.acceleration_input == config.drive.force_input) {
-    throw ConfigError("devices.drive.acceleration_input",
-                      std::to_string(config.drive.acceleration_input) + ", which the force has",
-                      "the other connector");
-  }
-  // A watchdog shorter than two exchanges would trip by itself.
-  if (1e3 * config.drive.watchdog_s < 3.0 * static_cast<double>(config.drive.period_ticks)) {
-    throw ConfigError("devices.drive.watchdog_s", std::to_string(config.drive.watchdog_s),
-                      "at least three times period_ticks");
-  }
+  check_signs(config);
+  check_mixture(parts, config);
   return parts;
 }
 
