@@ -2,7 +2,8 @@
 // emulated_laboratory: a moteus drive behind a pseudo-terminal and a platform behind UDP, with the
 // simulated rig's body, stick and platform between them.  README.md.
 #include <CLI/CLI.hpp>
-#include <iostream>
+#include <cstdio>
+#include <exception>
 #include <optional>
 
 #include "services/contract/config_error.hpp"
@@ -11,7 +12,9 @@
 #include "services/settings/load.hpp"
 #include "tests/emulators/emulated_loop.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   using namespace stillhand;
   emulators::LoopOptions options;
   std::filesystem::path config;
@@ -39,17 +42,23 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return cli.exit(error) == 0 ? 0 : 2;
   }
+  runtime::end_with_parent();
+  if (!ordinary) runtime::become_real_time();
+  const auto rig = rig::seeded(settings::load<rig::RigConfig>(config / "rig.yaml", "rig"), seed);
+  std::optional<emulators::Person> person;
+  if (domain) person.emplace(*domain, profiles);
+  emulators::EmulatedLoop loop(options, rig);
+  loop.run(person ? &*person : nullptr);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    runtime::end_with_parent();
-    if (!ordinary) runtime::become_real_time();
-    const auto rig = rig::seeded(settings::load<rig::RigConfig>(config / "rig.yaml", "rig"), seed);
-    std::optional<emulators::Person> person;
-    if (domain) person.emplace(*domain, profiles);
-    emulators::EmulatedLoop loop(options, rig);
-    loop.run(person ? &*person : nullptr);
-    return 0;
+    return run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "emulated_laboratory: " << error.what() << '\n';
+    std::fprintf(stderr, "emulated_laboratory: %s\n", error.what());
     return 2;
   }
 }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <sstream>
 
 namespace stillhand::emulators {
 namespace {
@@ -199,15 +200,20 @@ std::string MoteusEmulator::answer(std::string line, std::int64_t now_ns) {
   } else if (checked_) {
     return ended("ERR checksum required");
   }
-  unsigned identifier = 0;
-  char hex[200] = {};
-  if (std::sscanf(line.c_str(), "can send %x %190s", &identifier, hex) != 2) {
+  std::istringstream words(line);
+  std::string can;
+  std::string send;
+  std::string number;
+  std::string hex;
+  words >> can >> send >> number >> hex;
+  if (can != "can" || send != "send" || hex.empty()) {
     return ended(line.starts_with("can on") ? "OK" : "ERR unknown command");
   }
+  const auto identifier = static_cast<unsigned>(std::strtoul(number.c_str(), nullptr, 16));
   std::vector<std::uint8_t> payload;
-  for (std::size_t i = 0; hex[i] != 0 && hex[i + 1] != 0; i += 2) {
-    const char pair[3] = {hex[i], hex[i + 1], 0};
-    payload.push_back(static_cast<std::uint8_t>(std::strtoul(pair, nullptr, 16)));
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    payload.push_back(
+        static_cast<std::uint8_t>(std::strtoul(hex.substr(i, 2).c_str(), nullptr, 16)));
   }
   std::string answers = ended("OK");
   if ((identifier & 0x7fu) != 1) return answers;

@@ -197,7 +197,9 @@ void OdriveEmulator::command(double torque_n_m, std::int64_t now_ns) {
 }
 
 void OdriveEmulator::write(const std::string& name, const std::string& value, std::int64_t now_ns) {
-  if (name == "axis0.requested_state") return request(std::atoi(value.c_str()), now_ns);
+  if (name == "axis0.requested_state") {
+    return request(static_cast<int>(std::strtol(value.c_str(), nullptr, 10)), now_ns);
+  }
   if (name == "test_property") {
     test_property_ = value;
   } else if (const auto known = settings_.find(name); known != settings_.end()) {
@@ -234,7 +236,7 @@ void OdriveEmulator::request(int state, std::int64_t now_ns) {
 }
 
 std::string OdriveEmulator::value_of(const std::string& name, std::int64_t now_ns) const {
-  const auto cut = [](std::string text) { return text.substr(0, kProperty); };
+  const auto cut = [](const std::string& text) { return text.substr(0, kProperty); };
   if (name == "axis0.current_state") return std::to_string(state_);
   if (name == "axis0.error") return cut(std::to_string(axis_error_));
   if (name == "axis0.motor.error") return cut(std::to_string(motor_error_));

@@ -19,7 +19,7 @@ class MoteusCan final : public MoteusProtocol {
   /// @param bytes  one read of a socket: one frame
   void take(std::string_view bytes, DriveListener& listener) noexcept override {
     if (const auto read = read_record(bytes)) {
-      MoteusProtocol::take(read->identifier, read->frame, listener);
+      take_frame(read->identifier, read->frame, listener);
     } else {
       listener.damaged();
     }

@@ -34,8 +34,8 @@ std::optional<std::string> MoteusProtocol::serial() const {
   return fmt::format("{:08x}-{:08x}-{:08x}", (*serial_)[2], (*serial_)[1], (*serial_)[0]);
 }
 
-void MoteusProtocol::take(std::uint32_t identifier, const Frame& frame,
-                          DriveListener& listener) noexcept {
+void MoteusProtocol::take_frame(std::uint32_t identifier, const Frame& frame,
+                                DriveListener& listener) noexcept {
   constexpr std::uint32_t kNumber = 0x7f;
   if ((identifier >> 8 & kNumber) != static_cast<std::uint32_t>(config_.id)) return;
   FrameReader reader(frame.payload());
@@ -63,7 +63,7 @@ void MoteusLines::take(std::string_view bytes, DriveListener& listener) noexcept
     const Received received = read_line(line, checked_);
     if (received.kind == Received::Kind::kDamaged) listener.damaged();
     if (received.kind == Received::Kind::kFrame) {
-      MoteusProtocol::take(received.identifier, received.frame, listener);
+      take_frame(received.identifier, received.frame, listener);
     }
   });
 }

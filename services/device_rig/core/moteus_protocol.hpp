@@ -44,7 +44,7 @@ class MoteusProtocol : public DriveProtocol {
   /// The bytes that carry a frame to the drive.
   virtual std::string_view packed(const Frame& frame) noexcept = 0;
   /// Takes a frame of the bus.
-  void take(std::uint32_t identifier, const Frame& frame, DriveListener& listener) noexcept;
+  void take_frame(std::uint32_t identifier, const Frame& frame, DriveListener& listener) noexcept;
   [[nodiscard]] std::uint32_t destination() const noexcept {
     constexpr std::uint32_t kReplyWanted = 0x8000;
     return kReplyWanted | static_cast<std::uint32_t>(config_.id);

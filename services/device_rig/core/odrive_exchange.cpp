@@ -31,7 +31,7 @@ constexpr std::array<Questions, kAxes> kQuestions{
 
 Extra extra_of(std::uint64_t number) noexcept { return static_cast<Extra>(number % 4); }
 
-void put_questions(Lines& lines, int axis, std::uint64_t number) noexcept {
+void put_questions(Lines& lines, std::size_t axis, std::uint64_t number) noexcept {
   const Questions& questions = kQuestions[axis == 0 ? 0 : 1];
   // The drive has one property that does nothing; it carries the number there and back.
   lines.add("w test_property ", number);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -20,7 +21,7 @@ enum class Extra : std::uint8_t { kMotorError, kEncoderError, kControllerError, 
 Extra extra_of(std::uint64_t number) noexcept;
 
 /// Adds the questions of exchange `number` to the lines, README Eq. DR-31.
-void put_questions(Lines& lines, int axis, std::uint64_t number) noexcept;
+void put_questions(Lines& lines, std::size_t axis, std::uint64_t number) noexcept;
 
 /// The answers to the questions of one exchange.
 struct Answers {

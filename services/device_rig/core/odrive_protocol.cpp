@@ -34,7 +34,7 @@ std::uint64_t bits_of(double value) noexcept {
 
 OdriveProtocol::OdriveProtocol(const DriveConfig& config, const SettingLimits&)
     : config_(config),
-      axis_(static_cast<int>(config.axis)),
+      axis_(config.axis == 0 ? 0 : 1),
       errors_{{{kCommands[config.axis == 0 ? 0 : 1].axis},
                {kCommands[config.axis == 0 ? 0 : 1].motor},
                {kCommands[config.axis == 0 ? 0 : 1].encoder},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -60,7 +61,7 @@ class OdriveProtocol final : public DriveProtocol {
   void torque(double torque_n_m) noexcept;
 
   DriveConfig config_;
-  int axis_;
+  std::size_t axis_;
   Lines lines_;
   LineSplitter splitter_;
   AnswerReader reader_;

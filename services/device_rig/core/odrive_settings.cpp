@@ -89,7 +89,7 @@ std::optional<SettingFault> judge_version(std::string_view name, std::string_vie
 
 }  // namespace
 
-std::span<const std::string_view> settings_of(int axis) noexcept {
+std::span<const std::string_view> settings_of(std::size_t axis) noexcept {
   return axis == 0 ? kAxis0 : kAxis1;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +13,7 @@
 namespace stillhand::device_rig::odrive {
 
 /// Properties of an axis that are read back, README "The settings of an ODrive".
-std::span<const std::string_view> settings_of(int axis) noexcept;
+std::span<const std::string_view> settings_of(std::size_t axis) noexcept;
 
 /// @param text  the drive's answer to "r NAME"
 /// @returns nothing if the setting is right
