@@ -21,9 +21,9 @@ int main(int argc, char** argv) {
     for (std::string each; std::getline(list, each, ',');) channels.push_back(each);
     stillhand::runtime::IioDevice sut(argv[1], argv[2], channels, 1000.0);
     std::cout << sut.formats().front().scale << ' ' << sut.rate_hz() << std::endl;
-    int until_skip = argc == 6 ? std::atoi(argv[5]) : 0;
+    long until_skip = argc == 6 ? std::strtol(argv[5], nullptr, 10) : 0;
     std::vector<std::int64_t> raw(channels.size());
-    for (int left = std::atoi(argv[4]); left > 0;) {
+    for (long left = std::strtol(argv[4], nullptr, 10); left > 0;) {
       if (!sut.read(raw)) continue;
       for (std::size_t i = 0; i < raw.size(); ++i) std::cout << (i == 0 ? "" : " ") << raw[i];
       std::cout << std::endl;
