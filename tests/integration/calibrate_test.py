@@ -11,9 +11,10 @@ import subprocess
 import unittest
 
 import yaml
-from emulated_laboratory import SENSING, EmulatedLaboratory
-from lab_process import SOURCE, STILLHAND, LabTestCase, next_domain
+from emulated_laboratory import PROFILES, SENSING, EmulatedLaboratory
+from lab_process import SOURCE, STILLHAND, LabTestCase, next_domain, wait_for
 
+PROGRAMS = STILLHAND.parent
 TRUE = yaml.safe_load(SENSING)
 WRONG = """load_cell_sensitivity_v_n: 0.024   # typed
 # accel_y_offset_v: 0.01               # [V] voltage at 0 m/s^2
@@ -220,6 +221,56 @@ class CalibrateTest(LabTestCase):
                 self.laboratory.order("pull", 0)
         # What was right before does not count any more.
         self.assertEqual(self.settings("calibration.yaml")["check"]["date"], "")
+
+    def rig_refuses(self):
+        """The line with which the session's rig process refuses these devices; None: it goes on to query them."""
+        asked = self.laboratory.report()["queries"]
+        words = [str(PROGRAMS / "stillhand-device_rig"), "--config", str(self.config), "--domain", str(next_domain()),
+                 "--profiles", str(PROFILES)]
+        with subprocess.Popen(words, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as rig:
+            self.addCleanup(rig.kill)
+            wait_for("a refusal, or queries",
+                     lambda: rig.poll() is not None or self.laboratory.report()["queries"] > asked + 50, 20)
+            if rig.poll() is None:
+                rig.terminate()
+                self.assertEqual(rig.wait(10), 0)
+                return None
+            self.assertEqual(rig.returncode, 2)
+            return rig.stderr.read().strip()
+
+    def test_after_a_good_check_a_session_refuses_another_sign_ratio_or_lever(self):
+        self.other_rig(body=self.SOFT)
+        status, said, errors = self.calibrate("check", "", list(self.STEPS))
+        self.assertEqual((status, errors), (0, ""), said)
+        kept = self.settings("calibration.yaml")
+        # The other calibrations, as their verbs would write them: the same names, and what sensing.yaml holds.
+        _, *names = kept["check"]["devices"].split("; ")
+        made = {"date": kept["check"]["date"], "person": "kl"}
+        sensing = self.settings("sensing.yaml")
+        numbers = {"force": ("load_cell_sensitivity_v_n", "load_cell_offset_v"),
+                   "acceleration": ("accel_sensitivity_v_m_s2", "accel_y_offset_v"), "angle": (None, None)}
+        for signal, device in zip(("force", "acceleration", "angle", "platform"), names, strict=True):
+            gain, zero = numbers.get(signal, (None, None))
+            values = {"sensitivity": sensing.get(gain, 1), "zero": sensing.get(zero, 0)} if signal != "platform" else {}
+            kept[signal] |= made | {"device": device} | values
+        (self.config / "calibration.yaml").write_text(yaml.safe_dump(kept))
+        devices, rig = self.config / "devices.yaml", self.config / "rig.yaml"
+        devices.write_text(devices.read_text().replace("max_age_days: 0", "max_age_days: 90"))
+        self.assertIsNone(self.rig_refuses())
+
+        plain = {devices: devices.read_text(), rig: rig.read_text()}
+        for file, text, record, name in (
+                (devices, "drive:\n  torque_sign: -1\n", "check", "torque sign -1"),
+                (devices, "drive:\n  ratio: 2\n", "check", "ratio 2"),
+                (devices, "drive:\n  angle_sign: -1\n", "angle", "encoder, sign -1"),
+                (rig, "stick:\n  lever_m: 0.12\n", "check", "lever 0.12 m")):
+            with self.subTest(name):
+                file.write_text(plain[file].replace("drive:\n", text) if file == devices else plain[file] + text)
+                line = self.rig_refuses()
+                file.write_text(plain[file])
+                self.assertIsNotNone(line)
+                self.assertIn(f"calibration.yaml: {record}: got a calibration of", line)
+                self.assertIn(name, line.split("want one of")[1])
 
 
 if __name__ == "__main__":
