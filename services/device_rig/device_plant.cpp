@@ -67,6 +67,9 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
     load_cell_ = std::make_unique<IioLink>(
         devices.load_cell, std::vector{devices.load_cell.channel}, kVoltPerMillivolt);
   }
+  if (parts_.force == Parts::Source::kIndicator) {
+    indicator_ = std::make_unique<IndicatorLink>(devices.indicator);
+  }
 }
 
 std::string DevicePlant::device_of(CalibratedSignal signal) const {
@@ -92,6 +95,9 @@ std::string DevicePlant::device_of(CalibratedSignal signal) const {
       return "IIO " + config.device + ", serial " + link.serial() + ", " + input + ", sign " +
              std::to_string(config.sign);
     }
+    case Parts::Source::kIndicator:
+      return "indicator at " + devices_.indicator.port + ", serial unknown, sign " +
+             std::to_string(devices_.indicator.sign);
   }
   return {};
 }
@@ -162,6 +168,16 @@ double DevicePlant::iio_value(IioLink& link, const IioConfig& config) noexcept {
   return young ? static_cast<double>(config.sign) * newest.values[0] : kUnknown;
 }
 
+double DevicePlant::indicator_value() noexcept {
+  const IndicatorSample& newest = indicator_->newest();
+  const bool young =
+      is_young(newest.count, newest.at_ns, now_ns_, devices_.indicator.max_age_ticks);
+  // Sensing's range is 20 V at most: newtons one to one would end below a session's forces.
+  constexpr double kVoltPerNewton = 0.1;
+  return young ? kVoltPerNewton * static_cast<double>(devices_.indicator.sign) * newest.force_n
+               : kUnknown;
+}
+
 void DevicePlant::take_accelerometer() noexcept {
   accel_y_m_s2_ = iio_value(*accelerometer_, devices_.accelerometer);
   if (!mount_) return;
@@ -175,6 +191,7 @@ void DevicePlant::take_accelerometer() noexcept {
 void DevicePlant::take_iio() noexcept {
   if (accelerometer_) take_accelerometer();
   if (load_cell_) load_cell_v_ = iio_value(*load_cell_, devices_.load_cell);
+  if (indicator_) load_cell_v_ = indicator_value();
   const bool known = !std::isnan(accel_y_m_s2_) && !std::isnan(load_cell_v_);
   unknown_ticks_ = known ? 0 : unknown_ticks_ + 1;
 }
@@ -210,7 +227,7 @@ rig::RigOutput DevicePlant::step(const rig::RigInput& input) noexcept {
 
 rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   rig::RigOutput output = simulated_.sample(input);
-  if (!drive_ && !platform_ && !accelerometer_ && !load_cell_) return output;
+  if (!drive_ && !platform_ && !accelerometer_ && !load_cell_ && !indicator_) return output;
   put_stick(output);
   put_platform(output);
   put_iio(output);
@@ -282,7 +299,7 @@ void DevicePlant::put_iio(rig::RigOutput& output) const noexcept {
     output.raw.accel_y_v = accel_y_m_s2_;
     output.raw.accel_z_v = accel_z_m_s2_;
   }
-  if (load_cell_) output.raw.load_cell_v = load_cell_v_;
+  if (load_cell_ || indicator_) output.raw.load_cell_v = load_cell_v_;
   if (unknown_ticks_ > 0) output.flags |= kInputStale;
 }
 

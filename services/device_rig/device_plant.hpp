@@ -16,6 +16,7 @@
 #include "services/device_rig/core/set_point_guard.hpp"
 #include "services/device_rig/drive_link.hpp"
 #include "services/device_rig/iio_link.hpp"
+#include "services/device_rig/indicator_link.hpp"
 #include "services/device_rig/platform_link.hpp"
 #include "services/rig/plant.hpp"
 #include "services/signal/delay_line.hpp"
@@ -71,6 +72,7 @@ class DevicePlant final : public rig::Plant {
   [[nodiscard]] bool platform_fresh() const noexcept;
   /// NaN: no young sample, or one at an end of the converter's range (DR-12).
   [[nodiscard]] double iio_value(IioLink& link, const IioConfig& config) noexcept;
+  [[nodiscard]] double indicator_value() noexcept;
   void take_accelerometer() noexcept;
 
   rig::RigConfig rig_config_;
@@ -85,6 +87,7 @@ class DevicePlant final : public rig::Plant {
   std::unique_ptr<IioLink> accelerometer_;
   std::optional<Mount> mount_;  ///< of an accelerometer of three axes
   std::unique_ptr<IioLink> load_cell_;
+  std::unique_ptr<IndicatorLink> indicator_;
 
   Trial trial_;
   Tick tick_ = 0;
@@ -93,7 +96,7 @@ class DevicePlant final : public rig::Plant {
   PlatformSample seat_;
   double accel_y_m_s2_ = 0.0;                       ///< of the accelerometer; NaN: unknown
   double accel_x_m_s2_ = 0.0, accel_z_m_s2_ = 0.0;  ///< 0 of an accelerometer of one axis
-  double load_cell_v_ = 0.0;
+  double load_cell_v_ = 0.0;                        ///< NaN: unknown
   RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
   SameSide side_;                     ///< of the accelerometer, over a trial
   signal::DelayLine asked_;           ///< acceleration of the set-point, as late as the platform

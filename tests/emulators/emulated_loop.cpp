@@ -54,6 +54,7 @@ EmulatedLoop::EmulatedLoop(const LoopOptions& options, const rig::RigConfig& rig
     drive_.set(each.substr(0, equals), each.substr(equals + 1));
   }
   if (!options.accelerometer.empty()) iio_.emplace(options.accelerometer, options.bridge);
+  if (!options.indicator_link.empty()) indicator_.emplace(options.indicator_link);
   drive_.begin(runtime::monotonic_ns());
 }
 
@@ -78,6 +79,7 @@ void EmulatedLoop::run(Person* person) {
     if (now_ns < due_ns) continue;
     laboratory_.step(now_ns, person);
     if (iio_) iio_->write(laboratory_.raw());
+    if (indicator_) indicator_->step(laboratory_.cell_force_n(), now_ns);
     if (drive_.torque_n_m() != 0.0) torque_until_ns_ = now_ns;
     if (platform_.wish(now_ns)) platform_until_ns_ = now_ns;
     worst_step_ns_ = std::max(worst_step_ns_, now_ns - stepped_ns_);
@@ -154,7 +156,8 @@ void EmulatedLoop::obey(const std::string& line, std::int64_t now_ns) {
   fault_torque_n_m_ = drive_.torque_n_m();
   if (word == "mark") return;  // a fault that is made elsewhere begins now
   if (!obey_platform(word, value) && !obey_laboratory(word, value) &&
-      !obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value)) {
+      !obey_drive(word, value, now_ns) && !obey_way(word, value) && !obey_iio(word, value) &&
+      !obey_indicator(word, value)) {
     std::fprintf(stderr, "emulated_laboratory: no order \"%s\"\n", word.c_str());
   }
 }
@@ -220,6 +223,20 @@ bool EmulatedLoop::obey_iio(const std::string& word, double value) {
     iio_->starve(value != 0.0);
   } else if (word == "iio_saturated") {
     iio_->saturate(value != 0.0);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool EmulatedLoop::obey_indicator(const std::string& word, double value) {
+  if (!indicator_) return false;
+  if (word == "indicator_silent") {
+    indicator_->serial().mischief.silent = value != 0.0;
+  } else if (word == "indicator_overload") {
+    indicator_->overload(value != 0.0);
+  } else if (word == "indicator_cable") {
+    value != 0.0 ? indicator_->serial().put_in() : indicator_->serial().pull_out();
   } else {
     return false;
   }

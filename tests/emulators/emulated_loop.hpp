@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/emulators/iio_side.hpp"
+#include "tests/emulators/indicator_side.hpp"
 #include "tests/emulators/laboratory.hpp"
 #include "tests/emulators/serial_side.hpp"
 #include "tests/emulators/trace.hpp"
@@ -25,6 +26,7 @@ struct LoopOptions {
   std::vector<std::string> settings;  ///< NAME=VALUE
   /// FIFOs of an IIO accelerometer and of a bridge converter; empty: neither
   std::filesystem::path accelerometer, bridge;
+  std::filesystem::path indicator_link;  ///< serial port of a load cell indicator; empty: none
 };
 
 /// Devices and physics in one thread: it answers whatever comes at once, and steps the physics each
@@ -48,6 +50,7 @@ class EmulatedLoop {
   bool obey_drive(const std::string& word, double value, std::int64_t now_ns);
   bool obey_platform(const std::string& word, double value);
   bool obey_laboratory(const std::string& word, double value);
+  bool obey_indicator(const std::string& word, double value);
   bool obey_iio(const std::string& word, double value);
   bool obey_way(const std::string& word, double value);
   void report(std::int64_t now_ns) const;
@@ -58,6 +61,7 @@ class EmulatedLoop {
   SerialSide serial_;
   Laboratory laboratory_;
   std::optional<IioSide> iio_;
+  std::optional<IndicatorSide> indicator_;
   int socket_ = -1;
   bool platform_silent_ = false;
   double platform_loses_ = 0.0;  ///< share of the datagrams, each way

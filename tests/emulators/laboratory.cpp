@@ -81,6 +81,10 @@ Laboratory::Laboratory(const rig::RigConfig& config, DriveEmulator& drive,
       drive_(drive),
       platform_(platform) {}
 
+double Laboratory::cell_force_n() const {
+  return (swapped_ ? -1.0 : 1.0) * (output_.raw.load_cell_v / kForce_v_n + pull_n_);
+}
+
 void Laboratory::step(std::int64_t now_ns, Person* person) {
   rig::RigInput input;
   if (const auto wish = platform_.wish(now_ns)) {

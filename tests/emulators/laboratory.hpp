@@ -68,6 +68,8 @@ class Laboratory {
   void hold_acceleration(bool held) { held_ = held; }
   /// The platform's own accelerometer gives no number.
   void lose_acceleration(bool lost) { seat_unknown_ = lost; }
+  /// Force on the load cell, pulls of a person who calibrates with it; its own zero is in it.
+  [[nodiscard]] double cell_force_n() const;
   [[nodiscard]] const rig::RawSample& raw() const { return output_.raw; }
   [[nodiscard]] const rig::RigTruth& truth() const { return output_.truth; }
 

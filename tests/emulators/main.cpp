@@ -36,6 +36,8 @@ int run(int argc, char** argv) {
   cli.add_option("--accelerometer", options.accelerometer,
                  "FIFO of an IIO accelerometer's samples");
   cli.add_option("--bridge", options.bridge, "FIFO of an IIO bridge converter's samples");
+  cli.add_option("--indicator-link", options.indicator_link,
+                 "name of a load cell indicator's serial port");
   cli.add_flag("--no-real-time", ordinary, "do not ask for real-time priority");
   try {
     cli.parse(argc, argv);

@@ -21,7 +21,8 @@ struct SignalsConfig {
     visit("acceleration", self.acceleration, Range{1.0, 20.0},
           "lateral acceleration: simulated, drive (an analogue input of it), platform or iio");
     visit("force", self.force, Range{1.0, 20.0},
-          "force of the hand on the stick: simulated, drive (an analogue input of it) or iio");
+          "force of the hand on the stick: simulated, drive (an analogue input of it), iio or "
+          "indicator");
     visit("angle", self.angle, Range{1.0, 30.0},
           "angle of the stick: simulated, drive or demonstration_joystick");
     visit(
@@ -159,6 +160,26 @@ struct AccelerometerConfig : IioConfig {
   }
 };
 
+/// A load cell indicator that streams lines of text to a serial port.
+struct IndicatorConfig {
+  std::string port = "/dev/indicator";
+  std::int64_t baud = 115200;
+  double rate_hz = 500.0;
+  std::int64_t sign = 1;
+  std::int64_t max_age_ticks = 10;
+
+  template <typename Visitor, typename Self>
+  static void fields(Visitor&& visit, Self& self) {
+    visit("port", self.port, Range{1.0, 200.0}, "serial port of the indicator");
+    visit("baud", self.baud, Range{9600.0, 921600.0},
+          "[Bd] its speed: a usual one; 500 lines of 18 characters a second take 90 kBd");
+    visit("rate_hz", self.rate_hz, Range{200.0, 2000.0}, "[Hz] lines a second that it sends");
+    visit("sign", self.sign, Range{-1.0, 1.0}, "[-] 1: positive is to the right; -1: to the left");
+    visit("max_age_ticks", self.max_age_ticks, Range{2.0, 100.0},
+          "[ticks] oldest line that counts");
+  }
+};
+
 /// What a session asks of the calibration of its devices.
 struct CalibrationRule {
   std::int64_t max_age_days = 90;
@@ -181,6 +202,7 @@ struct DevicesConfig {
   PlatformLinkConfig platform;
   AccelerometerConfig accelerometer{{.device = "accelerometer", .channel = "accel_y"}, ""};
   IioConfig load_cell{.device = "bridge", .channel = "voltage0"};
+  IndicatorConfig indicator;
   CalibrationRule calibration;
 
   template <typename Visitor, typename Self>
@@ -190,6 +212,7 @@ struct DevicesConfig {
     visit.group("platform", self.platform);
     visit.group("accelerometer", self.accelerometer);
     visit.group("load_cell", self.load_cell);
+    visit.group("indicator", self.indicator);
     visit.group("calibration", self.calibration);
   }
 };

@@ -61,6 +61,7 @@ void check_signs(const DevicesConfig& config) {
   check_sign("drive.angle_sign", config.drive.angle_sign);
   check_sign("accelerometer.sign", config.accelerometer.sign);
   check_sign("load_cell.sign", config.load_cell.sign);
+  check_sign("indicator.sign", config.indicator.sign);
   if (!config.accelerometer.mount.empty()) {
     const Mount mount("devices.accelerometer.mount", config.accelerometer.mount);
     if (config.accelerometer.sign != 1) {
@@ -115,7 +116,8 @@ Parts parts_of(const DevicesConfig& config) {
                               std::pair{kJoystickPart, Source::kDrive}};
   constexpr std::array kForces{std::pair{std::string_view("simulated"), Source::kSimulated},
                                std::pair{std::string_view("drive"), Source::kDrive},
-                               std::pair{std::string_view("iio"), Source::kIio}};
+                               std::pair{std::string_view("iio"), Source::kIio},
+                               std::pair{std::string_view("indicator"), Source::kIndicator}};
   constexpr std::array kAccelerometers{std::pair{std::string_view("simulated"), Source::kSimulated},
                                        std::pair{std::string_view("drive"), Source::kDrive},
                                        std::pair{std::string_view("platform"), Source::kPlatform},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "services/runtime/transport/port.hpp"
@@ -10,9 +11,10 @@ namespace stillhand::runtime {
 /// A serial port or pseudo-terminal, raw and non-blocking, for this process alone.  One thread.
 class SerialPort final : public Port {
  public:
-  /// @throws ConfigError if the port is missing, is no terminal, cannot be opened, or another
-  ///         process has it
-  explicit SerialPort(const std::string& path);
+  /// @param baud  a UART's; a USB adapter's own and a pseudo-terminal ignore it
+  /// @throws ConfigError if the port is missing, is no terminal, cannot be opened, another process
+  ///         has it, or the system has no such speed
+  explicit SerialPort(const std::string& path, std::int64_t baud = 921600);
   ~SerialPort() override;
 
   [[nodiscard]] int descriptor() const noexcept override { return descriptor_; }

@@ -53,6 +53,18 @@ TEST(PartsTest, AnIioDeviceServesAccelerationOrForceWithoutADrive) {
   EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.angle: got iio, want one of"));
 }
 
+TEST(PartsTest, AnIndicatorServesTheForceAlone) {
+  DevicesConfig config;
+  config.signals.force = "indicator";
+  EXPECT_EQ(parts_of(config).force, Parts::Source::kIndicator);
+  EXPECT_FALSE(parts_of(config).needs_drive());
+  config.indicator.sign = 0;
+  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.indicator.sign: got 0, want 1 or -1"));
+  config = {};
+  config.signals.acceleration = "indicator";
+  EXPECT_THAT(refusal(config), testing::HasSubstr("devices.signals.acceleration: got indicator"));
+}
+
 TEST(PartsTest, AMountIsARotationAndHasNoSign) {
   DevicesConfig config;
   config.signals.acceleration = "iio";
