@@ -3,6 +3,7 @@
 """How fast the control loop is, next to what the machine and two middlewares allow, in one run.
 
     tests/benchmark/loop_latency.py [--seconds 600] [--round 20] [--only lab,bare] [--lab NAME=PROGRAMS[,CONFIG]]...
+                                    [--awake]
 
 The contenders take turns, a round of each and again, so that what else the machine does hits all alike:
 
@@ -13,9 +14,11 @@ The contenders take turns, a round of each and again, so that what else the mach
 
 --lab adds the lab of another build, so that before and after are of one run. Prints a row a round on standard error,
 and at the end one table: medians over the rounds of p50, p99 and p99.9, and the worst of all, in microseconds. All
-contenders run with SCHED_FIFO where the system grants it.
+contenders run with SCHED_FIFO where the system grants it. With --awake no processor sleeps meanwhile; cyclictest
+always asks for that itself.
 """
 import argparse
+import contextlib
 import datetime
 import json
 import os
@@ -23,6 +26,7 @@ import pathlib
 import re
 import shutil
 import statistics
+import struct
 import subprocess
 import sys
 import tempfile
@@ -153,11 +157,25 @@ def print_ratios(results):
                                                       for key, values in ratios.items()))
 
 
+def take_turns(calls, turns, results):
+    """Appends each contender's figures of each turn; None where it failed."""
+    for turn in range(turns):
+        for name, call in calls.items():
+            try:
+                results[name].append(call())
+            except (RuntimeError, subprocess.CalledProcessError) as error:
+                print(f"round {turn}, {name}: {error}", file=sys.stderr)
+                results[name].append(None)
+                continue
+            print(f"round {turn}, {name}: {json.dumps(results[name][-1])}", file=sys.stderr)
+
+
 def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--seconds", type=int, default=600, help="of each contender in all [600]")
     words.add_argument("--round", type=int, default=20, help="seconds of a turn [20]")
     words.add_argument("--only", default="lab,bare,ddsperf,cyclictest")
+    words.add_argument("--awake", action="store_true", help="keep processors awake (/dev/cpu_dma_latency)")
     words.add_argument("--lab", action="append", default=[], metavar="NAME=PROGRAMS[,CONFIG]")
     options = words.parse_args()
     first = real_time_words()
@@ -179,15 +197,11 @@ def main():
     if "cyclictest" in chosen and shutil.which("cyclictest"):
         calls["cyclictest"] = lambda: cyclictest(options.round)
     results = {name: [] for name in calls}
-    for turn in range(max(1, options.seconds // options.round)):
-        for name, call in calls.items():
-            try:
-                results[name].append(call())
-            except (RuntimeError, subprocess.CalledProcessError) as error:
-                print(f"round {turn}, {name}: {error}", file=sys.stderr)
-                results[name].append(None)
-                continue
-            print(f"round {turn}, {name}: {json.dumps(results[name][-1])}", file=sys.stderr)
+    request = open("/dev/cpu_dma_latency", "wb", buffering=0) if options.awake else contextlib.nullcontext()
+    with request:
+        if options.awake:
+            request.write(struct.pack("i", 0))  # us; as long as the file is open
+        take_turns(calls, max(1, options.seconds // options.round), results)
     print(f"{datetime.date.today()}, {os.cpu_count()} cores, kernel {os.uname().release}, "
           f"SCHED_FIFO {'granted' if first else 'refused'}, "
           f"{options.seconds} s of each contender in turns of {options.round} s")
