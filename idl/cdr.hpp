@@ -7,25 +7,71 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
+#include <vector>
+
+namespace stillhand_msgs {
+class MotorCommand;
+class TrackingSample;
+class TrialAssignment;
+class FeedthroughModel;
+}  // namespace stillhand_msgs
 
 namespace stillhand {
 
-/// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.
+/// A message as it was before fields were added at its end: how to recognise it, and how many zero
+/// bytes make it one of today.  Zero is what the added fields are without a mitigation.
+struct EarlierForm {
+  std::size_t size = 0;     ///< [bytes] with the encapsulation; 0: any
+  std::size_t missing = 0;  ///< [bytes] to add; 0: there was no earlier form
+  [[nodiscard]] bool fits(std::size_t bytes) const noexcept {
+    // A transport fills a message up to four bytes.
+    return missing > 0 && (size == 0 || bytes == size || bytes == (size + 3) / 4 * 4);
+  }
+};
+template <typename Message>
+inline constexpr EarlierForm kEarlierForm{};
+// Sizes follow from the fields before the added ones, by CDR's alignment to 8 bytes.
+template <>
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::MotorCommand>{80, 16};
+template <>
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::TrackingSample>{56, 12};
+template <>
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::TrialAssignment>{77, 11};
+// Ends in a text, so its size varies: the one byte that was added is missing.
+template <>
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::FeedthroughModel>{0, 1};
+
+/// True for the types above, by their names in a schema.
+inline bool has_earlier_form(std::string_view type) noexcept {
+  return type == "stillhand_msgs::MotorCommand" || type == "stillhand_msgs::TrackingSample" ||
+         type == "stillhand_msgs::TrialAssignment" || type == "stillhand_msgs::FeedthroughModel";
+}
+
+/// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.  A
+/// message of the earlier form has zeros in the fields that were added since.
 /// @return false if the bytes are another message; `message` is then unspecified.
 template <typename Message>
 bool from_cdr(std::span<const std::byte> bytes, Message& message) {
+  const auto decoded = [&message](std::byte* begin, std::size_t size) {
+    eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(begin), size);
+    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                               eprosima::fastcdr::Cdr::DDS_CDR);
+    try {
+      cdr.read_encapsulation();
+      message.deserialize(cdr);
+      return true;
+    } catch (const eprosima::fastcdr::exception::Exception&) {
+      return false;
+    }
+  };
   // Fast CDR only reads here, but its buffer type needs a non-const pointer.
-  auto* begin = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
-  eprosima::fastcdr::FastBuffer buffer(begin, bytes.size());
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  try {
-    cdr.read_encapsulation();
-    message.deserialize(cdr);
-    return true;
-  } catch (const eprosima::fastcdr::exception::Exception&) {
-    return false;
-  }
+  if (decoded(const_cast<std::byte*>(bytes.data()), bytes.size())) return true;
+  constexpr EarlierForm kEarlier = kEarlierForm<Message>;
+  if (!kEarlier.fits(bytes.size())) return false;
+  std::vector<std::byte> filled(bytes.begin(), bytes.end());
+  filled.resize(filled.size() + kEarlier.missing);
+  return decoded(filled.data(), filled.size());
 }
 
 }  // namespace stillhand

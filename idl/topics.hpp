@@ -72,6 +72,7 @@ inline constexpr std::string_view kRecorder[]{"recorder"};
 inline constexpr std::string_view kSensedReaders[]{"motion",         "cancellation",   "display",
                                                    "human_operator", "identification", "recorder"};
 inline constexpr std::string_view kRigAndRecorder[]{"rig", "recorder"};
+inline constexpr std::string_view kMotorCommandReaders[]{"rig", "display", "recorder"};
 inline constexpr std::string_view kSensingAndRecorder[]{"sensing", "recorder"};
 inline constexpr std::string_view kOperatorAndRecorder[]{"human_operator", "recorder"};
 inline constexpr std::string_view kAssignmentReaders[]{"motion", "cancellation", "recorder"};
@@ -103,7 +104,7 @@ inline constexpr Topic kSensed{"stillhand/sensed",   "stillhand_msgs::Sensed",
                                who::kSensing,        who::kSensedReaders};
 inline constexpr Topic kMotorCommand{"stillhand/motor_command", "stillhand_msgs::MotorCommand",
                                      Pattern::kStream1khz,      1000.0,
-                                     who::kCancellation,        who::kRigAndRecorder};
+                                     who::kCancellation,        who::kMotorCommandReaders};
 inline constexpr Topic kTrackingSample{"stillhand/tracking_sample",
                                        "stillhand_msgs::TrackingSample",
                                        Pattern::kStream1khz,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/codec.hpp"
 
+#include "apps/session/live_mitigation.hpp"
+
 namespace stillhand::lab {
 namespace {
 
@@ -158,6 +160,7 @@ stillhand_msgs::TrialControl to_idl(const Announcement& announcement,
     const Trial& trial = *announcement.trial;
     message.trial(static_cast<std::int32_t>(trial.number));
     message.phase(trial.phase == TrialPhase::kPegged ? stillhand_msgs::PHASE_PEGGED
+                  : trial.phase == TrialPhase::kFree ? stillhand_msgs::PHASE_FREE
                                                      : stillhand_msgs::PHASE_TRACKING);
     message.start_tick(trial.start_tick);
     message.duration_ticks(trial.duration_ticks);
@@ -178,6 +181,13 @@ stillhand_msgs::TrialAssignment assignment_of(const session::PlannedTrial& plann
   message.peak_m_s2(planned.peak_m_s2);
   message.motion_seed(planned.motion_seed);
   message.cancellation(planned.cancellation);
+  for (const mitigation::Part& part : planned.parts) {
+    stillhand_msgs::MitigationPart& to = message.parts().emplace_back();
+    // Kinds of core and bus have one order (services/cancellation/codec.cpp).
+    to.kind(static_cast<stillhand_msgs::MitigationPartKind>(part.kind));
+    to.values(part.values);
+  }
+  if (!planned.parts.empty()) message.mitigation(session::condition_label(planned.label));
   return message;
 }
 

@@ -73,7 +73,11 @@ const session::TrialOutcome& ConductedTrials::run_once(const session::PlannedTri
 const session::TrialOutcome& ConductedTrials::finished() {
   session::TrialOutcome& outcome = outcomes_.back();
   // A perturbed trial on the peg is for `stillhand identify`: no model of it is needed here.
-  if (outcome.completed && outcome.planned.label == session::kIdentification) take_model(outcome);
+  const char label = outcome.planned.label;
+  if (outcome.completed &&
+      (label == session::kIdentification || label == session::kFreeIdentification)) {
+    take_model(outcome);
+  }
   return outcome;
 }
 
@@ -81,7 +85,8 @@ const session::TrialOutcome& ConductedTrials::finished() {
 void ConductedTrials::take_model(session::TrialOutcome& outcome) {
   const Conductor::AwaitedModel awaited = conductor_.await_model(outcome.planned.trial.number);
   if (awaited.failure.empty()) {
-    model_ = identification::from_idl(awaited.model);
+    // That of a free stick goes from identification to the canceller alone.
+    if (!awaited.model.to_position()) model_ = identification::from_idl(awaited.model);
     return;
   }
   outcome.completed = false;

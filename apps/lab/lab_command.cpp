@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/lab_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "apps/lab/lab.hpp"
+#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/settings/check_name.hpp"
 #include "services/settings/repeatable.hpp"
@@ -86,8 +89,12 @@ void take_rig(const std::vector<std::string>& words, LabOptions& options) {
 
 // The trials and the person or model that tracks.
 void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
+  std::vector<std::string> mitigations;
+  for (const auto& one : session::live_mitigations()) mitigations.emplace_back(one.name);
   lab.add_option("--conditions", words.conditions,
-                 "A stationary, B moving, C moving with cancellation; comma-separated")
+                 fmt::format("comma-separated: A stationary, B moving, C moving with cancellation; "
+                             "or a mitigation of `stillhand study --mitigations`: {}",
+                             fmt::join(mitigations, ", ")))
       ->capture_default_str();
   lab.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
       ->capture_default_str();
@@ -209,7 +216,8 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
 }
 
 void take_words(const Words& words, LabOptions& options) {
-  options.protocol.conditions = session::parse_conditions(words.conditions);
+  options.protocol.conditions = session::parse_conditions(words.conditions, session::kLabConditions,
+                                                          session::Named::kMitigationsToo);
   options.who = words.who == "simulated" ? Operator::kSimulated : Operator::kMouse;
   if ((words.who == "gamepad") == options.gamepad.empty()) {
     throw ConfigError("--gamepad", options.gamepad.empty() ? "nothing" : options.gamepad.string(),

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/lab/summary_json.hpp"
+#include "apps/session/live_mitigation.hpp"
 #include "apps/session/paper_table.hpp"
 
 namespace stillhand::lab {
@@ -42,6 +43,24 @@ std::vector<report::Cell> paper_row(const session::Metric& metric) {
           fmt::format("{:.0f} %", metric.paper_restored_percent)};
 }
 
+void add_mitigations(const session::SessionResult& result, report::Page& page) {
+  std::vector<const session::TrialResult*> trials = mitigated_trials(result);
+  if (trials.empty()) return;
+  if (const session::TrialResult* c = trial_of(result, 'C')) trials.insert(trials.begin(), c);
+  report::Table table{
+      "Every condition against the feedthrough, by the error behind the first third of its trial, "
+      "as in the study's table of mitigations.",
+      {"", "RMS error [mm]", "restored (B - it)/(B - A)", "motor [N]", "hand [N]"}};
+  for (const session::TrialResult* trial : trials) {
+    table.rows.push_back({session::condition_label(trial->label),
+                          number(trial->settled_rms_error_mm),
+                          percent(settled_restoration_of(result, trial->label)),
+                          number(trial->forces.motor_n), number(trial->forces.volitional_n)});
+  }
+  page.section("Mitigations");
+  page.table(table);
+}
+
 }  // namespace
 
 report::Page session_page(const session::SessionResult& result,
@@ -61,6 +80,7 @@ report::Page session_page(const session::SessionResult& result,
   page.paragraph(
       "One unit of the paper's RMS error is near 5.5 mm. One trial of each condition has no "
       "interval: another session gives other figures.");
+  add_mitigations(result, page);
   if (drawings.empty()) return page;
   page.section("Traces");
   for (const report::Drawing& drawing : drawings) page.figure(drawing);

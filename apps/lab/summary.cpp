@@ -11,6 +11,7 @@
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
+#include "apps/session/live_mitigation.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/identification/codec.hpp"
 #include "services/identification/model_file.hpp"
@@ -51,6 +52,24 @@ void print_table(const session::SessionResult& result) {
       "no interval;\n`stillhand close-the-loop --repeats` measures it.\n");
 }
 
+void print_mitigations(const session::SessionResult& result) {
+  std::vector<const session::TrialResult*> trials = mitigated_trials(result);
+  if (trials.empty()) return;
+  if (const session::TrialResult* c = trial_of(result, 'C')) trials.insert(trials.begin(), c);
+  std::printf("\n%-16s %14s %9s %9s %9s\n", "mitigation", "RMS error [mm]", "restored", "motor [N]",
+              "hand [N]");
+  for (const session::TrialResult* trial : trials) {
+    const std::optional<double> restored = settled_restoration_of(result, trial->label);
+    std::printf("%-16s %14.1f %9s %9.1f %9.1f\n", session::condition_label(trial->label).c_str(),
+                trial->settled_rms_error_mm,
+                restored && std::isfinite(*restored)
+                    ? fmt::format("{:.0f} %", 100.0 * *restored).c_str()
+                    : "-",
+                trial->forces.motor_n, trial->forces.volitional_n);
+  }
+  std::printf("restored: (B - it)/(B - A) of the RMS error behind the first third of each trial\n");
+}
+
 void print_rig(const LabOptions& options) {
   if (options.devices.empty()) return;
   const auto devices = settings::load<device_rig::DevicesConfig>(options.devices, "devices");
@@ -71,10 +90,10 @@ void print_models(const session::SessionResult& result,
     }
     if (trial.sensed_share) {
       std::printf(
-          "of the stick's motion with the seat, as sensed in B, %c takes away: %.0f %% (%.0f to "
+          "of the stick's motion with the seat, as sensed in B, %s takes away: %.0f %% (%.0f to "
           "%.0f)\n",
-          trial.label, 100.0 * trial.sensed_share->share, 100.0 * trial.sensed_share->low,
-          100.0 * trial.sensed_share->high);
+          session::condition_label(trial.label).c_str(), 100.0 * trial.sensed_share->share,
+          100.0 * trial.sensed_share->low, 100.0 * trial.sensed_share->high);
     }
   }
   if (result.conversion) {
@@ -141,6 +160,7 @@ int report_session(const LabOptions& options, const std::vector<session::TrialOu
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
   draw(result, options.out);
   print_table(result);
+  print_mitigations(result);
   print_rig(options);
   print_models(result, options.model);
   print_motion(outcomes, options.protocol);
@@ -155,9 +175,10 @@ int report_session(const LabOptions& options, const std::vector<session::TrialOu
       continue;
     }
     std::cerr << fmt::format("stillhand lab: trial {} ({}) is marked: {}\n",
-                             outcome.planned.trial.number, outcome.planned.label, outcome.aborted);
+                             outcome.planned.trial.number,
+                             session::condition_label(outcome.planned.label), outcome.aborted);
   }
-  return !interrupted && completed == options.protocol.conditions.size() + 1 ? 0 : 1;
+  return !interrupted && completed == session::plan(options.protocol).size() ? 0 : 1;
 }
 
 }  // namespace stillhand::lab

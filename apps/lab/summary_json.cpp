@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "apps/report/or_null.hpp"
+#include "apps/session/live_mitigation.hpp"
 #include "apps/session/paper_table.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/settings/load.hpp"
@@ -70,6 +71,26 @@ ordered_json restoration_json(const session::SessionResult& result) {
   return restoration;
 }
 
+// Every condition with motion but B, C and the mitigations, as the study's table has them.
+ordered_json mitigations_json(const session::SessionResult& result) {
+  std::vector<const session::TrialResult*> shown = mitigated_trials(result);
+  if (shown.empty()) return ordered_json::object();
+  if (const session::TrialResult* c = trial_of(result, 'C')) shown.insert(shown.begin(), c);
+  ordered_json json = ordered_json::object();
+  for (const session::TrialResult* trial : shown) {
+    ordered_json& one = json[session::condition_label(trial->label)];
+    one = {{"restored", or_null(settled_restoration_of(result, trial->label))},
+           {"settled_rms_error_mm", or_null(trial->settled_rms_error_mm)},
+           {"motor_n", or_null(trial->forces.motor_n)},
+           {"volitional_n", or_null(trial->forces.volitional_n)}};
+    for (const session::Metric& metric : session::kMetrics) {
+      one["restoration"][metric.restoration_key] =
+          or_null(restoration_of(result, metric, trial->label));
+    }
+  }
+  return json;
+}
+
 // The stick drove: no motion was asked.
 ordered_json vehicle_json(const LabOptions& options) {
   const auto settings =
@@ -123,7 +144,7 @@ ordered_json trial_json(const session::TrialOutcome& outcome, const LabOptions& 
   }
   const Trial& trial = outcome.planned.trial;
   return {{"number", trial.number},
-          {"condition", std::string(1, outcome.planned.label)},
+          {"condition", session::condition_label(outcome.planned.label)},
           {"start_tick", trial.start_tick},
           {"duration_ticks", trial.duration_ticks},
           {"motion", motion_json(outcome, options)},
@@ -172,13 +193,31 @@ double value_of(const session::TrialResult& trial, const session::Metric& metric
 }
 
 std::optional<double> restoration_of(const session::SessionResult& result,
-                                     const session::Metric& metric) {
+                                     const session::Metric& metric, char label) {
   const session::TrialResult* a = trial_of(result, 'A');
   const session::TrialResult* b = trial_of(result, 'B');
-  const session::TrialResult* c = trial_of(result, 'C');
+  const session::TrialResult* c = trial_of(result, label);
   if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
   return (value_of(*b, metric) - value_of(*c, metric)) /
          (value_of(*b, metric) - value_of(*a, metric));
+}
+
+std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result) {
+  std::vector<const session::TrialResult*> out;
+  for (const session::LiveMitigation& one : session::live_mitigations()) {
+    const session::TrialResult* trial = trial_of(result, static_cast<char>(one.condition));
+    if (trial != nullptr) out.push_back(trial);
+  }
+  return out;
+}
+
+std::optional<double> settled_restoration_of(const session::SessionResult& result, char label) {
+  const session::TrialResult* a = trial_of(result, 'A');
+  const session::TrialResult* b = trial_of(result, 'B');
+  const session::TrialResult* c = trial_of(result, label);
+  if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
+  return (b->settled_rms_error_mm - c->settled_rms_error_mm) /
+         (b->settled_rms_error_mm - a->settled_rms_error_mm);
 }
 
 ordered_json summary_json(const LabOptions& options,
@@ -191,10 +230,16 @@ ordered_json summary_json(const LabOptions& options,
       summary["conditions"][std::string(1, label)] = condition_json(*trial);
     }
   }
+  for (const session::TrialResult* trial : mitigated_trials(result)) {
+    summary["conditions"][session::condition_label(trial->label)] = condition_json(*trial);
+  }
   // Tests over subjects need subjects; a lab session has one.
   summary["t_tests"] = nullptr;
   summary["manova"] = nullptr;
   summary["restoration"] = restoration_json(result);
+  if (const ordered_json mitigations = mitigations_json(result); !mitigations.empty()) {
+    summary["mitigations"] = mitigations;
+  }
   summary["identification"] = identification_json(result);
   summary["rig"] = rig_json(options);
   summary["control_model"] = or_null(options.model.string());

@@ -57,6 +57,7 @@ class TrialFinder {
     trial = SessionTrial{};
     trial.trial.number = control.trial();
     trial.trial.phase = control.phase() == stillhand_msgs::PHASE_PEGGED ? TrialPhase::kPegged
+                        : control.phase() == stillhand_msgs::PHASE_FREE ? TrialPhase::kFree
                                                                         : TrialPhase::kTracking;
     trial.trial.start_tick = control.start_tick();
     trial.trial.duration_ticks = control.duration_ticks();
@@ -67,6 +68,10 @@ class TrialFinder {
     // An identification of admittance, on the peg too: no condition and no session's model.
     if (assignment.motion() == stillhand_msgs::MOTION_MULTISINE) {
       perturbed_.insert(assignment.trial());
+      return;
+    }
+    if (!assignment.parts().empty()) {
+      names_[assignment.trial()] = assignment.mitigation().c_str();
       return;
     }
     letters_[assignment.trial()] = assignment.motion() == stillhand_msgs::MOTION_STILL ? 'A'
@@ -93,6 +98,11 @@ class TrialFinder {
       if (letter != letters_.end()) trial.letter = letter->second;
       if (trial.trial.phase == TrialPhase::kPegged && !perturbed_.contains(number)) {
         trial.letter = 'I';
+      }
+      if (const auto name = names_.find(number); name != names_.end()) trial.named = name->second;
+      if (trial.trial.phase == TrialPhase::kFree) {
+        trial.letter = '?';
+        trial.named = "free";
       }
       if (trial.recorded_ticks > 0) found_.trials.push_back(trial);
     }
@@ -121,6 +131,7 @@ class TrialFinder {
   std::map<std::int64_t, SessionTrial> by_number_;
   std::map<std::int64_t, char> letters_;
   std::map<std::uint32_t, std::string> parts_;  ///< of each rig
+  std::map<std::int64_t, std::string> names_;  ///< of mitigations
   std::set<std::int64_t> perturbed_;
   std::int64_t current_ = -1;
   std::int64_t samples_ = 0;
@@ -137,7 +148,8 @@ std::string all_names(const std::vector<SessionTrial>& trials, const SessionTria
 }
 
 bool answers_to(const SessionTrial& trial, const std::string& wanted) {
-  return wanted == std::string(1, trial.letter) || wanted == std::to_string(trial.trial.number);
+  return wanted == std::string(1, trial.letter) || (!wanted.empty() && wanted == trial.named) ||
+         wanted == std::to_string(trial.trial.number);
 }
 
 // Identification before tracking, then by length.
@@ -152,7 +164,8 @@ bool less_wanted(const SessionTrial& a, const SessionTrial& b) {
 
 std::string SessionTrial::name() const {
   const double length_s = static_cast<double>(end_tick - trial.start_tick) * kControlPeriod_s;
-  return fmt::format("{} ({}, {:.4g} s)", trial.number, letter, length_s);
+  return fmt::format("{} ({}, {:.4g} s)", trial.number,
+                     named.empty() ? std::string(1, letter) : named, length_s);
 }
 
 SessionTrials find_trials(recording::McapReader& reader, const std::string& path) {

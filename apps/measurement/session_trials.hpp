@@ -14,6 +14,7 @@ namespace stillhand::measurement {
 struct SessionTrial {
   Trial trial;
   char letter = '?';  ///< I: identification; A, B, C: the paper's conditions; ?: unknown
+  std::string named;  ///< a mitigation's name, or "free": no letter; else empty
   Tick end_tick = 0;  ///< first tick after the trial; earlier than planned if it was ended early
   std::int64_t recorded_ticks = 0;  ///< [-] samples of stillhand/sensed within the trial
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "idl/cdr.hpp"
 #include "idl/idl_text.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
@@ -39,7 +40,8 @@ std::string refusal(const Channel& channel, const recording::McapReader& reader)
   if (text == ours) return {};
   try {
     const std::string difference = recording::definition_difference(
-        recording::parse_idl(text, "schema of " + type), recording::parse_idl(ours, "idl"), type);
+        recording::parse_idl(text, "schema of " + type), recording::parse_idl(ours, "idl"), type,
+        has_earlier_form(type));
     return difference.empty()
                ? ""
                : fmt::format("this program has another definition of {}: {}", type, difference);

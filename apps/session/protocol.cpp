@@ -9,6 +9,7 @@
 #include <random>
 #include <sstream>
 
+#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/motion/core/excitation.hpp"
 
@@ -102,23 +103,50 @@ const char* condition_name(Condition condition) {
       return "arm rest";
     case Condition::kPerturbed:
       return "perturbed";
+    default:
+      break;
   }
-  return "unknown";
+  const LiveMitigation* const mitigated = live_mitigation(condition);
+  return mitigated == nullptr ? "unknown" : mitigated->name;
 }
 
-std::vector<Condition> parse_conditions(const std::string& text, const std::string& allowed) {
+namespace {
+
+// Of one word; 0: it is none.
+char condition_of(const std::string& word, const std::string& allowed, Named named) {
+  if (word.size() == 1 && allowed.find(word) != std::string::npos) return word[0];
+  if (named == Named::kLettersAlone) return '\0';
+  // The study's names of two conditions.
+  if (word == "none") return static_cast<char>(Condition::kMoving);
+  if (word == "force") return static_cast<char>(Condition::kMovingCancelled);
+  return letter_of(word);
+}
+
+std::vector<std::string> known_conditions(const std::string& allowed, Named named) {
   std::vector<std::string> known;
   for (const char letter : allowed) {
     known.push_back(fmt::format("{} ({})", letter, condition_name(static_cast<Condition>(letter))));
   }
+  if (named == Named::kMitigationsToo) {
+    for (const LiveMitigation& one : live_mitigations()) known.emplace_back(one.name);
+  }
+  return known;
+}
+
+}  // namespace
+
+std::vector<Condition> parse_conditions(const std::string& text, const std::string& allowed,
+                                        Named named) {
   std::vector<Condition> conditions;
   std::istringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
-    if (word.size() != 1 || allowed.find(word) == std::string::npos) {
-      throw ConfigError("--conditions", fmt::format("\"{}\"", word),
-                        fmt::format("a list of {}", fmt::join(known, ", ")));
+    const char letter = condition_of(word, allowed, named);
+    if (letter == '\0') {
+      throw ConfigError(
+          "--conditions", fmt::format("\"{}\"", word),
+          fmt::format("a list of {}", fmt::join(known_conditions(allowed, named), ", ")));
     }
-    const auto condition = static_cast<Condition>(word[0]);
+    const auto condition = static_cast<Condition>(letter);
     if (std::find(conditions.begin(), conditions.end(), condition) != conditions.end()) {
       throw ConfigError("--conditions", word + " twice", "each condition once");
     }
@@ -150,6 +178,15 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   return planned;
 }
 
+PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int64_t number) {
+  PlannedTrial planned = identification_trial(options);
+  planned.trial.number = number;
+  planned.trial.phase = TrialPhase::kFree;
+  planned.label = kFreeIdentification;
+  planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
+  return planned;
+}
+
 PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
                             std::int64_t number) {
   PlannedTrial planned{};
@@ -171,6 +208,9 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
     planned.cancellation = false;
   }
   planned.command_filter = condition == Condition::kCommandFilter;
+  if (const LiveMitigation* const mitigated = live_mitigation(condition)) {
+    planned.parts = mitigated->parts;
+  }
   return planned;
 }
 
@@ -183,6 +223,11 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   std::shuffle(order.begin(), order.end(), engine);
 
   std::vector<PlannedTrial> trials{identification_trial(options)};
+  const bool position = std::ranges::any_of(order, [](Condition condition) {
+    const LiveMitigation* const mitigated = live_mitigation(condition);
+    return mitigated != nullptr && needs_position(mitigated->parts);
+  });
+  if (position) trials.push_back(free_identification_trial(options, 1));
   for (const Condition condition : order) {
     const auto number = static_cast<std::int64_t>(trials.size());
     trials.push_back(tracking_trial(options, condition, number));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/contract/trial.hpp"
+#include "services/mitigation/core/part.hpp"
 #include "services/motion/core/motion_profile.hpp"
 
 namespace stillhand::session {
@@ -20,10 +21,24 @@ enum class Condition : char {
   kDampedStick = 'E',      ///< platform moves, more stick damping
   kArmRest = 'F',          ///< platform moves, the forearm rests
   kPerturbed = 'P',        ///< platform and motor move the hand at once, to identify it
+  // Mitigations that a session over the bus runs too, live_mitigation.hpp; the platform moves.
+  kLowPass = 'l',
+  kNotch = 'n',
+  kModelFilter = 'm',
+  kSignal = 's',
+  kLmsSignal = 'u',
+  kAdaptive = 'a',
+  kLmsForce = 'v',
+  kDamping = 'd',
+  kImpedance = 'i',
+  kDampingForce = 'f',
 };
 
 /// Label of the pegged trial that gives the session its model.
 inline constexpr char kIdentification = 'I';
+/// Label of the trial with a free stick that gives it the feedthrough to position, where a
+/// condition needs it.
+inline constexpr char kFreeIdentification = 'J';
 
 /// Conditions of a session over the bus, and of a study.
 inline constexpr const char* kLabConditions = "ABC";
@@ -60,7 +75,8 @@ struct PlannedTrial {
   double rms_m_s2, peak_m_s2;        ///< [m/s^2]
   std::uint64_t motion_seed;
   bool cancellation;
-  bool command_filter;  ///< in process only
+  bool command_filter;                  ///< in process only
+  std::vector<mitigation::Part> parts;  ///< of a mitigation in place of cancellation; over the bus
 };
 
 /// For CLI11: the error in the word of a --seed, or an empty text.  (CLI11 itself would take a
@@ -70,19 +86,26 @@ std::string check_seed(const std::string& word);
 /// Name in reports.
 const char* condition_name(Condition condition);
 
-/// "A,B,C" to conditions.  @param allowed  their letters
+/// Whether a list of conditions may name mitigations too.
+enum class Named : std::uint8_t { kLettersAlone, kMitigationsToo };
+
+/// "A,B,C" or "A,B,signal" to conditions; `none` is B, and `force` is C.
+/// @param allowed  their letters
 /// @throws ConfigError for an unknown, repeated or missing one.
 std::vector<Condition> parse_conditions(const std::string& text,
-                                        const std::string& allowed = kLabConditions);
+                                        const std::string& allowed = kLabConditions,
+                                        Named named = Named::kLettersAlone);
 
-/// Identification first, then the conditions in an order shuffled by the seed; every seed of a
-/// trial follows from the session's.
+/// Identification first, with the stick pegged and, where a condition needs it, free; then the
+/// conditions in an order shuffled by the seed; every seed of a trial follows from the session's.
 /// @throws ConfigError for durations out of range (5 s to 3600 s), a road class that ISO 8608 does
 ///         not define, or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
 /// The pegged trial, number 0.
 PlannedTrial identification_trial(const ProtocolOptions& options);
+/// The one with the stick free, in the same motion with other phases.
+PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int64_t number);
 /// One tracking trial of a condition.
 /// @param number  of the trial in its session, from 1; its seeds follow from it and the session's
 PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,

@@ -15,6 +15,11 @@
 namespace stillhand::session {
 namespace {
 
+// By cancellation or by another mitigation.
+bool drives_motor(const PlannedTrial& planned) {
+  return planned.cancellation || mitigation::drives_motor(planned.parts);
+}
+
 std::optional<TrialResult::Latency> latency_of(std::vector<double> late_us, double uncertainty_us) {
   if (late_us.empty()) return std::nullopt;
   std::ranges::sort(late_us);
@@ -102,13 +107,22 @@ void judge_cancellation(const SessionRecording& session, const PlannedTrial& pla
   const bool known = is_known(forces.feedthrough_n);
   if (known) result.cancelled_share = cancelled_share(forces.feedthrough_n, forces.motor_n);
   result.excerpt = excerpt_of(forces.feedthrough_n, forces.motor_n, record);
-  if (!planned.cancellation) return;
+  if (!drives_motor(planned)) return;
   if (known) {
     result.counterforce_delay_s =
         counterforce_delay_s(forces.feedthrough_n, forces.motor_n, kControlRateHz);
   }
   result.sensor_to_command = sensor_to_command(session, trial);
   judge_use(session, trial, result);
+}
+
+// Eq. SU-19.
+double settled_rms_error_mm(const identification::TrackingRecord& record) {
+  std::vector<double> error_mm;
+  for (std::size_t n = record.cursor_m.size() / 3; n < record.cursor_m.size(); ++n) {
+    error_mm.push_back(1e3 * (record.cursor_m[n] - record.target_m[n]));
+  }
+  return rms(error_mm);
 }
 
 TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& planned) {
@@ -125,6 +139,7 @@ TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& 
       session.tracking_samples, planned.trial, [](const auto& s) { return s.cursor_m(); }, again);
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
   result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
+  result.settled_rms_error_mm = settled_rms_error_mm(record);
   judge_cancellation(session, planned, record, result);
   return result;
 }
@@ -168,7 +183,8 @@ void judge_by_senses(const SessionRecording& session, const std::vector<TrialOut
                      SessionResult& result) {
   const auto moves_alone = [](const TrialOutcome& outcome) {
     return outcome.completed && outcome.planned.trial.phase == TrialPhase::kTracking &&
-           outcome.planned.moving && !outcome.planned.cancellation;
+           outcome.planned.moving && !drives_motor(outcome.planned) &&
+           outcome.planned.parts.empty();
   };
   const auto without = std::ranges::find_if(outcomes, moves_alone);
   if (without == outcomes.end()) return;
@@ -177,7 +193,7 @@ void judge_by_senses(const SessionRecording& session, const std::vector<TrialOut
     const auto outcome = std::ranges::find_if(outcomes, [&](const TrialOutcome& each) {
       return each.planned.trial.number == trial.number;
     });
-    if (!outcome->planned.cancellation) continue;
+    if (!drives_motor(outcome->planned)) continue;
     trial.sensed_share =
         sensed_share(moving, sensed_motion(session, outcome->planned.trial), kControlRateHz);
   }
@@ -194,7 +210,9 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
   for (const auto& offset : session.clock_offsets) {
     result.clocks[offset.service().c_str()] = offset;
   }
-  if (!session.models.empty()) result.model = session.models.back();
+  for (const auto& model : session.models) {
+    if (!model.to_position()) result.model = model;
+  }
   for (const TrialOutcome& outcome : outcomes) {
     const PlannedTrial& planned = outcome.planned;
     if (!outcome.completed || planned.trial.phase != TrialPhase::kTracking) continue;

@@ -34,6 +34,9 @@ struct TrialResult {
   std::optional<double> cancelled_share;
   /// The same from what is sensed, next to the session's trial without cancellation, Eq. SN-7.
   std::optional<SensedShare> sensed_share;
+  /// RMS of the error of pursuit behind the trial's first third, as in the study's table of
+  /// mitigations (SU-19): what adapts may settle in it.
+  double settled_rms_error_mm = 0.0;
   TrialForces forces;
   /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
   std::optional<double> counterforce_delay_s;

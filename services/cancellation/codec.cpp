@@ -38,8 +38,20 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
 }
 
 Assignment from_idl(const stillhand_msgs::TrialAssignment& message) {
-  return {message.trial(), message.cancellation()};
+  return {message.trial(), message.cancellation(), !message.parts().empty()};
 }
+
+std::vector<mitigation::Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
+  std::vector<mitigation::Part> parts;
+  parts.reserve(message.parts().size());
+  // Kinds of core and bus have one order.  A number that is no kind stays one, and is refused.
+  for (const stillhand_msgs::MitigationPart& part : message.parts()) {
+    parts.push_back({static_cast<mitigation::PartKind>(part.kind()), part.values()});
+  }
+  return parts;
+}
+static_assert(static_cast<std::size_t>(stillhand_msgs::PART_NOTCH) ==
+              static_cast<std::size_t>(mitigation::PartKind::kNotch));
 
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
                                  const SamplingConfig& sampling) {
@@ -134,6 +146,18 @@ stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const Cancell
   message.enabled(input.enabled);
   message.permitted(input.permitted);
   message.flags(output.flags);
+  return message;
+}
+
+stillhand_msgs::MotorCommand to_idl(const mitigation::MitigationOutput& output,
+                                    const CancellerOutput& canceller, const CancellerInput& input,
+                                    const stillhand_msgs::Sensed& sensed, std::int32_t model,
+                                    std::int64_t trial) {
+  stillhand_msgs::MotorCommand message = to_idl(canceller, input, sensed, model);
+  message.force_n(output.force_n);
+  message.flags(output.flags);
+  message.taken_off_rad(sensed.theta_rad() - output.command_rad);
+  message.mitigated_trial(static_cast<std::int32_t>(trial));
   return message;
 }
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "services/contract/config_error.hpp"
+
 namespace stillhand::cancellation {
 
 Shell::Shell(runtime::Service& service, const Config& config,
@@ -19,14 +21,21 @@ Shell::Shell(runtime::Service& service, const Config& config,
     arming_.announce(trial);
     note_when_armed();
   });
-  bus.subscribe<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment,
-                                                 [this](const auto& message, const auto&) {
-                                                   arming_.assign(from_idl(message));
-                                                   note_when_armed();
-                                                 });
+  bus.subscribe<stillhand_msgs::TrialAssignment>(
+      topics::kTrialAssignment,
+      [this](const auto& message, const auto&) { on_assignment(message); });
   bus.subscribe<stillhand_msgs::FeedthroughModel>(
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
         if (!message.usable()) return;
+        if (message.to_position()) {
+          {
+            const std::lock_guard lock(mutex_);
+            models_.position = {message.control_rate_hz(), message.control_numerator(),
+                                message.control_denominator()};
+          }
+          prepare_mitigation(mitigation::needs_position);
+          return;
+        }
         on_model({control_model(from_idl(message, config_.sampling)), message.model(),
                   message.from_tick()});
       });
@@ -42,7 +51,8 @@ Shell::Shell(runtime::Service& service, const Config& config,
 }
 
 void Shell::note_when_armed() {
-  switch (arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for())) {
+  switch (arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for(),
+                            mitigated_ != nullptr ? mitigated_->trial : 0)) {
     case Readiness::kUnassigned:
       return;
     case Readiness::kArmed:
@@ -54,7 +64,55 @@ void Shell::note_when_armed() {
     case Readiness::kModelTooLate:
       service_.note_event(stillhand_msgs::EVENT_NOTE, "the model is for later than the trial");
       return;
+    case Readiness::kNoMitigation:  // armed when it is prepared
+      return;
   }
+}
+
+void Shell::on_assignment(const stillhand_msgs::TrialAssignment& message) {
+  arming_.assign(from_idl(message));
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = parts_of(message);
+    wanted_trial_ = wanted_.empty() ? 0 : message.trial();
+  }
+  prepare_mitigation([](const auto&) { return true; });
+  note_when_armed();
+}
+
+void Shell::prepare_mitigation(bool (*concerned)(const std::vector<mitigation::Part>&)) {
+  const std::lock_guard lock(mutex_);
+  if (wanted_trial_ == 0 || !concerned(wanted_)) return;
+  mitigations_.prepare([this] { return make_mitigation(); });
+}
+
+std::unique_ptr<Shell::Mitigated> Shell::make_mitigation() {
+  std::vector<mitigation::Part> parts;
+  mitigation::SessionModels models;
+  std::int64_t trial = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    parts = wanted_;
+    models = models_;
+    trial = wanted_trial_;
+  }
+  if (trial == 0) return nullptr;
+  try {
+    return std::make_unique<Mitigated>(
+        Mitigated{mitigation::Mitigation(recipe_of(parts, models, config_)), trial});
+  } catch (const ConfigError& error) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
+    return nullptr;  // the trial is never armed, and so never begins
+  }
+}
+
+void Shell::follow_mitigation(Tick tick) {
+  // The one before goes with the next handover: not while its force acts, nor within its trial.
+  if (mitigated_ != nullptr && (mitigated_->force_n != 0.0 || arming_.mitigates(tick))) return;
+  Mitigated* const newest = mitigations_.current();
+  if (newest == mitigated_) return;
+  mitigated_ = newest;
+  note_when_armed();
 }
 
 void Shell::on_model(Received received) {
@@ -79,6 +137,8 @@ std::unique_ptr<Shell::Ready> Shell::prepare_received() {
     if (preparation.refusal == Refusal::kNone) {
       newest =
           std::make_unique<Ready>(Ready{preparation.model, received.number, received.from_tick});
+      const std::lock_guard lock(mutex_);
+      models_.force = received.model;
       continue;
     }
     const char* const why =
@@ -86,6 +146,7 @@ std::unique_ptr<Shell::Ready> Shell::prepare_received() {
     why_no_model_.store(why);
     service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, why);
   }
+  if (newest) prepare_mitigation(mitigation::needs_force);
   return newest;
 }
 
@@ -121,12 +182,26 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   const Trial& trial = service_.trial();
   const bool permitted = interlock_.step(trial, sensed.tick(), service_.bus().peers_alive());
   note_interlock(trial);
-  const CancellerInput input = from_idl(sensed, arming_.cancels(sensed.tick()), permitted);
-  const CancellerOutput output =
-      perturbation_ ? perturbation_->step(input, trial) : core_.step(input);
-  auto message = to_idl(output, input, sensed, schedule_.in_use());
+  auto message = answer(sensed, permitted);
   command_.write(message);
   service_.note_tick(sensed.tick());
+}
+
+stillhand_msgs::MotorCommand Shell::answer(const stillhand_msgs::Sensed& sensed, bool permitted) {
+  const Tick tick = sensed.tick();
+  const CancellerInput input = from_idl(sensed, arming_.cancels(tick), permitted);
+  if (perturbation_) {
+    return to_idl(perturbation_->step(input, service_.trial()), input, sensed, schedule_.in_use());
+  }
+  const CancellerOutput output = core_.step(input);
+  follow_mitigation(tick);
+  const bool runs = mitigated_ != nullptr &&
+                    (mitigated_->trial == arming_.mitigated_trial() || mitigated_->force_n != 0.0);
+  if (!runs) return to_idl(output, input, sensed, schedule_.in_use());
+  const CancellerInput asked = from_idl(sensed, arming_.mitigates(tick), permitted);
+  const mitigation::MitigationOutput done = mitigated_->core.step(asked);
+  mitigated_->force_n = done.force_n;
+  return to_idl(done, output, asked, sensed, schedule_.in_use(), mitigated_->trial);
 }
 
 }  // namespace stillhand::cancellation

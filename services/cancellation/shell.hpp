@@ -15,6 +15,7 @@
 #include "services/cancellation/core/model_schedule.hpp"
 #include "services/cancellation/core/perturbation.hpp"
 #include "services/cancellation/core/trial_arming.hpp"
+#include "services/mitigation/recipe.hpp"
 #include "services/runtime/process/handover.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/service.hpp"
@@ -22,7 +23,9 @@
 namespace stillhand::cancellation {
 
 /// The canceller's process: one motor command for each sensed sample, in the receiving thread.
-/// Models are prepared in another thread and taken by the sample that ModelSchedule names.
+/// Models are prepared in another thread and taken by the sample that ModelSchedule names.  A trial
+/// with a mitigation of its own is answered by a Mitigation, which is prepared in a thread too, of
+/// the session's models; the canceller runs on without its force, so it stays in time.
 class Shell {
  public:
   /// @param perturbation  force in place of cancelling; none: it cancels
@@ -44,8 +47,23 @@ class Shell {
     Tick from_tick;
   };
 
+  /// A trial's mitigation.
+  struct Mitigated {
+    mitigation::Mitigation core;
+    std::int64_t trial;
+    double force_n = 0.0;  ///< of the newest answer
+  };
+
+  void on_assignment(const stillhand_msgs::TrialAssignment& message);
   void on_sensed(const stillhand_msgs::Sensed& sensed);
+  stillhand_msgs::MotorCommand answer(const stillhand_msgs::Sensed& sensed, bool permitted);
   void on_model(Received received);
+  /// Prepares the wanted mitigation, where there is one that is concerned: one that needs a model
+  /// that has come since could not be made before.
+  void prepare_mitigation(bool (*concerned)(const std::vector<mitigation::Part>&));
+  std::unique_ptr<Mitigated> make_mitigation();
+  /// Takes a mitigation that has become ready, once the one before has let go of the stick.
+  void follow_mitigation(Tick tick);
   /// In the preparing thread: every model that has come since, in order.
   /// @return the newest sound one, or nullptr
   std::unique_ptr<Ready> prepare_received();
@@ -65,8 +83,13 @@ class Shell {
   const Ready* ready_ = nullptr;  ///< the newest; the handover owns it
   std::atomic<const char*> why_no_model_{"no model has come"};  ///< a literal
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
+  Mitigated* mitigated_ = nullptr;  ///< the newest; the handover owns it
   std::mutex mutex_;
-  std::vector<Received> received_;     ///< not yet prepared
+  std::vector<Received> received_;        ///< not yet prepared
+  mitigation::SessionModels models_;      ///< sound ones, the newest
+  std::vector<mitigation::Part> wanted_;  ///< of the newest assignment
+  std::int64_t wanted_trial_ = 0;         ///< 0: it wants no mitigation
+  runtime::Handover<Mitigated> mitigations_;
   runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };
 

@@ -12,6 +12,7 @@ enum class TrialPhase : std::uint8_t {
   kIdle = 0,      ///< no trial runs; every force is zero
   kPegged = 1,    ///< stick held by the peg, idle hand: feedthrough identification (paper III-A)
   kTracking = 2,  ///< pursuit tracking (paper III-C)
+  kFree = 3,      ///< stick free, the person holds it still: feedthrough to position
 };
 
 /// One trial on the sample clock.  Measured ticks are [start_tick, start_tick + duration_ticks).

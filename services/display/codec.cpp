@@ -31,11 +31,16 @@ PromptKind kind_of(stillhand_msgs::PromptKind kind) {
 
 }  // namespace
 
-TrackingInput from_idl(const stillhand_msgs::Sensed& sensed) {
-  return {sensed.tick(), sensed.theta_rad()};
+TrackingInput from_idl(const stillhand_msgs::Sensed& sensed, const TakenOff& off) {
+  return {sensed.tick(), sensed.theta_rad(), off.angle_rad};
 }
 
-stillhand_msgs::TrackingSample to_idl(const TrackingSample& sample, Tick tick, std::int64_t trial) {
+TakenOff from_idl(const stillhand_msgs::MotorCommand& command) {
+  return {command.tick(), command.taken_off_rad()};
+}
+
+stillhand_msgs::TrackingSample to_idl(const TrackingSample& sample, Tick tick, std::int64_t trial,
+                                      Tick command) {
   stillhand_msgs::TrackingSample message;
   message.tick(tick);
   message.target_m(sample.target_m);
@@ -43,6 +48,7 @@ stillhand_msgs::TrackingSample to_idl(const TrackingSample& sample, Tick tick, s
   message.inside(sample.inside);
   message.trial(static_cast<std::int32_t>(trial));
   message.flags(sample.flags);
+  message.command_tick(command);
   return message;
 }
 

@@ -22,6 +22,9 @@ Shell::Shell(runtime::Service& service)
   // Texts of bounded length: copying one does not allocate.
   service.bus().subscribe<stillhand_msgs::Prompt>(
       topics::kPrompt, [this](const auto& message, const auto&) { prompt_.store(message); });
+  service.bus().subscribe<stillhand_msgs::MotorCommand>(
+      topics::kMotorCommand,
+      [this](const auto& message, const auto&) { taken_off_.offer(from_idl(message)); });
   service.bus().subscribe<stillhand_msgs::Sensed>(
       topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message); });
 }
@@ -58,8 +61,10 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
     }
     service_.note_armed(newest->trial.number);
   }
-  const TrackingSample sample = core_.step(from_idl(sensed));
-  auto message = to_idl(sample, sensed.tick(), armed_ == nullptr ? -1 : armed_->trial.number);
+  const TakenOff off = taken_off_.at(sensed.tick());
+  const TrackingSample sample = core_.step(from_idl(sensed, off));
+  auto message =
+      to_idl(sample, sensed.tick(), armed_ == nullptr ? -1 : armed_->trial.number, off.tick);
   tracking_.write(message);
   shown_.store({sensed.tick(), sample, service_.trial(), paused_});
   service_.note_tick(sensed.tick());

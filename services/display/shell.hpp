@@ -45,6 +45,7 @@ class Shell {
   runtime::Service& service_;
   TrackingDisplay::Config config_;
   TrackingDisplay core_;
+  CommandInUse taken_off_;
   runtime::Handover<Prepared> handover_;
   const Prepared* armed_ = nullptr;
   bool paused_ = false;

@@ -11,7 +11,10 @@ Shell::Shell(runtime::Service& service)
       config_(service.config<Config>()),
       model_(service.bus().publisher<stillhand_msgs::FeedthroughModel>(topics::kFeedthroughModel)) {
   service.on_trial([this](const Trial& trial, const auto&) {
-    if (trial.phase == TrialPhase::kPegged) pegged_.begin(trial);
+    if (trial.phase == TrialPhase::kPegged || trial.phase == TrialPhase::kFree) {
+      phase_ = trial.phase;
+      pegged_.begin(trial);
+    }
     service_.note_armed(trial.number);
   });
   service.bus().subscribe<stillhand_msgs::Sensed>(
@@ -21,10 +24,13 @@ Shell::Shell(runtime::Service& service)
 void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   service_.note_tick(sensed.tick());
   newest_tick_.store(sensed.tick(), std::memory_order_relaxed);
-  if (!pegged_.take(sensed.tick(), sensed.accel_y_m_s2(), sensed.force_n())) return;
+  const double moved =
+      phase_ == TrialPhase::kFree ? displacement_m(sensed.theta_rad()) : sensed.force_n();
+  if (!pegged_.take(sensed.tick(), sensed.accel_y_m_s2(), moved)) return;
   {
     const std::lock_guard lock(mutex_);
     finished_ = pegged_.release();
+    finished_phase_ = phase_;
   }
   wake_.notify_all();
 }
@@ -38,21 +44,27 @@ void Shell::fit_trials(const std::stop_token& stop) {
   runtime::become_background();
   for (;;) {
     PeggedTrial trial;
+    TrialPhase phase = TrialPhase::kPegged;
     {
       std::unique_lock lock(mutex_);
       if (!wake_.wait(lock, stop, [this] { return finished_.has_value(); })) return;
       trial = std::move(*finished_);
+      phase = finished_phase_;
       finished_.reset();
     }
-    auto message = fit(trial);
+    auto message = fit(trial, phase);
     message.from_tick(newest_tick_.load(std::memory_order_relaxed) + kModelNotice_ticks);
     model_.write(message);
   }
 }
 
-stillhand_msgs::FeedthroughModel Shell::fit(const PeggedTrial& trial) {
+stillhand_msgs::FeedthroughModel Shell::fit(const PeggedTrial& trial, TrialPhase phase) {
   const runtime::OrdinaryWhile ordinary;
-  return to_idl(identify(trial, config_), models_++, static_cast<std::int32_t>(trial.number));
+  const auto number = static_cast<std::int32_t>(trial.number);
+  if (phase != TrialPhase::kFree) return to_idl(identify(trial, config_), models_++, number);
+  auto message = to_idl(identify_position(trial, config_), models_++, number);
+  message.to_position(true);
+  return message;
 }
 
 }  // namespace stillhand::identification

@@ -21,6 +21,7 @@ void TrialLog::take(const FoundWriter& writer, const TappedSample& sample) {
   const std::string trial = "trial " + std::to_string(control.trial());
   texts_[trial + " phase"] = control.phase() == stillhand_msgs::PHASE_PEGGED     ? "pegged"
                              : control.phase() == stillhand_msgs::PHASE_TRACKING ? "tracking"
+                             : control.phase() == stillhand_msgs::PHASE_FREE     ? "free"
                                                                                  : "idle";
   texts_[trial + " start_tick"] = std::to_string(control.start_tick());
   texts_[trial + " duration_ticks"] = std::to_string(control.duration_ticks());

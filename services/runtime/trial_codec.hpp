@@ -12,6 +12,7 @@ inline Trial from_idl(const stillhand_msgs::TrialControl& message) {
   trial.number = message.trial();
   trial.phase = message.phase() == stillhand_msgs::PHASE_PEGGED     ? TrialPhase::kPegged
                 : message.phase() == stillhand_msgs::PHASE_TRACKING ? TrialPhase::kTracking
+                : message.phase() == stillhand_msgs::PHASE_FREE     ? TrialPhase::kFree
                                                                     : TrialPhase::kIdle;
   trial.start_tick = message.start_tick();
   trial.duration_ticks = message.duration_ticks();

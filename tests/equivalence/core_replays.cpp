@@ -2,12 +2,14 @@
 #include "tests/equivalence/core_replays.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "services/cancellation/codec.hpp"
 #include "services/display/codec.hpp"
 #include "services/human_operator/codec.hpp"
 #include "services/human_operator/core/subject_config.hpp"
+#include "services/mitigation/recipe.hpp"
 #include "services/motion/codec.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/rig/codec.hpp"
@@ -30,6 +32,36 @@ std::int64_t core_seed(const SessionSettings& settings) {
 /// For cores whose steps depend on their input alone.
 constexpr auto kAlways = [](const auto&, const auto&) { return true; };
 constexpr auto kSameTrial = [](const auto& a, const auto& b) { return a.trial() == b.trial(); };
+
+/// The recipe of a trial, of the models that the session had identified, or been given, before it.
+mitigation::Recipe recorded_recipe(const SessionRecording& session,
+                                   const cancellation::Config& config, std::int64_t trial) {
+  const Tick start = of_trial(session.trial_controls, trial).start_tick();
+  mitigation::SessionModels models;
+  for (const msgs::FeedthroughModel& model : session.models) {
+    if (!model.usable() || model.trial() >= trial) continue;
+    if (model.to_position()) {
+      models.position = {model.control_rate_hz(), model.control_numerator(),
+                         model.control_denominator()};
+    } else {
+      models.force = cancellation::control_model(cancellation::from_idl(model));
+    }
+  }
+  for (const msgs::AugmentedModel& model : session.control_models) {
+    if (model.from_tick() <= start) models.force = cancellation::from_idl(model);
+  }
+  return recipe_of(cancellation::parts_of(of_trial(session.trial_assignments, trial)), models,
+                   config);
+}
+
+/// What the display took off the stick's angle.  In recordings from before it did so, `tick` is 0.
+display::TakenOff taken_off(const ByTick<msgs::MotorCommand>& commands, Tick tick) {
+  if (tick <= 0) return {};
+  // A command that only the recorder lost, where the one before took nothing off.
+  const bool nothing =
+      !commands.has(tick) && commands.has(tick - 1) && commands.at(tick - 1).taken_off_rad() == 0.0;
+  return nothing ? display::TakenOff{tick, 0.0} : display::from_idl(commands.at(tick));
+}
 
 }  // namespace
 
@@ -93,8 +125,11 @@ Replay replay_vehicle(const SessionRecording& session, const SessionSettings& se
 }
 
 Replay replay_cancellation(const SessionRecording& session, const SessionSettings& settings) {
-  cancellation::Canceller core(settings.of<cancellation::Config>("cancellation"));
+  const auto config = settings.of<cancellation::Config>("cancellation");
+  cancellation::Canceller core(config);
   const ByTick sensed("sensed", session.sensed);
+  std::optional<mitigation::Mitigation> mitigated;
+  std::int64_t mitigated_trial = 0;
   std::int32_t offered = -1;
   std::int32_t control_model = -1;
   // The canceller's model by its number; one that was refused is never named.
@@ -119,15 +154,27 @@ Replay replay_cancellation(const SessionRecording& session, const SessionSetting
       if (model == session.models.end()) {
         throw NotRecorded("model " + std::to_string(offered + 1) + " is not in the recording");
       }
-      if (model->usable())
+      if (model->usable() && !model->to_position())
         core.load_model(cancellation::control_model(cancellation::from_idl(*model)));
     }
     const msgs::Sensed& sample = sensed.at(tick);
+    if (like.mitigated_trial() == 0) {
+      const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());
+      return cancellation::to_idl(core.step(input), input, sample, like.model());
+    }
+    // The canceller runs on without its force; the trial's mitigation answers.
+    if (like.mitigated_trial() != mitigated_trial) {
+      mitigated.emplace(recorded_recipe(session, config, like.mitigated_trial()));
+      mitigated_trial = like.mitigated_trial();
+    }
+    const auto alone = core.step(cancellation::from_idl(sample, false, like.permitted()));
     const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());
-    return cancellation::to_idl(core.step(input), input, sample, like.model());
+    return cancellation::to_idl(mitigated->step(input), alone, input, sample, like.model(),
+                                mitigated_trial);
   };
   const auto agree = [](const msgs::MotorCommand& a, const msgs::MotorCommand& b) {
-    return a.enabled() == b.enabled() && a.permitted() == b.permitted() && a.model() == b.model();
+    return a.enabled() == b.enabled() && a.permitted() == b.permitted() && a.model() == b.model() &&
+           a.mitigated_trial() == b.mitigated_trial();
   };
   return replay("cancellation", session.motor_commands, step, agree);
 }
@@ -136,6 +183,7 @@ Replay replay_display(const SessionRecording& session, const SessionSettings& se
   const auto config = settings.of<display::TrackingDisplay::Config>("display");
   display::TrackingDisplay core(config);
   const ByTick sensed("sensed", session.sensed);
+  const ByTick commands("motor_command", session.motor_commands);
   std::int64_t armed = -1;
   const auto step = [&](Tick tick, const msgs::TrackingSample& like) {
     if (like.trial() != armed) {
@@ -150,7 +198,9 @@ Replay replay_display(const SessionRecording& session, const SessionSettings& se
       }
       armed = like.trial();
     }
-    return display::to_idl(core.step(display::from_idl(sensed.at(tick))), tick, armed);
+    const display::TakenOff off = taken_off(commands, like.command_tick());
+    return display::to_idl(core.step(display::from_idl(sensed.at(tick), off)), tick, armed,
+                           like.command_tick());
   };
   return replay("display", session.tracking_samples, step, kSameTrial);
 }

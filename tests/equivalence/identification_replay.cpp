@@ -50,6 +50,7 @@ Replay replay_identification(const SessionRecording& session, const SessionSetti
       const Tick end = trial.start_tick + trial.duration_ticks;
       if (result.compared == 0) result.first_tick = trial.start_tick;
       const std::set<Tick> lost = lost_by_identification(session, trial.start_tick, end);
+      const bool free = trial.phase == TrialPhase::kFree;
       identification::PeggedRecord pegged;
       pegged.begin(trial);
       for (Tick tick = trial.start_tick; pegged.active(); ++tick) {
@@ -58,11 +59,15 @@ Replay replay_identification(const SessionRecording& session, const SessionSetti
           continue;
         }
         const msgs::Sensed& sample = sensed.at(tick);
-        pegged.take(tick, sample.accel_y_m_s2(), sample.force_n());
+        pegged.take(tick, sample.accel_y_m_s2(),
+                    free ? identification::displacement_m(sample.theta_rad()) : sample.force_n());
       }
       const identification::PeggedTrial collected = pegged.release();
-      auto answer = identification::to_idl(identification::identify(collected, config),
-                                           model.model(), static_cast<std::int32_t>(model.trial()));
+      auto answer =
+          identification::to_idl(free ? identification::identify_position(collected, config)
+                                      : identification::identify(collected, config),
+                                 model.model(), static_cast<std::int32_t>(model.trial()));
+      answer.to_position(free);
       // When the fit was done is the machine's doing, as the stamp is.
       answer.from_tick(model.from_tick());
       compare(answer, model, trial.start_tick, result);

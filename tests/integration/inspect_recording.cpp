@@ -37,7 +37,8 @@ std::vector<Message> newest(const std::vector<Message>& stream, std::size_t coun
 
 json signals_of(const stillhand::session::SessionRecording& session, std::size_t last_ticks) {
   json signals{{"truth", json::array()},    {"command", json::array()}, {"sensed", json::array()},
-               {"tracking", json::array()}, {"force", json::array()},   {"pointer", json::array()}};
+               {"tracking", json::array()}, {"force", json::array()},   {"pointer", json::array()},
+               {"stick", json::array()},    {"motor", json::array()}};
   for (const auto& m : newest(session.rig_truths, last_ticks)) {
     signals["truth"].push_back({m.tick(), m.platform_position_m(), m.platform_acceleration_m_s2(),
                                 m.feedthrough_force_n(), m.volitional_force_n()});
@@ -47,6 +48,10 @@ json signals_of(const stillhand::session::SessionRecording& session, std::size_t
   }
   for (const auto& m : newest(session.sensed, last_ticks)) {
     signals["sensed"].push_back({m.tick(), m.accel_y_m_s2()});
+    signals["stick"].push_back({m.tick(), m.theta_rad()});
+  }
+  for (const auto& m : newest(session.motor_commands, last_ticks)) {
+    signals["motor"].push_back({m.tick(), m.force_n(), m.taken_off_rad()});
   }
   for (const auto& m : newest(session.tracking_samples, last_ticks)) {
     signals["tracking"].push_back({m.tick(), m.stamp_ns(), m.target_m(), m.cursor_m()});

@@ -7,8 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <string>
 #include <tuple>
+#include <vector>
 
+#include "idl/cdr.hpp"
 #include "services/display/codec.hpp"
 #include "services/human_operator/codec.hpp"
 #include "services/identification/codec.hpp"
@@ -277,25 +281,133 @@ TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
                                           {"model", "11"},
                                           {"enabled", "true"},
                                           {"permitted", "false"},
-                                          {"flags", "10"}}));
+                                          {"flags", "10"},
+                                          {"taken_off_rad", "0"},
+                                          {"mitigated_trial", "0"}}));
   EXPECT_EQ(command(false, true).at(9).second, "false");
   EXPECT_EQ(command(false, true).at(10).second, "true");
 }
 
+TEST(CancellationCodecTest, AMitigationsForceAndCommandTakeThePlaceOfTheCancellers) {
+  stillhand_msgs::Sensed sensed = sensed_message();
+  sensed.theta_rad(1.5);
+  const auto input = cancellation::from_idl(sensed, true, false);
+  const auto message = cancellation::to_idl(mitigation::MitigationOutput{6.5, 0.25, 12},
+                                            {3.5, 4.5, 10, {0.75, 0.125}}, input, sensed, 11, 13);
+  EXPECT_EQ(message.force_n(), 6.5);
+  EXPECT_EQ(message.taken_off_rad(), 1.25);
+  EXPECT_EQ(message.flags(), 12u);
+  EXPECT_EQ(message.mitigated_trial(), 13);
+  // The canceller's prediction is recorded on.
+  EXPECT_EQ(message.predicted_force_n(), 4.5);
+  EXPECT_EQ(std::tuple(message.enabled(), message.permitted()), std::tuple(true, false));
+}
+
+// ---- Messages of recordings from before fields were added: by hand, field by field.
+
+template <typename... Fields>
+std::vector<std::byte> bytes_of(const Fields&... fields) {
+  std::vector<char> room(512);
+  eprosima::fastcdr::FastBuffer buffer(room.data(), room.size());
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                             eprosima::fastcdr::Cdr::DDS_CDR);
+  cdr.serialize_encapsulation();
+  (cdr << ... << fields);
+  const auto* begin = reinterpret_cast<const std::byte*>(room.data());
+  return {begin, begin + cdr.getSerializedDataLength()};
+}
+
+std::vector<std::byte> filled_up(std::vector<std::byte> bytes) {
+  bytes.resize((bytes.size() + 3) / 4 * 4);
+  return bytes;
+}
+
+using U32 = std::uint32_t;
+using I32 = std::int32_t;
+using I64 = std::int64_t;
+
+TEST(EarlierFormTest, AMotorCommandWithoutAMitigationIsRead) {
+  const auto old =
+      bytes_of(U32{1}, I64{2}, I64{3}, I64{4}, 5.5, 6.5, 7.5, 8.5, I32{9}, true, false, U32{10});
+  stillhand_msgs::MotorCommand message;
+  message.taken_off_rad(1.0);
+  ASSERT_TRUE(from_cdr(old, message));
+  EXPECT_EQ(std::tuple(message.tick(), message.force_n(), message.phase_weight(), message.model()),
+            std::tuple(2, 5.5, 8.5, 9));
+  EXPECT_EQ(std::tuple(message.enabled(), message.permitted(), message.flags()),
+            std::tuple(true, false, 10u));
+  EXPECT_EQ(std::tuple(message.taken_off_rad(), message.mitigated_trial()), std::tuple(0.0, 0));
+  // A message that was cut off is none.
+  for (const std::size_t size : {old.size() - 1, old.size() - 4, old.size() + 4}) {
+    auto cut = old;
+    cut.resize(size);
+    EXPECT_FALSE(from_cdr(cut, message)) << size;
+  }
+}
+
+TEST(EarlierFormTest, ATrackingSampleWithoutACommandIsRead) {
+  const auto old = bytes_of(U32{1}, I64{2}, I64{3}, 4.5, 5.5, true, I32{6}, U32{7});
+  stillhand_msgs::TrackingSample message;
+  ASSERT_TRUE(from_cdr(old, message));
+  EXPECT_EQ(std::tuple(message.cursor_m(), message.inside(), message.trial(), message.flags()),
+            std::tuple(5.5, true, 6, 7u));
+  EXPECT_EQ(message.command_tick(), 0);
+}
+
+TEST(EarlierFormTest, AnAssignmentWithoutAMitigationIsRead) {
+  const auto old =
+      bytes_of(U32{1}, I64{2}, I32{3}, U32{1}, 4.5, 5.5, I32{6}, 7.5, 8.5, std::uint64_t{9}, true);
+  for (const auto& bytes : {old, filled_up(old)}) {
+    stillhand_msgs::TrialAssignment message;
+    ASSERT_TRUE(from_cdr(bytes, message)) << bytes.size();
+    EXPECT_EQ(std::tuple(message.trial(), message.rms_m_s2(), message.motion_seed()),
+              std::tuple(3, 7.5, 9u));
+    EXPECT_TRUE(message.cancellation());
+    EXPECT_STREQ(message.mitigation().c_str(), "");
+    EXPECT_TRUE(message.parts().empty());
+  }
+}
+
+TEST(EarlierFormTest, AModelOfAForceIsRead) {
+  const std::vector<double> numerator{0.5, 1.5};
+  const auto old =
+      bytes_of(U32{1}, I64{2}, I32{3}, I64{4}, I32{5}, 50.0, numerator, numerator, 1000.0,
+               numerator, numerator, 6.5, 7.5, 8.5, true, std::string("all is well"));
+  for (const auto& bytes : {old, filled_up(old)}) {
+    stillhand_msgs::FeedthroughModel message;
+    ASSERT_TRUE(from_cdr(bytes, message)) << bytes.size();
+    EXPECT_EQ(message.control_numerator(), numerator);
+    EXPECT_STREQ(message.text().c_str(), "all is well");
+    EXPECT_TRUE(message.usable());
+    EXPECT_FALSE(message.to_position());
+  }
+}
+
+TEST(DisplayCodecTest, WhatAMitigationTakesOffReachesTheCore) {
+  stillhand_msgs::MotorCommand command;
+  command.tick(5);
+  command.taken_off_rad(0.25);
+  const auto [tick, theta, off] = display::from_idl(sensed_message(), display::from_idl(command));
+  EXPECT_EQ(off, 0.25);
+  EXPECT_EQ(display::from_idl(command).tick, 5);
+}
+
 TEST(DisplayCodecTest, TickAndAngleReachTheCore) {
-  const auto [tick, theta_rad] = display::from_idl(sensed_message());
-  EXPECT_EQ(std::tuple(tick, theta_rad), std::tuple(7, 1.5));
+  const auto [tick, theta_rad, taken_off_rad] = display::from_idl(sensed_message());
+  EXPECT_EQ(std::tuple(tick, theta_rad, taken_off_rad), std::tuple(7, 1.5, 0.0));
 }
 
 TEST(DisplayCodecTest, EveryFieldOfATrackingSampleIsSet) {
-  EXPECT_EQ(fields_of(display::to_idl({0.5, 1.5, true, 2}, 3, 4)), (Fields{{"rig", "0"},
-                                                                           {"tick", "3"},
-                                                                           {"stamp_ns", "0"},
-                                                                           {"target_m", "0.5"},
-                                                                           {"cursor_m", "1.5"},
-                                                                           {"inside", "true"},
-                                                                           {"trial", "4"},
-                                                                           {"flags", "2"}}));
+  EXPECT_EQ(fields_of(display::to_idl({0.5, 1.5, true, 2}, 3, 4, 5)),
+            (Fields{{"rig", "0"},
+                    {"tick", "3"},
+                    {"stamp_ns", "0"},
+                    {"target_m", "0.5"},
+                    {"cursor_m", "1.5"},
+                    {"inside", "true"},
+                    {"trial", "4"},
+                    {"flags", "2"},
+                    {"command_tick", "5"}}));
 }
 
 TEST(DisplayCodecTest, EveryFieldOfAPromptReachesTheScreen) {
@@ -375,7 +487,8 @@ TEST(IdentificationCodecTest, EveryFieldOfAModelIsSet) {
                     {"heldout_rmse_n", "9.5"},
                     {"conversion_error", "10.5"},
                     {"usable", "true"},
-                    {"text", ""}}));
+                    {"text", ""},
+                    {"to_position", "false"}}));
 }
 
 TEST(IdentificationCodecTest, AModelComesBackFromTheBusAsItWent) {

@@ -34,6 +34,7 @@ std::size_t service_number(const std::string& name) {
 
 std::string text_of(const stillhand_msgs::TrialAssignment& assignment) {
   if (assignment.motion() == stillhand_msgs::MOTION_STILL) return "still";
+  if (!assignment.parts().empty()) return std::string("motion, ") + assignment.mitigation().c_str();
   return assignment.cancellation() ? "motion, cancellation" : "motion, no cancellation";
 }
 

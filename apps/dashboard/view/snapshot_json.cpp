@@ -72,7 +72,7 @@ Json protocol_json(const MessageFeed& feed) {
 
 Json session_json(const MessageFeed& feed) {
   constexpr std::array kStates{"waiting", "running", "ending", "paused"};
-  constexpr std::array kPhases{"idle", "pegged", "tracking"};
+  constexpr std::array kPhases{"idle", "pegged", "tracking", "free"};
   Json session{{"state", "none"},
                {"tick", feed.newest_tick()},
                {"blinded", feed.options().blinded},

@@ -100,7 +100,7 @@ Json spectrum_json(const ForceRecord& record) {
 
 Json timeline_json(const Timeline& timeline) {
   constexpr std::array<const char*, kMarkKinds> kKinds{"late", "lost", "alarm", "event"};
-  constexpr std::array kPhases{"idle", "pegged", "tracking"};
+  constexpr std::array kPhases{"idle", "pegged", "tracking", "free"};
   // Rounded up to a microsecond: the instant on the page then includes the marked message.
   const auto since_s = [&](std::int64_t at_ns) {
     return std::ceil(static_cast<double>(difference_ns(at_ns, timeline.begin_ns())) / 1e3) / 1e6;

@@ -139,6 +139,7 @@ std::string TrialRun::why_not_armed(const Seen& seen) const {
 Progress TrialRun::progress(Tick now) const {
   const Trial& trial = result_.trial;
   return {trial.phase == TrialPhase::kPegged ? "identification, stick pegged"
+          : trial.phase == TrialPhase::kFree ? "identification, stick free"
                                              : fmt::format("trial {}, tracking", trial.number),
           std::clamp(static_cast<double>(now - trial.start_tick) /
                          static_cast<double>(trial.duration_ticks),

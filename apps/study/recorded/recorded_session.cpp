@@ -65,7 +65,7 @@ void keep_valid(SessionRecording& recorded, std::uint32_t rig) {
   });
   std::erase_if(recorded.rig_truths, [&](const auto& m) { return m.rig() != rig; });
   // The canceller does not take them.
-  std::erase_if(recorded.models, [](const auto& m) { return !m.usable(); });
+  std::erase_if(recorded.models, [](const auto& m) { return !m.usable() || m.to_position(); });
 }
 
 template <typename Message, typename Value>

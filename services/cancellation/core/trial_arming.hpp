@@ -13,6 +13,7 @@ namespace stillhand::cancellation {
 struct Assignment {
   std::int64_t trial = -1;    ///< number of the trial
   bool cancellation = false;  ///< the trial asks for cancellation
+  bool mitigation = false;    ///< the trial asks for another mitigation, in place of it
 };
 
 /// Whether the canceller is prepared for the newest trial.
@@ -21,6 +22,7 @@ enum class Readiness : std::uint8_t {
   kUnassigned,    ///< the trial's assignment has not come
   kNoModel,       ///< the trial asks for cancellation, and no model is in use or ready
   kModelTooLate,  ///< the model that is ready may be used only after the trial has begun
+  kNoMitigation,  ///< the trial asks for a mitigation that is not prepared
 };
 
 /// Decides when the canceller is armed for a trial and at which samples it cancels.  Trial and
@@ -35,15 +37,27 @@ class TrialArming {
 
   /// @param has_model   a model is in use
   /// @param next_model  first tick of a model that is ready but not in use, if there is one
-  [[nodiscard]] Readiness readiness(bool has_model, std::optional<Tick> next_model) const noexcept;
+  /// @param prepared    trial whose mitigation is prepared; 0: none
+  [[nodiscard]] Readiness readiness(bool has_model, std::optional<Tick> next_model,
+                                    std::int64_t prepared = 0) const noexcept;
 
   /// True where the trial asks for cancellation at this tick, ramps included.
   [[nodiscard]] bool cancels(Tick tick) const noexcept {
-    return assigned() && assignment_->cancellation && trial_.phase == TrialPhase::kTracking &&
-           trial_.covers(tick);
+    return assigned() && assignment_->cancellation && tracks(tick);
+  }
+  /// The same for a mitigation.
+  [[nodiscard]] bool mitigates(Tick tick) const noexcept {
+    return mitigated_trial() != 0 && tracks(tick);
+  }
+  /// The newest trial if it asks for a mitigation, else 0: trial 0 is a session's pegged one.
+  [[nodiscard]] std::int64_t mitigated_trial() const noexcept {
+    return assigned() && assignment_->mitigation ? trial_.number : 0;
   }
 
  private:
+  [[nodiscard]] bool tracks(Tick tick) const noexcept {
+    return trial_.phase == TrialPhase::kTracking && trial_.covers(tick);
+  }
   [[nodiscard]] bool assigned() const noexcept {
     return assignment_ && assignment_->trial == trial_.number;
   }

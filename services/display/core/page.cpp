@@ -157,7 +157,10 @@ Page page_of(const Prompt& prompt, const Moment& moment, const Answering& answer
   const Tick over_tick = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
   const bool runs = trial.phase != TrialPhase::kIdle && moment.tick < over_tick;
   if (!moment.fresh && moment.tick >= 0) return link_lost(prompt, moment);
-  if (runs && trial.phase == TrialPhase::kTracking) return tracking(prompt, moment);
+  // A free stick is held still where the target stands: in the centre.
+  if (runs && (trial.phase == TrialPhase::kTracking || trial.phase == TrialPhase::kFree)) {
+    return tracking(prompt, moment);
+  }
   if (runs && trial.phase == TrialPhase::kPegged) return pegged(prompt, moment);
   switch (prompt.kind) {
     case PromptKind::kInstructions:

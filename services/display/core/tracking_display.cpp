@@ -101,7 +101,7 @@ TrackingSample TrackingDisplay::step(const TrackingInput& input) noexcept {
   const double target_m = target_at(input.tick);
   const bool known = std::isfinite(input.theta_rad);
   if (known) {
-    cursor_m_ = config_.gain_m_rad * input.theta_rad;
+    cursor_m_ = config_.gain_m_rad * (input.theta_rad - input.taken_off_rad);
   } else {
     flags |= kInputInvalid;
   }

@@ -16,6 +16,8 @@ namespace stillhand::display {
 struct TrackingInput {
   Tick tick;
   double theta_rad;  ///< stick angle, + right
+  /// What a mitigation takes off it; exactly 0: nothing.  CommandInUse chooses it.
+  double taken_off_rad = 0.0;
 };
 
 struct TrackingSample {
@@ -27,7 +29,7 @@ struct TrackingSample {
 
 /// The tracking task: target and cursor on the screen, one pair a tick.
 ///
-///   x_p = g theta                                              Eq. DI-1
+///   x_p = g (theta - taken off)                                Eq. DI-1
 ///   x_r = ramp(t) x_ref(t) inside the armed trial, else 0      Eq. DI-2
 ///   inside = |x_p - x_r| < w/2                                 Eq. DI-3
 ///

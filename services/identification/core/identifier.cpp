@@ -94,4 +94,20 @@ Identification identify(const PeggedTrial& trial, const Config& config) {
   }
 }
 
+Identification identify_position(const PeggedTrial& trial, const Config& config) {
+  // In millimetres the numbers are as large as those of a force.
+  constexpr double kMillimetre_m = 1e-3;
+  PeggedTrial in_mm = trial;
+  for (double& value : in_mm.record.force_n) value /= kMillimetre_m;
+  Config refined = config;
+  refined.refine = true;
+  Identification found = identify(in_mm, refined);
+  if (!found.model) return found;
+  for (DifferenceModel* model : {&found.model->fit, &found.model->control}) {
+    for (double& c : model->numerator) c *= kMillimetre_m;
+  }
+  found.model->heldout.free_run_rms_n *= kMillimetre_m;
+  return found;
+}
+
 }  // namespace stillhand::identification

@@ -64,5 +64,29 @@ TEST(TrialArmingTest, ItCancelsInTheTrackingTrialAndItsRampsAlone) {
   EXPECT_FALSE(with(pegged, {3, true}).cancels(1200));
 }
 
+TEST(TrialArmingTest, AMitigatedTrialIsArmedWithItsOwnMitigationAlone) {
+  const TrialArming sut = with(kTracking, {3, false, true});
+  EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kNoMitigation);
+  EXPECT_EQ(sut.readiness(true, std::nullopt, 2), Readiness::kNoMitigation);
+  // Needed models are part of what is prepared.
+  EXPECT_EQ(sut.readiness(false, std::nullopt, 3), Readiness::kArmed);
+  EXPECT_EQ(sut.mitigated_trial(), 3);
+}
+
+TEST(TrialArmingTest, AMitigationActsWithinTheTrialAndTheCancellerDoesNot) {
+  const TrialArming sut = with(kTracking, {3, false, true});
+  EXPECT_FALSE(sut.mitigates(899));
+  EXPECT_TRUE(sut.mitigates(900));
+  EXPECT_TRUE(sut.mitigates(1599));
+  EXPECT_FALSE(sut.mitigates(1600));
+  EXPECT_FALSE(sut.cancels(1200));
+  EXPECT_FALSE(with(kTracking, {3, true}).mitigates(1200));
+  EXPECT_FALSE(with(kTracking, {2, false, true}).mitigates(1200));
+  // Trial 0 is a session's pegged one, and 0 stands for none.
+  Trial first = kTracking;
+  first.number = 0;
+  EXPECT_EQ(with(first, {0, false, true}).readiness(true, std::nullopt), Readiness::kNoMitigation);
+}
+
 }  // namespace
 }  // namespace stillhand::cancellation

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/cancellation/codec.hpp"
+
 namespace stillhand::lab {
 namespace {
 
@@ -138,6 +140,21 @@ TEST(LabCodecTest, TheAssignmentHoldsTheBlindedPart) {
   EXPECT_EQ(message.motion(), stillhand_msgs::MOTION_ROAD);
   EXPECT_EQ(message.motion_seed(), 5u);
   EXPECT_TRUE(message.cancellation());
+}
+
+TEST(LabCodecTest, PartsOfAnAssignmentComeBackAsTheyWereSent) {
+  session::PlannedTrial planned{};
+  planned.label = static_cast<char>(session::Condition::kDampingForce);
+  planned.parts = {{mitigation::PartKind::kForce, {}},
+                   {mitigation::PartKind::kImpedance, {1.5, 2.5, 3.5}}};
+  const auto message = assignment_of(planned);
+  EXPECT_STREQ(message.mitigation().c_str(), "damping+force");
+  EXPECT_FALSE(message.cancellation());
+  EXPECT_EQ(cancellation::parts_of(message), planned.parts);
+  EXPECT_TRUE(cancellation::from_idl(message).mitigation);
+  planned.parts.clear();
+  EXPECT_STREQ(assignment_of(planned).mitigation().c_str(), "");
+  EXPECT_FALSE(cancellation::from_idl(assignment_of(planned)).mitigation);
 }
 
 }  // namespace

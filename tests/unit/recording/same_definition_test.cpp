@@ -47,8 +47,32 @@ TEST(SameDefinitionTest, EveryDifferenceThatMovesAByteIsNamed) {
   EXPECT_EQ(difference("module m { enum K { A, B, C }; " + in +
                        "struct P { unsigned long rig; K kind; In in; string<20> text; }; };"),
             "kind has other values");
+  EXPECT_EQ(difference("module m { enum K { B }; " + in +
+                       "struct P { unsigned long rig; K kind; In in; string<20> text; }; };"),
+            "kind has other values");
   EXPECT_EQ(difference("module m { struct Q { long a; }; };"),
             "its schema does not define the type");
+}
+
+TEST(SameDefinitionTest, ValuesThatWereAddedSinceDoNotCount) {
+  EXPECT_EQ(difference("module m { enum K { A }; struct In { double x; sequence<long, 4> n; };\n"
+                       "struct P { unsigned long rig; K kind; In in; string<20> text; }; };"),
+            "");
+}
+
+TEST(SameDefinitionTest, MembersAtTheEndMayBeMissingWhereTheProgramReadsTheEarlierForm) {
+  const auto earlier = [](const std::string& recorded) {
+    return definition_difference(parse_idl(recorded, "recorded"), parse_idl(kKnown, "known"),
+                                 "m::P", true);
+  };
+  const std::string head = "module m { enum K { A, B }; ";
+  EXPECT_EQ(earlier(head + "struct In { double x; sequence<long, 4> n; }; "
+                           "struct P { unsigned long rig; K kind; In in; }; };"),
+            "");
+  // Not within a member: what follows it would move.
+  EXPECT_EQ(earlier(head + "struct In { double x; }; "
+                           "struct P { unsigned long rig; K kind; In in; string<20> text; }; };"),
+            "in.n is missing");
 }
 
 }  // namespace

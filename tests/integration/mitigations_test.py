@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Mitigations as conditions of a session over DDS: they act, they are recorded, the same cores answer the same.
+
+Under a minute: signal cancellation, which needs a trial with the stick free, and damping with the motor. With
+`--campaign` every mitigation that a session runs, in trials of 45 s, next to the study's table of the same person; 12
+minutes. The table is printed.
+"""
+import csv
+import math
+import os
+import subprocess
+
+from lab_process import BUILD, STILLHAND, LabTestCase, campaign, loose_settings, main
+
+EQUIVALENCE = BUILD / "tests" / "equivalence_live_recording"
+SESSION_LIMIT_S = 150.0
+SEED = 20261125
+MAX_FORCE_N = 25.0  # of the rig and of the canceller, deploy/config
+LIVE = ("low-pass", "notch", "model-filter", "signal", "lms-signal", "adaptive", "lms-force", "damping", "impedance",
+        "damping+force")
+
+
+def rms(values):
+    return math.sqrt(sum(value * value for value in values) / len(values))
+
+
+class MitigationsTest(LabTestCase):
+    def assert_same_in_one_process(self, lab, config):
+        """Bit for bit: what the canceller's process, the display and the identification answered."""
+        environment = {**os.environ, "STILLHAND_RECORDING": str(lab.out / "session.mcap"), "STILLHAND_CONFIG": str(config)}
+        words = [str(EQUIVALENCE), "--gtest_filter=*.CancellationAnswersTheSame:*.DisplayAnswersTheSame:"
+                 "*.IdentificationFindsTheSameModel:*.TheSimulatedSubjectAnswersTheSame"]
+        replay = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+        print(*(line for line in replay.stdout.splitlines() if " compared, " in line), sep="\n", flush=True)
+        self.assertEqual(replay.returncode, 0, replay.stdout[-4000:])
+
+    def test_two_mitigations_act_and_answer_the_same_in_one_process(self):
+        config = loose_settings(self.folder / "config")
+        lab = self.lab("--conditions", "B,signal,damping+force", "--identify-seconds", 6, "--trial-seconds", 6,
+                       "--seed", 3, "--config", config)
+        self.assertEqual(lab.end_status(SESSION_LIMIT_S), 0, lab.errors())
+        self.assert_nothing_left(lab)
+        summary = lab.summary()
+        trials = {trial["condition"]: trial["number"] for trial in summary["trials"]}
+        self.assertEqual(set(trials), {"I", "J", "B", "signal", "damping+force"})
+        self.assertEqual((trials["I"], trials["J"]), (0, 1))
+        left = {name: condition["rms_error_mm"]["mean"] for name, condition in summary["conditions"].items()}
+        print(left, flush=True)
+        self.assertEqual(set(left), {"B", "signal", "damping+force"})
+        # Study, trials of 45 s: they leave a tenth of what the motion adds. Six seconds are coarse; a mitigation that
+        # does nothing, or of the wrong sign, leaves as much as B or more.
+        for name in ("signal", "damping+force"):
+            self.assertLess(left[name], 0.75 * left["B"])
+        # The signal's motor is off, to the bit; the other's acts within its bounds.
+        motor = {name: lab.measured_signals(trials[name])["motor"] for name in ("B", "signal", "damping+force")}
+        force = {name: [row[1] for row in rows] for name, rows in motor.items()}
+        self.assertEqual(set(force["signal"]), {0.0})
+        self.assertGreater(rms(force["damping+force"]), 1.0)
+        self.assertLessEqual(max(map(abs, force["damping+force"])), MAX_FORCE_N)
+        # Recorded are the raw stick and what was taken off it.
+        taken_off = {name: [row[2] for row in rows] for name, rows in motor.items()}
+        stick = [row[1] for row in lab.measured_signals(trials["signal"])["stick"]]
+        self.assertGreater(rms(taken_off["signal"]), 0.25 * rms(stick))
+        self.assertEqual(set(taken_off["B"] + taken_off["damping+force"]), {0.0})
+        self.assert_same_in_one_process(lab, config)
+
+    def test_a_wrong_name_is_refused_in_one_line_that_lists_them(self):
+        done = subprocess.run([STILLHAND, "lab", "--conditions", "B,signals", "--headless", "--out", self.folder / "none"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        for name in LIVE:
+            self.assertIn(name, done.stderr)
+
+    @campaign
+    def test_every_mitigation_live_next_to_the_study(self):
+        lab = self.lab("--conditions", ",".join(("A", "B", "C", *LIVE)), "--identify-seconds", 40, "--trial-seconds", 45,
+                       "--seed", SEED, "--subject", 1)
+        self.assertEqual(lab.end_status(900.0), 0, lab.errors())
+        live = lab.summary()["mitigations"]
+        study = self.folder / "study"
+        names = ",".join(("force", *LIVE))
+        subprocess.run([STILLHAND, "study", "--mitigations", names, "--subjects", "1", "--seed", str(SEED),
+                        "--trial-seconds", "45", "--out", study], check=True, stdout=subprocess.DEVNULL)
+        with open(study / "mitigation_people.csv", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file)
+                    if row["task"] == "track" and row["motion"] == "0.7-2 Hz" and row["model"] in ("own", "none")]
+        inside = {row["mitigation"]: row for row in rows}
+        table = ["| | live: restored, motor | study: restored, motor |", "| --- | --- | --- |"]
+        for name, one in live.items():
+            other = inside["force" if name == "C" else name]
+            table.append(f"| `{name}` | {100 * one['restored']:.0f} %, {one['motor_n']:.1f} N | "
+                         f"{100 * float(other['restored']):.0f} %, {float(other['motor [N]']):.1f} N |")
+        print(*table, sep="\n", flush=True)
+        self.assertEqual(set(live), {"C", *LIVE})
+        self.assert_same_in_one_process(lab, lab.out / "logs" / "config")
+
+
+if __name__ == "__main__":
+    main()
