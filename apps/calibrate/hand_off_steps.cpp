@@ -16,6 +16,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/hand_off.hpp"
 #include "services/settings/load.hpp"
+#include "services/signal/smooth_step.hpp"
 
 namespace stillhand::calibrate {
 namespace {
@@ -202,7 +203,7 @@ class HandOff {
     refuse(device_rig::stroke_fault(stroke));
   }
 
-  // Goes there at rest from the last place, by a polynomial of fifth degree, and holds.
+  // Goes there at rest from the last place, by Eq. SG-18, and holds.
   // @returns where the platform is then
   double reached(double offset_m) {
     const double from_m = offset_m_;
@@ -215,11 +216,10 @@ class HandOff {
       const double way_m = offset_m - from_m;
       rig::RigInput input;
       input.command_valid = true;
-      input.command_position_m =
-          at_m_ + from_m + way_m * u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
-      input.command_velocity_m_s = way_m * 30.0 * u * u * (1.0 - u) * (1.0 - u) / kLength_s;
+      input.command_position_m = at_m_ + from_m + way_m * signal::smooth_step(u);
+      input.command_velocity_m_s = way_m * signal::smooth_step_speed(u) / kLength_s;
       input.command_acceleration_m_s2 =
-          way_m * 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (kLength_s * kLength_s);
+          way_m * signal::smooth_step_bend(u) / (kLength_s * kLength_s);
       output = station_.tick(input);
       check_devices();
       const double seat_m_s2 =

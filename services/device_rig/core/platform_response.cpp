@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "services/contract/config_error.hpp"
+#include "services/signal/smooth_step.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -54,15 +55,14 @@ signal::Multisine multisine(const PlatformTestLimits& limits) {
                         limits.max_acceleration_m_s2 / most.accel_m_s2}));
 }
 
-/// 10 u^3 - 15 u^4 + 6 u^5 with its derivatives by time: velocity and acceleration stay continuous.
+/// Eq. SG-18 with its derivatives by time: velocity and acceleration stay continuous.
 struct Fade {
   double value, rate_s, bend_s2;
 };
 Fade fade(double u, double length_s) {
   u = std::clamp(u, 0.0, 1.0);
-  const double w = 1.0 - u;
-  return {u * u * u * (10.0 + u * (-15.0 + 6.0 * u)), 30.0 * u * u * w * w / length_s,
-          60.0 * u * w * (1.0 - 2.0 * u) / (length_s * length_s)};
+  return {signal::smooth_step(u), signal::smooth_step_speed(u) / length_s,
+          signal::smooth_step_bend(u) / (length_s * length_s)};
 }
 
 /// Mean of complex numbers, and its standard error.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "services/contract/config_error.hpp"
+#include "services/signal/smooth_step.hpp"
 
 namespace stillhand::display {
 namespace {
@@ -22,9 +23,6 @@ const TrackingDisplay::Config& checked(const TrackingDisplay::Config& config) {
   ScreenLayout(config.screen, config.box_width_m);  // throws what validate() cannot see
   return config;
 }
-
-/// 10 u^3 - 15 u^4 + 6 u^5: from 0 to 1 with first and second derivative zero at both ends.
-double smooth_step(double u) noexcept { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); }
 
 void check(const Trial& trial) {
   if (trial.sound()) return;
@@ -91,7 +89,7 @@ double TrackingDisplay::target_at(Tick tick) const noexcept {
                         : tick - (trial_.start_tick + trial_.duration_ticks) + 1;
   // away runs from 1 next to the measured part to ramp_ticks at the far end.
   const double u = 1.0 - static_cast<double>(away) / static_cast<double>(trial_.ramp_ticks + 1);
-  return smooth_step(u) * target_m;
+  return signal::smooth_step(u) * target_m;
 }
 
 TrackingSample TrackingDisplay::step(const TrackingInput& input) noexcept {
