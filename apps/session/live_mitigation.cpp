@@ -20,8 +20,7 @@ constexpr double kNotchDamping = 1.0;
 constexpr double kDamping_n_s_m = 90.0;
 constexpr double kShapedStiffness_n_m = 200.0;
 constexpr double kShapedDamping_n_s_m = 60.0;
-constexpr double kSignalStep = 0.01;
-constexpr double kForceStep = 0.02;
+constexpr double kStep = 0.01;  // of both LMS
 
 Part hand(PartKind kind) {
   const cancellation::CommandFilterConfig average;
@@ -33,7 +32,7 @@ Part damper(double damping_n_s_m) { return {PartKind::kImpedance, {0.0, damping_
 Part lms_force() {
   const mitigation::SecondaryPath average;
   return {PartKind::kLmsForce,
-          {kForceStep, average.mass_kg, average.damping_n_s_m, average.stiffness_n_m}};
+          {kStep, average.mass_kg, average.damping_n_s_m, average.stiffness_n_m}};
 }
 
 }  // namespace
@@ -44,7 +43,7 @@ const std::vector<LiveMitigation>& live_mitigations() {
       {Condition::kNotch, "notch", {{PartKind::kNotch, {kNotch_hz, kNotchDamping}}}},
       {Condition::kModelFilter, "model-filter", {hand(PartKind::kPredictedSignal)}},
       {Condition::kSignal, "signal", {{PartKind::kSignal}}},
-      {Condition::kLmsSignal, "lms-signal", {{PartKind::kLmsSignal, {kSignalStep}}}},
+      {Condition::kLmsSignal, "lms-signal", {{PartKind::kLmsSignal, {kStep}}}},
       {Condition::kAdaptive, "adaptive", {hand(PartKind::kForce)}},
       {Condition::kLmsForce, "lms-force", {lms_force()}},
       {Condition::kDamping, "damping", {damper(kDamping_n_s_m)}},

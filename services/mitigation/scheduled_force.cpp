@@ -18,18 +18,13 @@ constexpr double kStart_m = 2e-4;
 
 }  // namespace
 
-ScheduledForce::Band ScheduledForce::band() {
-  return {signal::Butterworth(kEdgeOrder, kLow_hz, kControlRateHz, signal::Passband::kHigh),
-          signal::Butterworth(kEdgeOrder, kHigh_hz, kControlRateHz)};
-}
-
 ScheduledForce::ScheduledForce(const ScheduleConfig& config)
     : relaxed_(config.relaxed, config.stick),
       holding_(config.holding, config.stick),
       lever_m_(config.lever_m),
       forget_(kControlPeriod_s / config.memory_s),
-      of_difference_(band()),
-      of_motion_(band()),
+      of_difference_(kEdgeOrder, kLow_hz, kHigh_hz, kControlRateHz),
+      of_motion_(of_difference_),
       power_(kStart_m * kStart_m),
       cross_(0.5 * kStart_m * kStart_m) {
   if (!(config.lever_m > 0.0)) {

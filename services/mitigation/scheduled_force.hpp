@@ -3,7 +3,7 @@
 
 #include "services/admittance/core/arm_model.hpp"
 #include "services/mitigation/linear_arm.hpp"
-#include "services/signal/butterworth.hpp"
+#include "services/signal/band_pass.hpp"
 
 namespace stillhand::mitigation {
 
@@ -41,19 +41,12 @@ class ScheduledForce {
   [[nodiscard]] double weight() const noexcept { return weight_; }
 
  private:
-  struct Band {
-    signal::Butterworth high;
-    signal::Butterworth low;
-    double step(double x) noexcept { return low.step(high.step(x)); }
-  };
-  static Band band();
-
   LinearArm relaxed_;
   LinearArm holding_;
   double lever_m_;
   double forget_;  ///< 1 tick / T
-  Band of_difference_;
-  Band of_motion_;
+  signal::BandPass of_difference_;
+  signal::BandPass of_motion_;
   double power_;  ///< R [m^2]
   double cross_;  ///< q [m^2]
   double weight_ = 0.5;

@@ -32,12 +32,8 @@ constexpr double kBackOff_s = 0.5;
 
 }  // namespace
 
-AdaptiveGain::Band AdaptiveGain::band() {
-  return {{2, kBandLow_hz, kControlRateHz, signal::Passband::kHigh},
-          {2, kBandHigh_hz, kControlRateHz}};
-}
-
-AdaptiveGain::AdaptiveGain() : band_r0_(band()), band_x_(band()) {}
+AdaptiveGain::AdaptiveGain()
+    : band_r0_(2, kBandLow_hz, kBandHigh_hz, kControlRateHz), band_x_(band_r0_) {}
 
 AdaptiveGain::AdaptiveGain(const HandCompliance& compliance) : AdaptiveGain() {
   const double natural_rad_s = std::sqrt(compliance.stiffness_n_m / compliance.mass_kg);

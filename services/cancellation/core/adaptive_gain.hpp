@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "services/cancellation/core/control_model.hpp"
-#include "services/signal/biquad.hpp"
-#include "services/signal/butterworth.hpp"
+#include "services/signal/band_pass.hpp"
 #include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::cancellation {
@@ -48,25 +47,14 @@ class AdaptiveGain {
   [[nodiscard]] const Pair& weights() const noexcept { return weights_; }
 
  private:
-  struct Band {
-    signal::Butterworth high;
-    signal::Butterworth low;
-    double step(double x) noexcept { return low.step(high.step(x)); }
-    void reset() noexcept {
-      high.reset();
-      low.reset();
-    }
-  };
-  static Band band();
-
   void adapt(const Pair& r, double e) noexcept;
   void back_off(const Pair& r, double e) noexcept;
 
   std::optional<signal::SecondOrderLag> lag_;
   double compliance_m_n_ = 0.0;
   double lever_m_ = 0.0;
-  Band band_r0_;
-  Band band_x_;
+  signal::BandPass band_r0_;
+  signal::BandPass band_x_;
   double slow_n_ = 0.0;  ///< f^ behind the lag of its derivative
   double slow_r0_ = 0.0;
   Pair weights_{1.0, 0.0};

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "services/signal/butterworth.hpp"
+#include "services/signal/band_pass.hpp"
 #include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::mitigation {
@@ -28,10 +28,13 @@ struct LmsConfig {
 ///   y(n) = sum_i w_i a(n - 10 i),     u_i = F P a(n - 10 i),     e = F error
 ///   w_i += mu e u_i / (eps + sum u^2)          every 10 ticks
 ///
-/// F is a band-pass of 0.5 to 6 Hz, P the secondary path or 1.  50 weights reach 0.5 s back.  It
-/// starts from zero and needs no identification.  The error must be a signal that a rig senses:
+/// F is a band-pass of 0.5 to 6 Hz, in the force form to 3 Hz, P the secondary path or 1.  50
+/// weights reach 0.5 s back.  It starts from zero and needs no identification.  The error must be a
+/// signal that a rig senses:
 /// - signal form (P = 1): y is a displacement [m] taken off the command, error what is left of it;
-/// - force form: y is a force [N] that the motor takes away, error the stick's displacement.
+/// - force form: y is a force [N] that the motor takes away, error the stick's displacement.  A
+///   hand whose compliance is more than 90 degrees from P turns the weights the wrong way.  Above 3
+///   Hz there are such hands: a reflex lets one resonate there (README, "Limits").
 /// What the person wants is part of that error: it is not correlated with the acceleration and
 /// averages out, and until then it moves the weights.
 /// Source: Widrow and Stearns, Adaptive Signal Processing, 1985.
@@ -52,20 +55,14 @@ class LmsFilter {
   [[nodiscard]] const std::array<double, kTaps>& weights() const noexcept { return weights_; }
 
  private:
-  struct Band {
-    signal::Butterworth high;
-    signal::Butterworth low;
-    double step(double x) noexcept { return low.step(high.step(x)); }
-  };
-  static Band band();
   using History = std::array<double, kTaps * kSpacing_ticks>;
 
   double step_;
   double compliance_m_n_ = 1.0;
   double floor_;  ///< eps
   std::optional<signal::SecondOrderLag> path_;
-  Band reference_band_;
-  Band error_band_;
+  signal::BandPass reference_band_;
+  signal::BandPass error_band_;
   std::array<double, kTaps> weights_{};
   History accel_{};      ///< ring
   History reference_{};  ///< ring: u
