@@ -68,6 +68,52 @@ std::vector<ArmLines> all_lines(const std::vector<KnownPerson>& people,
   return out;
 }
 
+std::vector<AddedParts> parts_at(const std::vector<PowerLine>& lines, const LoopTiming& timing) {
+  std::vector<AddedParts> out;
+  out.reserve(lines.size());
+  for (const PowerLine& line : lines) out.push_back(added_at(s_at(line.frequency_hz), timing));
+  return out;
+}
+
+// Motion that is left in the worst arm, over that without the shaping; Eq. MI-8.
+double most_motion(const std::vector<PowerLine>& motion, const std::vector<ArmLines>& arms,
+                   const std::vector<AddedParts>& parts, const admittance::StickValues& stick,
+                   const ImpedanceConfig& impedance) {
+  double worst = 0.0;
+  for (const ArmLines& arm : arms) {
+    double with = 0.0;
+    double without = 0.0;
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      const Complex alone =
+          stick_impedance_at(stick, s_at(motion[k].frequency_hz)) + arm.at[k].impedance;
+      const double power = motion[k].power * std::norm(arm.at[k].feedthrough);
+      without += power / std::norm(alone);
+      with += power / std::norm(alone + added(parts[k], impedance));
+    }
+    worst = std::max(worst, std::sqrt(with / without));
+  }
+  return worst;
+}
+
+// Force for the wanted motion in the worst arm, over that without the shaping; its bound.
+double most_effort(const std::vector<PowerLine>& wanted, const std::vector<ArmLines>& arms,
+                   const std::vector<AddedParts>& parts, const admittance::StickValues& stick,
+                   const ImpedanceConfig& impedance) {
+  double most = 0.0;
+  for (const ArmLines& arm : arms) {
+    double with = 0.0;
+    double without = 0.0;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const Complex alone =
+          stick_impedance_at(stick, s_at(wanted[k].frequency_hz)) + arm.at[k].impedance;
+      without += wanted[k].power * std::norm(alone);
+      with += wanted[k].power * std::norm(alone + added(parts[k], impedance));
+    }
+    most = std::max(most, std::sqrt(with / without));
+  }
+  return most;
+}
+
 }  // namespace
 
 ReducedChoice choose_reduced(const std::vector<KnownPerson>& people,
@@ -85,6 +131,7 @@ ReducedChoice choose_reduced(const std::vector<KnownPerson>& people,
     std::array<double, kGains> worst{};
     for (const KnownPerson& made_for : people) {
       std::vector<Complex> model;
+      model.reserve(motion.size());
       for (const PowerLine& line : motion) {
         model.push_back(signal::response_at(made_for.reduced[order - 1], line.frequency_hz));
       }
@@ -139,44 +186,8 @@ ImpedanceChoice choose_impedance(const std::vector<KnownPerson>& people,
   need_people(people);
   const std::vector<ArmLines> moved = all_lines(people, motion);
   const std::vector<ArmLines> willed = all_lines(people, wanted);
-  const auto parts_of = [&](const std::vector<PowerLine>& lines) {
-    std::vector<AddedParts> out;
-    for (const PowerLine& line : lines) out.push_back(added_at(s_at(line.frequency_hz), timing));
-    return out;
-  };
-  const auto moved_parts = parts_of(motion);
-  const auto willed_parts = parts_of(wanted);
-  const auto worst_of = [&](const ImpedanceConfig& impedance) {
-    double worst = 0.0;
-    for (const ArmLines& arm : moved) {
-      double with = 0.0;
-      double without = 0.0;
-      for (std::size_t k = 0; k < motion.size(); ++k) {
-        const Complex alone =
-            stick_impedance_at(stick, s_at(motion[k].frequency_hz)) + arm.at[k].impedance;
-        const double power = motion[k].power * std::norm(arm.at[k].feedthrough);
-        without += power / std::norm(alone);
-        with += power / std::norm(alone + added(moved_parts[k], impedance));
-      }
-      worst = std::max(worst, std::sqrt(with / without));
-    }
-    return worst;
-  };
-  const auto effort_of = [&](const ImpedanceConfig& impedance) {
-    double most = 0.0;
-    for (const ArmLines& arm : willed) {
-      double with = 0.0;
-      double without = 0.0;
-      for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const Complex alone =
-            stick_impedance_at(stick, s_at(wanted[k].frequency_hz)) + arm.at[k].impedance;
-        without += wanted[k].power * std::norm(alone);
-        with += wanted[k].power * std::norm(alone + added(willed_parts[k], impedance));
-      }
-      most = std::max(most, std::sqrt(with / without));
-    }
-    return most;
-  };
+  const auto moved_parts = parts_at(motion, timing);
+  const auto willed_parts = parts_at(wanted, timing);
   ImpedanceChoice best{.worst = 1.0, .effort = 1.0};
   best.passive_hz = passive_up_to_hz(best.impedance, stick, timing);
   constexpr int kStiffnesses = 15;
@@ -190,9 +201,9 @@ ImpedanceChoice choose_impedance(const std::vector<KnownPerson>& people,
                                         bounds.most_stiffness * k / kStiffnesses};
         const double passive_hz = passive_up_to_hz(impedance, stick, timing);
         if (passive_hz < bounds.passive_to_hz) continue;
-        const double effort = effort_of(impedance);
+        const double effort = most_effort(wanted, willed, willed_parts, stick, impedance);
         if (effort > bounds.most_effort) continue;
-        const double worst = worst_of(impedance);
+        const double worst = most_motion(motion, moved, moved_parts, stick, impedance);
         if (worst < best.worst) best = {impedance, worst, effort, passive_hz};
       }
     }

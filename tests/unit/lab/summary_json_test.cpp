@@ -67,6 +67,32 @@ TEST(SummaryJsonTest, TheRestorationOfThePapersMeansIsThePapers) {
   EXPECT_DOUBLE_EQ(json["rms_error"], (9.62 - 7.01) / (9.62 - 4.04));
 }
 
+TEST(SummaryJsonTest, AMitigationStandsNextToTheLettersWithTheStudysShare) {
+  session::SessionResult result = papers_session();
+  result.trials[0].settled_rms_error_mm = 10.0;
+  result.trials[1].settled_rms_error_mm = 50.0;
+  result.trials[2].settled_rms_error_mm = 20.0;
+  session::TrialResult damped =
+      trial(static_cast<char>(session::Condition::kDampingForce), 6.83, 0.4, 0.2);
+  damped.settled_rms_error_mm = 18.0;
+  damped.forces.motor_n = 6.5;
+  result.trials.push_back(damped);
+  const auto json = json_of(result, {outcome(4, damped.label)});
+  EXPECT_EQ(json["conditions"].size(), 4u);
+  EXPECT_EQ(json["conditions"]["damping+force"]["rms_error_mm"]["mean"], 6.83);
+  const auto& one = json["mitigations"]["damping+force"];
+  EXPECT_DOUBLE_EQ(one["restored"], 0.8);
+  EXPECT_DOUBLE_EQ(one["motor_n"], 6.5);
+  EXPECT_DOUBLE_EQ(one["restoration"]["rms_error"], (9.62 - 6.83) / (9.62 - 4.04));
+  EXPECT_DOUBLE_EQ(json["mitigations"]["C"]["restored"], 0.75);
+  EXPECT_EQ(json["trials"][0]["condition"], "damping+force");
+  // What scripts know stays as it was.
+  EXPECT_EQ(json["restoration"], json_of(papers_session())["restoration"]);
+  EXPECT_FALSE(json_of(papers_session()).contains("mitigations"));
+  result.trials.erase(result.trials.begin());
+  EXPECT_TRUE(json_of(result)["mitigations"]["C"]["restored"].is_null());
+}
+
 TEST(SummaryJsonTest, WithoutAllThreeConditionsNothingIsRestored) {
   for (std::size_t missing = 0; missing < 3; ++missing) {
     session::SessionResult result = papers_session();

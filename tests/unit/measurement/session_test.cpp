@@ -132,6 +132,25 @@ TEST(SessionTest, AnUnknownTrialIsRefusedWithThoseThereAre) {
   EXPECT_THAT(error_of(path, "01"), HasSubstr("--trial: got 01"));
 }
 
+TEST(SessionTest, AMitigatedTrialAndAFreeStickHaveNamesAndNoLetter) {
+  SessionFile file;
+  file.assignment(0, MOTION_BAND_NOISE, false);
+  file.control(0, stillhand_msgs::PHASE_FREE, 0, 150);
+  run_ticks(file, 0, 150);
+  stillhand_msgs::TrialAssignment signal;
+  signal.trial(1);
+  signal.motion(MOTION_BAND_NOISE);
+  signal.mitigation("signal");
+  signal.parts().emplace_back().kind(stillhand_msgs::PART_SIGNAL);
+  file.add(topics::kTrialAssignment, signal);
+  file.control(1, PHASE_TRACKING, 200, 120);
+  run_ticks(file, 150, 320);
+  const std::string path = file_of(file.close());
+  EXPECT_THAT(error_of(path, "B"), HasSubstr("0 (free, 0.15 s), 1 (signal, 0.12 s)"));
+  EXPECT_EQ(read_measurement(path, {"signal"}).size(), 120u);
+  EXPECT_EQ(read_measurement(path, {"free"}).size(), 150u);
+}
+
 TEST(SessionTest, ALetterThatTwoTrialsHaveIsNotEnough) {
   SessionFile file;
   for (int trial = 0; trial < 2; ++trial) {

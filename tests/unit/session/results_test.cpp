@@ -48,6 +48,32 @@ TEST(EvaluateTest, OnlyTheMeasuredTicksCount) {
   EXPECT_NEAR(sut.trials.at(0).metrics.rms_error_mm, 10.0, 1e-11);
 }
 
+// Two errors, the first over exactly the third that does not count.
+TEST(EvaluateTest, TheSettledErrorLeavesOutTheFirstThird) {
+  Tape tape;
+  constexpr Tick kThird = kTrial_ticks / 3;
+  for (Tick tick = kStart; tick < kEnd; ++tick) {
+    tape.tracking(tick, tick < kStart + kThird ? 0.020 : 0.006, 0.0);
+  }
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  EXPECT_NEAR(sut.trials.at(0).settled_rms_error_mm, 6.0, 1e-11);
+  EXPECT_GT(sut.trials.at(0).metrics.rms_error_mm, 12.0);
+}
+
+TEST(EvaluateTest, AModelOfAFreeStickIsNotTheSessionsModel) {
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.010);
+  for (const bool to_position : {false, true}) {
+    stillhand_msgs::FeedthroughModel model;
+    model.model(to_position ? 1 : 0);
+    model.to_position(to_position);
+    tape.file.add(topics::kFeedthroughModel, model);
+  }
+  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  ASSERT_TRUE(sut.model);
+  EXPECT_EQ(sut.model->model(), 0);
+}
+
 // The sample before is held: 500 ticks of the error 0, then 20 lost ones that hold it, then 12 mm.
 TEST(EvaluateTest, ALostSampleHoldsTheOneBeforeAndIsCounted) {
   Tape tape;
