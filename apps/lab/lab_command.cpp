@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "apps/lab/arms_file.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
@@ -26,6 +28,7 @@ struct Words {
   std::string conditions = "A,B,C";
   std::string who = "simulated";
   std::string motion = "noise";
+  std::vector<std::filesystem::path> arms;
   bool ordinary = false;         // scheduling
   std::vector<std::string> rig;  // its number, what it is made of, or both
   std::optional<std::string> road_class;
@@ -96,6 +99,10 @@ void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
                              "or a mitigation of `stillhand study --mitigations`: {}",
                              fmt::join(mitigations, ", ")))
       ->capture_default_str();
+  lab.add_option("--arms", words.arms,
+                 "for the condition scheduled: the person's arms relaxed and holding, two files of "
+                 "`stillhand identify --admittance --json`, comma-separated")
+      ->delimiter(',');
   lab.add_option("--trial-seconds", options.protocol.trial_s, "length of a tracking trial [s]")
       ->capture_default_str();
   lab.add_option("--identify-seconds", options.protocol.identify_s,
@@ -218,6 +225,14 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
 void take_words(const Words& words, LabOptions& options) {
   options.protocol.conditions = session::parse_conditions(words.conditions, session::kLabConditions,
                                                           session::Named::kMitigationsToo);
+  const bool scheduled =
+      std::ranges::find(options.protocol.conditions, session::Condition::kScheduled) !=
+      options.protocol.conditions.end();
+  if (scheduled == words.arms.empty()) {
+    throw ConfigError("--arms", words.arms.empty() ? "nothing" : "files",
+                      "two files with the condition scheduled, and none without it");
+  }
+  if (scheduled) options.protocol.arms = schedule_values(words.arms);
   options.who = words.who == "simulated" ? Operator::kSimulated : Operator::kMouse;
   if ((words.who == "gamepad") == options.gamepad.empty()) {
     throw ConfigError("--gamepad", options.gamepad.empty() ? "nothing" : options.gamepad.string(),

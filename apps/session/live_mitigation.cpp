@@ -45,6 +45,7 @@ const std::vector<LiveMitigation>& live_mitigations() {
       {Condition::kSignal, "signal", {{PartKind::kSignal}}},
       {Condition::kLmsSignal, "lms-signal", {{PartKind::kLmsSignal, {kStep}}}},
       {Condition::kAdaptive, "adaptive", {hand(PartKind::kForce)}},
+      {Condition::kScheduled, "scheduled", {{PartKind::kSchedule}}},
       {Condition::kLmsForce, "lms-force", {lms_force()}},
       {Condition::kDamping, "damping", {damper(kDamping_n_s_m)}},
       {Condition::kImpedance,

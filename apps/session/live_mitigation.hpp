@@ -19,7 +19,8 @@ struct LiveMitigation {
 
 /// All, in the order of the study's table.  Their numbers are those that the study chose on other
 /// people (apps/study/README.md, SU-18, seed 20261125), and the hand is the average of CC-5: no
-/// trial of a session changes them.
+/// trial of a session changes them.  The arms of `scheduled` are the person's own:
+/// ProtocolOptions::arms.
 const std::vector<LiveMitigation>& live_mitigations();
 
 /// The mitigation of a condition; nullptr: A to F and P are none.

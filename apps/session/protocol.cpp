@@ -210,6 +210,9 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
   planned.command_filter = condition == Condition::kCommandFilter;
   if (const LiveMitigation* const mitigated = live_mitigation(condition)) {
     planned.parts = mitigated->parts;
+    for (mitigation::Part& part : planned.parts) {
+      if (part.kind == mitigation::PartKind::kSchedule) part.values = options.arms;
+    }
   }
   return planned;
 }

@@ -28,6 +28,7 @@ enum class Condition : char {
   kSignal = 's',
   kLmsSignal = 'u',
   kAdaptive = 'a',
+  kScheduled = 'h',
   kLmsForce = 'v',
   kDamping = 'd',
   kImpedance = 'i',
@@ -61,6 +62,8 @@ struct ProtocolOptions {
   double perturb_period_s = 0.0;
   bool perturb_swapped = false;  ///< P: the platform takes the lines of the motor, and the reverse
   bool stick_held = false;       ///< P: on the peg, without the motor
+  /// Values of the two arms of `scheduled`, relaxed and holding; without them it has none.
+  std::vector<double> arms = {};
 };
 
 /// One trial of the session: the part that every process may know, and the part that stays blinded.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <set>
 
+#include "services/admittance/core/arm_fit.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/mitigation/recipe.hpp"
 
@@ -76,8 +77,13 @@ TEST(LiveMitigationTest, EveryNameHasALetterOfItsOwnAndComesBack) {
 TEST(LiveMitigationTest, EachIsMadeOfASessionsModels) {
   const mitigation::SessionModels models{cancellation::control_model({1000.0, {-3.0}, {1.0}}),
                                          signal::DifferenceModel{1000.0, {-0.002}, {1.0}}};
+  ProtocolOptions options;
+  const admittance::ArmValues arm = admittance::mean_arm();
+  options.arms.assign(arm.begin(), arm.end());
+  options.arms.insert(options.arms.end(), arm.begin(), arm.end());
   for (const LiveMitigation& one : live_mitigations()) {
-    EXPECT_NO_THROW(mitigation::Mitigation(recipe_of(one.parts, models, {}))) << one.name;
+    const PlannedTrial planned = tracking_trial(options, one.condition, 1);
+    EXPECT_NO_THROW(mitigation::Mitigation(recipe_of(planned.parts, models, {}))) << one.name;
   }
 }
 
