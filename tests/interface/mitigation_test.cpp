@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// The processes of cancellation and display on the real bus, with the test in place of all others:
+// a trial with a mitigation on the command, what is taken off the stick's angle, and the raw stick
+// when cancellation dies.  About 5 s.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "idl/control_loop.h"
+#include "idl/model.h"
+#include "idl/session.h"
+#include "places.hpp"
+#include "services/cancellation/codec.hpp"
+#include "services/display/core/tracking_display.hpp"
+#include "services/mitigation/recipe.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/sources_codec.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/own_domain.hpp"
+#include "tests/support/wait.hpp"
+
+namespace stillhand {
+namespace {
+
+using support::eventually;
+
+constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
+constexpr std::int32_t kTrial = 1;
+constexpr double kPosition_s2 = -0.003;  // m per m/s^2
+
+runtime::Bus::Options options_of(const std::string& service) {
+  runtime::Bus::Options options;
+  options.service = service;
+  options.domain = support::own_domain();
+  options.profiles = kProfiles;
+  return options;
+}
+
+std::vector<std::string> words_of(const std::string& service) {
+  std::vector<std::string> words{STILLHAND_BUILD "/bin/stillhand-" + service,
+                                 "--domain",
+                                 std::to_string(support::own_domain()),
+                                 "--profiles",
+                                 kProfiles,
+                                 "--config",
+                                 STILLHAND_SOURCE "/deploy/config"};
+  if (service == "display") words.emplace_back("--headless");
+  return words;
+}
+
+std::filesystem::path output_of(const std::string& service) {
+  return std::filesystem::temp_directory_path() /
+         ("stillhand-mitigation-" + service + std::to_string(getpid()));
+}
+
+// A process that is not there, but shows its life sign.
+struct Stand {
+  explicit Stand(const std::string& name) : bus(options_of(name)) {
+    status.service(name);
+    status.state(stillhand_msgs::SERVICE_RUNNING);
+    life = bus.publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus);
+  }
+  runtime::Bus bus;
+  stillhand_msgs::ServiceStatus status;
+  runtime::Publisher<stillhand_msgs::ServiceStatus> life;
+};
+
+class MitigationProcessTest : public testing::Test {
+ protected:
+  MitigationProcessTest() {
+    for (const char* name : {"experiment", "motion", "rig", "sensing", "human_operator",
+                             "identification", "recorder"}) {
+      stands_[name] = std::make_unique<Stand>(name);
+    }
+    control_ = of("experiment").publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
+    sources_ = of("experiment").publisher<stillhand_msgs::SessionSources>(topics::kSessionSources);
+    assignment_ =
+        of("experiment").publisher<stillhand_msgs::TrialAssignment>(topics::kTrialAssignment);
+    model_ =
+        of("identification").publisher<stillhand_msgs::FeedthroughModel>(topics::kFeedthroughModel);
+    sensed_ = of("sensing").publisher<stillhand_msgs::Sensed>(topics::kSensed);
+    of("recorder")
+        .subscribe<stillhand_msgs::MotorCommand>(topics::kMotorCommand,
+                                                 [this](const auto& message, const auto&) {
+                                                   const std::lock_guard lock(mutex_);
+                                                   commands_.push_back(message);
+                                                 });
+    of("recorder")
+        .subscribe<stillhand_msgs::TrackingSample>(topics::kTrackingSample,
+                                                   [this](const auto& message, const auto&) {
+                                                     const std::lock_guard lock(mutex_);
+                                                     tracking_.push_back(message);
+                                                   });
+    for (auto& [name, stand] : stands_) stand->bus.start();
+  }
+  ~MitigationProcessTest() override {
+    cancellation_.finish();
+    display_.finish();
+    of("recorder").stop_receiving();
+  }
+
+  runtime::Bus& of(const std::string& name) { return stands_.at(name)->bus; }
+
+  // Both children are found, and everybody's source is named.
+  bool name_sources() {
+    const std::vector<runtime::Source> found = of("experiment").sources_found();
+    if (found.size() < topics::kServices.size()) return false;
+    auto message = runtime::to_idl(found);
+    sources_.write(message);
+    return true;
+  }
+
+  // One tick: the sample, and every 100 the life signs.
+  void step() {
+    ++tick_;
+    stillhand_msgs::Sensed message;
+    message.tick(tick_);
+    const double t = 1e-3 * static_cast<double>(tick_);
+    message.accel_y_m_s2(2.0 * std::sin(2.0 * std::numbers::pi * 1.3 * t));
+    message.accel_z_m_s2(9.81);
+    message.theta_rad(0.05 * std::sin(2.0 * std::numbers::pi * 0.4 * t));
+    sensed_.write(message);
+    samples_[tick_] = message;
+    if (tick_ % 50 == 0) {
+      for (auto& [name, stand] : stands_) stand->life.write(stand->status);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  bool step_until(const std::function<bool()>& condition, int limit) {
+    for (int n = 0; n < limit; ++n) {
+      if (condition()) return true;
+      step();
+    }
+    return false;
+  }
+
+  void begin_trial() {
+    stillhand_msgs::FeedthroughModel model;
+    model.to_position(true);
+    model.usable(true);
+    model.control_rate_hz(1000.0);
+    model.control_numerator({kPosition_s2});
+    model.control_denominator({1.0});
+    model_.write(model);
+    parts_.resize(1);
+    parts_[0].kind(stillhand_msgs::PART_SIGNAL);
+    stillhand_msgs::TrialAssignment assignment;
+    assignment.trial(kTrial);
+    assignment.mitigation("signal");
+    assignment.parts(parts_);
+    assignment_.write(assignment);
+    stillhand_msgs::TrialControl control;
+    control.session(stillhand_msgs::SESSION_RUNNING);
+    control.trial(kTrial);
+    control.phase(stillhand_msgs::PHASE_TRACKING);
+    control.start_tick(tick_ + 1000);
+    control.duration_ticks(10'000);
+    control.ramp_ticks(500);
+    control_.write(control);
+  }
+
+  stillhand_msgs::MotorCommand newest_command() {
+    const std::lock_guard lock(mutex_);
+    return commands_.empty() ? stillhand_msgs::MotorCommand{} : commands_.back();
+  }
+  stillhand_msgs::TrackingSample newest_tracking() {
+    const std::lock_guard lock(mutex_);
+    return tracking_.empty() ? stillhand_msgs::TrackingSample{} : tracking_.back();
+  }
+
+  std::map<std::string, std::unique_ptr<Stand>> stands_;
+  runtime::Publisher<stillhand_msgs::TrialControl> control_;
+  runtime::Publisher<stillhand_msgs::SessionSources> sources_;
+  runtime::Publisher<stillhand_msgs::TrialAssignment> assignment_;
+  runtime::Publisher<stillhand_msgs::FeedthroughModel> model_;
+  runtime::Publisher<stillhand_msgs::Sensed> sensed_;
+  std::vector<stillhand_msgs::MitigationPart> parts_;
+  std::mutex mutex_;
+  std::vector<stillhand_msgs::MotorCommand> commands_;
+  std::vector<stillhand_msgs::TrackingSample> tracking_;
+  std::map<Tick, stillhand_msgs::Sensed> samples_;
+  Tick tick_ = 0;
+  support::Child cancellation_{words_of("cancellation"), output_of("cancellation")};
+  support::Child display_{words_of("display"), output_of("display")};
+};
+
+TEST_F(MitigationProcessTest, TheCommandIsTakenOffTheStickAndTheRawStickComesBack) {
+  ASSERT_TRUE(eventually([this] { return name_sources(); }));
+  stillhand_msgs::TrialControl running;
+  running.session(stillhand_msgs::SESSION_RUNNING);
+  running.trial(-1);
+  control_.write(running);
+  ASSERT_TRUE(step_until([this] { return newest_tracking().tick() > 0; }, 10'000));
+  EXPECT_EQ(newest_command().mitigated_trial(), 0);
+  begin_trial();
+  // In full effect: some 6 mm of 100 mm lever.
+  ASSERT_TRUE(step_until(
+      [this] {
+        const auto command = newest_command();
+        return command.mitigated_trial() == kTrial && std::abs(command.taken_off_rad()) > 0.055;
+      },
+      10'000));
+  EXPECT_TRUE(step_until([this] { return std::abs(newest_tracking().cursor_m()) > 0.0; }, 1000));
+  for (int n = 0; n < 500; ++n) step();
+
+  // The same core, of the messages alone, bit for bit, as far as no sample was lost.
+  const mitigation::SessionModels models{{},
+                                         signal::DifferenceModel{1000.0, {kPosition_s2}, {1.0}}};
+  stillhand_msgs::TrialAssignment assignment;
+  assignment.parts(parts_);
+  mitigation::Mitigation sut(recipe_of(cancellation::parts_of(assignment), models, {}));
+  std::map<Tick, stillhand_msgs::MotorCommand> by_tick;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& command : commands_) by_tick[command.tick()] = command;
+  }
+  int compared = 0;
+  for (const auto& [tick, command] : by_tick) {
+    if (command.mitigated_trial() != kTrial) continue;
+    if (compared > 0 && !by_tick.contains(tick - 1)) break;
+    const auto input =
+        cancellation::from_idl(samples_.at(tick), command.enabled(), command.permitted());
+    const auto again = sut.step(input);
+    ASSERT_EQ(samples_.at(tick).theta_rad() - again.command_rad, command.taken_off_rad()) << tick;
+    ASSERT_EQ(command.force_n(), 0.0);
+    ++compared;
+  }
+  EXPECT_GT(compared, 500);
+
+  // The cursor is the stick without what the named command takes off it.
+  const display::TrackingDisplay::Config screen;
+  int late = 0;
+  int mitigated = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& sample : tracking_) {
+      const auto command = by_tick.find(sample.command_tick());
+      const double off_rad = command == by_tick.end() ? 0.0 : command->second.taken_off_rad();
+      if (sample.command_tick() >= 0 && command == by_tick.end()) continue;  // the recorder lost it
+      ASSERT_EQ(sample.cursor_m(),
+                screen.gain_m_rad * (samples_.at(sample.tick()).theta_rad() - off_rad));
+      if (off_rad == 0.0) continue;
+      ++mitigated;
+      late = std::max(late, static_cast<int>(sample.tick() - sample.command_tick()));
+    }
+  }
+  EXPECT_GT(mitigated, 300);
+  EXPECT_LE(late, 10);
+  std::cout << compared << " commands and " << mitigated << " cursors compared, at most " << late
+            << " ticks late\n";
+
+  // Without cancellation the cursor follows the raw stick.
+  cancellation_.finish();
+  for (int n = 0; n < 50; ++n) step();
+  ASSERT_TRUE(step_until([this] { return newest_tracking().command_tick() == -1; }, 5000));
+  const auto raw = newest_tracking();
+  EXPECT_EQ(raw.cursor_m(), screen.gain_m_rad * samples_.at(raw.tick()).theta_rad());
+}
+
+}  // namespace
+}  // namespace stillhand
