@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processes of cancellation and display on the real bus, with the test in place of all others:
 // a trial with a mitigation on the command, what is taken off the stick's angle, and the raw stick
-// when cancellation dies.  About 5 s.
+// when cancellation dies; a force, and its end; a trial that cannot be mitigated.  About 10 s.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -144,19 +144,23 @@ class MitigationProcessTest : public testing::Test {
     return false;
   }
 
-  void begin_trial() {
+  void publish_model(bool to_position, double gain) {
     stillhand_msgs::FeedthroughModel model;
-    model.to_position(true);
+    model.to_position(to_position);
     model.usable(true);
     model.control_rate_hz(1000.0);
-    model.control_numerator({kPosition_s2});
+    model.control_numerator({gain});
     model.control_denominator({1.0});
     model_.write(model);
-    parts_.resize(1);
-    parts_[0].kind(stillhand_msgs::PART_SIGNAL);
+  }
+  void add_part(stillhand_msgs::MitigationPartKind kind, const std::vector<double>& values = {}) {
+    parts_.emplace_back().kind(kind);
+    parts_.back().values(values);
+  }
+  void begin_trial() {
     stillhand_msgs::TrialAssignment assignment;
     assignment.trial(kTrial);
-    assignment.mitigation("signal");
+    assignment.mitigation("test");
     assignment.parts(parts_);
     assignment_.write(assignment);
     stillhand_msgs::TrialControl control;
@@ -167,6 +171,40 @@ class MitigationProcessTest : public testing::Test {
     control.duration_ticks(10'000);
     control.ramp_ticks(500);
     control_.write(control);
+  }
+
+  /// Both processes run, and the session's clock.
+  void begin_session() {
+    ASSERT_TRUE(eventually([this] { return name_sources(); }));
+    stillhand_msgs::TrialControl running;
+    running.session(stillhand_msgs::SESSION_RUNNING);
+    running.trial(-1);
+    control_.write(running);
+    ASSERT_TRUE(step_until([this] { return newest_tracking().tick() > 0; }, 10'000));
+    EXPECT_EQ(newest_command().mitigated_trial(), 0);
+  }
+
+  /// The same core, of the messages alone, bit for bit, as far as the recorder lost nothing.
+  /// @returns how many commands it answered the same
+  int same_in_one_process(const mitigation::SessionModels& models) {
+    stillhand_msgs::TrialAssignment assignment;
+    assignment.parts(parts_);
+    mitigation::Mitigation sut(recipe_of(cancellation::parts_of(assignment), models, {}));
+    int compared = 0;
+    Tick before = -1;
+    const std::lock_guard lock(mutex_);
+    for (const auto& command : commands_) {
+      const Tick tick = command.tick();
+      if (command.mitigated_trial() != kTrial) continue;
+      if (compared > 0 && tick != before + 1) break;
+      before = tick;
+      const auto again = sut.step(
+          cancellation::from_idl(samples_.at(tick), command.enabled(), command.permitted()));
+      const double off_rad = samples_.at(tick).theta_rad() - again.command_rad;
+      if (off_rad != command.taken_off_rad() || again.force_n != command.force_n()) return -1;
+      ++compared;
+    }
+    return compared;
   }
 
   stillhand_msgs::MotorCommand newest_command() {
@@ -195,47 +233,22 @@ class MitigationProcessTest : public testing::Test {
 };
 
 TEST_F(MitigationProcessTest, TheCommandIsTakenOffTheStickAndTheRawStickComesBack) {
-  ASSERT_TRUE(eventually([this] { return name_sources(); }));
-  stillhand_msgs::TrialControl running;
-  running.session(stillhand_msgs::SESSION_RUNNING);
-  running.trial(-1);
-  control_.write(running);
-  ASSERT_TRUE(step_until([this] { return newest_tracking().tick() > 0; }, 10'000));
-  EXPECT_EQ(newest_command().mitigated_trial(), 0);
+  begin_session();
+  publish_model(true, kPosition_s2);
+  add_part(stillhand_msgs::PART_SIGNAL);
   begin_trial();
   // In full effect: some 6 mm of 100 mm lever.
-  ASSERT_TRUE(step_until(
-      [this] {
-        const auto command = newest_command();
-        return command.mitigated_trial() == kTrial && std::abs(command.taken_off_rad()) > 0.055;
-      },
-      10'000));
-  EXPECT_TRUE(step_until([this] { return std::abs(newest_tracking().cursor_m()) > 0.0; }, 1000));
+  ASSERT_TRUE(
+      step_until([this] { return std::abs(newest_command().taken_off_rad()) > 0.055; }, 10'000));
   for (int n = 0; n < 500; ++n) step();
-
-  // The same core, of the messages alone, bit for bit, as far as no sample was lost.
-  const mitigation::SessionModels models{{},
-                                         signal::DifferenceModel{1000.0, {kPosition_s2}, {1.0}}};
-  stillhand_msgs::TrialAssignment assignment;
-  assignment.parts(parts_);
-  mitigation::Mitigation sut(recipe_of(cancellation::parts_of(assignment), models, {}));
+  EXPECT_GT(same_in_one_process({{}, signal::DifferenceModel{1000.0, {kPosition_s2}, {1.0}}}), 500);
   std::map<Tick, stillhand_msgs::MotorCommand> by_tick;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& command : commands_) by_tick[command.tick()] = command;
   }
-  int compared = 0;
-  for (const auto& [tick, command] : by_tick) {
-    if (command.mitigated_trial() != kTrial) continue;
-    if (compared > 0 && !by_tick.contains(tick - 1)) break;
-    const auto input =
-        cancellation::from_idl(samples_.at(tick), command.enabled(), command.permitted());
-    const auto again = sut.step(input);
-    ASSERT_EQ(samples_.at(tick).theta_rad() - again.command_rad, command.taken_off_rad()) << tick;
-    ASSERT_EQ(command.force_n(), 0.0);
-    ++compared;
-  }
-  EXPECT_GT(compared, 500);
+  EXPECT_TRUE(
+      std::ranges::all_of(by_tick, [](const auto& each) { return each.second.force_n() == 0.0; }));
 
   // The cursor is the stick without what the named command takes off it.
   const display::TrackingDisplay::Config screen;
@@ -256,8 +269,7 @@ TEST_F(MitigationProcessTest, TheCommandIsTakenOffTheStickAndTheRawStickComesBac
   }
   EXPECT_GT(mitigated, 300);
   EXPECT_LE(late, 10);
-  std::cout << compared << " commands and " << mitigated << " cursors compared, at most " << late
-            << " ticks late\n";
+  std::cout << mitigated << " cursors compared, at most " << late << " ticks late\n";
 
   // Without cancellation the cursor follows the raw stick.
   cancellation_.finish();
@@ -265,6 +277,53 @@ TEST_F(MitigationProcessTest, TheCommandIsTakenOffTheStickAndTheRawStickComesBac
   ASSERT_TRUE(step_until([this] { return newest_tracking().command_tick() == -1; }, 5000));
   const auto raw = newest_tracking();
   EXPECT_EQ(raw.cursor_m(), screen.gain_m_rad * samples_.at(raw.tick()).theta_rad());
+}
+
+// Force and damper together; then a process loses its life sign.
+TEST_F(MitigationProcessTest, TheForceIsBoundedAndEndsWithTheInterlock) {
+  constexpr double kFeedthrough_n_s2_m = -3.2;
+  constexpr double kMost_n = 25.0;
+  constexpr int kRamp_ticks = 40;
+  begin_session();
+  publish_model(false, kFeedthrough_n_s2_m);
+  add_part(stillhand_msgs::PART_FORCE);
+  add_part(stillhand_msgs::PART_IMPEDANCE, {0.0, 90.0, 0.0});
+  begin_trial();
+  ASSERT_TRUE(step_until([this] { return std::abs(newest_command().force_n()) > 6.0; }, 10'000));
+  for (int n = 0; n < 500; ++n) step();
+  EXPECT_GT(same_in_one_process(
+                {cancellation::control_model({1000.0, {kFeedthrough_n_s2_m}, {1.0}}), {}}),
+            500);
+  stands_.erase("identification");
+  ASSERT_TRUE(step_until([this] { return !newest_command().permitted(); }, 10'000));
+  ASSERT_TRUE(step_until([this] { return newest_command().force_n() == 0.0; }, 1000));
+  for (int n = 0; n < 200; ++n) step();
+  const std::lock_guard lock(mutex_);
+  Tick opened = -1;
+  for (const auto& command : commands_) {
+    ASSERT_LE(std::abs(command.force_n()), kMost_n);
+    if (command.force_n() != 0.0 && opened < 0 && !command.permitted()) opened = command.tick();
+    if (opened >= 0 && command.tick() > opened + kRamp_ticks) {
+      ASSERT_EQ(command.force_n(), 0.0);
+    }
+  }
+  EXPECT_GE(opened, 0);
+}
+
+// What it cannot make it does not begin: no mitigation, and no force.
+TEST_F(MitigationProcessTest, APartWithoutItsModelLeavesTheTrialUnmitigated) {
+  begin_session();
+  add_part(stillhand_msgs::PART_SIGNAL);
+  add_part(stillhand_msgs::PART_IMPEDANCE, {0.0, 90.0, 0.0});
+  begin_trial();
+  for (int n = 0; n < 2000; ++n) step();
+  const std::lock_guard lock(mutex_);
+  EXPECT_GT(commands_.size(), 1000u);
+  for (const auto& command : commands_) {
+    ASSERT_EQ(command.mitigated_trial(), 0);
+    ASSERT_EQ(command.force_n(), 0.0);
+    ASSERT_EQ(command.taken_off_rad(), 0.0);
+  }
 }
 
 }  // namespace
