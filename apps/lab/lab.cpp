@@ -100,6 +100,26 @@ Prompt before_trials(const LabOptions& options) {
   return prompt;
 }
 
+// Of a tracking trial, or of the one with the stick free.
+Prompt before_trial(const LabOptions& options, const std::vector<session::PlannedTrial>& plan,
+                    std::size_t place) {
+  const double lead_s = kTrialLead_s + options.protocol.ramp_s;
+  if (plan[place].trial.phase == TrialPhase::kFree) {
+    return {.kind = PromptKind::kInstructions,
+            .wait_s = lead_s,
+            .text = "Hold the stick still.\nKeep the cross in the box, which does not move.\n"};
+  }
+  const auto tracks = [](const session::PlannedTrial& planned) {
+    return planned.label != session::kIdentification &&
+           planned.label != session::kFreeIdentification;
+  };
+  return {.kind = PromptKind::kTrial,
+          .trial = std::count_if(plan.begin(),
+                                 plan.begin() + static_cast<std::ptrdiff_t>(place) + 1, tracks),
+          .trials = std::ranges::count_if(plan, tracks),
+          .wait_s = lead_s};
+}
+
 }  // namespace
 
 LiveSession run_session(const LabOptions& asked_options, runtime::Stop& stop,
@@ -161,12 +181,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     const std::vector<session::PlannedTrial> plan = session::plan(options.protocol);
     for (std::size_t place = 0; place < plan.size(); ++place) {
       const session::PlannedTrial& planned = plan[place];
-      const double lead_s = kTrialLead_s + options.protocol.ramp_s;
-      trials.show(place == 0 ? before_trials(options)
-                             : Prompt{.kind = PromptKind::kTrial,
-                                      .trial = static_cast<std::int64_t>(place),
-                                      .trials = static_cast<std::int64_t>(plan.size()) - 1,
-                                      .wait_s = lead_s});
+      trials.show(place == 0 ? before_trials(options) : before_trial(options, plan, place));
       if (trials.interrupted() || !trials.run(planned).completed) break;
       if (!model || planned.trial.phase != TrialPhase::kPegged) continue;
       if (const std::string refused = trials.use(*model); !refused.empty()) {
