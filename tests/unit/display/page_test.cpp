@@ -51,6 +51,13 @@ TEST_F(PageTest, WhileTrackingOnlyPlaceAndTimeAreShownNextToTheTask) {
   EXPECT_EQ(rest, Page{});
 }
 
+// The stick is free and held still: the target stands in the centre.
+TEST_F(PageTest, AFreeStickIsHeldOverTheTask) {
+  const Page shown = page(prompt(PromptKind::kInstructions), at(23'400, TrialPhase::kFree));
+  EXPECT_TRUE(shown.task);
+  EXPECT_EQ(shown.corner_right, "0:07");
+}
+
 TEST_F(PageTest, ThreeTwoOneLeadsToTheFirstMeasuredTick) {
   for (const auto& [tick, number] :
        {std::pair{17'000, "3"}, {18'001, "2"}, {19'000, "1"}, {19'999, "1"}}) {
