@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mitigations as conditions of a session over DDS: they act, they are recorded, the same cores answer the same.
 
-Under a minute: signal cancellation, which needs a trial with the stick free, and damping with the motor. With
+A minute: signal cancellation, which needs a trial with the stick free, and damping with the motor. With
 `--campaign` every mitigation that a session runs, in trials of 45 s, next to the study's table of the same person; 17
 minutes. The table is printed.
 """
