@@ -131,7 +131,7 @@ class TrialFinder {
   std::map<std::int64_t, SessionTrial> by_number_;
   std::map<std::int64_t, char> letters_;
   std::map<std::uint32_t, std::string> parts_;  ///< of each rig
-  std::map<std::int64_t, std::string> names_;  ///< of mitigations
+  std::map<std::int64_t, std::string> names_;   ///< of mitigations
   std::set<std::int64_t> perturbed_;
   std::int64_t current_ = -1;
   std::int64_t samples_ = 0;

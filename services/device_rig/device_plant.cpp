@@ -358,15 +358,16 @@ bool DevicePlant::prepared() const noexcept {
 }
 
 const char* DevicePlant::unknown_iio() noexcept {
-  const auto late = [&](IioLink& link, const IioConfig& config) {
-    const IioSample& newest = link.newest();
+  const auto late = [&](const std::unique_ptr<IioLink>& link, const IioConfig& config) {
+    if (!link) return false;  // an indicator
+    const IioSample& newest = link->newest();
     return is_young(newest.old, newest.old_at_ns, now_ns_, config.max_age_ticks);
   };
   if (std::isnan(load_cell_v_)) {
-    return late(*load_cell_, devices_.load_cell) ? "the samples of the load cell come too late"
-                                                 : "the load cell is silent, or at its end";
+    return late(load_cell_, devices_.load_cell) ? "the samples of the load cell come too late"
+                                                : "the load cell is silent, or at its end";
   }
-  return late(*accelerometer_, devices_.accelerometer)
+  return late(accelerometer_, devices_.accelerometer)
              ? "the samples of the accelerometer come too late"
              : "the accelerometer is silent, or at its end";
 }

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A load cell indicator on a serial port, emulated: its calibration, and a session whose indicator falls silent."""
+"""A load cell indicator on a serial port, emulated: its calibration. `--campaign`: a session whose indicator falls
+silent; by default `faults/device_faults.py --alone` does that without a session.
+"""
 import calibrate_test
 import devices_test
 import lab_process
@@ -22,6 +24,7 @@ class IndicatorTest(devices_test.DevicesCase):
         kept = yaml.safe_load((self.config / "calibration.yaml").read_text())["force"]
         self.assertIn(f"indicator at {self.folder / 'indicator'}, serial unknown", kept["device"])
 
+    @lab_process.campaign
     def test_an_indicator_that_falls_silent_ends_the_torque_and_is_named(self):
         lab, laboratory = self.pushing_session(indicator=True)
         laboratory.order("indicator_silent", 1)
