@@ -24,8 +24,8 @@ WORDS = ["--conditions", "C", "--identify-seconds", 10, "--trial-seconds", 15, "
 TRIES = 2
 LATE = "a process is missing|ticks of the pegged trial were lost"
 # A machine whose processors have no rest during the last try is too slow for the session: skipped. One that is late with
-# processors at rest fails.
-NO_REST = 0.9
+# processors at rest fails. 2026-11-26: late sessions with 89 to 94 % busy, on a machine that completed them a day before.
+NO_REST = 0.85
 # Lost ticks cost cancellation, with keys or without. Nine completed sessions on two cores, idle and next to busy
 # processes: a share of 0.69 to 0.71 with 180 to 500 ticks lost, 0.60 with 960, 0.57 with 2,280. So a slow machine passes,
 # a motor that does nothing (a share of 0) fails; lab_session_test.py asks for the share itself.
