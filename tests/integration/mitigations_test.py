@@ -3,8 +3,8 @@
 """Mitigations as conditions of a session over DDS: they act, they are recorded, the same cores answer the same.
 
 A minute: signal cancellation, which needs a trial with the stick free, and damping with the motor. With
-`--campaign` every mitigation that a session runs, in trials of 45 s, next to the study's row of the same person; some 20
-minutes. The table is printed.
+`--campaign` every mitigation that a session runs, in trials of 45 s, next to the study's row of the same person; some
+20 minutes. The table is printed.
 """
 import csv
 import math

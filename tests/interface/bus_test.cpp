@@ -16,7 +16,7 @@
 #include "idl/session.h"
 #include "places.hpp"
 #include "services/contract/config_error.hpp"
-#include "tests/support/own_domain.hpp"
+#include "tests/support/bus_options.hpp"
 #include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
@@ -24,18 +24,10 @@ namespace {
 
 using support::eventually;
 
-Bus::Options options_of(const std::string& service) {
-  Bus::Options options;
-  options.service = service;
-  options.domain = support::own_domain();
-  options.profiles = STILLHAND_SOURCE "/qos/profiles.xml";
-  return options;
-}
-
 template <typename Message>
 void expect_delivery(const topics::Topic& topic) {
-  Bus writer(options_of("motion"));
-  Bus reader(options_of("rig"));
+  Bus writer(support::bus_options("motion"));
+  Bus reader(support::bus_options("rig"));
   std::atomic<int> received{0};
   auto publisher = writer.publisher<Message>(topic);
   reader.subscribe<Message>(topic, [&](const Message&, const Arrival&) { ++received; });
@@ -79,13 +71,13 @@ TEST(BusTest, EveryTopicOfTheCatalogueMatchesAndDelivers) {
 }
 
 TEST(BusTest, WhoComesLaterHearsNoCommandOfBeforeAndIsNamedToWhoAsks) {
-  Bus asker(options_of("remote-1"));
+  Bus asker(support::bus_options("remote-1"));
   auto publisher = asker.publisher<stillhand_msgs::RecorderCommand>(topics::kRecorderCommand);
   asker.start();
   stillhand_msgs::RecorderCommand command;
   command.request(1);
   publisher.write(command);
-  Bus recorder(options_of("record-2"));
+  Bus recorder(support::bus_options("record-2"));
   std::atomic<std::uint64_t> first{0};
   recorder.subscribe<stillhand_msgs::RecorderCommand>(
       topics::kRecorderCommand, [&](const stillhand_msgs::RecorderCommand& m, const Arrival&) {
@@ -103,13 +95,13 @@ TEST(BusTest, WhoComesLaterHearsNoCommandOfBeforeAndIsNamedToWhoAsks) {
 }
 
 TEST(BusTest, ALateJoinerGetsTheLatchedState) {
-  Bus writer(options_of("experiment"));
+  Bus writer(support::bus_options("experiment"));
   auto publisher = writer.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
   writer.start();
   stillhand_msgs::TrialControl message;
   message.trial(7);
   publisher.write(message);
-  Bus reader(options_of("rig"));
+  Bus reader(support::bus_options("rig"));
   std::atomic<int> trial{-1};
   reader.subscribe<stillhand_msgs::TrialControl>(
       topics::kTrialControl,
@@ -119,10 +111,10 @@ TEST(BusTest, ALateJoinerGetsTheLatchedState) {
 }
 
 TEST(BusTest, TheRecordersBytesAreTheMessage) {
-  auto options = options_of("recorder");
+  auto options = support::bus_options("recorder");
   options.serialized = true;
   Bus recorder(options);
-  Bus writer(options_of("sensing"));
+  Bus writer(support::bus_options("sensing"));
   std::atomic<std::size_t> size{0};
   recorder.subscribe_serialized(topics::kSensed,
                                 [&](std::span<const std::byte> bytes, const Arrival&) {
@@ -142,19 +134,19 @@ TEST(BusTest, TheRecordersBytesAreTheMessage) {
 }
 
 TEST(BusTest, NamesThePeersThatAreMissing) {
-  Bus sut(options_of("sensing"));
+  Bus sut(support::bus_options("sensing"));
   sut.subscribe<stillhand_msgs::RawSample>(topics::kRawSample, [](const auto&, const auto&) {});
   sut.start();
   EXPECT_THAT(sut.missing_peers(), testing::ElementsAre("rig (stillhand/raw_sample)"));
-  Bus rig(options_of("rig"));
+  Bus rig(support::bus_options("rig"));
   rig.publisher<stillhand_msgs::RawSample>(topics::kRawSample);
   rig.start();
   EXPECT_TRUE(eventually([&] { return sut.missing_peers().empty(); }));
 }
 
 TEST(BusTest, SaysWhenAServiceIsThereTwice) {
-  Bus first(options_of("rig"));
-  Bus second(options_of("rig"));
+  Bus first(support::bus_options("rig"));
+  Bus second(support::bus_options("rig"));
   first.start();
   second.start();
   EXPECT_TRUE(
@@ -162,16 +154,16 @@ TEST(BusTest, SaysWhenAServiceIsThereTwice) {
 }
 
 TEST(BusTest, AnotherRigsSamplesAreNotDelivered) {
-  auto other = options_of("motion");
+  auto other = support::bus_options("motion");
   other.rig = 2;
   Bus writer(other);
-  Bus reader(options_of("rig"));
+  Bus reader(support::bus_options("rig"));
   std::atomic<int> received{0};
   auto publisher = writer.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
   reader.subscribe<stillhand_msgs::TrialControl>(topics::kTrialControl,
                                                  [&](const auto&, const auto&) { ++received; });
   // The same reader hears its own rig afterwards: silence alone would prove nothing.
-  Bus own(options_of("experiment"));
+  Bus own(support::bus_options("experiment"));
   auto own_publisher = own.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
   writer.start();
   reader.start();
@@ -189,13 +181,13 @@ TEST(BusTest, AnotherRigsSamplesAreNotDelivered) {
 }
 
 TEST(BusTest, ADomainOutOfRangeIsTheOperatorsToMend) {
-  auto options = options_of("rig");
+  auto options = support::bus_options("rig");
   options.domain = 233;
   EXPECT_THROW(Bus{options}, ConfigError);
 }
 
 TEST(BusTest, AMissingProfileFileIsNamed) {
-  auto options = options_of("rig");
+  auto options = support::bus_options("rig");
   options.profiles = "/nowhere/profiles.xml";
   try {
     Bus sut(options);

@@ -13,7 +13,6 @@
 #include <mutex>
 #include <numbers>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "idl/control_loop.h"
@@ -24,7 +23,9 @@
 #include "services/display/core/tracking_display.hpp"
 #include "services/mitigation/recipe.hpp"
 #include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/clock.hpp"
 #include "services/runtime/sources_codec.hpp"
+#include "tests/support/bus_options.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
@@ -37,14 +38,6 @@ using support::eventually;
 constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
 constexpr std::int32_t kTrial = 1;
 constexpr double kPosition_s2 = -0.003;  // m per m/s^2
-
-runtime::Bus::Options options_of(const std::string& service) {
-  runtime::Bus::Options options;
-  options.service = service;
-  options.domain = support::own_domain();
-  options.profiles = kProfiles;
-  return options;
-}
 
 std::vector<std::string> words_of(const std::string& service) {
   std::vector<std::string> words{STILLHAND_BUILD "/bin/stillhand-" + service,
@@ -65,7 +58,7 @@ std::filesystem::path output_of(const std::string& service) {
 
 // A process that is not there, but shows its life sign.
 struct Stand {
-  explicit Stand(const std::string& name) : bus(options_of(name)) {
+  explicit Stand(const std::string& name) : bus(support::bus_options(name)) {
     status.service(name);
     status.state(stillhand_msgs::SERVICE_RUNNING);
     life = bus.publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus);
@@ -134,7 +127,7 @@ class MitigationProcessTest : public testing::Test {
     if (tick_ % 50 == 0) {
       for (auto& [name, stand] : stands_) stand->life.write(stand->status);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    runtime::sleep_until_ns(due_ns_ += 1'000'000);
   }
   bool step_until(const std::function<bool()>& condition, int limit) {
     for (int n = 0; n < limit; ++n) {
@@ -228,6 +221,7 @@ class MitigationProcessTest : public testing::Test {
   std::vector<stillhand_msgs::TrackingSample> tracking_;
   std::map<Tick, stillhand_msgs::Sensed> samples_;
   Tick tick_ = 0;
+  std::int64_t due_ns_ = runtime::monotonic_ns();  // of the next sample
   support::Child cancellation_{words_of("cancellation"), output_of("cancellation")};
   support::Child display_{words_of("display"), output_of("display")};
 };

@@ -12,7 +12,7 @@
 #include "places.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/sources_codec.hpp"
-#include "tests/support/own_domain.hpp"
+#include "tests/support/bus_options.hpp"
 #include "tests/support/wait.hpp"
 
 namespace stillhand::runtime {
@@ -21,10 +21,7 @@ namespace {
 using support::eventually;
 
 Bus::Options options_of(const std::string& service) {
-  Bus::Options options;
-  options.service = service;
-  options.domain = support::own_domain();
-  options.profiles = STILLHAND_SOURCE "/qos/profiles.xml";
+  Bus::Options options = support::bus_options(service);
   options.one_source = true;
   return options;
 }

@@ -11,6 +11,7 @@
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/playback.hpp"
 #include "services/runtime/bus/tap.hpp"
+#include "tests/support/bus_options.hpp"
 #include "tests/support/idl_fields.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
@@ -23,10 +24,7 @@ using support::eventually;
 constexpr const char* kProfiles = STILLHAND_SOURCE "/qos/profiles.xml";
 
 Bus::Options options_of(const std::string& service, bool answers_replay = false) {
-  Bus::Options options;
-  options.service = service;
-  options.domain = support::own_domain();
-  options.profiles = kProfiles;
+  Bus::Options options = support::bus_options(service);
   options.answers_replay = answers_replay;
   return options;
 }

@@ -18,6 +18,7 @@
 #include "places.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/sources_codec.hpp"
+#include "tests/support/bus_options.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
@@ -34,14 +35,6 @@ constexpr double kTravel_m = 0.1;
 constexpr double kOmega_rad_s = std::numbers::pi;
 constexpr double kMoves_m_s = 0.2;
 constexpr double kRest_m_s = 0.001;  // services/rig/shell.cpp
-
-runtime::Bus::Options options_of(const std::string& service) {
-  runtime::Bus::Options options;
-  options.service = service;
-  options.domain = support::own_domain();
-  options.profiles = kProfiles;
-  return options;
-}
 
 /// A rig, and a test that drives it with one command for each sample.
 class RigProcessTest : public testing::Test {
@@ -111,9 +104,11 @@ class RigProcessTest : public testing::Test {
   std::atomic<Tick> tick_{-1}, motor_tick_{-1}, command_tick_{-1};
   std::atomic<double> speed_m_s_{0.0};
 
-  runtime::Bus experiment_{options_of("experiment")}, motion_{options_of("motion")};
-  runtime::Bus cancellation_{options_of("cancellation")}, sensing_{options_of("sensing")};
-  runtime::Bus recorder_{options_of("recorder")};
+  runtime::Bus experiment_{support::bus_options("experiment")},
+      motion_{support::bus_options("motion")};
+  runtime::Bus cancellation_{support::bus_options("cancellation")},
+      sensing_{support::bus_options("sensing")};
+  runtime::Bus recorder_{support::bus_options("recorder")};
   runtime::Publisher<stillhand_msgs::TrialControl> control_ =
       experiment_.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
   runtime::Publisher<stillhand_msgs::SessionSources> sources_ =
