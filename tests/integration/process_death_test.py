@@ -6,7 +6,7 @@ Detection is the first tick from which on the rig uses no motor command any more
 max_motor_age_ticks. From there the force must be exactly zero within 50 ms, and stay zero to the recording's end.
 
 Prints two times for each service: from the kill to the detection, and from there to zero. By default the display is
-killed, whose absence only its life sign shows, the recorder and the rig; `--campaign` kills each of the others.
+killed, whose absence only its life sign shows; `--campaign` kills each of the others.
 """
 import os
 import signal
@@ -123,6 +123,7 @@ class ProcessDeathTest(LabTestCase):
 
     # The recording ends with the recorder. The rig's events stand in for it: the lab received "interlock opened" and
     # "motor force zero", and writes both as marks of the trial.
+    @campaign
     def test_death_of_recorder(self):
         lab, killed_ns = self.kill_during_trial("recorder")
         marks = {(mark["source"], mark["what"]): mark for mark in lab.summary()["trials"][-1]["marks"]}
@@ -137,6 +138,7 @@ class ProcessDeathTest(LabTestCase):
 
     # The simulated rig is the motor, so nothing is left that could report its force. The test shows that the rig sent
     # nothing any more, and that nobody went on commanding it: without samples there are no motor commands.
+    @campaign
     def test_death_of_rig(self):
         lab, killed_ns = self.kill_during_trial("rig")
         recording = lab.recording(1)
