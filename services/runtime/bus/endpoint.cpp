@@ -145,6 +145,10 @@ void ReaderEndpoint::on_data_available(edds::DataReader* source) {
     if (!clock.ours) continue;
     samples_.fetch_add(1, std::memory_order_relaxed);
     last_arrival_ns_.store(arrival.received_ns, std::memory_order_relaxed);
+    if (&topic_ == &topics::kServiceStatus && peers_.note_sample(info.publication_handle)) {
+      tell(BusIncident::Kind::kLivelinessRecovered, peers_.service_of(info.publication_handle),
+           0.0);
+    }
     if (topic_.pattern == topics::Pattern::kStream1khz && clock.tick >= 0) {
       supervise(clock.tick, clock.stamp_ns, arrival.received_ns);
     }
@@ -199,18 +203,27 @@ void ReaderEndpoint::on_subscription_matched(edds::DataReader* /*reader*/,
 void ReaderEndpoint::on_requested_deadline_missed(
     edds::DataReader* /*reader*/, const eprosima::fastrtps::RequestedDeadlineMissedStatus& status) {
   // The timer goes on after its writer died; that is liveliness's business.
-  if (!supervising_.load(std::memory_order_relaxed) ||
-      alive_writers_.load(std::memory_order_relaxed) <= 0) {
-    return;
-  }
+  if (!supervising_.load(std::memory_order_relaxed) || !has_living_writer()) return;
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
   const std::int64_t silent_ns = monotonic_ns() - last_arrival_ns_.load(std::memory_order_relaxed);
   tell(BusIncident::Kind::kDeadlineMissed, "", static_cast<double>(silent_ns) * 1e-3);
 }
 
+// The timer is armed by a sample, so without any word of liveliness (Peers::note_sample) a writer
+// has lived.
+bool ReaderEndpoint::has_living_writer() const noexcept {
+  return !heard_of_life_.load(std::memory_order_relaxed) ||
+         alive_writers_.load(std::memory_order_relaxed) > 0;
+}
+
 void ReaderEndpoint::on_liveliness_changed(
     edds::DataReader* /*reader*/, const eprosima::fastrtps::LivelinessChangedStatus& status) {
-  alive_writers_.store(status.alive_count, std::memory_order_relaxed);
+  // Not the status's own count, which stays one too low after a lost first change.
+  const int change = status.alive_count_change;
+  if (alive_writers_.fetch_add(change, std::memory_order_relaxed) + change < 0) {
+    alive_writers_.store(0, std::memory_order_relaxed);
+  }
+  heard_of_life_.store(true, std::memory_order_relaxed);
   const bool alive = status.alive_count_change > 0;
   const std::string peer = peers_.service_of(status.last_publication_handle);
   if (&topic_ == &topics::kServiceStatus) {

@@ -129,6 +129,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
       eprosima::fastdds::dds::DataReader*,
       const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
   void supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns);
+  [[nodiscard]] bool has_living_writer() const noexcept;
 
   const std::size_t source_;  // place of the topic's only writer, or Sources::kAnybody
   std::shared_ptr<void> sample_;
@@ -138,6 +139,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   std::atomic<std::uint64_t> deadline_misses_{0};
   std::atomic<std::int64_t> last_arrival_ns_{0};
   std::atomic<int> alive_writers_{0};
+  std::atomic<bool> heard_of_life_{false};
   std::atomic<std::int64_t> clock_ahead_ns_{0};
   // Receiving thread only; snapshots leave through the triple buffer.
   signal::CycleMonitor monitor_;

@@ -121,6 +121,7 @@ bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
   const std::string service = service_of(writer);
   const std::lock_guard lock(mutex_);
   bool changed = false;
+  if (!service.empty()) heard_.insert(writer);
   if (alive && !service.empty()) {
     changed = alive_writers_.emplace(writer, service).second;
     ever_alive_.insert(service);
@@ -129,6 +130,15 @@ bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
   }
   refresh();
   return changed;
+}
+
+bool Peers::note_sample(const InstanceHandle_t& writer) {
+  if (all_alive_.load(std::memory_order_acquire)) return false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (heard_.count(writer) != 0) return false;
+  }
+  return set_alive(writer, true);
 }
 
 void Peers::refresh() {

@@ -49,6 +49,11 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
       const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint) const;
   /// A status writer came alive or stopped being so.  @return true when that changed anything.
   bool set_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
+  /// A sample of a status writer came.  Shows that the writer lives if set_alive() never counted
+  /// for it: Fast DDS 2.9.1 loses the first change of liveliness when it comes while a reader is
+  /// made, and it may come before the participant's name.  Locks until all services are alive.
+  /// @return true when that changed anything.
+  bool note_sample(const eprosima::fastrtps::rtps::InstanceHandle_t& writer);
 
   /// The participant of each service of this rig, if there is exactly one; `own` is this one's.
   [[nodiscard]] std::vector<Source> sources_found(const ParticipantId& own) const;
@@ -92,6 +97,9 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> services_;  // by participant
   std::map<eprosima::fastrtps::rtps::InstanceHandle_t, std::string> alive_writers_;
   std::set<std::string> ever_alive_;
+  // Status writers of services whose liveliness was heard of: from then on samples prove nothing,
+  // since the last of them may arrive after the writer's death.
+  std::set<eprosima::fastrtps::rtps::InstanceHandle_t> heard_;
   bool answers_replay_;
   FoundWriters* writers_;
   bool secured_;

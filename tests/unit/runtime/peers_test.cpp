@@ -82,6 +82,33 @@ TEST_F(PeersTest, ALifeSignThatEndsIsNamedUntilItComesBack) {
   EXPECT_THAT(sut_.lost(), IsEmpty());
 }
 
+TEST_F(PeersTest, ASampleIsALifeSignAsLongAsLivelinessWasNotHeardOf) {
+  all_live(sut_);
+  const auto writer = handle_of(number_of("motion") + 100U);
+  sut_.set_alive(handle_of(number_of("motion")), false);
+  join(sut_, number_of("motion") + 100U, Peers::participant_name(kRig, "motion"));
+  EXPECT_TRUE(sut_.note_sample(writer));
+  EXPECT_TRUE(sut_.alive());
+  EXPECT_FALSE(sut_.note_sample(writer));  // nothing new
+  // Its last samples may arrive after its death.
+  EXPECT_TRUE(sut_.set_alive(writer, false));
+  EXPECT_FALSE(sut_.note_sample(writer));
+  EXPECT_FALSE(sut_.alive());
+}
+
+TEST_F(PeersTest, ALifeSignBeforeTheNameIsMadeUpForByASample) {
+  for (const std::string_view service : topics::kServices) {
+    if (service != "rig" && service != "motion") live(sut_, service);
+  }
+  const auto writer = handle_of(number_of("motion"));
+  EXPECT_FALSE(sut_.set_alive(writer, true));  // a stranger so far
+  EXPECT_FALSE(sut_.note_sample(writer));
+  EXPECT_FALSE(sut_.alive());
+  join(sut_, number_of("motion"), Peers::participant_name(kRig, "motion"));
+  EXPECT_TRUE(sut_.note_sample(writer));
+  EXPECT_TRUE(sut_.alive());
+}
+
 TEST_F(PeersTest, AnotherRigsServiceAndAStrangerGiveNoLifeSign) {
   all_live(sut_);
   sut_.set_alive(handle_of(number_of("motion")), false);
