@@ -2,17 +2,20 @@
 """`stillhand lab --rig devices` over an emulated servo drive and an emulated platform.
 
 By default: a session whose rig process is stopped while the motor pushes, so that the drive's own watchdog has to end
-the torque; a drive and a port that are refused before the session. `--campaign`: conditions A, B and C next to the
-simulated rig, and a mixture. The faults are in tests/faults/device_faults.py. STILLHAND_WATCHDOG_MS and
-STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine.
+the torque; a drive and a port that are refused before the session. `--campaign`: conditions A, B and C, admittance and
+feedthrough, each next to the simulated rig; a mixture. The faults are in tests/faults/device_faults.py.
+STILLHAND_WATCHDOG_MS and STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine.
 """
+import json
 import os
 import signal
+import statistics
+import subprocess
 import time
 
 import lab_process
 from emulated_laboratory import MAX_AGE_MS, PROGRAM, WATCHDOG_MS, EmulatedLaboratory
-from lab_process import TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick_session, wait_for
+from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick_session, wait_for
 
 # From a fault to the end of the torque. A host that lives notices by the age of the newest reply or by the drive's
 # counter (20 ms more), and stops the drive, or its force ramps down in 40 ticks. A host that does not live leaves it to
@@ -165,7 +168,37 @@ class DevicesTest(DevicesCase):
     def test_a_session_over_the_devices_is_like_one_of_the_simulated_rig(self):
         self.assert_like_the_simulated_rig()
 
+    # Motor and platform move the free stick at once. The arm's stiffness wanders by some 10 %, differently in each session.
+    @campaign
+    def test_admittance_and_feedthrough_over_the_devices_are_like_those_of_the_simulated_rig(self):
+        session = ["--identify", "admittance,feedthrough", "--perturb-period-s", 10, "--trial-seconds", 60,
+                   "--identify-seconds", 10, "--seed", 5]
+        simulated = self.lab(*session, out=self.folder / "simulated")
+        self.assertEqual(simulated.end_status(200), 0, simulated.errors())
+        domain = next_domain()
+        laboratory = self.laboratory(domain=domain)
+        devices = self.lab("--rig", "devices", *session, "--config", self.folder / "config",
+                           out=self.folder / "devices", domain=domain)
+        self.assertEqual(devices.end_status(200), 0, devices.errors())
+        self.assert_rules(laboratory.report())
+        found = []
+        for lab in (simulated, devices):
+            file = lab.out / "admittance.json"
+            subprocess.run([STILLHAND, "identify", lab.out / "session.mcap", "--admittance", "--json", file], check=True,
+                           stdout=subprocess.DEVNULL)
+            found.append(json.loads(file.read_text()))
+        self.assertLessEqual(found[1]["largest_motor_force_n"], PERTURBATION_PEAK_N)
+        for name in ("admittance_m_n", "feedthrough_to_force_n_s2_m", "feedthrough_to_position_s2"):
+            first, second = ([complex(line["real"], line["imaginary"]) for line in each[name]
+                              if line["frequency_hz"] > 2] for each in found)
+            errors = [abs(theirs / own - 1) for own, theirs in zip(first, second)]
+            print(f"{name}: median difference {statistics.median(errors):.2f} of {len(errors)} lines", flush=True)
+            self.assertGreater(len(errors), 10)
+            self.assertLess(statistics.median(errors), 0.3)  # as admittance_test from the closed form
 
+
+# The bound of the perturbation, services/admittance, ExcitationConfig::peak_force_n.
+PERTURBATION_PEAK_N = 8.0
 # The RMS error of a trial of 20 s varies from repeat to repeat; see tests/emulators/README.md.
 RMS_TOLERANCE = 0.15
 
