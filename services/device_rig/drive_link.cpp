@@ -155,11 +155,13 @@ void DriveLink::state(const DriveReply& reply) noexcept {
   const std::int64_t now_ns = runtime::monotonic_ns();
   switch (reply_clock_.step(reply.milliseconds, 1e-6 * static_cast<double>(now_ns))) {
     case ReplyClock::Verdict::kYoung:
+    case ReplyClock::Verdict::kDrifted:  // no limit: a drive's replies wait for no reader of ours
       ++sample_.sequence;
       sample_.at_ns = now_ns;
       sample_.reply = reply;
       break;
     case ReplyClock::Verdict::kOld:
+    case ReplyClock::Verdict::kTooSlow:
       ++sample_.late;
       break;
     case ReplyClock::Verdict::kRestarted:

@@ -58,16 +58,20 @@ void IioLink::begin_again() noexcept {
 
 // What waits comes one block a round trip: behind an iiod that is hardly quicker than the device,
 // old samples would come for as long as the session lasts.
-void IioLink::take_old(std::int64_t now_ns) noexcept {
+void IioLink::take_old(std::int64_t now_ns, bool too_slow) noexcept {
   ++sample_.old;
   sample_.old_at_ns = now_ns;
-  if (behind_ns_ == 0) behind_ns_ = now_ns;
-  if (now_ns - behind_ns_ >= kCatchUp_ns) {
-    ++sample_.skipped;
-    device_.skip();
-    begin_again();
-  }
   samples_.store(sample_);
+  const bool first = behind_ns_ == 0;
+  if (first) behind_ns_ = now_ns;
+  if (too_slow ? first : now_ns - behind_ns_ >= kCatchUp_ns) skip();
+  if (too_slow) behind_ns_ = now_ns;
+}
+
+void IioLink::skip() noexcept {
+  ++sample_.skipped;
+  device_.skip();
+  begin_again();
 }
 
 void IioLink::take(std::span<const std::int64_t> raw) noexcept {
@@ -78,7 +82,8 @@ void IioLink::take(std::span<const std::int64_t> raw) noexcept {
   number_ += device_.block();
   const auto verdict = clock_.step(static_cast<std::int16_t>(std::llround(counted_ms)),
                                    static_cast<double>(now_ns) / kNsPerMs);
-  if (verdict == ReplyClock::Verdict::kOld) return take_old(now_ns);
+  const bool too_slow = verdict == ReplyClock::Verdict::kTooSlow;
+  if (too_slow || verdict == ReplyClock::Verdict::kOld) return take_old(now_ns, too_slow);
   behind_ns_ = 0;
   for (std::size_t i = 0; i < device_.formats().size() && i < raw.size(); ++i) {
     const runtime::IioFormat& format = device_.formats()[i];
@@ -88,6 +93,8 @@ void IioLink::take(std::span<const std::int64_t> raw) noexcept {
   ++sample_.count;
   sample_.at_ns = now_ns;
   samples_.store(sample_);
+  // A slow clock, or a reader that carries less than comes: after this it is neither.
+  if (verdict == ReplyClock::Verdict::kDrifted) skip();
 }
 
 }  // namespace stillhand::device_rig

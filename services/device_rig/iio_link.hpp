@@ -49,7 +49,8 @@ class IioLink {
  private:
   void work(const std::stop_token& stop);
   void take(std::span<const std::int64_t> raw) noexcept;
-  void take_old(std::int64_t now_ns) noexcept;
+  void take_old(std::int64_t now_ns, bool too_slow) noexcept;
+  void skip() noexcept;
   void begin_again() noexcept;
 
   double factor_;
@@ -58,7 +59,7 @@ class IioLink {
   runtime::LatestValue<IioSample> samples_;
   // The thread's.
   IioSample sample_;
-  ReplyClock clock_;
+  ReplyClock clock_{ReplyClock::kStreamDrift_ms};
   std::uint64_t number_ = 0;    ///< of samples since the buffer was opened
   std::int64_t behind_ns_ = 0;  ///< since when every sample is old; 0: the newest is young
   std::jthread thread_;         // last
