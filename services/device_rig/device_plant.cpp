@@ -358,16 +358,18 @@ bool DevicePlant::prepared() const noexcept {
 }
 
 const char* DevicePlant::unknown_iio() noexcept {
-  const auto late = [&](const std::unique_ptr<IioLink>& link, const IioConfig& config) {
-    if (!link) return false;  // an indicator
-    const IioSample& newest = link->newest();
-    return is_young(newest.old, newest.old_at_ns, now_ns_, config.max_age_ticks);
+  const auto late = [&](auto& link, std::int64_t most_ticks) {
+    if (!link) return false;
+    const auto& newest = link->newest();
+    return is_young(newest.old, newest.old_at_ns, now_ns_, most_ticks);
   };
   if (std::isnan(load_cell_v_)) {
-    return late(load_cell_, devices_.load_cell) ? "the samples of the load cell come too late"
-                                                : "the load cell is silent, or at its end";
+    return late(load_cell_, devices_.load_cell.max_age_ticks) ||
+                   late(indicator_, devices_.indicator.max_age_ticks)
+               ? "the samples of the load cell come too late"
+               : "the load cell is silent, or at its end";
   }
-  return late(accelerometer_, devices_.accelerometer)
+  return late(accelerometer_, devices_.accelerometer.max_age_ticks)
              ? "the samples of the accelerometer come too late"
              : "the accelerometer is silent, or at its end";
 }

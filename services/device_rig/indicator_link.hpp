@@ -18,11 +18,12 @@ namespace stillhand::device_rig {
 
 /// What the thread of an indicator knows.
 struct IndicatorSample {
-  std::uint64_t count = 0;    ///< of young lines; 0: none yet
-  std::int64_t at_ns = 0;     ///< CLOCK_MONOTONIC when the newest was read
-  double force_n = 0.0;       ///< as its sign says; NaN: overload
-  std::uint64_t damaged = 0;  ///< lines that were not understood
-  std::uint64_t old = 0;      ///< lines that waited in a buffer (DR-10)
+  std::uint64_t count = 0;     ///< of young lines; 0: none yet
+  std::int64_t at_ns = 0;      ///< CLOCK_MONOTONIC when the newest was read
+  double force_n = 0.0;        ///< as its sign says; NaN: overload
+  std::uint64_t damaged = 0;   ///< lines that were not understood
+  std::uint64_t old = 0;       ///< lines that waited in a buffer (DR-10)
+  std::int64_t old_at_ns = 0;  ///< when the newest of these was read; 0: never
 };
 
 /// A load cell indicator that streams lines to a serial port, in a thread of its own.  The loop
@@ -30,7 +31,7 @@ struct IndicatorSample {
 /// sent.  README Eq. DR-36.
 class IndicatorLink {
  public:
-  /// Opens the port and listens for half a second.
+  /// Opens the port and listens for a second, three if the lines do not come as the settings say.
   /// @throws ConfigError for a port that is not there, lines that are none of an indicator, or
   ///         another rate than the settings say
   explicit IndicatorLink(const IndicatorConfig& config);
@@ -56,6 +57,7 @@ class IndicatorLink {
   LineSplitter lines_;
   ReplyClock clock_;
   std::uint64_t number_ = 0;  ///< of lines since the port was opened
+  std::int64_t line_ns_ = 0;  ///< when the newest of them was read
   std::jthread thread_;       // last
 };
 

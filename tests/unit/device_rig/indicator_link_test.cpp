@@ -91,7 +91,29 @@ TEST_F(IndicatorLinkTest, TheNewestLineIsTheForce) {
 TEST_F(IndicatorLinkTest, AnotherRateThanTheSettingsSayIsRefused) {
   IndicatorConfig config = device_.config();
   config.rate_hz = 1000.0;
-  EXPECT_THAT(refusal(config), HasSubstr("lines/s, want 1000, which devices.indicator.rate_hz"));
+  EXPECT_THAT(refusal(config),
+              HasSubstr("lines/s, want 1000 within 0.5 %, which devices.indicator.rate_hz"));
+}
+
+// The clock of DR-10 forgives 1 %: the lines would be old as soon as the session runs.
+TEST_F(IndicatorLinkTest, ARateThatTheClockWouldNotForgiveIsRefused) {
+  IndicatorConfig config = device_.config();
+  config.rate_hz = 510.0;
+  EXPECT_THAT(refusal(config), HasSubstr("lines/s, want 510 within 0.5 %"));
+}
+
+TEST_F(IndicatorLinkTest, HalfALineFromBeforeTheCableWasPulledIsNoPartOfTheNext) {
+  IndicatorLink sut(device_.config());
+  device_.with([&](auto& side) {
+    const std::uint64_t before = sut.newest().count;
+    side.serial().write(emulators::indicator_line(2.0) + "N,+00", runtime::monotonic_ns());
+    EXPECT_TRUE(comes([&] { return sut.newest().count > before; }));
+    side.serial().pull_out();
+    side.serial().put_in();
+  });
+  const std::uint64_t before = sut.newest().count;
+  EXPECT_TRUE(comes([&] { return sut.newest().count > before + 10; }));
+  EXPECT_EQ(sut.newest().damaged, 0u);
 }
 
 TEST_F(IndicatorLinkTest, APortWithoutLinesOrWithOtherBytesIsRefused) {
@@ -125,6 +147,7 @@ TEST_F(IndicatorLinkTest, LinesThatAreHeldUpBecomeOld) {
   ASSERT_TRUE(comes([&] { return sut.newest().count > 0; }));
   device_.with([](auto& side) { side.serial().mischief.late_ms = 100.0; });
   EXPECT_TRUE(comes([&] { return sut.newest().old > 10; }));
+  EXPECT_GT(sut.newest().old_at_ns, 0);
 }
 
 TEST_F(IndicatorLinkTest, ThePlantPublishesTheForceAndKnowsASilentOrOverloadedCell) {
