@@ -15,6 +15,7 @@
 #include "apps/calibrate/station.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/hand_off.hpp"
+#include "services/device_rig/load_devices.hpp"
 #include "services/settings/load.hpp"
 #include "services/signal/smooth_step.hpp"
 
@@ -248,10 +249,11 @@ class HandOff {
 
 int run_hand_off_check(const CalibrateOptions& options, const runtime::Stop& interrupted) {
   const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
-  const auto devices =
-      settings::load<device_rig::DevicesConfig>(options.config / "devices.yaml", "devices");
+  const auto file = options.config / "devices.yaml";
+  const auto devices = device_rig::load_devices(file);
   const auto sensing = settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing");
-  HandOff check(options, rig, devices, sensing, interrupted);
+  HandOff check = settings::placed(
+      file.string(), [&] { return HandOff(options, rig, devices, sensing, interrupted); });
   const auto forget_earlier_check = [&] {
     auto all = device_rig::load_calibrations(options.config / "calibration.yaml");
     if (all.check.date.empty()) return;

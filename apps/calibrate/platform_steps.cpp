@@ -14,6 +14,7 @@
 #include "apps/calibrate/station.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/platform_response.hpp"
+#include "services/device_rig/load_devices.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::calibrate {
@@ -123,10 +124,10 @@ std::string fault_of(const PlatformResponse& found) {
 
 int run_calibrate_platform(const CalibrateOptions& options, const runtime::Stop& interrupted) {
   const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
-  const auto devices =
-      settings::load<device_rig::DevicesConfig>(options.config / "devices.yaml", "devices");
+  const auto file = options.config / "devices.yaml";
+  const auto devices = device_rig::load_devices(file);
   const auto sensing = settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing");
-  Station station(rig, devices);
+  Station station = settings::placed(file.string(), [&] { return Station(rig, devices); });
   const std::string device = station.plant().platform_device();
   if (device.empty()) {
     throw ConfigError("devices.yaml: signals.platform", "simulated",

@@ -22,9 +22,8 @@
 #include "apps/deploy/ports.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/load_devices.hpp"
 #include "services/runtime/bus/identity.hpp"
-#include "services/settings/load.hpp"
 
 namespace stillhand::deploy {
 namespace {
@@ -155,7 +154,7 @@ std::vector<std::string> authority_keys_of(const Inventory& inventory) {
 }
 
 std::vector<Finding> check_devices(const fs::path& devices) {
-  const auto config = settings::load<device_rig::DevicesConfig>(devices, "devices");
+  const auto config = device_rig::load_devices(devices);
   if (!device_rig::parts_of(config).needs_drive()) return {};
   SerialPortState port{.path = config.drive.port};
   struct stat state {};

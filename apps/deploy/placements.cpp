@@ -20,8 +20,7 @@ using settings::Entry;
 std::string service_in(const Entry& entry, const std::string& path) {
   std::string service = text_of(entry, path, "the name of a service");
   if (std::ranges::find(topics::kServices, service) == topics::kServices.end()) {
-    refuse(entry, path,
-           fmt::format("a service: \"{}\" perhaps", settings::nearest(service, topics::kServices)));
+    refuse(entry, path, "a service: " + settings::suggestion(service, topics::kServices));
   }
   return service;
 }
@@ -69,8 +68,7 @@ std::uint32_t Placements::rig_in(const Entry& entry, const std::string& path) co
   if (found != rigs_.end()) return found->number;
   std::vector<std::string_view> names;
   for (const Rig& rig : rigs_) names.push_back(rig.name);
-  refuse(entry, path,
-         fmt::format("one of the rigs: \"{}\" perhaps", settings::nearest(name, names)));
+  refuse(entry, path, "a rig: " + settings::suggestion(name, names));
 }
 
 void Placements::refuse_absent(const Entry& hosts) const {

@@ -11,6 +11,7 @@
 #include "services/device_rig/core/parts_note.hpp"
 #include "services/device_rig/plant_limits.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "services/settings/placed_error.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -51,7 +52,9 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
     drive_ = std::make_unique<DriveLink>(devices.drive, setting_limits(rig, devices));
   }
   if (parts_.needs_platform()) {
-    platform_ = std::make_unique<PlatformLink>(devices.platform, parts_.platform);
+    platform_ = settings::placed("devices.platform", [&] {
+      return std::make_unique<PlatformLink>(devices.platform, parts_.platform);
+    });
   }
   if (parts_.acceleration == Parts::Source::kIio) {
     const AccelerometerConfig& config = devices.accelerometer;
@@ -60,12 +63,16 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
       mount_.emplace("devices.accelerometer.mount", config.mount);
       channels = {"accel_x", "accel_y", "accel_z"};
     }
-    accelerometer_ = std::make_unique<IioLink>(config, std::move(channels), 1.0);
+    accelerometer_ = settings::placed("devices.accelerometer", [&] {
+      return std::make_unique<IioLink>(config, std::move(channels), 1.0);
+    });
   }
   if (parts_.force == Parts::Source::kIio) {
     constexpr double kVoltPerMillivolt = 1e-3;
-    load_cell_ = std::make_unique<IioLink>(
-        devices.load_cell, std::vector{devices.load_cell.channel}, kVoltPerMillivolt);
+    load_cell_ = settings::placed("devices.load_cell", [&] {
+      return std::make_unique<IioLink>(devices.load_cell, std::vector{devices.load_cell.channel},
+                                       kVoltPerMillivolt);
+    });
   }
   if (parts_.force == Parts::Source::kIndicator) {
     indicator_ = std::make_unique<IndicatorLink>(devices.indicator);

@@ -11,6 +11,7 @@
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/transport/can_socket.hpp"
 #include "services/runtime/transport/serial_port.hpp"
+#include "services/settings/placed_error.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -43,7 +44,9 @@ std::unique_ptr<runtime::Port> port_of(const DriveConfig& config) {
 }  // namespace
 
 DriveLink::DriveLink(const DriveConfig& config, const SettingLimits& limits)
-    : config_(config), protocol_(protocol_of(config, limits)), port_(port_of(config)) {
+    : config_(config),
+      protocol_(protocol_of(config, limits)),
+      port_(settings::placed("devices.drive.port", [&] { return port_of(config); })) {
   const std::string drive = protocol_->name() + " at " + config.port;
   port_->write(protocol_->greeting());
   const auto trip_ms = round_trip_ms();

@@ -10,6 +10,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/indicator_line.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "services/settings/placed_error.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -27,7 +28,9 @@ constexpr double kOtherRate = 0.1;
 }  // namespace
 
 IndicatorLink::IndicatorLink(const IndicatorConfig& config)
-    : config_(config), port_(std::make_unique<runtime::SerialPort>(config.port, config.baud)) {
+    : config_(config), port_(settings::placed("devices.indicator", [&] {
+        return std::make_unique<runtime::SerialPort>(config.port, config.baud);
+      })) {
   listen_first();
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }

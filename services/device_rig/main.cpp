@@ -3,9 +3,11 @@
 #include <filesystem>
 
 #include "services/device_rig/device_plant.hpp"
+#include "services/device_rig/load_devices.hpp"
 #include "services/rig/shell.hpp"
 #include "services/settings/check_name.hpp"
 #include "services/settings/load.hpp"
+#include "services/settings/placed_error.hpp"
 
 namespace {
 
@@ -47,9 +49,11 @@ int main(int argc, char** argv) {
       [&](runtime::Service& service) {
         const auto rig = rig::seeded(service.config<rig::RigConfig>(), service.options().seed);
         if (file.empty()) file = service.options().config / "devices.yaml";
-        const auto devices = settings::load<device_rig::DevicesConfig>(file, "devices");
+        const auto devices = device_rig::load_devices(file);
         const auto& folder = service.options().config;
-        device_rig::DevicePlant plant(rig, devices, platform_lag_s(devices, folder));
+        auto plant = settings::placed(file.string(), [&] {
+          return device_rig::DevicePlant(rig, devices, platform_lag_s(devices, folder));
+        });
         refuse_uncalibrated(plant, devices, folder);
         rig::Shell(service, plant, rig.motor).run();
       },

@@ -32,4 +32,17 @@ std::string nearest(std::string_view word, std::span<const std::string_view> can
   return found == candidates.end() ? std::string() : std::string(*found);
 }
 
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
+  const std::string found = nearest(word, candidates);
+  // Among few words, one is always the nearest.
+  if (3 * edit_distance(word, found) <= std::max(word.size(), found.size())) {
+    return "\"" + found + "\" perhaps";
+  }
+  std::string list;
+  for (const std::string_view each : candidates) {
+    list += (list.empty() ? "one of " : ", ") + std::string(each);
+  }
+  return list;
+}
+
 }  // namespace stillhand::settings

@@ -182,12 +182,14 @@ void SectionReader::operator()(std::string_view name, bool& value, Range range,
 }
 
 void SectionReader::operator()(std::string_view name, std::string& value, Range range,
-                               std::string_view /*doc*/) {
+                               std::string_view doc) {
   const Entry* entry = find(name);
   if (entry == nullptr) return;
   const auto length = static_cast<double>(entry->text.size());
   if (entry->kind != Entry::Kind::kScalar || !(length >= range.min && length <= range.max)) {
-    fail(*entry, "text of " + shown(range.min) + " to " + shown(range.max) + " characters");
+    // The length alone does not say which words there are.
+    fail(*entry, "text of " + shown(range.min) + " to " + shown(range.max) +
+                     " characters: " + std::string(doc));
   }
   value = entry->text;
 }
@@ -196,9 +198,8 @@ void SectionReader::refuse_unknown() const {
   for (const Entry& child : section_.children) {
     if (std::find(names_.begin(), names_.end(), child.key) != names_.end()) continue;
     const std::vector<std::string_view> known(names_.begin(), names_.end());
-    throw ConfigError(
-        child.key_place + ": " + scope_ + "." + child.key, "an unknown key",
-        known.empty() ? "no keys here" : "\"" + nearest(child.key, known) + "\" perhaps");
+    throw ConfigError(child.key_place + ": " + scope_ + "." + child.key, "an unknown key",
+                      known.empty() ? "no keys here" : suggestion(child.key, known));
   }
 }
 

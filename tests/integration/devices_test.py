@@ -143,7 +143,8 @@ class DevicesTest(DevicesCase):
         (self.folder / "drive").unlink(missing_ok=True)
         lab = self.lab("--rig", "devices", "--config", self.folder / "config")
         self.assertEqual(lab.end_status(), 2, lab.errors())
-        self.assertIn(f"serial port {self.folder / 'drive'}: got No such file or directory", lab.errors()[-1])
+        self.assertIn(f"devices.yaml: devices.drive.port: serial port {self.folder / 'drive'}: "
+                      "got No such file or directory", lab.errors()[-1])
 
     # A stick on a desk, its power stage off: condition B with a simulated platform.
     @campaign

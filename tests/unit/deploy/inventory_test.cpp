@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "rigs: [{name: left, number: 1}, {name: right, number: 2}]",
                 ":7:16: hosts[0].services[0]", "rig", "{service: rig, rig: left}"},
         Refusal{"UnknownRig", "[rig,", "[{service: rig, rig: lefd},",
-                ":7:36: hosts[0].services[0].rig", "lefd", "\"1\" perhaps"}),
+                ":7:36: hosts[0].services[0].rig", "lefd", "a rig: one of 1"}),
     [](const auto& each) { return each.param.name; });
 
 TEST(InventoryTest, AServiceThatOneOfTwoRigsLacksIsNamedWithTheRig) {

@@ -123,7 +123,8 @@ TEST_F(IndicatorLinkTest, APortWithoutLinesOrWithOtherBytesIsRefused) {
   EXPECT_THAT(refusal(device_.config()), HasSubstr("no line in 0.5 s"));
   IndicatorConfig config = device_.config();
   config.port = "/dev/there-is-none";
-  EXPECT_THAT(refusal(config), HasSubstr("serial port /dev/there-is-none: got No such file"));
+  EXPECT_THAT(refusal(config),
+              HasSubstr("devices.indicator: serial port /dev/there-is-none: got No such file"));
   config = device_.config();
   config.baud = 100000;
   EXPECT_THAT(refusal(config), HasSubstr("100000 Bd, want one of 9600"));

@@ -3,10 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "services/contract/config_error.hpp"
+#include "services/device_rig/load_devices.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -132,6 +136,31 @@ TEST(PartsTest, WordsAndPartsThatDoNotFitAreRefused) {
   config.drive.watchdog_s = 0.02;
   config.drive.period_ticks = 10;
   EXPECT_THAT(refusal(config), testing::HasSubstr("three times"));
+}
+
+TEST(LoadDevicesTest, AWordThatIsNoPartIsRefusedWithFileKeyAndTheWordsThatThereAre) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("stillhand-devices-" + std::to_string(getpid()) + ".yaml");
+  const auto refused = [&](const std::string& text) -> std::string {
+    std::ofstream(file) << text;
+    try {
+      load_devices(file);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(
+      refused("signals: {force: spring}\n"),
+      file.string() +
+          ": devices.signals.force: got spring, want one of simulated, drive, iio, indicator");
+  EXPECT_EQ(refused("signals: {force: [iio, drive]}\n"),
+            file.string() +
+                ":1:18: devices.signals.force: got a list, want text of 1 to 20 characters: force "
+                "of the hand on the stick: simulated, drive (an analogue input of it), iio or "
+                "indicator");
+  EXPECT_EQ(refused("signals: {force: indicator}\n"), "");
+  std::filesystem::remove(file);
 }
 
 }  // namespace

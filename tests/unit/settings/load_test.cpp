@@ -36,7 +36,7 @@ struct OuterConfig {
     visit("mass_kg", self.mass_kg, Range{0.1, 10.0}, "[kg] mass");
     visit("delay_ticks", self.delay_ticks, Range{0.0, 50.0}, "[ticks] delay");
     visit("pegged", self.pegged, Range{0.0, 1.0}, "peg in");
-    visit("name", self.name, Range{1.0, 8.0}, "name");
+    visit("name", self.name, Range{1.0, 8.0}, "left or right");
     visit.group("body", self.body);
   }
 };
@@ -80,6 +80,7 @@ TEST(LoadTest, AnUnknownKeyIsRefusedWithItsPlaceAndTheNearestName) {
             "rig.yaml:2:3: rig.body.stifness_n_m: got an unknown key, want \"stiffness_n_m\" "
             "perhaps");
   EXPECT_THAT(message_of("boddy: {}\n"), HasSubstr("\"body\" perhaps"));
+  EXPECT_THAT(message_of("temperature: 1\n"), HasSubstr("an unknown key, want one of mass_kg, "));
 }
 
 TEST(LoadTest, AValueOutOfItsRangeIsRefusedWithItsPlace) {
@@ -87,6 +88,8 @@ TEST(LoadTest, AValueOutOfItsRangeIsRefusedWithItsPlace) {
             "rig.yaml:2:10: rig.mass_kg: got 10.5, want a value from 0.1 to 10");
   EXPECT_THAT(message_of("delay_ticks: -1\n"), HasSubstr("rig.yaml:1:14: rig.delay_ticks: got -1"));
   EXPECT_THAT(message_of("name: far_too_long\n"), HasSubstr("text of 1 to 8 characters"));
+  EXPECT_EQ(message_of("name: [left]\n"),
+            "rig.yaml:1:7: rig.name: got a list, want text of 1 to 8 characters: left or right");
   EXPECT_EQ(message_of("mass_kg: 10\n"), "accepted");
 }
 

@@ -66,6 +66,20 @@ TEST(NearestTest, AnEmptyWordIsNearestToTheShortestCandidate) {
 
 TEST(NearestTest, WithoutCandidatesThereIsNoName) { EXPECT_EQ(nearest("gain", {}), ""); }
 
+TEST(SuggestionTest, AThirdOfTheLettersMayBeOthers) {
+  const Words keys{"gain", "mass_kg", "watchdog_s"};
+  EXPECT_EQ(suggestion("mas_kg", keys), "\"mass_kg\" perhaps");
+  EXPECT_EQ(suggestion("wachdog_ms", keys), "\"watchdog_s\" perhaps");
+  // Two of seven letters, and three.
+  EXPECT_EQ(suggestion("mess_kn", keys), "\"mass_kg\" perhaps");
+  EXPECT_EQ(suggestion("messung", keys), "one of gain, mass_kg, watchdog_s");
+}
+
+TEST(SuggestionTest, AWordThatIsNearToNoneGetsThemAll) {
+  EXPECT_EQ(suggestion("temperature", Words{"gain"}), "one of gain");
+  EXPECT_EQ(suggestion("", Words{"gain", "delay"}), "one of gain, delay");
+}
+
 TEST(CheckNameTest, OnlyAnEmptyNameIsRefused) {
   EXPECT_NE(check_name(""), "");
   EXPECT_EQ(check_name(" "), "");
