@@ -15,6 +15,7 @@
 #include "apps/calibrate/station.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/calibration_fit.hpp"
+#include "services/device_rig/load_devices.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::calibrate {
@@ -103,9 +104,10 @@ void print(const CalibrateOptions& options, const CalibrationFit& fit, const Ste
       words.name, fit.sensitivity, words.reading, words.unit, fit.sensitivity_error, fit.zero,
       words.reading, fit.zero_error);
   std::cout << fmt::format(
-      "  from {:.4g} to {:.4g} {}: at most {:.2g} off the line; noise {:.2g} RMS; the first "
-      "quantity again: {:+.2g}\n",
-      fit.low, fit.high, words.unit, fit.residual, fit.noise, fit.drift);
+      "  from {:.4g} to {:.4g} {unit}: at most {:.2g} {unit} off the line; noise {:.2g} {unit} "
+      "RMS; "
+      "the first quantity again: {:+.2g} {unit}\n",
+      fit.low, fit.high, fit.residual, fit.noise, fit.drift, fmt::arg("unit", words.unit));
   if (options.signal != CalibratedSignal::kAngle) {
     std::cout << fmt::format("  the input's range, {:.3g} V, is {:.4g} to {:.4g} {}\n",
                              sensing.adc_range_v,
@@ -174,10 +176,10 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
   device_rig::check_known(known);
   known.push_back(known.front());  // what slips or warms up shows
   const auto rig = settings::load<rig::RigConfig>(options.config / "rig.yaml", "rig");
-  const auto devices =
-      settings::load<device_rig::DevicesConfig>(options.config / "devices.yaml", "devices");
+  const auto file = options.config / "devices.yaml";
+  const auto devices = device_rig::load_devices(file);
   const auto sensing = settings::load<sensing::Config>(options.config / "sensing.yaml", "sensing");
-  Station station(rig, devices);
+  Station station = settings::placed(file.string(), [&] { return Station(rig, devices); });
   const std::string device = station.plant().device_of(options.signal);
   if (device.empty()) {
     throw ConfigError(fmt::format("devices.yaml: signals.{}", words.name), "simulated",
@@ -191,7 +193,7 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
   }
   const CalibrationFit fit = device_rig::calibration_fit(steps.steps());
   print(options, fit, steps, sensing);
-  std::string fault = device_rig::calibration_fault(fit, options.tolerance);
+  std::string fault = device_rig::calibration_fault(fit, options.tolerance, words.unit);
   if (fault.empty()) fault = gain_fault(options, fit, sensing);
   if (!fault.empty()) {
     std::cerr << "stillhand calibrate: " << words.name << ": " << fault << "; nothing is written\n";

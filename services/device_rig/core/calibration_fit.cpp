@@ -73,23 +73,31 @@ CalibrationFit calibration_fit(std::span<const CalibrationStep> steps) {
   return fit;
 }
 
-std::string calibration_fault(const CalibrationFit& fit, double most_share) {
-  const double most = most_share * std::max(-fit.low, fit.high);
+std::string calibration_fault(const CalibrationFit& fit, double most_share, std::string_view unit) {
+  const double largest = std::max(-fit.low, fit.high);
+  const double most = most_share * largest;
+  // First: of such a line, sign, drift and residual mean nothing.
+  if (fit.noise >= largest) {
+    return fmt::format(
+        "the sensor does not react: {:.3g} {} change the reading by no more than its noise; look "
+        "at its cable, its supply, and the input in devices.yaml",
+        largest, unit);
+  }
   if (fit.sensitivity < 0.0) {
     return "the reading falls where it must grow (positive is to the right): turn the sensor or "
            "change its sign in devices.yaml, and calibrate again";
   }
   if (std::abs(fit.drift) > most) {
     return fmt::format(
-        "the first quantity, applied again, reads {:.3g} away from the first time, "
-        "more than {:.3g}: something slipped or warms up",
-        fit.drift, most);
+        "the first quantity, applied again, reads {:.3g} {} away from the first time, more than "
+        "{:.3g} {}: something slipped or warms up",
+        fit.drift, unit, most, unit);
   }
   if (fit.residual > most) {
     return fmt::format(
-        "a step is {:.3g} off the straight line, more than {:.3g}: a wrong quantity "
-        "at one step, a loose mount, or a sensor at its end",
-        fit.residual, most);
+        "a step is {:.3g} {} off the straight line, more than {:.3g} {}: a wrong quantity at one "
+        "step, a loose mount, or a sensor at its end",
+        fit.residual, unit, most, unit);
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace stillhand::device_rig {
 
@@ -38,7 +39,9 @@ void check_known(std::span<const double> known);
 CalibrationFit calibration_fit(std::span<const CalibrationStep> steps);
 
 /// What makes a fit useless, in words for the person at the rig; empty: it can be used.  DR-15:
-/// residual and drift at most `most_share` of the largest quantity, and the sign.
-std::string calibration_fault(const CalibrationFit& fit, double most_share);
+/// residual and drift at most `most_share` of the largest quantity, the sign, and an answer above
+/// the sensor's own noise.
+/// @param unit  of x
+std::string calibration_fault(const CalibrationFit& fit, double most_share, std::string_view unit);
 
 }  // namespace stillhand::device_rig

@@ -13,6 +13,8 @@
 namespace stillhand::device_rig {
 namespace {
 
+using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -36,7 +38,7 @@ TEST(CalibrationFitTest, FindsAStraightLine) {
   EXPECT_NEAR(fit.noise, 0.05, 1e-12);
   EXPECT_DOUBLE_EQ(fit.low, -10.0);
   EXPECT_DOUBLE_EQ(fit.high, 10.0);
-  EXPECT_THAT(calibration_fault(fit, kShare), IsEmpty());
+  EXPECT_THAT(calibration_fault(fit, kShare, "N"), IsEmpty());
 }
 
 // By hand: x = -1, 0, 1, -1; y = 0, 0, 3, 0.  Sxx = 2.75, Sxy = 3.75, so b = 15/11 and
@@ -54,14 +56,29 @@ TEST(CalibrationFitTest, StatesTheStandardErrors) {
 TEST(CalibrationFitTest, NamesWhatMakesItUseless) {
   auto turned = steps();
   for (CalibrationStep& step : turned) step.known = -step.known;
-  EXPECT_THAT(calibration_fault(calibration_fit(turned), kShare), HasSubstr("must grow"));
+  EXPECT_THAT(calibration_fault(calibration_fit(turned), kShare, "N"), HasSubstr("must grow"));
   auto slipped = steps();
   slipped.back().reading += 0.02 * 0.5;
-  EXPECT_THAT(calibration_fault(calibration_fit(slipped), kShare), HasSubstr("slipped"));
+  EXPECT_THAT(
+      calibration_fault(calibration_fit(slipped), kShare, "N"),
+      AllOf(HasSubstr("reads 0.5 N away"), HasSubstr("more than 0.2 N: something slipped")));
   auto wrong = steps();
   wrong[2].reading += 0.02 * 2.0;
-  EXPECT_THAT(calibration_fault(calibration_fit(wrong), kShare),
-              HasSubstr("off the straight line"));
+  EXPECT_THAT(calibration_fault(calibration_fit(wrong), kShare, "N"),
+              ContainsRegex("a step is .* N off the straight line, more than 0.2 N"));
+}
+
+// A cable that is off: the mean of 500 samples still differs from step to step.
+TEST(CalibrationFitTest, ASensorThatDoesNotReactIsNamed) {
+  auto dead = steps();
+  double off = 1e-5;
+  for (CalibrationStep& step : dead) step.reading = 1.65 + (off *= -1.1);
+  EXPECT_THAT(calibration_fault(calibration_fit(dead), kShare, "N"),
+              HasSubstr("does not react: 10 N change the reading by no more than its noise"));
+  // A noisy one that reacts.
+  auto noisy = steps();
+  for (CalibrationStep& step : noisy) step.spread = 0.9 * 0.2;
+  EXPECT_THAT(calibration_fault(calibration_fit(noisy), kShare, "N"), IsEmpty());
 }
 
 TEST(CalibrationFitTest, RefusesStepsThatDetermineNoLine) {
