@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "services/contract/config_error.hpp"
 #include "services/device_rig/core/parts_note.hpp"
 #include "services/device_rig/plant_limits.hpp"
 #include "services/runtime/process/clock.hpp"
@@ -21,6 +22,9 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // No encoder counts so far: sensing takes it as a fault of the counter and holds the last angle.
 constexpr std::int64_t kNoCounts = std::int64_t{1} << 40;
 constexpr double kMostTurns = 1e6;
+// No device gives these.
+constexpr double kUntouched_v = -1e300;
+constexpr std::int64_t kUntouched_counts = std::numeric_limits<std::int64_t>::min();
 
 // An amplifier that is at its end, or a wire that is off.
 bool ends(double share) noexcept { return !(share > 0.002 && share < 0.998); }
@@ -28,6 +32,14 @@ bool ends(double share) noexcept { return !(share > 0.002 && share < 0.998); }
 bool is_young(std::uint64_t count, std::int64_t at_ns, std::int64_t now_ns,
               std::int64_t most_ticks) noexcept {
   return count > 0 && now_ns - at_ns <= most_ticks * 1'000'000;
+}
+
+// A drive and a platform judge their own; every other part is unknown until something was taken.
+bool missing(Parts::Source source, double value) noexcept {
+  using Source = Parts::Source;
+  const bool other =
+      source == Source::kSimulated || source == Source::kDrive || source == Source::kPlatform;
+  return !other && std::isnan(value);
 }
 
 // A platform that lags by more is no platform of a person's.
@@ -77,6 +89,31 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
   if (parts_.force == Parts::Source::kIndicator) {
     indicator_ = std::make_unique<IndicatorLink>(devices.indicator);
   }
+  refuse_unserved();
+}
+
+rig::RawSample untouched() noexcept {
+  return {kUntouched_v, kUntouched_v, kUntouched_v, kUntouched_v, kUntouched_counts, 0.0};
+}
+
+const char* unserved(const Parts& parts, const rig::RawSample& raw) noexcept {
+  using Source = Parts::Source;
+  const bool accelerated = raw.accel_x_v != kUntouched_v && raw.accel_y_v != kUntouched_v &&
+                           raw.accel_z_v != kUntouched_v;
+  if (parts.acceleration != Source::kSimulated && !accelerated) return "acceleration";
+  if (parts.force != Source::kSimulated && raw.load_cell_v == kUntouched_v) return "force";
+  if (parts.angle != Source::kSimulated && raw.encoder_counts == kUntouched_counts) return "angle";
+  return nullptr;
+}
+
+void DevicePlant::refuse_unserved() const {
+  rig::RigOutput probe{};
+  probe.raw = untouched();
+  put_devices(probe);
+  const char* const signal = unserved(parts_, probe.raw);
+  if (signal == nullptr) return;
+  throw ConfigError("devices.signals." + std::string(signal), "a part that publishes nothing",
+                    "another one: DevicePlant::put_devices() lacks this one");
 }
 
 std::string DevicePlant::device_of(CalibratedSignal signal) const {
@@ -199,8 +236,9 @@ void DevicePlant::take_iio() noexcept {
   if (accelerometer_) take_accelerometer();
   if (load_cell_) load_cell_v_ = iio_value(*load_cell_, devices_.load_cell);
   if (indicator_) load_cell_v_ = indicator_value();
-  const bool known = !std::isnan(accel_y_m_s2_) && !std::isnan(load_cell_v_);
-  unknown_ticks_ = known ? 0 : unknown_ticks_ + 1;
+  const bool unknown =
+      missing(parts_.acceleration, accel_y_m_s2_) || missing(parts_.force, load_cell_v_);
+  unknown_ticks_ = unknown ? unknown_ticks_ + 1 : 0;
 }
 
 void DevicePlant::wait() noexcept {
@@ -234,10 +272,8 @@ rig::RigOutput DevicePlant::step(const rig::RigInput& input) noexcept {
 
 rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   rig::RigOutput output = simulated_.sample(input);
-  if (!drive_ && !platform_ && !accelerometer_ && !load_cell_ && !indicator_) return output;
-  put_stick(output);
-  put_platform(output);
-  put_iio(output);
+  if (!parts_.any_device()) return output;
+  put_devices(output);
   // What only a simulation knows is unknown as soon as a part is real.
   output.truth.feedthrough_force_n = kUnknown;
   output.truth.volitional_force_n = kUnknown;
@@ -246,6 +282,13 @@ rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   watch_numbers(input, output);
   move_platform(input, output);
   return output;
+}
+
+// Every signal of a device; the constructor looks at what this leaves untouched.
+void DevicePlant::put_devices(rig::RigOutput& output) const noexcept {
+  put_stick(output);
+  put_platform(output);
+  put_iio(output);
 }
 
 void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept {
@@ -370,7 +413,7 @@ const char* DevicePlant::unknown_iio() noexcept {
     const auto& newest = link->newest();
     return is_young(newest.old, newest.old_at_ns, now_ns_, most_ticks);
   };
-  if (std::isnan(load_cell_v_)) {
+  if (missing(parts_.force, load_cell_v_)) {
     return late(load_cell_, devices_.load_cell.max_age_ticks) ||
                    late(indicator_, devices_.indicator.max_age_ticks)
                ? "the samples of the load cell come too late"

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,12 +27,18 @@ namespace stillhand::device_rig {
 /// The platform of the settings, as a calibration names it; empty: it is simulated.
 std::string platform_device(const DevicesConfig& devices);
 
+/// A sample that no device has put anything into.
+rig::RawSample untouched() noexcept;
+/// The signal of a device that is still untouched(); nullptr: every one was put.
+const char* unserved(const Parts& parts, const rig::RawSample& raw) noexcept;
+
 /// The rig made of devices: settings say which part serves which signal; the simulated rig serves
 /// the rest.  Each tick takes the newest sample of each device and gives it one demand; the links
 /// do the talking.  README Eq. DR-3 to DR-11.
 class DevicePlant final : public rig::Plant {
  public:
-  /// Opens and checks every device.
+  /// Opens and checks every device, and that each signal of a device is published: the simulated
+  /// one never goes out under a device's name.
   /// @throws ConfigError for settings that do not fit, or a device that is missing or refused
   /// @param platform_lag_s  of the platform, Eq. DR-18; 0: not known
   DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices, double platform_lag_s = 0.0);
@@ -59,6 +66,8 @@ class DevicePlant final : public rig::Plant {
   void take_drive() noexcept;
   void take_platform() noexcept;
   void take_iio() noexcept;
+  void refuse_unserved() const;
+  void put_devices(rig::RigOutput& output) const noexcept;
   void put_stick(rig::RigOutput& output) const noexcept;
   void put_platform(rig::RigOutput& output) const noexcept;
   void put_iio(rig::RigOutput& output) const noexcept;
@@ -74,6 +83,8 @@ class DevicePlant final : public rig::Plant {
   [[nodiscard]] double iio_value(IioLink& link, const IioConfig& config) noexcept;
   [[nodiscard]] double indicator_value() noexcept;
   void take_accelerometer() noexcept;
+
+  static constexpr double kNothingYet = std::numeric_limits<double>::quiet_NaN();
 
   rig::RigConfig rig_config_;
   DevicesConfig devices_;
@@ -94,9 +105,9 @@ class DevicePlant final : public rig::Plant {
   std::int64_t now_ns_ = 0;
   DriveSample stick_;
   PlatformSample seat_;
-  double accel_y_m_s2_ = 0.0;                       ///< of the accelerometer; NaN: unknown
+  double accel_y_m_s2_ = kNothingYet;               ///< of the accelerometer; NaN: unknown
   double accel_x_m_s2_ = 0.0, accel_z_m_s2_ = 0.0;  ///< 0 of an accelerometer of one axis
-  double load_cell_v_ = 0.0;                        ///< NaN: unknown
+  double load_cell_v_ = kNothingYet;                ///< NaN: unknown
   RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
   SameSide side_;                     ///< of the accelerometer, over a trial
   signal::DelayLine asked_;           ///< acceleration of the set-point, as late as the platform

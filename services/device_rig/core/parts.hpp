@@ -26,6 +26,10 @@ struct Parts {
     return acceleration == Source::kDrive || force == Source::kDrive || angle == Source::kDrive ||
            motor != Motor::kSimulated;
   }
+  [[nodiscard]] bool any_device() const noexcept {
+    return acceleration != Source::kSimulated || force != Source::kSimulated || needs_drive() ||
+           needs_platform();
+  }
   [[nodiscard]] bool needs_platform() const noexcept { return platform != Platform::kSimulated; }
 };
 

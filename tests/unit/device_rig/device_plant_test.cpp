@@ -66,6 +66,29 @@ class DevicePlantTest : public testing::Test {
   bool permitted_ = false;
 };
 
+// A new sensor whose put is forgotten: the simulated signal would go out under its name.
+TEST(UnservedTest, ASignalOfADeviceThatNothingPutsIsNamed) {
+  using Source = Parts::Source;
+  Parts parts = parts_of({});
+  EXPECT_EQ(unserved(parts, untouched()), nullptr);
+  for (const Source source : {Source::kDrive, Source::kIio, Source::kIndicator}) {
+    parts.force = source;
+    rig::RawSample raw = untouched();
+    EXPECT_STREQ(unserved(parts, raw), "force");
+    raw.load_cell_v = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(unserved(parts, raw), nullptr);
+  }
+  parts.acceleration = Source::kPlatform;
+  rig::RawSample raw = untouched();
+  raw.load_cell_v = raw.accel_y_v = 0.0;
+  EXPECT_STREQ(unserved(parts, raw), "acceleration");
+  raw.accel_x_v = raw.accel_z_v = 0.0;
+  parts.angle = Source::kDrive;
+  EXPECT_STREQ(unserved(parts, raw), "angle");
+  raw.encoder_counts = 0;
+  EXPECT_EQ(unserved(parts, raw), nullptr);
+}
+
 TEST_F(DevicePlantTest, NothingIsArmedWithoutPermissionOrWithThePegIn) {
   DevicePlant sut({}, devices_);
   ASSERT_TRUE(ticks_until(sut, [&](const auto&) { return sut.prepared(); }));
