@@ -217,8 +217,8 @@ Finding check_governor(const std::vector<std::string>& governors) {
 Finding check_serial_port(const SerialPortState& port) {
   if (!port.exists) {
     return wrong("serial-port", port.path + " is not there",
-                 "connect the drive, and name its port in devices.yaml (drive.port); "
-                 "/dev/serial/by-id has names that stay");
+                 "connect the device, and name its port in devices.yaml (" + port.key +
+                     "); /dev/serial/by-id has names that stay");
   }
   if (!port.open_to_us) {
     return wrong("serial-port", port.path + " may not be read and written",

@@ -65,9 +65,10 @@ Finding check_ephemeral_ports(std::string_view range, std::string_view reserved,
 /// @param governors  text of each /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor
 Finding check_governor(const std::vector<std::string>& governors);
 
-/// The serial port of a drive.
+/// The serial port of a drive or of a load cell indicator.
 struct SerialPortState {
-  std::string path;  ///< of devices.yaml
+  std::string path;                ///< of devices.yaml
+  std::string key = "drive.port";  ///< there
   bool exists = false;
   bool open_to_us = false;  ///< may be read and written
   std::string group = {};   ///< that owns it

@@ -58,6 +58,7 @@ std::vector<GeneratedFile> files_of(const Inventory& inventory, const Host& host
   files.push_back(firewall_of(inventory, host));
   files.push_back(sysctl_of(inventory, host, profiles.buffers()));
   if (auto rules = device_rules_of(inventory, host)) files.push_back(std::move(*rules));
+  if (auto iiod = iiod_priority_of(inventory, host)) files.push_back(std::move(*iiod));
   return files;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/deploy/ports.hpp"
+#include "services/runtime/process/real_time.hpp"
 
 namespace stillhand::deploy {
 
@@ -51,11 +52,33 @@ net.ipv4.ip_local_reserved_ports = {}-{}
                                      ports.first, ports.last(participants_sought(inventory)))};
 }
 
-std::optional<GeneratedFile> device_rules_of(const Inventory& inventory, const Host& host) {
-  const bool devices = std::ranges::any_of(host.services, [&](const Placement& placement) {
+namespace {
+
+bool runs_a_rig_of_devices(const Inventory& inventory, const Host& host) {
+  return std::ranges::any_of(host.services, [&](const Placement& placement) {
     return placement.service == "rig" && inventory.rig(placement.rig).devices;
   });
-  if (!devices) return std::nullopt;
+}
+
+}  // namespace
+
+// Which devices the rig has is said by devices.yaml, which is not the inventory's: without iiod the
+// file does nothing.
+std::optional<GeneratedFile> iiod_priority_of(const Inventory& inventory, const Host& host) {
+  if (!runs_a_rig_of_devices(inventory, host)) return std::nullopt;
+  return GeneratedFile{"iiod.conf",
+                       fmt::format(R"(# {}
+# Each block of samples is a round trip through two threads of iiod. With ordinary priority on a busy machine they come
+# too late for the rig.
+[Service]
+CPUSchedulingPolicy=fifo
+CPUSchedulingPriority={}
+)",
+                                   generated_note(inventory, host), runtime::kControlPriority)};
+}
+
+std::optional<GeneratedFile> device_rules_of(const Inventory& inventory, const Host& host) {
+  if (!runs_a_rig_of_devices(inventory, host)) return std::nullopt;
   // Sources: mjbots/moteus, docs/platforms (the adapter's rule); odriverobotics/ODrive,
   // tools/odrive/utils.py (the USB numbers of an ODrive).
   return GeneratedFile{"devices.rules", "# " + generated_note(inventory, host) +

@@ -98,6 +98,21 @@ std::vector<std::string> governors() {
   return texts;
 }
 
+SerialPortState serial_port_state(const std::string& path, const std::string& key) {
+  SerialPortState port{.path = path, .key = key};
+  struct stat state {};
+  port.exists = stat(path.c_str(), &state) == 0;
+  port.open_to_us = access(path.c_str(), R_OK | W_OK) == 0;
+  if (!port.exists) return port;
+  const group* owner = getgrgid(state.st_gid);
+  port.group = owner != nullptr ? owner->gr_name : std::to_string(state.st_gid);
+  std::error_code error;
+  const fs::path device = fs::canonical(path, error);
+  port.latency_timer =
+      read_of(fs::path("/sys/bus/usb-serial/devices") / device.filename() / "latency_timer");
+  return port;
+}
+
 }  // namespace
 
 std::vector<std::string> own_addresses() {
@@ -155,21 +170,20 @@ std::vector<std::string> authority_keys_of(const Inventory& inventory) {
 
 std::vector<Finding> check_devices(const fs::path& devices) {
   const auto config = device_rig::load_devices(devices);
-  if (!device_rig::parts_of(config).needs_drive()) return {};
-  SerialPortState port{.path = config.drive.port};
-  struct stat state {};
-  port.exists = stat(port.path.c_str(), &state) == 0;
-  port.open_to_us = access(port.path.c_str(), R_OK | W_OK) == 0;
-  if (port.exists) {
-    const group* owner = getgrgid(state.st_gid);
-    port.group = owner != nullptr ? owner->gr_name : std::to_string(state.st_gid);
-    std::error_code error;
-    const fs::path device = fs::canonical(port.path, error);
-    port.latency_timer =
-        read_of(fs::path("/sys/bus/usb-serial/devices") / device.filename() / "latency_timer");
+  const auto parts = device_rig::parts_of(config);
+  std::vector<Finding> findings;
+  const auto check = [&](const std::string& path, const std::string& key) {
+    const SerialPortState port = serial_port_state(path, key);
+    findings.push_back(check_serial_port(port));
+    if (port.exists) findings.push_back(check_latency_timer(port));
+  };
+  // A CAN interface is no file.
+  if (parts.needs_drive() && parts.drive != device_rig::Parts::Drive::kMoteusCan) {
+    check(config.drive.port, "drive.port");
   }
-  std::vector<Finding> findings{check_serial_port(port)};
-  if (port.exists) findings.push_back(check_latency_timer(port));
+  if (parts.force == device_rig::Parts::Source::kIndicator) {
+    check(config.indicator.port, "indicator.port");
+  }
   return findings;
 }
 

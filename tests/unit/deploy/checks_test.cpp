@@ -154,12 +154,21 @@ TEST(CheckTest, ASerialChipHandsBytesOnAtOnce) {
   EXPECT_THAT(check_latency_timer(port), good());
 }
 
-TEST(CheckTest, OnlyARigWithADriveHasAPort) {
+TEST(CheckTest, EachDeviceBehindASerialPortHasOne) {
   const auto file = std::filesystem::path(testing::TempDir()) / "devices.yaml";
   std::ofstream(file) << "signals:\n  platform: plain_udp\n";
   EXPECT_THAT(check_devices(file), IsEmpty());
   std::ofstream(file) << "signals:\n  force: drive\ndrive:\n  port: /dev/null\n";
   EXPECT_THAT(check_devices(file), SizeIs(2));
+  // No file: nothing to look at before the process opens the interface.
+  std::ofstream(file) << "signals:\n  force: drive\ndrive: {kind: moteus_can, port: can0}\n";
+  EXPECT_THAT(check_devices(file), IsEmpty());
+  std::ofstream(file) << "signals: {force: indicator}\nindicator: {port: /dev/there-is-none}\n";
+  EXPECT_THAT(check_devices(file),
+              testing::ElementsAre(wrong("/dev/there-is-none", "(indicator.port)")));
+  std::ofstream(file) << "signals: {force: indicator, angle: drive}\ndrive: {port: /dev/null}\n"
+                         "indicator: {port: /dev/null}\n";
+  EXPECT_THAT(check_devices(file), SizeIs(4));
 }
 
 TEST(CheckTest, EveryProcessorMustKeepItsSpeed) {

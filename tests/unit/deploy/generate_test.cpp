@@ -254,6 +254,20 @@ TEST(HostFilesTest, UdevGetsRulesWhereARigOfDevicesRuns) {
   EXPECT_FALSE(device_rules_of(example(), example().hosts[0]));
 }
 
+TEST(HostFilesTest, IiodHasThePriorityOfTheLoopWhereARigOfDevicesRuns) {
+  const Inventory inventory = with_devices();
+  const auto sut = iiod_priority_of(inventory, inventory.hosts[0]);
+  ASSERT_TRUE(sut);
+  auto rig = unit_named(inventory, "rig-pc", "stillhand-device_rig@1.service");
+  EXPECT_THAT(sut->text,
+              HasSubstr("[Service]\nCPUSchedulingPolicy=" + rig["CPUSchedulingPolicy"] +
+                        "\nCPUSchedulingPriority=" + rig["CPUSchedulingPriority"] + "\n"));
+  EXPECT_FALSE(iiod_priority_of(inventory, inventory.hosts[1]));
+  EXPECT_FALSE(iiod_priority_of(example(), example().hosts[0]));
+  const auto files = files_of(inventory, inventory.hosts[0], profiles());
+  EXPECT_EQ(std::ranges::count(files, "iiod.conf", &GeneratedFile::name), 1);
+}
+
 TEST(HostFilesTest, TheFirewallLetsTheLabsHostsToItsPortsAlone) {
   const Inventory inventory = example();
   const std::string sut = firewall_of(inventory, inventory.hosts[0]).text;
