@@ -23,13 +23,15 @@ std::string check_short(const std::string& word) {
 }
 
 void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
-  calibrate.add_option("--seconds", options.seconds, "time of each step [s]")
+  calibrate
+      .add_option("--seconds", options.seconds,
+                  "force, acceleration, angle: time for which each step is read [s]")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
   calibrate
       .add_option("--tolerance", options.tolerance,
-                  "largest distance from the straight line, and largest drift, as a share of the "
-                  "largest quantity [-]")
+                  "force, acceleration, angle: largest distance from the straight line, and "
+                  "largest drift, as a share of the largest quantity; more is refused [-]")
       ->check(CLI::Range(0.0001, 0.5))
       ->capture_default_str();
   calibrate
@@ -43,7 +45,7 @@ void add_measures(CLI::App& calibrate, CalibrateOptions& options) {
       ->capture_default_str();
   calibrate
       .add_option("--push", options.push_n,
-                  "check: weight on the cord, and the motor's largest force [N]")
+                  "check: weight that you hang on the cord, and largest force of the motor [N]")
       ->check(CLI::Range(0.2, 5.0))
       ->capture_default_str();
   calibrate.add_option("--step", options.step_m, "check: step of the platform [m]")
@@ -58,33 +60,43 @@ void add_calibrate_command(CLI::App& cli, int& status) {
   auto signal = std::make_shared<std::string>();
   CLI::App* calibrate = cli.add_subcommand(
       "calibrate",
-      "Calibrates a sensor of a rig of devices, by steps that a person makes: zero, gain, sign,\n"
-      "noise, and what the other sensors see. No motor is armed. \"platform\" moves the platform "
-      "and\n"
-      "identifies its lag and bandwidth. \"check\" checks travel, signs and scales with the hand "
-      "off;\n"
-      "it arms the motor for two pushes of --push. Writes the result into sensing.yaml and\n"
-      "calibration.yaml of --config; a session with devices asks for it.\n"
+      "Calibrates the devices of a rig (devices.yaml of --config). It says what to do, step by "
+      "step,\nand waits for Enter.\n"
+      "  force         hang weights on a cord from the grip: zero, gain, noise of the load cell\n"
+      "  acceleration  turn the accelerometer in gravity: the same of the accelerometer\n"
+      "  angle         hold the stick at known angles: the same of the encoder\n"
+      "  platform      the platform MOVES, nobody on it: its lag and bandwidth\n"
+      "  check         the motor PUSHES twice with --push, the platform moves by --step, hands "
+      "off:\n"
+      "                travel, signs and scales of everything together; after the others\n"
+      "The first three arm no motor. The result goes into sensing.yaml and calibration.yaml of "
+      "--config;\na session with devices does not begin without it.\n"
       "Example: stillhand calibrate force --config hall --person kl --known 0,5,10,-5,-10");
-  calibrate->add_option("signal", *signal, "force, acceleration, angle, platform or check")
+  calibrate->add_option("signal", *signal, "what to calibrate, as above")
       ->required()
       ->check(CLI::IsMember({"force", "acceleration", "angle", "platform", "check"}));
   calibrate
       ->add_option("--config", options->config,
-                   "your folder of settings, with devices.yaml; a copy of deploy/config to begin "
-                   "with")
+                   "your folder of settings, with devices.yaml; to begin with, copy the folder "
+                   "that `stillhand lab --help` names at --config")
       ->required()
       ->check(settings::check_name);
-  calibrate->add_option("--person", options->person, "who does it")
+  calibrate
+      ->add_option("--person", options->person,
+                   "name or initials of who does it; calibration.yaml keeps them")
       ->required()
       ->check(settings::check_name)
       ->check(check_short);
-  calibrate->add_option("--sensor", options->sensor, "number that is printed on the sensor")
+  calibrate
+      ->add_option("--sensor", options->sensor,
+                   "serial number that is printed on the sensor; calibration.yaml keeps it")
       ->check(check_short);
   calibrate->add_option(
       "--known", options->known,
-      "quantities that act, + right, in N or kg, m/s^2 or g, rad or deg; the first one comes again "
-      "at the end [0,5,10,-5,-10 N; 0,1g,-1g; 0,10deg,20deg,-10deg,-20deg]");
+      "force, acceleration, angle: quantities of the steps, positive to the right, three or more "
+      "to both sides of 0; the first comes again at the end. force in N, or 1kg for its weight; "
+      "acceleration in m/s^2, or 1g; angle in rad, or 10deg [force 0,5,10,-5,-10; acceleration "
+      "0,1g,-1g; angle 0,10deg,20deg,-10deg,-20deg]");
   add_measures(*calibrate, *options);
   calibrate->callback([options, signal, &status] {
     const std::map<std::string, device_rig::CalibratedSignal> signals{
