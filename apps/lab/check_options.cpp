@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "services/contract/config_error.hpp"
-#include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/load_devices.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/motion/ride_file.hpp"
 #include "services/runtime/process/domain.hpp"
@@ -28,7 +28,7 @@ void check_devices(const LabOptions& options) {
     throw ConfigError("--rig", options.devices.string() + " with --inventory",
                       "devices: the devices.yaml of --config, which goes to the rig's host");
   }
-  device_rig::parts_of(settings::load<device_rig::DevicesConfig>(options.devices, "devices"));
+  device_rig::load_devices(options.devices);
 }
 
 void check_combinations(const LabOptions& options) {

@@ -203,8 +203,9 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
       ->check(settings::check_name);
   settings::repeatable(lab.add_option(
       "--rig", words.rig,
-      "number of the rig on the bus [1]; or what it is made of: simulated, devices (devices.yaml "
-      "of --config says which), or such a file [simulated]; both may be given"));
+      "what the rig is made of: simulated; devices (a drive, a platform, sensors: devices.yaml of "
+      "--config says which, `stillhand calibrate` comes first); or another file in the form of "
+      "devices.yaml [simulated]. Or its number on the bus [1]. Both may be given"));
   lab.add_option("--match-seconds", options.match_s,
                  "longest wait until every endpoint has matched [s]")
       ->capture_default_str();
