@@ -78,7 +78,7 @@ void EmulatedLoop::run(Person* person) {
     serial_.send_due(now_ns);
     if (now_ns < due_ns) continue;
     laboratory_.step(now_ns, person);
-    if (iio_) iio_->write(laboratory_.raw());
+    if (iio_) iio_->write(laboratory_.raw(), now_ns);
     if (indicator_) indicator_->step(laboratory_.cell_force_n(), now_ns);
     if (drive_.torque_n_m() != 0.0) torque_until_ns_ = now_ns;
     if (platform_.wish(now_ns)) platform_until_ns_ = now_ns;
@@ -266,7 +266,7 @@ void EmulatedLoop::report(std::int64_t now_ns) const {
   const auto since_fault_ms = [this](std::int64_t at_ns) {
     return fault_ns_ == 0 ? -1.0 : 1e-6 * static_cast<double>(at_ns - fault_ns_);
   };
-  const nlohmann::json json{
+  nlohmann::json json{
       {"mode", drive_.mode()},
       {"follows", drive_.follows()},
       {"torque_n_m", drive_.torque_n_m()},
@@ -290,6 +290,10 @@ void EmulatedLoop::report(std::int64_t now_ns) const {
       {"platform_refused", platform_.refused()},
       {"platform_most_step_m", platform_.most_step_m()},
       {"platform_position_m", laboratory_.truth().platform_position_m}};
+  if (iio_) {
+    json["iio_longest_gap_ms"] = 1e-6 * static_cast<double>(iio_->counts().longest_gap_ns);
+    json["iio_lost"] = iio_->counts().lost;
+  }
   std::printf("%s\n", json.dump().c_str());
   std::fflush(stdout);
 }

@@ -3,13 +3,16 @@
 
 #include <fcntl.h>
 #include <sys/inotify.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 namespace stillhand::emulators {
@@ -48,6 +51,9 @@ IioSide::~IioSide() {
 }
 
 void IioSide::watch(Fifo& fifo) const {
+  // The folder of iio_context.py: dev/iio:device0, bus/iio/devices/iio:device0.
+  fifo.length = fifo.path.parent_path().parent_path() / "bus/iio/devices" / fifo.path.filename() /
+                "buffer/length";
   fifo.watch = inotify_add_watch(readers_, fifo.path.c_str(), IN_CLOSE);
 }
 
@@ -78,19 +84,41 @@ void IioSide::empty_those_left() {
   }
 }
 
+// A kernel's buffer has room for as many samples as its reader asked for (libiio 0.24: four
+// blocks), and drops the newest ones when it is full (Linux, drivers/iio/buffer/kfifo_buf.c); a
+// FIFO would keep 16384.
+bool IioSide::is_full(const Fifo& fifo) {
+  int waiting = 0;
+  if (ioctl(fifo.descriptor, FIONREAD, &waiting) != 0 || waiting == 0) return false;
+  std::ifstream file(fifo.length);
+  int length = 0;
+  return file >> length && waiting >= length * static_cast<int>(sizeof(std::int32_t));
+}
+
 void IioSide::put(Fifo& fifo, std::int32_t word) {
   if (fifo.descriptor < 0) {
     fifo.descriptor = open(fifo.path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   }
+  if (fifo.descriptor >= 0 && is_full(fifo)) {
+    ++counts_.lost;
+    return;
+  }
   if (fifo.descriptor < 0 || ::write(fifo.descriptor, &word, sizeof(word)) == sizeof(word)) return;
-  if (errno == EAGAIN) return;
+  if (errno == EAGAIN) {
+    ++counts_.lost;
+    return;
+  }
   close(fifo.descriptor);
   fifo.descriptor = -1;
 }
 
-void IioSide::write(const rig::RawSample& raw) {
+void IioSide::write(const rig::RawSample& raw, std::int64_t now_ns) {
   empty_those_left();
   if (starved_) return;
+  if (written_ns_ != 0) {
+    counts_.longest_gap_ns = std::max(counts_.longest_gap_ns, now_ns - written_ns_);
+  }
+  written_ns_ = now_ns;
   const double accel = raw.accel_y_v / kBoard_v_m_s2 / kAccelStep_m_s2;
   put(accelerometer_, shifted(saturated_ ? kAccelEnd : accel, kAccelShift));
   put(bridge_, shifted(kBridgeGain * raw.load_cell_v / kBridgeStep_v, kBridgeShift));

@@ -20,7 +20,12 @@ class IioSide {
   IioSide& operator=(const IioSide&) = delete;
 
   /// One sample of each.
-  void write(const rig::RawSample& raw);
+  void write(const rig::RawSample& raw, std::int64_t now_ns);
+  struct Counts {
+    std::int64_t longest_gap_ns = 0;  ///< between two samples
+    std::uint64_t lost = 0;           ///< samples for which the buffer had no room
+  };
+  [[nodiscard]] const Counts& counts() const { return counts_; }
   /// Nothing comes any more: a cable that was pulled out.
   void starve(bool starved) { starved_ = starved; }
   /// The accelerometer's converter is at its end.
@@ -29,17 +34,21 @@ class IioSide {
  private:
   struct Fifo {
     std::filesystem::path path;
-    int watch = -1;  ///< of inotify
+    std::filesystem::path length = {};  ///< file with the samples for which the buffer has room
+    int watch = -1;                     ///< of inotify
     int descriptor = -1;
   };
   void watch(Fifo& fifo) const;
   static void empty(const Fifo& fifo);
-  static void put(Fifo& fifo, std::int32_t word);
+  static bool is_full(const Fifo& fifo);
+  void put(Fifo& fifo, std::int32_t word);
   void empty_those_left();
 
   int readers_;  ///< inotify
   Fifo accelerometer_;
   Fifo bridge_;
+  Counts counts_;
+  std::int64_t written_ns_ = 0;
   bool starved_ = false;
   bool saturated_ = false;
 };
