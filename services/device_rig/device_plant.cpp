@@ -166,6 +166,16 @@ std::string DevicePlant::pushing_devices() const {
   return all + "; " + (platform_ ? platform_device() : "simulated");
 }
 
+std::vector<std::string> DevicePlant::counts() {
+  std::vector<std::string> lines;
+  const auto count = [&](const char* name, const std::unique_ptr<IioLink>& link) {
+    if (link) lines.push_back(name + (": " + device_rig::in_words(link->newest())));
+  };
+  count("accelerometer", accelerometer_);
+  count("load_cell", load_cell_);
+  return lines;
+}
+
 double DevicePlant::measured_force_n() const noexcept {
   if (!drive_ || !drive_fresh()) return kUnknown;
   return static_cast<double>(devices_.drive.torque_sign) * stick_.reply.torque_n_m /

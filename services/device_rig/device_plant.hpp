@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "services/device_rig/calibration_file.hpp"
 #include "services/device_rig/core/arming.hpp"
@@ -59,6 +60,8 @@ class DevicePlant final : public rig::Plant {
   }
   /// All that the check with the hand off is of; empty where no drive pushes.
   [[nodiscard]] std::string pushing_devices() const;
+  /// What the devices' threads counted, a line for each that has something to say.
+  [[nodiscard]] std::vector<std::string> counts();
   /// Torque that the drive measures, as a force at the hand, + right [N]; NaN: unknown.
   [[nodiscard]] double measured_force_n() const noexcept;
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/device_rig/iio_link.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -17,7 +20,17 @@ constexpr double kNsPerMs = 1e6;
 // A reader that stood still reads what waits, as long as that takes no longer than this.
 constexpr std::int64_t kCatchUp_ns = 10'000'000;
 
+double milliseconds(std::int64_t ns) { return 1e-6 * static_cast<double>(ns); }
+
 }  // namespace
+
+std::string in_words(const IioSample& sample) {
+  return fmt::format(
+      "{} samples, {} old, {} times thrown away what waited, {} times opened again; longest read "
+      "{:.1f} ms, longest throwing away {:.1f} ms",
+      sample.count, sample.old, sample.skipped, sample.opened, milliseconds(sample.longest_read_ns),
+      milliseconds(sample.longest_skip_ns));
+}
 
 IioLink::IioLink(const IioConfig& config, std::vector<std::string> channels, double factor)
     : factor_(factor), device_(config.uri, config.device, std::move(channels), kTick_hz) {
@@ -40,7 +53,11 @@ void IioLink::work(const std::stop_token& stop) {
   constexpr std::int64_t kAgain_ns = 200'000'000;
   while (!stop.stop_requested()) {
     std::array<std::int64_t, kMostChannels> raw{};
-    if (device_.read(raw)) {
+    const std::int64_t begin_ns = runtime::monotonic_ns();
+    const bool came = device_.read(raw);
+    const std::int64_t took_ns = runtime::monotonic_ns() - begin_ns;
+    sample_.longest_read_ns = std::max(sample_.longest_read_ns, took_ns);
+    if (came) {
       take(raw);
       continue;
     }
@@ -70,7 +87,9 @@ void IioLink::take_old(std::int64_t now_ns, bool too_slow) noexcept {
 
 void IioLink::skip() noexcept {
   ++sample_.skipped;
+  const std::int64_t begin_ns = runtime::monotonic_ns();
   device_.skip();
+  sample_.longest_skip_ns = std::max(sample_.longest_skip_ns, runtime::monotonic_ns() - begin_ns);
   begin_again();
 }
 

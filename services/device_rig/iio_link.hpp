@@ -28,7 +28,12 @@ struct IioSample {
   std::int64_t old_at_ns = 0;  ///< when the newest of these was read; 0: never
   std::uint64_t skipped = 0;   ///< times that what waited was thrown away
   std::uint64_t opened = 0;    ///< times that the buffer was opened again
+  std::int64_t longest_read_ns = 0;
+  std::int64_t longest_skip_ns = 0;
 };
+
+/// For the end of a session: "61234 samples, 12 old, ...".
+std::string in_words(const IioSample& sample);
 
 /// An IIO device, in a thread of its own: a read may wait for ever.  The loop takes the newest
 /// sample without lock or allocation and judges its age by itself (README Eq. DR-13).

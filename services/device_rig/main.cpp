@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iostream>
 
 #include "services/device_rig/device_plant.hpp"
 #include "services/device_rig/load_devices.hpp"
@@ -56,6 +57,9 @@ int main(int argc, char** argv) {
         });
         refuse_uncalibrated(plant, devices, folder);
         rig::Shell(service, plant, rig.motor).run();
+        for (const std::string& line : plant.counts()) {
+          std::cerr << "stillhand-device_rig: " << line << '\n';
+        }
       },
       [&](CLI::App& cli, runtime::ServiceOptions&) {
         cli.description(
