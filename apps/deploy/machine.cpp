@@ -104,6 +104,7 @@ SerialPortState serial_port_state(const std::string& path, const std::string& ke
   port.exists = stat(path.c_str(), &state) == 0;
   port.open_to_us = access(path.c_str(), R_OK | W_OK) == 0;
   if (!port.exists) return port;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread checks the machine
   const group* owner = getgrgid(state.st_gid);
   port.group = owner != nullptr ? owner->gr_name : std::to_string(state.st_gid);
   std::error_code error;
