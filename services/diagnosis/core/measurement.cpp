@@ -14,6 +14,8 @@ std::string samples(std::size_t count) { return std::to_string(count) + " sample
 
 // Squares of squares of it are still numbers.
 constexpr double kLargestValue = 1e30;
+// The engine counts samples in spans of seconds: such a count has to fit its integer.
+constexpr double kHighestRate_hz = 1e12;
 
 void check_values(const Measurement& measurement) {
   for (const Channel& channel : measurement.channels) {
@@ -83,9 +85,9 @@ std::vector<double> Measurement::time_s() const {
 }
 
 void check(const Measurement& measurement) {
-  if (!(measurement.rate_hz > 0.0) || !std::isfinite(measurement.rate_hz)) {
-    throw ConfigError(measurement.source + ", rate", std::to_string(measurement.rate_hz) + " Hz",
-                      "a finite rate above 0");
+  if (!(measurement.rate_hz > 0.0) || !(measurement.rate_hz <= kHighestRate_hz)) {
+    throw ConfigError(measurement.source + ", rate", digits(measurement.rate_hz, 3) + " Hz",
+                      "a rate above 0, of at most 1e12 Hz");
   }
   check_values(measurement);
   check_stretches(measurement);

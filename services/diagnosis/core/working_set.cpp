@@ -131,10 +131,11 @@ Measurement decimated(const Measurement& measurement, std::size_t factor) {
 }
 
 std::size_t rate_factor(const Measurement& measurement, double rate_hz) {
-  constexpr double kSame = 4e-3;  // the clock of a recording with much jitter is off by as much
+  constexpr double kSame = 4e-3;     // the clock of a recording with much jitter is off by as much
+  constexpr double kLargest = 1e15;  // exact as a double, and a std::size_t
   const double ratio = measurement.rate_hz / rate_hz;
   const double whole = std::round(ratio);
-  if (whole < 1.0 || std::abs(ratio - whole) > kSame * whole) {
+  if (!(whole >= 1.0 && whole <= kLargest && std::abs(ratio - whole) <= kSame * whole)) {
     throw ConfigError(
         measurement.source, "samples at " + digits(measurement.rate_hz, kDigits) + " Hz",
         "the model's rate, " + digits(rate_hz, kDigits) + " Hz, or a whole multiple of it");

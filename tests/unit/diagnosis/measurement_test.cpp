@@ -58,6 +58,15 @@ TEST(MeasurementTest, ARateThatIsNoneIsRefused) {
   }
 }
 
+// Rows 1e-22 s apart: 1 s of them has more samples than an integer counts.
+TEST(MeasurementTest, ARateWhoseSamplesNoIntegerCountsIsRefused) {
+  Measurement sut = two_stretches();
+  sut.rate_hz = 1e12;
+  EXPECT_EQ(error_of(sut), "no error");
+  sut.rate_hz = 1e22;
+  EXPECT_THAT(error_of(sut), HasSubstr("ride.csv, rate: got 1e+22 Hz, want"));
+}
+
 TEST(MeasurementTest, AChannelOfAnotherLengthIsNamed) {
   Measurement sut = two_stretches();
   sut.channels[1].values.pop_back();

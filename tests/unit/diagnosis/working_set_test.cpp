@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/contract/config_error.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::diagnosis {
@@ -89,6 +90,17 @@ TEST(WorkingSetTest, AFilledSampleMakesItsGroupCountNothing) {
   measurement.weight[4321] = 0.0;
   const Measurement sut = working_set(measurement, {"u"});
   for (std::size_t n = 0; n < sut.size(); ++n) EXPECT_EQ(sut.weight[n], n == 432 ? 0.0 : 1.0) << n;
+}
+
+TEST(WorkingSetTest, AModelsRateIsAWholeFractionThatAnIntegerCounts) {
+  const Measurement measurement = at_1_khz();
+  EXPECT_EQ(rate_factor(measurement, 1000.0), 1u);
+  EXPECT_EQ(rate_factor(measurement, 100.0), 10u);
+  EXPECT_EQ(rate_factor(measurement, 1e-3), 1'000'000u);
+  // 1e-17 Hz: 1e20 samples; the quotient of the last is infinite.
+  for (const double rate_hz : {1500.0, 300.0, 1e-17, 1e-310, std::nan("")}) {
+    EXPECT_THROW(static_cast<void>(rate_factor(measurement, rate_hz)), ConfigError) << rate_hz;
+  }
 }
 
 // A stretch keeps its start, and its samples lie where they lay; it never grows over the gap behind
