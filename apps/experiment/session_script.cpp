@@ -11,6 +11,7 @@
 #include "apps/lab/control_model.hpp"
 #include "apps/measurement/written_trial.hpp"
 #include "apps/session/instructions.hpp"
+#include "apps/session/live_mitigation.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -33,13 +34,23 @@ double dwell_ratio(const std::filesystem::path& recording, const Trial& trial) {
   return static_cast<double>(inside) / static_cast<double>(target_m.size());
 }
 
+// C' and C+ are C with another model.
 session::Condition letter_of(const std::string& condition) {
-  return static_cast<session::Condition>(condition.front());
+  return static_cast<session::Condition>(is_mitigation(condition) ? session::letter_of(condition)
+                                                                  : condition.front());
 }
 
 bool chooses_models(const Design& design) {
-  return std::ranges::any_of(design.conditions,
-                             [](const std::string& each) { return each.size() > 1; });
+  return std::ranges::any_of(design.conditions, [](const std::string& each) {
+    return each.size() > 1 && !is_mitigation(each);
+  });
+}
+
+// `signal` takes off by a model of the feedthrough to position.
+bool needs_position(const Design& design) {
+  return std::ranges::any_of(design.conditions, [](const std::string& each) {
+    return session::needs_position(letter_of(each));
+  });
 }
 
 }  // namespace
@@ -70,6 +81,13 @@ session::PlannedTrial SessionScript::planned_of(const Step& step) const {
   return planned;
 }
 
+session::PlannedTrial SessionScript::free_identification() const {
+  session::PlannedTrial planned = session::free_identification_trial(lab_.protocol, numbers_ + 1);
+  planned.motion_seed =
+      session::repeat_seed(identification_seed(folder_.design(), index_, session_), 1);
+  return planned;
+}
+
 session::PlannedTrial SessionScript::practice_of(std::int64_t number) const {
   session::ProtocolOptions protocol = lab_.protocol;
   protocol.trial_s = folder_.design().practice.trial_s;
@@ -87,6 +105,7 @@ session::PlannedTrial SessionScript::identification() const {
 
 std::vector<session::PlannedTrial> SessionScript::possible_trials() const {
   std::vector<session::PlannedTrial> trials{identification()};
+  if (needs_position(folder_.design())) trials.push_back(free_identification());
   for (const Step& step : plan_) {
     if (step.kind == StepKind::kTrial) trials.push_back(planned_of(step));
   }
@@ -158,8 +177,18 @@ bool SessionScript::identify(lab::LiveTrials& trials) {
   lab::Prompt prompt = prompt_of(lab::PromptKind::kIdentification, {});
   if (with_person()) prompt.text = "The simulated arm is measured.\nThere is nothing to do.\n";
   trials.show(prompt);
-  add({.kind = EntryKind::kTrialBegan, .trial = 0, .text = "identification"});
-  const session::TrialOutcome& outcome = trials.run(identification());
+  if (!identify(trials, identification(), "identification")) return false;
+  if (!needs_position(folder_.design())) return true;
+  prompt = prompt_of(lab::PromptKind::kInstructions, {});
+  prompt.text = session::kHoldStill;
+  trials.show(prompt);
+  return identify(trials, free_identification(), "identification, stick free");
+}
+
+bool SessionScript::identify(lab::LiveTrials& trials, const session::PlannedTrial& planned,
+                             const std::string& what) {
+  add({.kind = EntryKind::kTrialBegan, .trial = planned.trial.number, .text = what});
+  const session::TrialOutcome& outcome = trials.run(planned);
   numbers_ = outcome.planned.trial.number;
   add({.kind = EntryKind::kTrialEnded,
        .trial = numbers_,

@@ -36,6 +36,8 @@ class SessionScript {
   /// Takes notes, repetitions and an abort into the journal.  @return false: the session ends
   bool look(lab::LiveTrials& trials);
   bool identify(lab::LiveTrials& trials);
+  bool identify(lab::LiveTrials& trials, const session::PlannedTrial& planned,
+                const std::string& what);
   bool do_step(lab::LiveTrials& trials, std::size_t number);
   bool practise(lab::LiveTrials& trials, std::size_t number);
   bool track(lab::LiveTrials& trials, std::size_t number);
@@ -54,6 +56,7 @@ class SessionScript {
   [[nodiscard]] session::PlannedTrial planned_of(const Step& step) const;
   [[nodiscard]] session::PlannedTrial practice_of(std::int64_t number) const;
   [[nodiscard]] session::PlannedTrial identification() const;
+  [[nodiscard]] session::PlannedTrial free_identification() const;
   [[nodiscard]] const std::string& condition_of(const Step& step) const {
     return folder_.design().conditions[step.condition];
   }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/conducted_trials.hpp"
 
+#include <algorithm>
+
 #include "apps/lab/lost_service.hpp"
 #include "services/identification/codec.hpp"
+#include "services/mitigation/core/part.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -21,6 +24,15 @@ Conductor::Watch watch_of(const runtime::Bus& bus, Processes& processes,
     const auto ended = processes.reap();
     return ended ? ended : lost();
   };
+}
+
+// Of the force at the pegged stick.
+bool needs_model(const LabOptions& options) {
+  return std::ranges::any_of(
+      options.trials.empty() ? session::plan(options.protocol) : options.trials,
+      [](const session::PlannedTrial& planned) {
+        return planned.cancellation || mitigation::needs_force(planned.parts);
+      });
 }
 
 }  // namespace
@@ -81,7 +93,8 @@ const session::TrialOutcome& ConductedTrials::finished() {
   return outcome;
 }
 
-// Without a model there is nothing to cancel with: the session ends here.
+// Without a model there is nothing to cancel with: the session ends here, unless it cancels
+// nothing.  A stick on a desk with a simulated platform has no feedthrough to identify.
 void ConductedTrials::take_model(session::TrialOutcome& outcome) {
   const Conductor::AwaitedModel awaited = conductor_.await_model(outcome.planned.trial.number);
   if (awaited.failure.empty()) {
@@ -89,6 +102,9 @@ void ConductedTrials::take_model(session::TrialOutcome& outcome) {
     if (!awaited.model.to_position()) model_ = identification::from_idl(awaited.model);
     return;
   }
+  const bool answered = awaited.model.trial() == outcome.planned.trial.number;
+  const bool pegged = outcome.planned.label == session::kIdentification;
+  if (answered && pegged && !needs_model(options_)) return note(awaited.failure);
   outcome.completed = false;
   outcome.aborted = awaited.failure;
 }

@@ -81,6 +81,8 @@ void print_models(const session::SessionResult& result,
   if (result.model && result.model->usable()) {
     std::printf("feedthrough model: VAF on held-out pegged data %.2f %%\n",
                 result.model->heldout_vaf_percent());
+  } else if (result.model) {
+    std::printf("no usable feedthrough model: %s\n", result.model->text().c_str());
   }
   if (!control_model.empty()) std::printf("C ran %s instead\n", control_model.c_str());
   for (const session::TrialResult& trial : result.trials) {

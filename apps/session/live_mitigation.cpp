@@ -60,6 +60,11 @@ const LiveMitigation* live_mitigation(Condition condition) {
   return found == live_mitigations().end() ? nullptr : &*found;
 }
 
+bool needs_position(Condition condition) {
+  const LiveMitigation* const mitigated = live_mitigation(condition);
+  return mitigated != nullptr && mitigation::needs_position(mitigated->parts);
+}
+
 std::string condition_label(char label) {
   const LiveMitigation* const mitigated = live_mitigation(static_cast<Condition>(label));
   return mitigated == nullptr ? std::string(1, label) : mitigated->name;

@@ -26,6 +26,9 @@ const std::vector<LiveMitigation>& live_mitigations();
 /// The mitigation of a condition; nullptr: A to F and P are none.
 const LiveMitigation* live_mitigation(Condition condition);
 
+/// Whether a condition needs trial J: a part of it reads the feedthrough to position.
+bool needs_position(Condition condition);
+
 /// How results name the condition of a trial: its letter, or the mitigation's name.
 /// @param label  PlannedTrial::label
 std::string condition_label(char label);

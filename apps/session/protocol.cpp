@@ -226,11 +226,9 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   std::shuffle(order.begin(), order.end(), engine);
 
   std::vector<PlannedTrial> trials{identification_trial(options)};
-  const bool position = std::ranges::any_of(order, [](Condition condition) {
-    const LiveMitigation* const mitigated = live_mitigation(condition);
-    return mitigated != nullptr && needs_position(mitigated->parts);
-  });
-  if (position) trials.push_back(free_identification_trial(options, 1));
+  if (std::ranges::any_of(order, [](Condition each) { return needs_position(each); })) {
+    trials.push_back(free_identification_trial(options, 1));
+  }
   for (const Condition condition : order) {
     const auto number = static_cast<std::int64_t>(trials.size());
     trials.push_back(tracking_trial(options, condition, number));

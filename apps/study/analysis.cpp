@@ -190,6 +190,10 @@ void add_comparisons(Analysis& analysis) {
   add('A', 'B');
   for (const char to : {'C', kFollowing, kAugmented, 'D', 'E', 'F'}) add('B', to);
   for (const auto& [from, to] : kCancellerSteps) add(from, to);
+  for (const session::LiveMitigation& one : session::live_mitigations()) {
+    add('B', static_cast<char>(one.condition));
+    add('C', static_cast<char>(one.condition));
+  }
 }
 
 }  // namespace
@@ -228,6 +232,9 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
         summarised(over_subjects(results, [condition](const SubjectResult& r) {
           return r.trials.at(condition).counterforce_delay_s;
         }));
+  }
+  for (const char condition : conditions_in(out)) {
+    if (!cancels(condition) && !is_mitigation(condition)) continue;
     if (has(out, 'A') && has(out, 'B')) {
       out.restoration[condition] = restoration_by(out, condition);
     }

@@ -87,6 +87,7 @@ report::Colour colour_of(char condition) {
 std::string label_of(char condition) {
   if (condition == kFollowing) return "C' following";
   if (condition == kAugmented) return "C+ augmented";
+  if (is_mitigation(condition)) return condition_word(condition);
   return std::string(1, condition) + " " +
          session::condition_name(static_cast<session::Condition>(condition));
 }

@@ -43,19 +43,24 @@ void write_participants(const StudyRecord& record, const report::StagedFolder& f
   }
 }
 
+// Of a condition's column: a mitigation's name is the longest.
+std::size_t column_width(char condition) {
+  return std::max<std::size_t>(condition_word(condition).size(), 9);
+}
+
 // Means under each condition, restoration, and the paper's values.
 void print_metric(const Analysis& analysis, std::size_t k) {
   const session::Metric& metric = session::kMetrics[k];
   fmt::print("{:<22}", metric.title);
   for (const auto& [condition, metrics] : analysis.conditions) {
-    fmt::print(" {:9.3f}", metrics[k].mean);
+    fmt::print(" {:{}.3f}", metrics[k].mean, column_width(condition));
   }
   fmt::print("   {:>16}", restored_text(analysis, k));
   fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, 'A'), paper_value(k, 'B'),
              paper_value(k, 'C'), metric.paper_restored_percent);
   for (const auto& entry : analysis.restoration) {
     if (entry.first == 'C') continue;
-    fmt::print("{:>22} {}\n", "restored by " + condition_word(entry.first),
+    fmt::print("{:>25} {}\n", "restored by " + condition_word(entry.first),
                restored_text(analysis, k, entry.first));
   }
 }
@@ -154,7 +159,9 @@ void write_shard(const StudyRecord& record, const Shard& shard, report::StagedFo
 void print_study(const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
   fmt::print("\n{:<22}", "mean of the subjects");
-  for (const auto& entry : analysis.conditions) fmt::print(" {:>9}", condition_word(entry.first));
+  for (const auto& entry : analysis.conditions) {
+    fmt::print(" {:>{}}", condition_word(entry.first), column_width(entry.first));
+  }
   fmt::print("   {:>16}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
   fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,

@@ -151,16 +151,27 @@ void add_mitigations(report::Page& page, const StudyRecord& record) {
 }
 
 void add_cancellers(report::Page& page, const Analysis& analysis) {
-  if (!analysis.conditions.contains(kFollowing) && !analysis.conditions.contains(kAugmented)) {
-    return;
+  const bool mitigates = std::ranges::any_of(
+      analysis.conditions, [](const auto& entry) { return is_mitigation(entry.first); });
+  const bool cancels_beyond =
+      analysis.conditions.contains(kFollowing) || analysis.conditions.contains(kAugmented);
+  if (!mitigates && !cancels_beyond) return;
+  page.section(mitigates ? "Mitigations" : "Cancellers that go beyond the paper's");
+  std::string text = "C cancels with the model of the session's pegged trial, as the paper does.";
+  if (cancels_beyond) {
+    text +=
+        " C' uses the same model, whose gain and phase follow the hand. C+ uses another model, "
+        "from a file.";
   }
-  page.section("Cancellers that go beyond the paper's");
-  page.paragraph(
-      "C cancels with the model of the session's pegged trial, as the paper does. C' uses the same "
-      "model, whose gain and phase follow the hand. C+ uses another model, from a file.");
+  if (mitigates) {
+    text +=
+        " The others are the mitigations of `stillhand lab --conditions`; those that act on the "
+        "command leave the motor off.";
+  }
+  page.paragraph(text);
   page.table(mitigations_table(analysis));
   page.table(restorations_table(analysis));
-  page.table(steps_table(analysis));
+  if (cancels_beyond) page.table(steps_table(analysis));
 }
 
 void add_wrong_models(report::Page& page, const Analysis& analysis) {

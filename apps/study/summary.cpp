@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -128,11 +129,21 @@ Restoration restoration_of(const Analysis& analysis) {
   return found == analysis.restoration.end() ? Restoration{} : found->second;
 }
 
-// By C' and C+, where they were run; the keys are those of close-the-loop.
+// "restoration_c_prime" and "restoration_c_plus" as in close-the-loop, or "restoration_signal".
+std::string restoration_key(char condition) {
+  if (condition == kFollowing) return "restoration_c_prime";
+  if (condition == kAugmented) return "restoration_c_plus";
+  std::string word = condition_word(condition);
+  std::ranges::replace_if(
+      word, [](char c) { return c == '-' || c == '+'; }, '_');
+  return "restoration_" + word;
+}
+
+// By C', C+ and mitigations, where they were run.
 void add_other_restorations(const Analysis& analysis, ordered_json& summary) {
   for (const auto& [condition, restoration] : analysis.restoration) {
     if (condition == 'C') continue;
-    const std::string key = condition == kFollowing ? "restoration_c_prime" : "restoration_c_plus";
+    const std::string key = restoration_key(condition);
     summary[key] = restoration_json(restoration);
     summary[key + "_interval95"] = restoration_interval_json(restoration);
   }

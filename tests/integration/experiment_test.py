@@ -342,6 +342,37 @@ class ChosenModelTest(ExperimentTestCase):
                          opened["orders"]["P01"])
 
 
+class MitigationsTest(ExperimentTestCase):
+    @campaign
+    def test_mitigations_are_conditions_with_tables_comparisons_and_a_data_set(self):
+        conditions = ["A", "B", "C", "signal", "damping+force"]
+        self.new("--conditions", ",".join(conditions), "--participants", 2)
+        self.edit(rest_s=0, trial_s=8, identify_s=15, comparisons="[B-signal, C-damping+force]")
+        for code in ("P01", "P02"):
+            shown = self.run_to_the_end("--participant", code)
+            self.assertIn("5 of 5 trials", shown)
+            for text in (shown, *(path.read_text() for path in (self.study / "participants").rglob("*")
+                                  if path.suffix in (".jsonl", ".log") and path.is_file())):
+                self.assertNotIn("signal", text)  # blinded
+                self.assertNotIn("damping", text)
+        experiment("unblind", self.study, "--reason", "the test's end")
+        experiment("report", self.study)
+        summary = json.loads((self.study / "report" / "summary.json").read_text())
+        self.assertEqual(set(summary["conditions"]), set(conditions))
+        self.assertEqual(summary["recorded"]["left_out"], [])
+        errors = {name: summary["conditions"][name]["rms_error_mm"]["mean"] for name in conditions}
+        print("RMS error [mm]:", {name: round(error, 1) for name, error in errors.items()}, flush=True)
+        for name in ("signal", "damping_force"):
+            self.assertIsNotNone(summary[f"restoration_{name}"]["rms_error"])
+        # Two people and trials of 8 s: only that what a mitigation takes away is not nothing.
+        self.assertLess(errors["signal"], errors["B"])
+        experiment("export", self.study, "--out", self.folder / "set", "--csv")
+        with open(self.folder / "set" / "trials.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({row["condition [-]"] for row in rows if row["task [-]"] == "tracking"}, set(conditions))
+        self.assertEqual(sum(row["task [-]"] == "freestick" for row in rows), 2)
+
+
 class RefusalTest(ExperimentTestCase):
     def test_what_cannot_run_is_one_line(self):
         for words, expected in ((("--conditions", "A,D"), "in one process alone"),

@@ -21,6 +21,10 @@ constexpr std::array<std::pair<const char*, Question::After>, 4> kAfters{
      {"block", Question::After::kBlock},
      {"end", Question::After::kEnd}}};
 constexpr std::array<const char*, 5> kRunnable{"A", "B", "C", "C'", "C+"};
+// apps/session/live_mitigation.hpp, without `scheduled`: it needs the arms of each participant.
+constexpr std::array<const char*, 10> kMitigations{
+    "low-pass", "notch",     "model-filter", "signal",    "lms-signal",
+    "adaptive", "lms-force", "damping",      "impedance", "damping+force"};
 constexpr std::array<const char*, 3> kInOneProcess{"D", "E", "F"};
 
 bool has(const std::vector<std::string>& words, const std::string& word) {
@@ -35,12 +39,18 @@ void check_conditions(const Design& design) {
                         fmt::format("{}: {} runs in one process alone (`stillhand study`)",
                                     kLiveConditions, word));
     }
-    if (std::ranges::find(kRunnable, word) == kRunnable.end()) {
+    if (std::ranges::find(kRunnable, word) == kRunnable.end() && !is_mitigation(word)) {
       throw ConfigError("conditions", "\"" + word + "\"", kLiveConditions);
     }
     if (std::ranges::count(design.conditions, word) > 1) {
       throw ConfigError("conditions", word + " twice", "each condition once");
     }
+  }
+  const auto mitigation = std::ranges::find_if(design.conditions, is_mitigation);
+  if (mitigation != design.conditions.end() &&
+      (has(design.conditions, "C'") || has(design.conditions, "C+"))) {
+    throw ConfigError("conditions", *mitigation + " with C' or C+",
+                      "mitigations with A, B and C alone: they use the session's own model");
   }
   if (has(design.conditions, "C+") == design.control_model.empty()) {
     throw ConfigError("control_model",
@@ -50,12 +60,9 @@ void check_conditions(const Design& design) {
 }
 
 void check_comparisons(const Design& design) {
-  for (const std::string& pair : design.comparisons) {
-    const std::size_t dash = pair.find('-');
-    const std::string first = pair.substr(0, dash);
-    const std::string second = dash == std::string::npos ? "" : pair.substr(dash + 1);
-    if (first == second || !has(design.conditions, first) || !has(design.conditions, second)) {
-      throw ConfigError("comparisons", "\"" + pair + "\"",
+  for (const std::string& text : design.comparisons) {
+    if (!compared_by(text, design.conditions)) {
+      throw ConfigError("comparisons", "\"" + text + "\"",
                         "two conditions of this experiment, for example A-B");
     }
   }
@@ -105,6 +112,24 @@ Value named(const std::array<std::pair<const char*, Value>, N>& list, const std:
 }
 
 }  // namespace
+
+bool is_mitigation(const std::string& condition) {
+  return std::ranges::find(kMitigations, condition) != kMitigations.end();
+}
+
+// A mitigation's name may hold a dash: the one between two conditions counts.
+std::optional<std::pair<std::string, std::string>> compared_by(
+    const std::string& text, const std::vector<std::string>& conditions) {
+  for (std::size_t dash = text.find('-'); dash != std::string::npos;
+       dash = text.find('-', dash + 1)) {
+    const std::string first = text.substr(0, dash);
+    const std::string second = text.substr(dash + 1);
+    if (first != second && has(conditions, first) && has(conditions, second)) {
+      return std::pair(first, second);
+    }
+  }
+  return std::nullopt;
+}
 
 void check(const Design& design) {
   check_conditions(design);

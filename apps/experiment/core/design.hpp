@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/experiment/core/counterbalance.hpp"
@@ -17,7 +19,9 @@ inline constexpr std::uint32_t kRig = 1;
 
 /// Conditions that a session over the bus can run.  D to F need the command filter, another stick
 /// or another rest of the arm, which run in one process alone (`stillhand study`).
-inline constexpr const char* kLiveConditions = "A, B, C, C' or C+";
+inline constexpr const char* kLiveConditions =
+    "A, B, C, C' or C+; or A, B, C and mitigations: low-pass, notch, model-filter, signal, "
+    "lms-signal, adaptive, lms-force, damping, impedance, damping+force";
 
 /// Trials before the measured ones, in a condition that the participant may know.
 struct Practice {
@@ -137,6 +141,13 @@ struct Design {
           "SHA-256 of the file with labels and orders; written by `experiment new`");
   }
 };
+
+/// Whether a condition is one of `stillhand lab`'s mitigations.
+bool is_mitigation(const std::string& condition);
+
+/// The two conditions of a planned comparison, "B-signal".  @return nothing: not two of them
+std::optional<std::pair<std::string, std::string>> compared_by(
+    const std::string& text, const std::vector<std::string>& conditions);
 
 /// Refuses what no session can run or no analysis can use.
 /// @throws ConfigError naming the key

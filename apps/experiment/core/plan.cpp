@@ -43,7 +43,8 @@ void add_bare(Plan& plan, StepKind kind, std::int64_t block) {
 }  // namespace
 
 Assignment draw_assignment(std::size_t conditions, std::uint64_t order_seed) {
-  constexpr const char* kLabels[]{"X", "Y", "Z", "W", "V"};
+  // No letter of a condition, nor of the two identifications.
+  constexpr const char* kLabels[]{"X", "Y", "Z", "W", "V", "U", "T", "S", "R", "Q", "O", "N", "M"};
   STILLHAND_EXPECTS(conditions <= std::size(kLabels));
   Assignment assignment{order_seed, {kLabels, kLabels + conditions}};
   std::mt19937_64 engine(derived_seed(order_seed, SeedUse::kLabels));

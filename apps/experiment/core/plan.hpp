@@ -15,7 +15,7 @@ struct Assignment {
   std::vector<std::string> labels;  ///< of Design::conditions, in their order: "X", "Z", "Y"
 };
 
-/// Labels of n conditions: X, Y, Z, W, V in an order that the seed shuffles.
+/// Labels of n conditions, at most 13: X, Y, Z, W, ... in an order that the seed shuffles.
 Assignment draw_assignment(std::size_t conditions, std::uint64_t order_seed);
 
 enum class StepKind : std::uint8_t { kPractice, kTrial, kQuestion, kBreak };

@@ -30,12 +30,24 @@ constexpr std::array<MotionChannel, 10> kChannels{
      {"x_r", "y", "POS", "ScreenTarget", "target on the screen, right of its centre"},
      {"x_p", "y", "POS", "ScreenCursor", "cursor on the screen, right of its centre"}}};
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kMeanings{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kMeanings{
     {{"A", "platform still, motor off"},
      {"B", "platform moves, motor off"},
      {"C", "platform moves, motor cancels by the model of the session's identification"},
      {"C'", "as C, and the model follows an average hand"},
-     {"C+", "platform moves, motor cancels by the model that the experiment was given"}}};
+     {"C+", "platform moves, motor cancels by the model that the experiment was given"},
+     {"low-pass", "platform moves, motor off, the command passes a low-pass"},
+     {"notch", "platform moves, motor off, the command passes a notch"},
+     {"model-filter",
+      "platform moves, motor off, what the predicted force moves is taken off the command"},
+     {"signal",
+      "platform moves, motor off, the identified feedthrough to position is taken off the command"},
+     {"lms-signal", "platform moves, motor off, an LMS filter takes the feedthrough off"},
+     {"adaptive", "as C, and gain and phase of the model follow an average hand"},
+     {"lms-force", "platform moves, the motor cancels by an LMS filter"},
+     {"damping", "platform moves, the motor adds damping to the stick"},
+     {"impedance", "platform moves, the motor adds stiffness and damping to the stick"},
+     {"damping+force", "as C, and the motor adds damping to the stick"}}};
 
 std::string text_of(const ordered_json& json) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -84,6 +96,9 @@ const char* task_description(TrialKind kind) {
     case TrialKind::kIdentification:
       return "The stick is held by a peg, the hand rests on it, and the platform moves: "
              "identification of the biodynamic feedthrough";
+    case TrialKind::kFreeIdentification:
+      return "The hand holds the free stick still, and the platform moves: identification of the "
+             "biodynamic feedthrough to position";
     case TrialKind::kPractice:
       return "Pursuit tracking on a standing platform, before the measured trials";
     case TrialKind::kTracking:
@@ -141,6 +156,7 @@ std::string readme(const Folder& folder, const DataSet& set, const Release& rele
   text += fmt::format(
       "\nTasks\n"
       "- identification: pegged stick, {} s, at the begin of each session\n"
+      "- freestick: the same with the stick free, where a condition needs it\n"
       "- practice: tracking on a standing platform, where the experiment has it\n"
       "- tracking: the measured trials, {} s each\n\n"
       "Files\n"
@@ -214,6 +230,7 @@ std::string columns_json(const Design& design) {
   trials["trial"] = column("Number of the trial in its session");
   trials["task"] =
       levels("Task of the trial", {{"identification", task_description(TrialKind::kIdentification)},
+                                   {"freestick", task_description(TrialKind::kFreeIdentification)},
                                    {"practice", task_description(TrialKind::kPractice)},
                                    {"tracking", task_description(TrialKind::kTracking)}});
   add_trial_columns(trials);

@@ -34,10 +34,14 @@ JournalTrials trials_in(const std::vector<Entry>& entries) {
   return out;
 }
 
+bool identifies(TrialKind kind) {
+  return kind == TrialKind::kIdentification || kind == TrialKind::kFreeIdentification;
+}
+
 // Facts that only the plan and the journal have.
 void add_plan(ExportedTrial& out, const Folder& folder, const Plan& plan, const Entry& entry) {
   out.completed = entry.kind == EntryKind::kTrialEnded && entry.completed;
-  if (out.kind == TrialKind::kIdentification) return;
+  if (identifies(out.kind)) return;
   const Step& step = plan.at(static_cast<std::size_t>(entry.step));
   if (step.kind == StepKind::kPractice) {
     out.kind = TrialKind::kPractice;
@@ -59,15 +63,19 @@ ExportedTrial trial_of(const Folder& folder, const Plan& plan, const std::string
   const auto planned = static_cast<double>(found.trial.duration_ticks);
   out.lost_share = 1.0 - static_cast<double>(found.recorded_ticks) / planned;
   if (found.trial.phase == TrialPhase::kPegged) out.kind = TrialKind::kIdentification;
+  if (found.trial.phase == TrialPhase::kFree) out.kind = TrialKind::kFreeIdentification;
   const auto entry = known.find({session, found.trial.number});
   // The journal names an identification that was asked again by its last number alone.
-  if (entry == known.end() && out.kind == TrialKind::kIdentification) return out;
-  if (entry == known.end() || (out.kind != TrialKind::kIdentification && entry->second.step < 0)) {
+  if (entry == known.end() && identifies(out.kind)) return out;
+  if (entry == known.end() || (!identifies(out.kind) && entry->second.step < 0)) {
     throw ConfigError(file, "trial " + found.name() + ", which the journal does not know",
                       "the folder as the sessions left it");
   }
   add_plan(out, folder, plan, entry->second);
-  if (out.kind != TrialKind::kIdentification && out.condition.front() != found.letter) {
+  // C' and C+ are C with another model.
+  const bool same =
+      found.named.empty() ? out.condition.front() == found.letter : out.condition == found.named;
+  if (!identifies(out.kind) && !same) {
     throw ConfigError(file, "trial " + found.name(),
                       "condition " + out.condition + ", as journal and assignment say");
   }
@@ -134,6 +142,8 @@ const char* name_of(TrialKind kind) {
   switch (kind) {
     case TrialKind::kIdentification:
       return "identification";
+    case TrialKind::kFreeIdentification:
+      return "freestick";
     case TrialKind::kPractice:
       return "practice";
     case TrialKind::kTracking:

@@ -17,8 +17,13 @@
 /// form of an export can have them.
 namespace stillhand::experiment {
 
-enum class TrialKind : std::uint8_t { kIdentification, kPractice, kTracking };
-/// "identification", "practice", "tracking".
+enum class TrialKind : std::uint8_t {
+  kIdentification,
+  kFreeIdentification,  ///< of the feedthrough to position, where a condition needs it
+  kPractice,
+  kTracking
+};
+/// "identification", "freestick", "practice", "tracking".
 const char* name_of(TrialKind kind);
 
 /// Condition of a trial in which the motor ran another model than the condition's.

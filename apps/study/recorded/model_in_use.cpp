@@ -57,6 +57,23 @@ std::optional<std::string> refusal_before(const SessionRecording& recorded, Tick
   return out;
 }
 
+// Of a trial's recorded commands.
+constexpr double kMostOther = 0.01;
+
+std::string not_mitigated_in(const SessionRecording& recorded, const SessionTrial& trial,
+                             std::uint32_t rig) {
+  std::int64_t commands = 0;
+  std::int64_t others = 0;
+  for (const stillhand_msgs::MotorCommand& command : recorded.motor_commands) {
+    if (command.rig() != rig || !trial.holds(command.tick())) continue;
+    ++commands;
+    if (command.mitigated_trial() != trial.trial.number) ++others;
+  }
+  const double share = static_cast<double>(others) / static_cast<double>(commands);
+  if (commands == 0 || share <= kMostOther) return "";
+  return fmt::format("ran without {} in {:.0f} % of it", trial.named, 100.0 * share);
+}
+
 std::string name_of(std::int32_t model) {
   return model < 0 ? "no model" : fmt::format("model {}", model);
 }
@@ -64,6 +81,10 @@ std::string name_of(std::int32_t model) {
 }  // namespace
 
 char condition_in(const SessionRecording& recorded, const SessionTrial& trial, std::uint32_t rig) {
+  if (!trial.named.empty()) {
+    const char mitigated = session::letter_of(trial.named);
+    return mitigated == '\0' ? '?' : mitigated;
+  }
   if (trial.letter != 'C') return trial.letter;
   const auto* control = in_force(recorded, trial.trial.start_tick, rig).control;
   if (control == nullptr) return 'C';
@@ -81,7 +102,7 @@ char condition_in(const SessionRecording& recorded, const SessionTrial& trial, s
 
 std::string other_model_in(const SessionRecording& recorded, const SessionTrial& trial,
                            std::uint32_t rig) {
-  constexpr double kMostOther = 0.01;
+  if (!trial.named.empty()) return not_mitigated_in(recorded, trial, rig);
   if (trial.letter != 'C') return "";
   const Tick start = trial.trial.start_tick;
   const std::optional<std::int32_t> given = in_force(recorded, start, rig).number();

@@ -12,14 +12,16 @@
 namespace stillhand::study {
 
 /// Which of C, C' and C+ a trial with cancellation is (conditions.hpp), by the model in force when
-/// it began; of any other trial its letter.
+/// it began; of a mitigation its letter, or '?' for one that this program does not know; of any
+/// other trial its letter.
 char condition_in(const session::SessionRecording& recorded, const measurement::SessionTrial& trial,
                   std::uint32_t rig);
 
 /// Why a trial with cancellation was not what its condition says: the motor ran another model than
 /// the one in force in more than 1 % of the recorded commands, for example because the canceller
 /// had refused it.  A recording without commands is judged by the canceller's last answer before
-/// the trial.  Empty: the trial is what its condition says.
+/// the trial.  A trial with a mitigation is not what it says if more than 1 % of its commands are
+/// not the mitigation's.  Empty: the trial is what its condition says.
 std::string other_model_in(const session::SessionRecording& recorded,
                            const measurement::SessionTrial& trial, std::uint32_t rig);
 

@@ -179,7 +179,9 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
   for (const SessionTrial& trial : trials.trials) {
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
-    std::string why = trial.letter == '?' ? "has no condition" : incomplete(trial, least_share);
+    if (trial.trial.phase == TrialPhase::kFree) continue;  // an identification
+    const char condition = condition_in(recorded, trial, trials.rig);
+    std::string why = condition == '?' ? "has no condition" : incomplete(trial, least_share);
     if (why.empty()) {
       why = other_model_in(recorded, trial, trials.rig);
       if (!why.empty()) out.other_model.insert(trial.trial.number);
@@ -196,8 +198,7 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
         out.pegged.push_back({file.participant, file.session, trial.trial.number});
       } else {
         (practised ? out.practice : out.trials)
-            .push_back({file.participant, file.session, trial.trial.number, 0,
-                        condition_in(recorded, trial, trials.rig),
+            .push_back({file.participant, file.session, trial.trial.number, 0, condition,
                         tracked_from(recorded, trial, least_share), lost_share(trial), plan.block,
                         plan.place});
       }

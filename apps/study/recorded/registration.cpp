@@ -31,10 +31,10 @@ std::optional<Registration> registration_of(const std::vector<std::filesystem::p
     for (const std::string& condition : design.conditions) {
       out->conditions.push_back(condition_of(condition));
     }
-    for (const std::string& pair : design.comparisons) {
-      const std::size_t dash = pair.find('-');
-      out->comparisons.emplace_back(condition_of(pair.substr(0, dash)),
-                                    condition_of(pair.substr(dash + 1)));
+    for (const std::string& text : design.comparisons) {
+      // Design's own check has refused what is no pair.
+      const auto pair = experiment::compared_by(text, design.conditions).value();
+      out->comparisons.emplace_back(condition_of(pair.first), condition_of(pair.second));
     }
   }
   return out;

@@ -55,6 +55,12 @@ class SimulatedPerson {
         index_(experiment::participant_index(code, design_.participants)) {
     protocol_.trial_s = design_.trial_s;
     protocol_.identify_s = design_.identify_s;
+    const auto mitigation = std::ranges::find_if(design_.conditions, experiment::is_mitigation);
+    if (mitigation != design_.conditions.end()) {
+      throw ConfigError("--simulated", "an experiment with " + *mitigation,
+                        "A, B, C, C' and C+: a mitigation runs over the bus, or in `stillhand "
+                        "study --mitigations`");
+    }
     chooses_models_ = std::ranges::any_of(design_.conditions,
                                           [](const std::string& each) { return each.size() > 1; });
   }

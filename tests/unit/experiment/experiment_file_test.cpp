@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
+#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 
 namespace stillhand::experiment {
@@ -61,6 +63,9 @@ TEST(ExperimentFileTest, WhatNoSessionCanRunIsNamed) {
   EXPECT_THAT(refusal("conditions: [A, A]"), HasSubstr("A twice"));
   EXPECT_THAT(refusal("conditions: []"), HasSubstr("nothing"));
   EXPECT_THAT(refusal("conditions: A"), HasSubstr("a list"));
+  EXPECT_THAT(refusal("conditions: [B, scheduled]"), HasSubstr("\"scheduled\""));
+  EXPECT_THAT(refusal("conditions: [B, C', signal]"), HasSubstr("signal with C' or C+"));
+  EXPECT_THAT(refusal("conditions: [B, low-pass]\ncomparisons: [B-low]"), HasSubstr("\"B-low\""));
   EXPECT_THAT(refusal("conditions: [A, C+]\ncomparisons: []"), HasSubstr("control_model"));
   EXPECT_THAT(refusal("comparisons: [A-D]"), HasSubstr("A-D"));
   EXPECT_THAT(refusal("order: zigzag"), HasSubstr("random, latin or williams"));
@@ -103,6 +108,26 @@ TEST(ExperimentFileTest, TheOpenedFileNamesTheConditionOfEveryLabelAndTrial) {
   const std::string text = opened_text(design, assignment);
   for (const char* word : {"\"X\"", "\"Y\"", "\"Z\"", "P01", "P02"}) {
     EXPECT_THAT(text, HasSubstr(word));
+  }
+}
+
+// A mitigation's name may hold the dash that separates two conditions.
+TEST(ExperimentFileTest, APlannedComparisonNamesTwoOfTheConditions) {
+  const std::vector<std::string> conditions{"B", "low-pass", "damping+force", "lms-signal"};
+  EXPECT_EQ(compared_by("B-low-pass", conditions), std::pair(std::string("B"), conditions[1]));
+  EXPECT_EQ(compared_by("low-pass-lms-signal", conditions),
+            std::pair(conditions[1], conditions[3]));
+  EXPECT_EQ(compared_by("damping+force-B", conditions), std::pair(conditions[2], conditions[0]));
+  for (const char* text : {"", "B", "B-", "-B", "B-B", "low-pass", "B-low", "B-C"}) {
+    EXPECT_FALSE(compared_by(text, conditions)) << text;
+  }
+}
+
+// The session's own list; `scheduled` needs the arms of each participant.
+TEST(ExperimentFileTest, EveryMitigationOfASessionButTheScheduledIsACondition) {
+  for (const session::LiveMitigation& each : session::live_mitigations()) {
+    EXPECT_EQ(is_mitigation(each.name), std::string(each.name) != "scheduled") << each.name;
+    EXPECT_EQ(meaning_of(each.name).empty(), std::string(each.name) == "scheduled") << each.name;
   }
 }
 

@@ -34,6 +34,7 @@ class FakeTrials final : public lab::LiveTrials {
   }
   const session::TrialOutcome& run_once(const session::PlannedTrial& planned) override {
     count();
+    ran.push_back(planned);
     outcome_.planned = planned;
     outcome_.completed = true;
     return outcome_;
@@ -60,6 +61,7 @@ class FakeTrials final : public lab::LiveTrials {
   [[nodiscard]] bool interrupted() const override { return false; }
 
   std::vector<lab::Prompt> shown;
+  std::vector<session::PlannedTrial> ran;
   int asked_prompts = 0;
   int models = 0;
   bool passes_over = false;
@@ -155,6 +157,36 @@ TEST_F(SessionScriptTest, TheParticipantSeesThePlaceInTheProtocol) {
   EXPECT_EQ(trials.shown[8].wait_s, 60.0);
   EXPECT_EQ(trials.shown[3].steps, 7);
   EXPECT_EQ(trials.shown[3].lowest, "not at all");
+}
+
+TEST_F(SessionScriptTest, AMitigationRunsWithItsPartsBehindItsIdentification) {
+  design_.conditions = {"B", "signal", "damping+force"};
+  design_.comparisons = {"B-signal"};
+  design_.blocks = 1;
+  make(3);
+  FakeTrials trials;
+  ASSERT_TRUE(run(trials));
+  ASSERT_EQ(trials.ran.size(), 5u);
+  EXPECT_EQ(trials.ran[0].label, session::kIdentification);
+  EXPECT_EQ(trials.ran[1].label, session::kFreeIdentification);
+  EXPECT_NE(trials.ran[0].motion_seed, trials.ran[1].motion_seed);
+  EXPECT_EQ(trials.models, 0);  // the canceller keeps the session's own
+  std::set<std::size_t> parts;
+  for (std::size_t i = 0; i < trials.ran.size(); ++i) {
+    EXPECT_EQ(trials.ran[i].trial.number, static_cast<std::int64_t>(i));
+    EXPECT_FALSE(trials.ran[i].cancellation);
+    if (i > 1) parts.insert(trials.ran[i].parts.size());
+  }
+  EXPECT_THAT(parts, ElementsAre(0, 1, 2));  // B, signal, damping+force
+}
+
+TEST_F(SessionScriptTest, WithoutSignalNoFreeStickIsIdentified) {
+  design_.conditions = {"B", "damping"};
+  design_.comparisons = {};
+  make(3);
+  FakeTrials trials;
+  ASSERT_TRUE(run(trials));
+  EXPECT_EQ(trials.ran[1].trial.phase, TrialPhase::kTracking);
 }
 
 // Every seed is another order of the conditions and other labels.

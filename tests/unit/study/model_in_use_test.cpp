@@ -106,5 +106,19 @@ TEST_F(ModelInUseTest, ARecordingWithoutModelsIsJudgedByTheCommands) {
   EXPECT_EQ(other(), "ran no model");
 }
 
+TEST_F(ModelInUseTest, ATrialWithAMitigationIsJudgedByTheTrialThatItsCommandsName) {
+  trial_.letter = '?';
+  trial_.named = "signal";
+  trial_.trial.number = 4;
+  EXPECT_EQ(condition_in(recorded_, trial_, 0), 's');
+  run(0, 1000, 2000);
+  for (auto& command : recorded_.motor_commands) command.mitigated_trial(4);
+  EXPECT_EQ(other(), "");
+  for (std::size_t i = 0; i < 300; ++i) recorded_.motor_commands[i].mitigated_trial(3);
+  EXPECT_EQ(other(), "ran without signal in 30 % of it");
+  trial_.named = "of another program";
+  EXPECT_EQ(condition_in(recorded_, trial_, 0), '?');
+}
+
 }  // namespace
 }  // namespace stillhand::study
