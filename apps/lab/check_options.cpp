@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/load_devices.hpp"
 #include "services/motion/core/motion_generator.hpp"
@@ -57,6 +58,18 @@ void check_combinations(const LabOptions& options) {
   }
 }
 
+void check_driven(const LabOptions& options, const std::vector<session::PlannedTrial>& trials) {
+  if (options.vehicle.empty()) return;
+  for (const session::PlannedTrial& planned : trials) {
+    if (planned.parts.empty()) continue;
+    throw ConfigError(
+        "--vehicle",
+        fmt::format("{} with {}", options.vehicle, session::condition_label(planned.label)),
+        "it with A, B and C alone: the vehicle follows the raw stick, not the "
+        "command that a mitigation gives");
+  }
+}
+
 // The name, the settings, and their bounds, before anything starts.
 void check_vehicle(const LabOptions& options) {
   if (options.vehicle.empty()) return;
@@ -99,11 +112,12 @@ motion::RideRecord ride_of(const LabOptions& options) {
 
 AskedMotions check_options(const LabOptions& options) {
   const auto planned = session::plan(options.protocol);  // checks durations and road
+  const auto& trials = options.trials.empty() ? planned : options.trials;
   check_combinations(options);
+  check_driven(options, trials);
   check_values(options);
   check_vehicle(options);
-  return rehearse(options.trials.empty() ? planned : options.trials, options.protocol,
-                  ride_of(options), options.config);
+  return rehearse(trials, options.protocol, ride_of(options), options.config);
 }
 
 }  // namespace stillhand::lab

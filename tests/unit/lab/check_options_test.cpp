@@ -92,6 +92,23 @@ TEST_F(CheckOptionsTest, AMouseNeedsAWindow) {
   EXPECT_THAT(refusal(), AllOf(StartsWith("--operator: got mouse"), HasSubstr("--headless")));
 }
 
+// The vehicle reads the stick's angle, so what a mitigation takes off it would never reach the
+// platform.
+TEST_F(CheckOptionsTest, AVehicleIsRefusedWithAMitigation) {
+  options_.vehicle = "first_order";
+  EXPECT_EQ(refusal(), "taken");
+  options_.protocol.conditions = session::parse_conditions("A,B,signal", session::kLabConditions,
+                                                           session::Named::kMitigationsToo);
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--vehicle: got first_order with signal, want"),
+                               HasSubstr("raw stick")));
+  // Those of an experiment too.
+  options_.trials = session::plan(options_.protocol);
+  options_.protocol.conditions = session::parse_conditions("A,B");
+  EXPECT_THAT(refusal(), StartsWith("--vehicle: got first_order with signal"));
+  options_.vehicle.clear();
+  EXPECT_EQ(refusal(), "taken");
+}
+
 // They are arguments of services that run already.
 TEST_F(CheckOptionsTest, ArgumentsOfTheServicesAreRefusedWhereTheyRunAlready) {
   options_.attach = true;
