@@ -3,9 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+
+#include "apps/lab/control_model.hpp"
 #include "apps/session/live_mitigation.hpp"
+#include "services/cancellation/core/canceller.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
 #include "services/device_rig/load_devices.hpp"
+#include "services/mitigation/recipe.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/motion/ride_file.hpp"
 #include "services/runtime/process/domain.hpp"
@@ -55,6 +62,41 @@ void check_combinations(const LabOptions& options) {
     throw ConfigError("--attach",
                       "--undeclared-effect, --subject, --video, --operator or --motion with it",
                       "these as arguments of the services, which run already");
+  }
+}
+
+// In place of those that the session identifies: of the rate that the canceller takes, and of a
+// gain below every bound of its settings.
+mitigation::SessionModels models_of(const LabOptions& options, const cancellation::Config& config) {
+  mitigation::SessionModels models;
+  models.force = options.model.empty()
+                     ? cancellation::control_model({config.sampling.model_rate_hz(), {-0.5}, {1.0}})
+                     : control_model(options.model, options.rig, options.config);
+  models.position = signal::DifferenceModel{kControlRateHz, {-0.001}, {1.0}};
+  return models;
+}
+
+// Builds each mitigation as the process of cancellation will: what it refuses at the trial is
+// refused before the first one.
+void check_mitigations(const LabOptions& options,
+                       const std::vector<session::PlannedTrial>& trials) {
+  if (std::ranges::all_of(trials, [](const auto& each) { return each.parts.empty(); })) return;
+  auto config =
+      settings::load<cancellation::Config>(options.config / "cancellation.yaml", "cancellation");
+  // As the process does: without the word its settings hold.
+  if (options.canceller != "now") config.sampling = cancellation::sampling_named(options.canceller);
+  const mitigation::SessionModels models = models_of(options, config);
+  for (const session::PlannedTrial& planned : trials) {
+    if (planned.parts.empty()) continue;
+    try {
+      const mitigation::Mitigation sound(recipe_of(planned.parts, models, config));
+    } catch (const ConfigError& error) {
+      const std::string name = session::condition_label(planned.label);
+      throw ConfigError(
+          "--conditions",
+          options.canceller == "now" ? name : name + " with --canceller " + options.canceller,
+          fmt::format("a mitigation that the canceller of this session runs ({})", error.what()));
+    }
   }
 }
 
@@ -115,6 +157,7 @@ AskedMotions check_options(const LabOptions& options) {
   const auto& trials = options.trials.empty() ? planned : options.trials;
   check_combinations(options);
   check_driven(options, trials);
+  check_mitigations(options, trials);
   check_values(options);
   check_vehicle(options);
   return rehearse(trials, options.protocol, ride_of(options), options.config);

@@ -109,6 +109,32 @@ TEST_F(CheckOptionsTest, AVehicleIsRefusedWithAMitigation) {
   EXPECT_EQ(refusal(), "taken");
 }
 
+// The process of cancellation would refuse it at the trial, after the identification.
+TEST_F(CheckOptionsTest, AMitigationThatTheCancellerCannotRunIsRefusedBeforeAnythingStarts) {
+  const auto conditions = [&](const char* names) {
+    options_.protocol.conditions =
+        session::parse_conditions(names, session::kLabConditions, session::Named::kMitigationsToo);
+  };
+  conditions("A,B,adaptive");
+  EXPECT_EQ(refusal(), "taken");
+  options_.canceller = "paper";
+  EXPECT_THAT(refusal(), AllOf(StartsWith("--conditions: got adaptive with --canceller paper, "),
+                               HasSubstr("1000 Hz"), testing::Not(HasSubstr("\n"))));
+  // The rest runs behind the paper's chain.
+  conditions(
+      "low-pass,notch,model-filter,signal,lms-signal,lms-force,damping,impedance,damping+force");
+  EXPECT_EQ(refusal(), "taken");
+  // The settings say the same as the word.
+  options_.canceller = "now";
+  options_.config = folder_.path() / "config";
+  std::filesystem::copy(STILLHAND_SOURCE "/deploy/config", options_.config);
+  std::ofstream(options_.config / "cancellation.yaml", std::ios::app)
+      << "\nsampling:\n  model_ticks: 20\n";
+  EXPECT_EQ(refusal(), "taken");
+  conditions("adaptive,damping");
+  EXPECT_THAT(refusal(), StartsWith("--conditions: got adaptive, want"));
+}
+
 // They are arguments of services that run already.
 TEST_F(CheckOptionsTest, ArgumentsOfTheServicesAreRefusedWhereTheyRunAlready) {
   options_.attach = true;
