@@ -155,6 +155,8 @@ stillhand_msgs::MotorCommand to_idl(const mitigation::MitigationOutput& output,
                                     std::int64_t trial) {
   stillhand_msgs::MotorCommand message = to_idl(canceller, input, sensed, model);
   message.force_n(output.force_n);
+  message.gain_weight(output.weights[0]);
+  message.phase_weight(output.weights[1]);
   message.flags(output.flags);
   message.taken_off_rad(sensed.theta_rad() - output.command_rad);
   message.mitigated_trial(static_cast<std::int32_t>(trial));

@@ -38,7 +38,7 @@ stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t nu
 /// @param model   number of the model in use, -1 none
 stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const CancellerInput& input,
                                     const stillhand_msgs::Sensed& sensed, std::int32_t model);
-/// The force and the command of a mitigation in place of the canceller's force.
+/// The force, the weights and the command of a mitigation in place of the canceller's.
 /// @param canceller  answer of the canceller to the same sample; its prediction is recorded
 /// @param input      of the mitigation
 /// @param trial      whose mitigation it is

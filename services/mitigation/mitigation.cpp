@@ -112,7 +112,7 @@ MitigationOutput Mitigation::step(const cancellation::CancellerInput& input) noe
   }
   const auto limited = envelope_.step(wanted_n, acting);
   force_n_ = limited.force_n;
-  return {limited.force_n, command_rad_, cancelled.flags | limited.flags};
+  return {limited.force_n, command_rad_, cancelled.flags | limited.flags, cancelled.weights};
 }
 
 }  // namespace stillhand::mitigation

@@ -43,6 +43,7 @@ struct MitigationOutput {
   double force_n;      ///< motor force wanted at the hand, + right, within the limits
   double command_rad;  ///< what the machine gets in place of the stick's angle
   Flags flags;
+  cancellation::AdaptiveGain::Pair weights = {1.0, 0.0};  ///< of `force`, Eq. CC-10
 };
 
 /// One mitigation, or several together, README Eq. MI-6:
@@ -65,10 +66,6 @@ class Mitigation {
   /// w of Eq. MI-5; 0 without a schedule.
   [[nodiscard]] double schedule_weight() const noexcept {
     return schedule_ ? schedule_->weight() : 0.0;
-  }
-  /// Of CC-10.
-  [[nodiscard]] const cancellation::AdaptiveGain::Pair& gains() const noexcept {
-    return canceller_.weights();
   }
 
  private:

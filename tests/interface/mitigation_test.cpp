@@ -194,7 +194,11 @@ class MitigationProcessTest : public testing::Test {
       const auto again = sut.step(
           cancellation::from_idl(samples_.at(tick), command.enabled(), command.permitted()));
       const double off_rad = samples_.at(tick).theta_rad() - again.command_rad;
-      if (off_rad != command.taken_off_rad() || again.force_n != command.force_n()) return -1;
+      if (off_rad != command.taken_off_rad() || again.force_n != command.force_n() ||
+          again.weights[0] != command.gain_weight() ||
+          again.weights[1] != command.phase_weight()) {
+        return -1;
+      }
       ++compared;
     }
     return compared;
@@ -273,14 +277,14 @@ TEST_F(MitigationProcessTest, TheCommandIsTakenOffTheStickAndTheRawStickComesBac
   EXPECT_EQ(raw.cursor_m(), screen.gain_m_rad * samples_.at(raw.tick()).theta_rad());
 }
 
-// Force and damper together; then a process loses its life sign.
+// A force that adapts (CC-10) and a damper together; then a process loses its life sign.
 TEST_F(MitigationProcessTest, TheForceIsBoundedAndEndsWithTheInterlock) {
   constexpr double kFeedthrough_n_s2_m = -3.2;
   constexpr double kMost_n = 25.0;
   constexpr int kRamp_ticks = 40;
   begin_session();
   publish_model(false, kFeedthrough_n_s2_m);
-  add_part(stillhand_msgs::PART_FORCE);
+  add_part(stillhand_msgs::PART_FORCE, {1.394, 11.18, 1136.0, 0.10});
   add_part(stillhand_msgs::PART_IMPEDANCE, {0.0, 90.0, 0.0});
   begin_trial();
   ASSERT_TRUE(step_until([this] { return std::abs(newest_command().force_n()) > 6.0; }, 10'000));
@@ -288,6 +292,7 @@ TEST_F(MitigationProcessTest, TheForceIsBoundedAndEndsWithTheInterlock) {
   EXPECT_GT(same_in_one_process(
                 {cancellation::control_model({1000.0, {kFeedthrough_n_s2_m}, {1.0}}), {}}),
             500);
+  EXPECT_NE(newest_command().gain_weight(), 1.0);  // recorded as they are followed
   stands_.erase("identification");
   ASSERT_TRUE(step_until([this] { return !newest_command().permitted(); }, 10'000));
   ASSERT_TRUE(step_until([this] { return newest_command().force_n() == 0.0; }, 1000));

@@ -231,6 +231,29 @@ TEST(MitigationTest, ThePredictedSignalMovesNoMotor) {
   EXPECT_GT(std::abs(sut.command - 1.0), 0.1);
 }
 
+// With a plant that answers, CC-10 follows it, and the output carries the weights of every tick.
+TEST(MitigationTest, TheWeightsOfAnAdaptiveForceComeOutWithIt) {
+  Recipe recipe;
+  recipe.force = cancellation::control_model(model());
+  const auto weights_after = [&](Tick ticks) {
+    Mitigation sut(recipe);
+    LinearArm plant(admittance::mean_arm(), {});
+    MitigationOutput out{};
+    for (Tick n = 1; n <= ticks; ++n) {
+      LinearArm at_sample = plant;
+      const double a = motion_at(n);
+      out = sut.step(input(n, a, at_sample.step(a, 0.0).displacement_m / kLever_m, 0.0));
+      plant.step(a, out.force_n);
+    }
+    return out.weights;
+  };
+  EXPECT_EQ(weights_after(20'000), (cancellation::AdaptiveGain::Pair{1.0, 0.0}));
+  recipe.force->adapts = cancellation::HandCompliance{1.394, 11.18, 1136.0, kLever_m};
+  const auto weights = weights_after(20'000);
+  EXPECT_GT(std::abs(weights[0] - 1.0), 0.01);
+  EXPECT_NE(weights[1], 0.0);
+}
+
 TEST(MitigationTest, NothingDoesNothing) {
   const Left sut = left_of({}, admittance::mean_arm());
   EXPECT_DOUBLE_EQ(sut.stick, 1.0);
