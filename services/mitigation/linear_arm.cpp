@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <complex>
 #include <numbers>
 #include <string>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -81,13 +82,22 @@ Continuous<N> continuous(const ArmValues& v,
 template <int N>
 Eigen::MatrixXd stepped(const Continuous<N>& system) {
   constexpr int kStates = Continuous<N>::kStates;
-  if (system.a.eigenvalues().real().maxCoeff() >= 0.0) {
-    throw ConfigError("mitigation.arm", "an arm that does not come to rest", "a stable arm");
+  if (!system.a.allFinite() || !system.b.allFinite()) {
+    throw ConfigError("mitigation.arm", "a value out of range", "finite values of a person's size");
+  }
+  // Written so that a NaN says "not stable".
+  for (const std::complex<double>& pole : system.a.eigenvalues()) {
+    if (!(pole.real() < 0.0)) {
+      throw ConfigError("mitigation.arm", "an arm that does not come to rest", "a stable arm");
+    }
   }
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(kStates + 2, kStates + 2);
   all.topLeftCorner(kStates, kStates) = system.a * kControlPeriod_s;
   all.topRightCorner(kStates, 2) = system.b * kControlPeriod_s;
   const Eigen::MatrixXd out = all.exp();
+  if (!out.allFinite()) {
+    throw ConfigError("mitigation.arm", "an arm too fast for steps of 1 ms", "a person's arm");
+  }
   return out.topRows(kStates);
 }
 

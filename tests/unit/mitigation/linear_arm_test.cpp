@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include "services/admittance/core/arm_fit.hpp"
@@ -86,6 +87,26 @@ TEST(LinearArmTest, RefusesAnArmThatIsNone) {
   admittance::ArmValues driven = admittance::mean_arm();
   driven[admittance::kSeatDamping] = -400.0;
   EXPECT_THROW(LinearArm(driven, {}), ConfigError);
+  // Refused, or finite: no comparison with NaN holds, and eigenvalues that were not found are none.
+  for (const double absurd :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    for (std::size_t i = 0; i < admittance::kArmParameters; ++i) {
+      admittance::ArmValues arm = arm_with_reflex();
+      arm[i] = absurd;
+      try {
+        LinearArm sut(arm, {});
+        for (int n = 0; n < 100; ++n) {
+          ASSERT_TRUE(std::isfinite(sut.step(1.0, 1.0).held_n)) << i << " " << absurd;
+          ASSERT_TRUE(std::isfinite(sut.step(1.0, 1.0).displacement_m)) << i << " " << absurd;
+        }
+      } catch (const ConfigError&) {
+        continue;  // refused
+      }
+    }
+  }
+  admittance::ArmValues unknown = admittance::mean_arm();
+  unknown[admittance::kSeatDamping] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(LinearArm(unknown, {}), ConfigError);
 }
 
 }  // namespace
