@@ -4,30 +4,93 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <string>
 
+#include "services/admittance/core/arm_fit.hpp"
+#include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
 
 namespace stillhand::mitigation {
 namespace {
 
 constexpr std::size_t kArmValues = admittance::kArmParameters;
 
+std::string key_of(const Part& part) {
+  return "mitigation.part " + std::to_string(static_cast<int>(part.kind));
+}
+
 [[noreturn]] void refuse(const Part& part, const std::string& want) {
-  throw ConfigError("mitigation.part " + std::to_string(static_cast<int>(part.kind)),
-                    std::to_string(part.values.size()) + " values", want);
+  throw ConfigError(key_of(part), std::to_string(part.values.size()) + " values", want);
 }
 
 void require(const Part& part, std::size_t count) {
   if (part.values.size() != count) refuse(part, std::to_string(count));
   if (!std::ranges::all_of(part.values, [](double value) { return std::isfinite(value); })) {
-    throw ConfigError("mitigation.part " + std::to_string(static_cast<int>(part.kind)),
-                      "a value that is not finite", "finite values");
+    throw ConfigError(key_of(part), "a value that is not finite", "finite values");
   }
 }
 
+// CC-4's bounds of a hand.  A force of nothing carries it through the check of a model.
+bool within_bounds(const cancellation::HandCompliance& hand) {
+  cancellation::ControlModel carrier = cancellation::control_model({kControlRateHz, {0.0}, {1.0}});
+  carrier.adapts = hand;
+  return cancellation::check_model(carrier, {.max_gain_n_s2_m = 1.0, .max_path_force_n = 1.0})
+             .refusal == cancellation::Refusal::kNone;
+}
+
+// A hundredth of critical damping: what still has a third of its swing after 16 periods is no arm,
+// and a damping ratio that underflows to 0 is no oscillator that signal::SecondOrderLag can step.
+void require_hand(const Part& part, const cancellation::HandCompliance& hand) {
+  constexpr double kLeastRatio = 0.01;
+  if (within_bounds(hand) &&
+      hand.damping_n_s_m >= kLeastRatio * 2.0 * std::sqrt(hand.mass_kg * hand.stiffness_n_m)) {
+    return;
+  }
+  std::ostringstream got;
+  got << "a hand of " << hand.mass_kg << " kg, " << hand.damping_n_s_m << " N s/m, "
+      << hand.stiffness_n_m << " N/m, lever " << hand.lever_m << " m";
+  throw ConfigError(key_of(part), got.str(),
+                    "0.1 to 10 kg, 0.01 to 1 of critical damping, 50 to 10000 N/m, lever 0.02 to "
+                    "0.5 m");
+}
+
 cancellation::HandCompliance hand(const Part& part) {
-  return {part.values[0], part.values[1], part.values[2], part.values[3]};
+  const cancellation::HandCompliance hand{part.values[0], part.values[1], part.values[2],
+                                          part.values[3]};
+  require_hand(part, hand);
+  return hand;
+}
+
+// A fit leaves a value that the data do not determine far from everybody's, so the bounds are wide:
+// a thousand times the mean person, in the reflex a thousand times the arm's own.
+double most_of(std::size_t parameter) {
+  constexpr double kFactor = 1000.0;
+  constexpr double kMostDelay_s = 1.0;
+  const admittance::ArmValues mean = admittance::mean_arm();
+  switch (parameter) {
+    case admittance::kReflexStiffness:
+      return kFactor * mean[admittance::kArmStiffness];
+    case admittance::kReflexDamping:
+      return kFactor * mean[admittance::kArmDamping];
+    case admittance::kReflexDelay:
+      return kMostDelay_s;
+    default:
+      return kFactor * mean[parameter];
+  }
+}
+
+void require_arm(const Part& part, const admittance::ArmValues& arm) {
+  for (std::size_t i = 0; i < kArmValues; ++i) {
+    const double most = most_of(i);
+    if (std::abs(arm[i]) <= most) continue;
+    std::ostringstream got;
+    std::ostringstream want;
+    got << admittance::arm_parameter_names()[i].name << " = " << arm[i];
+    want << "a magnitude of at most " << most;
+    throw ConfigError(key_of(part), got.str(), want.str());
+  }
 }
 
 cancellation::ControlModel force_of(const SessionModels& models) {
@@ -47,6 +110,8 @@ void add_schedule(const Part& part, Recipe& recipe) {
   ScheduleConfig schedule;
   std::copy_n(part.values.begin(), kArmValues, schedule.relaxed.begin());
   std::copy_n(part.values.begin() + kArmValues, kArmValues, schedule.holding.begin());
+  require_arm(part, schedule.relaxed);
+  require_arm(part, schedule.holding);
   recipe.schedule = schedule;
 }
 
@@ -58,12 +123,36 @@ void add_predicted_signal(const Part& part, const SessionModels& models, Recipe&
                                                               feels.stiffness_n_m, feels.lever_m};
 }
 
+// The checks of CC-4, with a bound in metres: 1 m/s^2 moves a free stick to its stop at most.  The
+// tracking motion has an RMS of 1.6 m/s^2 (paper III-C): with a larger gain the stick would have
+// been at its stop for most of the trial that identified it.
+void require_position(const signal::DifferenceModel& model, double lever_m) {
+  constexpr auto kTheta = static_cast<std::size_t>(cancellation::Channel::kTheta);
+  const double most_m = lever_m * cancellation::kChannelFacts[kTheta].full_scale;
+  const cancellation::Refusal why =
+      cancellation::check_model(cancellation::control_model(model),
+                                {.max_gain_n_s2_m = most_m, .max_path_force_n = 1.0})
+          .refusal;
+  if (why == cancellation::Refusal::kNone) return;
+  std::ostringstream want;
+  want << "a stable one at 1000 Hz, of at most " << most_m << " m per m/s^2 at any frequency";
+  throw ConfigError("mitigation.signal", std::string(cancellation::describe(why)), want.str());
+}
+
 void add_signal(const Part& part, const SessionModels& models, Recipe& recipe) {
   require(part, 0);
   if (!models.position) {
     throw ConfigError("mitigation.signal", "no model", "a model of the feedthrough to position");
   }
+  require_position(*models.position, recipe.lever_m);
   recipe.signal = SignalConfig{*models.position, {}, {}};
+}
+
+void add_lms_force(const Part& part, Recipe& recipe) {
+  require(part, 4);
+  const SecondaryPath path{part.values[1], part.values[2], part.values[3]};
+  require_hand(part, {path.mass_kg, path.damping_n_s_m, path.stiffness_n_m, recipe.lever_m});
+  recipe.lms_force = LmsConfig{part.values[0], path};
 }
 
 void add(const Part& part, const SessionModels& models, Recipe& recipe) {
@@ -79,9 +168,7 @@ void add(const Part& part, const SessionModels& models, Recipe& recipe) {
           .mass_kg = values[2], .damping_n_s_m = values[1], .stiffness_n_m = values[0]};
       return;
     case PartKind::kLmsForce:
-      require(part, 4);
-      recipe.lms_force = LmsConfig{values[0], SecondaryPath{values[1], values[2], values[3]}};
-      return;
+      return add_lms_force(part, recipe);
     case PartKind::kSignal:
       return add_signal(part, models, recipe);
     case PartKind::kPredictedSignal:

@@ -5,7 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "services/admittance/core/arm_fit.hpp"
@@ -43,9 +46,9 @@ TEST(RecipeTest, ValuesStandInTheOrderOfTheIdl) {
   EXPECT_EQ(both.impedance->stiffness_n_m, 200.0);
   EXPECT_EQ(both.impedance->damping_n_s_m, 60.0);
   EXPECT_EQ(both.impedance->mass_kg, 0.5);
-  const Recipe adaptive = made({{PartKind::kForce, {1.0, 2.0, 3.0, 0.1}}});
+  const Recipe adaptive = made({{PartKind::kForce, {1.0, 2.0, 300.0, 0.1}}});
   ASSERT_TRUE(adaptive.force && adaptive.force->adapts);
-  EXPECT_EQ(adaptive.force->adapts->stiffness_n_m, 3.0);
+  EXPECT_EQ(adaptive.force->adapts->stiffness_n_m, 300.0);
   const Recipe notch = made({{PartKind::kNotch, {1.2, 0.9}}});
   ASSERT_TRUE(notch.shaping);
   EXPECT_EQ(notch.shaping->kind, ShapingConfig::Kind::kNotch);
@@ -84,6 +87,118 @@ TEST(RecipeTest, WhatIsUnsoundIsRefused) {
   // What the parts themselves refuse.
   EXPECT_NE(refusal({{PartKind::kImpedance, {0.0, -90.0, 0.0}}}), "no error");
   EXPECT_NE(refusal({{PartKind::kLowPass, {0.0, 0.7}}}), "no error");
+}
+
+// Sound values of each kind.
+std::vector<Part> sound_parts() {
+  std::vector<double> arms;
+  for (int arm = 0; arm < 2; ++arm) {
+    const admittance::ArmValues mean = admittance::mean_arm();
+    arms.insert(arms.end(), mean.begin(), mean.end());
+  }
+  return {{PartKind::kForce, {1.394, 11.18, 1136.0, 0.10}},
+          {PartKind::kSchedule, arms},
+          {PartKind::kImpedance, {200.0, 60.0, 0.5}},
+          {PartKind::kLmsForce, {0.01, 1.394, 11.18, 1136.0}},
+          {PartKind::kPredictedSignal, {1.394, 11.18, 1136.0, 0.10}},
+          {PartKind::kLmsSignal, {0.01}},
+          {PartKind::kLowPass, {0.7, 0.7}},
+          {PartKind::kNotch, {1.2, 1.0}}};
+}
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const std::vector<double> kAbsurd{kNan, kInf, -kInf,  1e300,  -1e300, 1e150,
+                                  1e9,  -1.0, 1e-300, 5e-324, 0.0};
+
+// Refused in one line, or a mitigation whose outputs are bounded.
+bool refused_or_bounded(const Part& part, const SessionModels& known = models()) {
+  try {
+    Mitigation sut(recipe_of({part}, known, {}));
+    for (Tick n = 1; n <= 400; ++n) {
+      cancellation::CancellerInput input{};
+      input.tick = n;
+      input.enabled = input.permitted = true;
+      input.sensed = {0.0, 7.5, 9.8, 0.0, n % 2 == 0 ? 0.5 : -0.5, 15.0};
+      const MitigationOutput out = sut.step(input);
+      if (!(std::abs(out.force_n) <= signal::ForceLimits{}.max_force_n)) return false;
+      if (!std::isfinite(out.command_rad)) return false;
+    }
+    return true;
+  } catch (const ConfigError& error) {
+    return std::string(error.what()).find('\n') == std::string::npos;
+  }
+}
+
+// Whatever stands in an assignment, the process neither aborts nor leaves the bounds: each value
+// alone, each two values together, and all at once.  0.1 s.
+TEST(RecipeTest, AbsurdValuesAreRefusedOrBounded) {
+  for (const Part& sound : sound_parts()) {
+    ASSERT_TRUE(refused_or_bounded(sound));
+    ASSERT_EQ(refusal({sound}), "no error");
+    for (const double absurd : kAbsurd) {
+      Part part = sound;
+      std::ranges::fill(part.values, absurd);
+      EXPECT_TRUE(refused_or_bounded(part)) << static_cast<int>(part.kind) << " all " << absurd;
+      for (std::size_t i = 0; i < sound.values.size(); ++i) {
+        part = sound;
+        part.values[i] = absurd;
+        EXPECT_TRUE(refused_or_bounded(part)) << static_cast<int>(part.kind) << " " << i;
+        if (part.kind == PartKind::kSchedule) continue;  // 26 values
+        for (std::size_t j = 0; j < i; ++j) {
+          for (const double other : kAbsurd) {
+            part.values[j] = other;
+            EXPECT_TRUE(refused_or_bounded(part)) << static_cast<int>(part.kind) << " " << i << ", "
+                                                  << j << ": " << absurd << ", " << other;
+          }
+          part.values[j] = sound.values[j];
+        }
+      }
+    }
+  }
+}
+
+// What no part's own check knows: a damping ratio of 0, and arms that are finite and none.
+TEST(RecipeTest, AHandOrAnArmOfNoPersonIsRefusedByName) {
+  using testing::HasSubstr;
+  for (const std::vector<double>& values : {std::vector<double>{0.01, 1e300, 11.18, 1e300},
+                                            {0.01, 1.394, 5e-324, 1136.0},
+                                            {0.01, 1.394, 0.05, 1136.0},
+                                            {0.01, 0.05, 1.0, 1136.0}}) {
+    EXPECT_THAT(refusal({{PartKind::kLmsForce, values}}), HasSubstr("0.1 to 10 kg"));
+    EXPECT_THAT(refusal({{PartKind::kPredictedSignal, {values[1], values[2], values[3], 0.10}}}),
+                HasSubstr("0.1 to 10 kg"));
+    EXPECT_THAT(refusal({{PartKind::kForce, {values[1], values[2], values[3], 0.10}}}),
+                HasSubstr("0.1 to 10 kg"));
+  }
+  Part arms = sound_parts()[1];
+  arms.values[admittance::kArmParameters + admittance::kGripStiffness] = 1e9;
+  EXPECT_THAT(refusal({arms}), HasSubstr("grip_stiffness_n_m = 1e+09"));
+}
+
+TEST(RecipeTest, AModelOfPositionIsCheckedAndItsGainBounded) {
+  using testing::HasSubstr;
+  const auto refusal_of = [](const signal::DifferenceModel& position) {
+    SessionModels known = models();
+    known.position = position;
+    EXPECT_TRUE(refused_or_bounded({PartKind::kSignal}, known));
+    return refusal({{PartKind::kSignal}}, known);
+  };
+  EXPECT_EQ(refusal_of({1000.0, {-0.059}, {1.0}}), "no error");
+  EXPECT_THAT(refusal_of({1000.0, {-0.061}, {1.0}}), HasSubstr("0.06 m per m/s^2"));
+  // 4 mm at 0 Hz, and 0.1 m at a mode of 5 Hz with a damping ratio of 0.02.
+  const double w = 2.0 * std::numbers::pi * 5e-3;
+  const double r = std::exp(-0.02 * w);
+  const double c = 2.0 * r * std::cos(w);
+  EXPECT_THAT(refusal_of({1000.0, {-0.004 * (1.0 - c + r * r), 0.0, 0.0}, {1.0, -c, r * r}}),
+              HasSubstr("gain is above"));
+  EXPECT_THAT(refusal_of({1000.0, {1e300}, {1.0}}), HasSubstr("gain is above"));
+  EXPECT_THAT(refusal_of({1000.0, {-0.002, 0.0}, {1.0, -1.0}}), HasSubstr("unit circle"));
+  for (const double rate_hz : {0.0, -1000.0, 50.0, kNan, 1e300}) {
+    EXPECT_THAT(refusal_of({rate_hz, {-0.002}, {1.0}}), HasSubstr("1000 Hz"));
+  }
+  EXPECT_NE(refusal_of({1000.0, {kNan}, {1.0}}), "no error");
+  EXPECT_NE(refusal_of({1000.0, {}, {}}), "no error");
 }
 
 TEST(RecipeTest, WithoutItsModelAPartIsRefused) {
