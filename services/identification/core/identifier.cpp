@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/identification/core/identifier.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <iomanip>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "services/contract/config_error.hpp"
 #include "services/identification/core/paper_preprocessing.hpp"
@@ -29,19 +33,43 @@ void convert_refined(IdentificationSteps& steps, int order, const ConversionBand
   }
 }
 
-// Eq. ID-21.  A load cell of the wrong sign turns the model round, and the motor would help the
-// seat.
-void check_sign(const DifferenceModel& model, std::int64_t expected) {
+// What answers the platform, in the words of a refusal.
+struct Answer {
+  const char* unit;
+  const char* stays;   ///< who stays behind the seat
+  const char* sensor;  ///< whose sign may be wrong
+};
+constexpr Answer kForce{"N", "an idle hand", "the load cell"};
+constexpr Answer kPosition{"mm", "a hand that holds a free stick", "the stick's angle"};
+
+// Eq. ID-21.  A load cell, or an angle, of the wrong sign turns the model round, and the motor, or
+// what is taken off the command, would help the seat.
+void check_sign(const DifferenceModel& model, std::int64_t expected, const Answer& answer) {
   constexpr double kLowest_hz = 0.7;  // of the identification motion, paper III-A
   const double gain = signal::response_at(model, kLowest_hz).real();
   if (gain * static_cast<double>(expected) < 0.0) {
     std::ostringstream got;
-    got << std::showpos << std::setprecision(3) << gain << " N per m/s^2";
-    throw ConfigError(
-        "feedthrough at 0.7 Hz", got.str(),
-        "the other sign: an idle hand stays behind the seat. Check the signs of the accelerometer "
-        "and the load cell (stillhand calibrate)");
+    got << std::showpos << std::setprecision(3) << gain << ' ' << answer.unit << " per m/s^2";
+    throw ConfigError("feedthrough at 0.7 Hz", got.str(),
+                      std::string("the other sign: ") + answer.stays +
+                          " stays behind the seat. Check the signs of the accelerometer and " +
+                          answer.sensor + " (stillhand calibrate)");
   }
+}
+
+Identification identified(const PeggedTrial& trial, const Config& config, const Answer& answer) {
+  if (std::string why = why_unusable(trial); !why.empty()) return {std::nullopt, std::move(why)};
+  try {
+    FeedthroughModel model = identify(trial.record, config);
+    check_sign(model.fit, config.expected_sign, answer);
+    return {std::move(model), {}};
+  } catch (const ConfigError& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+bool stands_still(const std::vector<double>& positions) {
+  return std::ranges::adjacent_find(positions, std::not_equal_to<>()) == positions.end();
 }
 
 }  // namespace
@@ -84,24 +112,22 @@ FeedthroughModel identify(const Record& recorded, const Config& config) {
 }
 
 Identification identify(const PeggedTrial& trial, const Config& config) {
-  if (std::string why = why_unusable(trial); !why.empty()) return {std::nullopt, std::move(why)};
-  try {
-    FeedthroughModel model = identify(trial.record, config);
-    check_sign(model.fit, config.expected_sign);
-    return {std::move(model), {}};
-  } catch (const ConfigError& error) {
-    return {std::nullopt, error.what()};
-  }
+  return identified(trial, config, kForce);
 }
 
 Identification identify_position(const PeggedTrial& trial, const Config& config) {
   // In millimetres the numbers are as large as those of a force.
   constexpr double kMillimetre_m = 1e-3;
+  // The chain would ask for the load cell.
+  if (why_unusable(trial).empty() && stands_still(trial.record.force_n)) {
+    return {std::nullopt,
+            "the stick's angle is constant: is the stick free and its encoder connected?"};
+  }
   PeggedTrial in_mm = trial;
   for (double& value : in_mm.record.force_n) value /= kMillimetre_m;
   Config refined = config;
   refined.refine = true;
-  Identification found = identify(in_mm, refined);
+  Identification found = identified(in_mm, refined, kPosition);
   if (!found.model) return found;
   for (DifferenceModel* model : {&found.model->fit, &found.model->control}) {
     for (double& c : model->numerator) c *= kMillimetre_m;

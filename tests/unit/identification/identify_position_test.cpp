@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Feedthrough to position of a free stick, README Eq. ID-22, of a known hand.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +66,18 @@ TEST(IdentifyPositionTest, AnAngleOfTheWrongSignIsRefused) {
   for (double& x : turned.record.force_n) x = -x;
   const Identification sut = identify_position(turned, {});
   EXPECT_FALSE(sut.model);
-  EXPECT_FALSE(sut.why_not.empty());
+  EXPECT_THAT(sut.why_not, testing::HasSubstr(" mm per m/s^2, want the other sign"));
+  EXPECT_THAT(sut.why_not, testing::HasSubstr("the stick's angle"));
+  EXPECT_THAT(sut.why_not, testing::Not(testing::HasSubstr("load cell")));
+}
+
+TEST(IdentifyPositionTest, AnAngleThatStandsStillIsNamed) {
+  PeggedTrial still = trial();
+  for (double& x : still.record.force_n) x = 1e-3;
+  const Identification sut = identify_position(still, {});
+  EXPECT_FALSE(sut.model);
+  EXPECT_THAT(sut.why_not, testing::HasSubstr("the stick's angle is constant"));
+  EXPECT_THAT(sut.why_not, testing::Not(testing::HasSubstr("load cell")));
 }
 
 }  // namespace
