@@ -55,6 +55,21 @@ Page tracking(const Prompt& prompt, const Moment& moment) {
   return page;
 }
 
+// A free stick is held still where the target stands: in the centre.  It is no trial of the
+// protocol, so it has no number; what to do stays on the screen, since nothing waits before it.
+Page held(const Prompt& prompt, const Moment& moment) {
+  const Trial& trial = moment.trial;
+  Page page = tracking(prompt, moment);
+  page.corner_left = "Measurement";
+  if (moment.tick < trial.start_tick) page.heading = page.corner_left;
+  if (moment.tick >= trial.start_tick + trial.duration_ticks) return page;
+  if (prompt.kind == PromptKind::kInstructions) page.lines = prompt.lines;
+  if (page.lines.empty()) {
+    page.lines = {"Hold the stick still.", "Keep the cross in the box, which does not move."};
+  }
+  return page;
+}
+
 Page pegged(const Prompt& prompt, const Moment& moment) {
   const Trial& trial = moment.trial;
   Page page;
@@ -157,10 +172,8 @@ Page page_of(const Prompt& prompt, const Moment& moment, const Answering& answer
   const Tick over_tick = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
   const bool runs = trial.phase != TrialPhase::kIdle && moment.tick < over_tick;
   if (!moment.fresh && moment.tick >= 0) return link_lost(prompt, moment);
-  // A free stick is held still where the target stands: in the centre.
-  if (runs && (trial.phase == TrialPhase::kTracking || trial.phase == TrialPhase::kFree)) {
-    return tracking(prompt, moment);
-  }
+  if (runs && trial.phase == TrialPhase::kTracking) return tracking(prompt, moment);
+  if (runs && trial.phase == TrialPhase::kFree) return held(prompt, moment);
   if (runs && trial.phase == TrialPhase::kPegged) return pegged(prompt, moment);
   switch (prompt.kind) {
     case PromptKind::kInstructions:

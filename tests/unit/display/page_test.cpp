@@ -51,11 +51,30 @@ TEST_F(PageTest, WhileTrackingOnlyPlaceAndTimeAreShownNextToTheTask) {
   EXPECT_EQ(rest, Page{});
 }
 
-// The stick is free and held still: the target stands in the centre.
-TEST_F(PageTest, AFreeStickIsHeldOverTheTask) {
-  const Page shown = page(prompt(PromptKind::kInstructions), at(23'400, TrialPhase::kFree));
-  EXPECT_TRUE(shown.task);
-  EXPECT_EQ(shown.corner_right, "0:07");
+// The stick is free and held still: the target stands in the centre.  Nothing waits before it, so
+// what to do is on the screen from its announcement to its end; it is no trial of the protocol.
+TEST_F(PageTest, AFreeStickIsHeldOverTheTaskWithItsInstructionsInView) {
+  Prompt instructions = prompt(PromptKind::kInstructions);
+  instructions.lines = {"Hold the stick still."};
+  for (const Prompt& shows : {instructions, Prompt{}}) {
+    const Page before = page(shows, at(18'500, TrialPhase::kFree));
+    EXPECT_EQ(before.heading, "Measurement");
+    EXPECT_EQ(before.large, "2");
+    const Page shown = page(shows, at(23'400, TrialPhase::kFree));
+    EXPECT_EQ(shown.heading, "");
+    EXPECT_EQ(shown.corner_right, "0:07");
+    const Page after = page(shows, at(30'500, TrialPhase::kFree));
+    EXPECT_EQ(after.heading, "Over");
+    EXPECT_THAT(after.lines, IsEmpty());
+    for (const Page& each : {before, shown, after}) {
+      EXPECT_TRUE(each.task);
+      EXPECT_EQ(each.corner_left, "Measurement");
+    }
+    for (const Page& each : {before, shown}) {
+      ASSERT_THAT(each.lines, Not(IsEmpty()));
+      EXPECT_EQ(each.lines[0], "Hold the stick still.");
+    }
+  }
 }
 
 TEST_F(PageTest, ThreeTwoOneLeadsToTheFirstMeasuredTick) {
