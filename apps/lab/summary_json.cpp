@@ -71,6 +71,10 @@ ordered_json restoration_json(const session::SessionResult& result) {
   return restoration;
 }
 
+ordered_json number_json(const std::optional<std::int32_t>& number) {
+  return number ? ordered_json(*number) : ordered_json(nullptr);
+}
+
 // Every condition with motion but B, C and the mitigations, as the study's table has them.
 ordered_json mitigations_json(const session::SessionResult& result) {
   std::vector<const session::TrialResult*> shown = mitigated_trials(result);
@@ -82,7 +86,10 @@ ordered_json mitigations_json(const session::SessionResult& result) {
     one = {{"restored", or_null(settled_restoration_of(result, trial->label))},
            {"settled_rms_error_mm", or_null(trial->settled_rms_error_mm)},
            {"motor_n", or_null(trial->forces.motor_n)},
-           {"volitional_n", or_null(trial->forces.volitional_n)}};
+           {"volitional_n", or_null(trial->forces.volitional_n)},
+           {"models",
+            {{"force", number_json(trial->models.force)},
+             {"position", number_json(trial->models.position)}}}};
     for (const session::Metric& metric : session::kMetrics) {
       one["restoration"][metric.restoration_key] =
           or_null(restoration_of(result, metric, trial->label));

@@ -20,6 +20,32 @@ bool drives_motor(const PlannedTrial& planned) {
   return planned.cancellation || mitigation::drives_motor(planned.parts);
 }
 
+// A prediction of the feedthrough alone drives it.
+bool opposes_feedthrough(const PlannedTrial& planned) {
+  return drives_motor(planned) &&
+         std::ranges::none_of(planned.parts, [](const mitigation::Part& part) {
+           return part.kind == mitigation::PartKind::kImpedance;
+         });
+}
+
+// The position's model has no number in the motor commands.  The canceller takes the newest, and a
+// mitigation that was made before the trial keeps its own.
+TrialResult::Models models_of(const SessionRecording& session, const PlannedTrial& planned) {
+  TrialResult::Models models;
+  if (planned.cancellation || mitigation::needs_force(planned.parts)) {
+    const auto first = std::ranges::find_if(session.motor_commands, [&](const auto& command) {
+      return planned.trial.measures(command.tick()) && command.model() >= 0;
+    });
+    if (first != session.motor_commands.end()) models.force = first->model();
+  }
+  if (!mitigation::needs_position(planned.parts)) return models;
+  for (const stillhand_msgs::FeedthroughModel& model : session.models) {
+    if (!model.usable() || !model.to_position() || model.trial() >= planned.trial.number) continue;
+    models.position = model.model();
+  }
+  return models;
+}
+
 std::optional<TrialResult::Latency> latency_of(std::vector<double> late_us, double uncertainty_us) {
   if (late_us.empty()) return std::nullopt;
   std::ranges::sort(late_us);
@@ -108,7 +134,7 @@ void judge_cancellation(const SessionRecording& session, const PlannedTrial& pla
   if (known) result.cancelled_share = cancelled_share(forces.feedthrough_n, forces.motor_n);
   result.excerpt = excerpt_of(forces.feedthrough_n, forces.motor_n, record);
   if (!drives_motor(planned)) return;
-  if (known) {
+  if (known && opposes_feedthrough(planned)) {
     result.counterforce_delay_s =
         counterforce_delay_s(forces.feedthrough_n, forces.motor_n, kControlRateHz);
   }
@@ -140,6 +166,7 @@ TrialResult evaluate_trial(const SessionRecording& session, const PlannedTrial& 
   const double duration_s = static_cast<double>(planned.trial.duration_ticks) * kControlPeriod_s;
   result.metrics = identification::tracking_metrics(record, signal::reference_design(duration_s));
   result.settled_rms_error_mm = settled_rms_error_mm(record);
+  result.models = models_of(session, planned);
   judge_cancellation(session, planned, record, result);
   return result;
 }

@@ -38,8 +38,15 @@ struct TrialResult {
   /// mitigations (SU-19): what adapts may settle in it.
   double settled_rms_error_mm = 0.0;
   TrialForces forces;
-  /// How late the motor's force opposes f', counterforce_delay_s(); only where it cancels.
+  /// How late the motor's force opposes f', counterforce_delay_s(); only where a prediction of f'
+  /// is all that drives it: a shaped stick answers the stick's motion.
   std::optional<double> counterforce_delay_s;
+  /// Numbers, in the recording, of the models that the trial ran; none: it ran none of that kind.
+  struct Models {
+    std::optional<std::int32_t> force;     ///< as the motor commands name it
+    std::optional<std::int32_t> position;  ///< newest usable one of an earlier trial
+  };
+  Models models;
   /// From a sample's acquisition to the command that answers it, by their stamps; the same.  Stamps
   /// of other hosts are taken over to the experiment's clock.
   struct Latency {

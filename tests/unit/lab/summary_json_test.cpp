@@ -76,6 +76,7 @@ TEST(SummaryJsonTest, AMitigationStandsNextToTheLettersWithTheStudysShare) {
       trial(static_cast<char>(session::Condition::kDampingForce), 6.83, 0.4, 0.2);
   damped.settled_rms_error_mm = 18.0;
   damped.forces.motor_n = 6.5;
+  damped.models.force = 1000;
   result.trials.push_back(damped);
   const auto json = json_of(result, {outcome(4, damped.label)});
   EXPECT_EQ(json["conditions"].size(), 4u);
@@ -84,6 +85,8 @@ TEST(SummaryJsonTest, AMitigationStandsNextToTheLettersWithTheStudysShare) {
   EXPECT_DOUBLE_EQ(one["restored"], 0.8);
   EXPECT_DOUBLE_EQ(one["motor_n"], 6.5);
   EXPECT_DOUBLE_EQ(one["restoration"]["rms_error"], (9.62 - 6.83) / (9.62 - 4.04));
+  EXPECT_EQ(one["models"]["force"], 1000);
+  EXPECT_TRUE(one["models"]["position"].is_null());
   EXPECT_DOUBLE_EQ(json["mitigations"]["C"]["restored"], 0.75);
   EXPECT_EQ(json["trials"][0]["condition"], "damping+force");
   // What scripts know stays as it was.

@@ -7,7 +7,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/session/recorded_session.hpp"
@@ -74,6 +77,50 @@ TEST(EvaluateTest, AModelOfAFreeStickIsNotTheSessionsModel) {
   EXPECT_EQ(sut.model->model(), 0);
 }
 
+// Which model a mitigation ran: that of the force as the commands name it, that of the position as
+// the newest that came before the trial.
+TEST(EvaluateTest, TheModelsOfAMitigationAreThoseOfItsTrial) {
+  using mitigation::PartKind;
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  // Number, trial, to position, usable.
+  using Row = std::tuple<int, int, bool, bool>;
+  for (const auto& [number, trial, to_position, usable] :
+       {Row{0, 0, false, true}, Row{1, 1, true, true}, Row{2, 2, true, true},
+        Row{3, 3, true, false}, Row{4, 5, true, true}}) {
+    stillhand_msgs::FeedthroughModel model;
+    model.model(number);
+    model.trial(trial);
+    model.to_position(to_position);
+    model.usable(usable);
+    model.fit_rate_hz(50.0);
+    model.control_rate_hz(1000.0);
+    for (auto* taps : {&model.fit_numerator(), &model.fit_denominator(), &model.control_numerator(),
+                       &model.control_denominator()}) {
+      *taps = {1.0};
+    }
+    tape.file.add(topics::kFeedthroughModel, model);
+  }
+  for (const auto& [tick, number] : {std::pair{kStart - 1, 0}, {kStart, 1000}, {kEnd, 1001}}) {
+    stillhand_msgs::MotorCommand command;
+    command.tick(tick);
+    command.model(number);
+    tape.file.add(topics::kMotorCommand, command);
+  }
+  const std::string path = tape.close();
+  const auto models = [&](const std::vector<mitigation::Part>& parts, char label) {
+    TrialOutcome outcome = outcome_of(4, label, kStart);
+    outcome.planned.parts = parts;
+    return evaluate(path, {outcome}).trials.at(0).models;
+  };
+  EXPECT_EQ(models({{PartKind::kSignal}}, 's').position, 2);
+  EXPECT_EQ(models({{PartKind::kSignal}}, 's').force, std::nullopt);
+  EXPECT_EQ(models({{PartKind::kPredictedSignal}}, 'm').force, 1000);
+  EXPECT_EQ(models({{PartKind::kPredictedSignal}}, 'm').position, std::nullopt);
+  EXPECT_EQ(models({}, 'C').force, 1000);
+  EXPECT_EQ(models({{PartKind::kImpedance}}, 'd').force, std::nullopt);
+}
+
 // The sample before is held: 500 ticks of the error 0, then 20 lost ones that hold it, then 12 mm.
 TEST(EvaluateTest, ALostSampleHoldsTheOneBeforeAndIsCounted) {
   Tape tape;
@@ -127,6 +174,25 @@ void force(Tape& tape, double share, Tick late) {
   for (Tick tick = kStart; tick < kEnd; ++tick) {
     tape.truth(tick, feedthrough_n(tick), -share * feedthrough_n(tick - late));
   }
+}
+
+// The force of a damper answers the stick: how late it opposes f' means nothing.
+TEST(EvaluateTest, OnlyACounterforceHasADelay) {
+  using mitigation::PartKind;
+  Tape tape;
+  tape.whole_tracking(kStart, kEnd, 0.0);
+  force(tape, 0.8, 3);
+  const std::string path = tape.close();
+  const auto delays = [&](const std::vector<mitigation::Part>& parts) {
+    TrialOutcome outcome = outcome_of(1, 'f', kStart);
+    outcome.planned.parts = parts;
+    return evaluate(path, {outcome}).trials.at(0).counterforce_delay_s.has_value();
+  };
+  EXPECT_TRUE(delays({{PartKind::kForce}}));
+  EXPECT_TRUE(delays({{PartKind::kLmsForce}}));
+  EXPECT_FALSE(delays({{PartKind::kImpedance}}));
+  EXPECT_FALSE(delays({{PartKind::kForce}, {PartKind::kImpedance}}));
+  EXPECT_FALSE(delays({{PartKind::kSignal}}));
 }
 
 TEST(EvaluateTest, TheCancelledShareIsThePartThatTheMotorRemoves) {
