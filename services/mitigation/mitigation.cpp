@@ -84,6 +84,11 @@ double Mitigation::moved(double accel_m_s2, double theta_rad, double predicted_n
   return moved_m + lms_moved_m_;
 }
 
+double Mitigation::off(double accel_m_s2, double theta_rad, double predicted_n) noexcept {
+  const double moved_rad = moved(accel_m_s2, theta_rad, predicted_n) / lever_m_;
+  return shaping_ ? theta_rad - shaping_->step(theta_rad - moved_rad) : moved_rad;
+}
+
 void Mitigation::learn(double theta_rad, bool learns) noexcept {
   const double x_m = lever_m_ * theta_rad;
   if (lms_force_) lms_force_->learn(x_m, learns);
@@ -104,11 +109,12 @@ MitigationOutput Mitigation::step(const cancellation::CancellerInput& input) noe
     const double accel_m_s2 = of(input.sensed, Channel::kAccelY);
     const double theta_rad = within(input.sensed, Channel::kTheta);
     wanted_n += share * forces(accel_m_s2, theta_rad, within(input.sensed, Channel::kOmega));
-    const double moved_m = moved(accel_m_s2, theta_rad, cancelled.predicted_force_n);
-    const double clean_rad = theta_rad - share * moved_m / lever_m_;
-    const double command_rad = shaping_ ? shaping_->step(clean_rad) : clean_rad;
+    const double command_rad =
+        theta_rad - share * off(accel_m_s2, theta_rad, cancelled.predicted_force_n);
     if (std::isfinite(command_rad)) command_rad_ = command_rad;
     learn(theta_rad, acting && engaged_ == fade_ticks_);
+  } else if (shaping_ && engaged_ == 0) {
+    shaping_->restart();  // what it knows of the stick is old
   }
   const auto limited = envelope_.step(wanted_n, acting);
   force_n_ = limited.force_n;

@@ -49,13 +49,14 @@ struct MitigationOutput {
 /// One mitigation, or several together, README Eq. MI-6:
 ///
 ///   wanted = canceller + e (-f^_schedule + impedance - y_lms),   force = ForceEnvelope(wanted)
-///   command = shaping(theta - (G a + P force + y_lms) e / lever)
+///   command = theta - e (theta - shaping(theta - (G a + P force + y_lms) / lever))
 ///
-/// e rises from 0 to 1 over the canceller's fade_ticks while the parts may act.  The force leaves
-/// zero only while enabled, permitted and with a new, sound sample; it is zero within ramp_ticks
-/// otherwise, whatever the parts ask for.  A tick without a sound sample does not step the parts,
-/// and the command stays where it was; the force begins its ramp at once, without CC-2's bridge.
-/// One thread.  step() never allocates, locks or throws.
+/// e rises from 0 to 1 over the canceller's fade_ticks while the parts may act, so force and
+/// command are continuous wherever a part begins or ends.  The force leaves zero only while
+/// enabled, permitted and with a new, sound sample; it is zero within ramp_ticks otherwise,
+/// whatever the parts ask for.  A tick without a sound sample does not step the parts, and the
+/// command stays where it was; the force begins its ramp at once, without CC-2's bridge. One
+/// thread.  step() never allocates, locks or throws.
 class Mitigation {
  public:
   /// @throws stillhand::ConfigError when a part's settings or models are refused.
@@ -71,8 +72,10 @@ class Mitigation {
  private:
   [[nodiscard]] bool sound(const cancellation::CancellerInput& input) noexcept;
   double forces(double accel_m_s2, double theta_rad, double omega_rad_s) noexcept;
-  /// What is to be taken off the stick's displacement [m].
+  /// What is to be taken off the stick's displacement in full effect [m].
   double moved(double accel_m_s2, double theta_rad, double predicted_n) noexcept;
+  /// The same of the stick's angle [rad], the shaping included.
+  double off(double accel_m_s2, double theta_rad, double predicted_n) noexcept;
   void learn(double theta_rad, bool learns) noexcept;
 
   cancellation::Canceller canceller_;

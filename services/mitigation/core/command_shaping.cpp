@@ -29,4 +29,11 @@ CommandShaping::CommandShaping(const ShapingConfig& config) {
   section_.b1 = notch ? section_.a1 : 2.0 * section_.b0;
 }
 
+// The state of Eq. SG-3 behind an endless constant x, which both kinds give back: y = x.
+void CommandShaping::start(double theta_rad) noexcept {
+  section_.s2 = (section_.b2 - section_.a2) * theta_rad;
+  section_.s1 = (section_.b1 - section_.a1) * theta_rad + section_.s2;
+  started_ = true;
+}
+
 }  // namespace stillhand::mitigation

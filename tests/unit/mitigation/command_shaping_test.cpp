@@ -52,6 +52,19 @@ TEST(CommandShapingTest, LeavesASteadyCommandAlone) {
   }
 }
 
+// As if the stick had always been there.  Rounding: 1e-16 of the coefficients, which are up to 2,
+// and the slowest filter keeps it for some 1e5 ticks.
+TEST(CommandShapingTest, BeginsWithTheCommandAsItIs) {
+  for (const Kind kind : {Kind::kLowPass, Kind::kNotch}) {
+    for (const double f : {0.01, 1.0, 100.0}) {
+      CommandShaping sut({kind, f, 0.7});
+      for (int n = 0; n < 1000; ++n) ASSERT_NEAR(sut.step(0.3), 0.3, 1e-9);
+      sut.restart();
+      ASSERT_NEAR(sut.step(-0.2), -0.2, 1e-15);
+    }
+  }
+}
+
 TEST(CommandShapingTest, RefusesAFilterOutOfRange) {
   EXPECT_THROW(CommandShaping({Kind::kLowPass, 0.0, 0.7}), ConfigError);
   EXPECT_THROW(CommandShaping({Kind::kLowPass, 200.0, 0.7}), ConfigError);

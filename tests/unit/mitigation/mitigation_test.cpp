@@ -254,6 +254,45 @@ TEST(MitigationTest, TheWeightsOfAnAdaptiveForceComeOutWithIt) {
   EXPECT_NE(weights[1], 0.0);
 }
 
+// command = (1 - e) theta + e shaped, Eq. MI-6: a tick changes it by what theta and the filter
+// change it, and by e's own step, 1/250 up and 7/250 down, of what is taken off.  A filter of 1 Hz
+// makes of a stick that moves with 0.4 Hz no faster one; a factor of two is left for its
+// transients.
+TEST(MitigationTest, AFilterOnTheCommandBeginsAndEndsWithoutAJump) {
+  constexpr double kTheta_hz = 0.4;
+  const auto theta = [](Tick n) {
+    return 0.1 + 0.1 * std::sin(kTurn * kTheta_hz * 1e-3 * static_cast<double>(n));
+  };
+  constexpr double kMost_rad_tick = 0.1 * kTurn * kTheta_hz * 1e-3;
+  for (const auto kind : {ShapingConfig::Kind::kLowPass, ShapingConfig::Kind::kNotch}) {
+    Recipe recipe;
+    recipe.shaping = ShapingConfig{kind, 1.0, 0.7};
+    // The trial has begun, begins later, or begins again behind samples that are unsound.
+    for (const Tick begins : {1, 700}) {
+      Mitigation sut(recipe);
+      double last_rad = theta(0);
+      double most_off_rad = 0.0;
+      for (Tick n = 1; n < 9000; ++n) {
+        auto given = input(n, 0.0, theta(n), 0.0);
+        given.enabled = n >= begins && n < 8000;
+        if (n >= 4000 && n < 4400) given.sensed_flags = kInputStale;
+        const double command_rad = sut.step(given).command_rad;
+        most_off_rad = std::max(most_off_rad, std::abs(theta(n) - command_rad));
+        if (n < 4000 || n > 4400) {
+          ASSERT_LE(std::abs(command_rad - last_rad),
+                    2.0 * kMost_rad_tick + 7.0 / 250.0 * most_off_rad)
+              << "tick " << n << " of a trial from " << begins;
+        }
+        if (n > 8040) {
+          ASSERT_EQ(command_rad, theta(n));
+        }
+        last_rad = command_rad;
+      }
+      EXPECT_GT(most_off_rad, 0.03);
+    }
+  }
+}
+
 TEST(MitigationTest, NothingDoesNothing) {
   const Left sut = left_of({}, admittance::mean_arm());
   EXPECT_DOUBLE_EQ(sut.stick, 1.0);
