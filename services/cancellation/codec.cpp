@@ -158,7 +158,7 @@ stillhand_msgs::MotorCommand to_idl(const mitigation::MitigationOutput& output,
   message.gain_weight(output.weights[0]);
   message.phase_weight(output.weights[1]);
   message.flags(output.flags);
-  message.taken_off_rad(sensed.theta_rad() - output.command_rad);
+  message.taken_off_rad(output.taken_off_rad);
   message.mitigated_trial(static_cast<std::int32_t>(trial));
   return message;
 }

@@ -100,7 +100,7 @@ MitigationOutput Mitigation::step(const cancellation::CancellerInput& input) noe
   asked.enabled = input.enabled && !predicted_signal_;
   const cancellation::CancellerOutput cancelled = canceller_.step(asked);
   const bool good = sound(input);
-  const bool acting = input.enabled && input.permitted && good;
+  const bool acting = input.enabled && input.permitted && good && finite_;
   engaged_ =
       acting ? std::min(engaged_ + 1, fade_ticks_) : std::max<std::int64_t>(engaged_ - fall_, 0);
   const double share = static_cast<double>(engaged_) / static_cast<double>(fade_ticks_);
@@ -109,16 +109,20 @@ MitigationOutput Mitigation::step(const cancellation::CancellerInput& input) noe
     const double accel_m_s2 = of(input.sensed, Channel::kAccelY);
     const double theta_rad = within(input.sensed, Channel::kTheta);
     wanted_n += share * forces(accel_m_s2, theta_rad, within(input.sensed, Channel::kOmega));
-    const double command_rad =
-        theta_rad - share * off(accel_m_s2, theta_rad, cancelled.predicted_force_n);
-    if (std::isfinite(command_rad)) command_rad_ = command_rad;
+    const double off_rad = off(accel_m_s2, theta_rad, cancelled.predicted_force_n);
+    finite_ = std::isfinite(off_rad);
+    if (finite_) off_rad_ = off_rad;
     learn(theta_rad, acting && engaged_ == fade_ticks_);
   } else if (shaping_ && engaged_ == 0) {
     shaping_->restart();  // what it knows of the stick is old
   }
+  const double stick_rad = of(input.sensed, Channel::kTheta);
+  if (std::isfinite(stick_rad)) theta_rad_ = stick_rad;
+  const double taken_off_rad = share * off_rad_;
   const auto limited = envelope_.step(wanted_n, acting);
   force_n_ = limited.force_n;
-  return {limited.force_n, command_rad_, cancelled.flags | limited.flags, cancelled.weights};
+  return {limited.force_n, theta_rad_ - taken_off_rad, taken_off_rad,
+          cancelled.flags | limited.flags, cancelled.weights};
 }
 
 }  // namespace stillhand::mitigation

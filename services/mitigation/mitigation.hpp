@@ -40,8 +40,9 @@ struct Recipe {
 };
 
 struct MitigationOutput {
-  double force_n;      ///< motor force wanted at the hand, + right, within the limits
-  double command_rad;  ///< what the machine gets in place of the stick's angle
+  double force_n;        ///< motor force wanted at the hand, + right, within the limits
+  double command_rad;    ///< what the machine gets in place of the stick's angle; always finite
+  double taken_off_rad;  ///< off the stick's angle; exactly 0 without a part on the command
   Flags flags;
   cancellation::AdaptiveGain::Pair weights = {1.0, 0.0};  ///< of `force`, Eq. CC-10
 };
@@ -54,9 +55,11 @@ struct MitigationOutput {
 /// e rises from 0 to 1 over the canceller's fade_ticks while the parts may act, so force and
 /// command are continuous wherever a part begins or ends.  The force leaves zero only while
 /// enabled, permitted and with a new, sound sample; it is zero within ramp_ticks otherwise,
-/// whatever the parts ask for.  A tick without a sound sample does not step the parts, and the
-/// command stays where it was; the force begins its ramp at once, without CC-2's bridge. One
-/// thread.  step() never allocates, locks or throws.
+/// whatever the parts ask for.  A tick without a sound sample does not step the parts: the
+/// force begins its ramp at once, without CC-2's bridge, and what the parts take off the command is
+/// held while e falls, so it is zero within ramp_ticks too.  So it is where what they ask for is
+/// not finite.
+/// One thread.  step() never allocates, locks or throws.
 class Mitigation {
  public:
   /// @throws stillhand::ConfigError when a part's settings or models are refused.
@@ -95,7 +98,9 @@ class Mitigation {
   std::int64_t engaged_ = 0;  ///< ticks that the parts have been acting, up to fade_ticks
   double force_n_ = 0.0;      ///< of the tick before
   double lms_moved_m_ = 0.0;  ///< y of the signal form at this tick
-  double command_rad_ = 0.0;
+  double theta_rad_ = 0.0;    ///< the newest finite one
+  double off_rad_ = 0.0;      ///< taken off in full effect, the newest finite one
+  bool finite_ = true;        ///< what the parts ask for is
   Tick last_tick_ = -1;
 };
 

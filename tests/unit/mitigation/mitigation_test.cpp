@@ -293,6 +293,90 @@ TEST(MitigationTest, AFilterOnTheCommandBeginsAndEndsWithoutAJump) {
   }
 }
 
+// Each way in which a sample is unsound, with the stick moving on.
+std::vector<std::pair<const char*, std::function<void(cancellation::CancellerInput&)>>> unsound() {
+  return {{"stale", [](auto& in) { in.sensed_flags = kInputStale; }},
+          {"fault", [](auto& in) { in.sensed_flags = kFault; }},
+          {"huge", [](auto& in) { in.sensed[1] = 1000.0; }},
+          {"accel nan", [](auto& in) { in.sensed[1] = NAN; }},
+          {"stuck", [](auto& in) { in.tick = 1; }}};
+}
+
+// The cursor must not freeze because of a part that has nothing to do with it.
+TEST(MitigationTest, WithoutAPartOnTheCommandTheCommandIsTheStickToTheBit) {
+  const auto theta = [](Tick n) { return 0.1 * std::sin(kTurn * 0.4e-3 * static_cast<double>(n)); };
+  Recipe all = everything();
+  all.signal.reset();
+  all.lms_signal.reset();
+  all.shaping.reset();
+  std::vector<Recipe> only_forces = recipes();
+  only_forces.front() = all;
+  for (const Recipe& recipe : only_forces) {
+    for (const auto& [name, spoil] : unsound()) {
+      Mitigation sut(recipe);
+      for (Tick n = 1; n < 2000; ++n) {
+        auto given =
+            input(n, 2.0 * std::sin(kTurn * 1.3e-3 * static_cast<double>(n)), theta(n), 0.0);
+        if (n > 1000 && (n < 1010 || n > 1500)) spoil(given);
+        const MitigationOutput out = sut.step(given);
+        ASSERT_EQ(out.command_rad, theta(n)) << name << ", tick " << n;
+        ASSERT_EQ(out.taken_off_rad, 0.0) << name << ", tick " << n;
+      }
+    }
+    // Beyond its full scale as well; what is no number is no angle.
+    Mitigation sut(recipe);
+    EXPECT_EQ(sut.step(input(1, 0.0, 50.0, 0.0)).command_rad, 50.0);
+    EXPECT_EQ(sut.step(input(2, 0.0, NAN, 0.0)).command_rad, 50.0);
+  }
+}
+
+// G a of 6 mm, held while e falls by 7/250 a tick: so much, and no more, is the stick's own motion.
+TEST(MitigationTest, WhatIsTakenOffIsHeldInAnUnsoundSampleAndFadesIfItLasts) {
+  constexpr double kPosition_s2 = -0.003;
+  constexpr Tick kLost = 2000;
+  const auto theta = [](Tick n) { return 0.1 * std::sin(kTurn * 0.4e-3 * static_cast<double>(n)); };
+  const auto off = [](double share) { return share * kPosition_s2 * 2.0 / kLever_m; };
+  const std::int64_t ramp = signal::ForceLimits{}.ramp_ticks;
+  Recipe recipe;
+  recipe.signal = SignalConfig{{1000.0, {kPosition_s2}, {1.0}}, {}, {}};
+  for (const auto& [name, spoil] : unsound()) {
+    for (const Tick lasts : {Tick{1}, Tick{10}, ramp, Tick{500}}) {
+      Mitigation sut(recipe);
+      for (Tick n = 1; n < kLost + 2000; ++n) {
+        auto given = input(n, 2.0, theta(n), 0.0);
+        if (n >= kLost && n < kLost + lasts) spoil(given);
+        const MitigationOutput out = sut.step(given);
+        ASSERT_EQ(out.command_rad, theta(n) - out.taken_off_rad);
+        if (n < 250) continue;
+        const Tick lost = std::clamp<Tick>(n - kLost + 1, 0, lasts);
+        const Tick back = std::max<Tick>(n - kLost + 1 - lasts, 0);
+        const Tick engaged = std::min<Tick>(std::max<Tick>(250 - 7 * lost, 0) + back, 250);
+        ASSERT_NEAR(out.taken_off_rad, off(static_cast<double>(engaged) / 250.0), 1e-12)
+            << name << ", tick " << n << ", lost " << lasts;
+        if (lost >= ramp && back == 0) {
+          ASSERT_EQ(out.taken_off_rad, 0.0);
+        }
+      }
+    }
+  }
+}
+
+// A model of 1e307 overflows at 3 m/s^2: what was taken off goes to zero and stays there.
+TEST(MitigationTest, WhatIsNotFiniteIsNotTakenOff) {
+  Recipe recipe;
+  recipe.signal = SignalConfig{{1000.0, {1e307}, {1.0}}, {}, {}};
+  Mitigation sut(recipe);
+  for (Tick n = 1; n < 500; ++n) sut.step(input(n, 1e-307, 0.2, 0.0));
+  ASSERT_NE(sut.step(input(500, 1e-307, 0.2, 0.0)).taken_off_rad, 0.0);
+  for (Tick n = 501; n < 1000; ++n) {
+    const MitigationOutput out = sut.step(input(n, 3.0, 0.2, 0.0));
+    ASSERT_TRUE(std::isfinite(out.command_rad));
+    if (n > 541) {
+      ASSERT_EQ(out.command_rad, 0.2);
+    }
+  }
+}
+
 TEST(MitigationTest, NothingDoesNothing) {
   const Left sut = left_of({}, admittance::mean_arm());
   EXPECT_DOUBLE_EQ(sut.stick, 1.0);
