@@ -51,12 +51,14 @@ Shell::Shell(runtime::Service& service, const Config& config,
 }
 
 void Shell::note_when_armed() {
-  switch (arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for(),
-                            mitigated_ != nullptr ? mitigated_->trial : 0)) {
+  const Readiness readiness =
+      arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for(),
+                        mitigated_ != nullptr ? mitigated_->assignment : 0);
+  // Not armed: nor is it for a trial of the same number from before.
+  service_.note_armed(readiness == Readiness::kArmed ? service_.trial().number : -1);
+  switch (readiness) {
     case Readiness::kUnassigned:
-      return;
     case Readiness::kArmed:
-      service_.note_armed(service_.trial().number);
       return;
     case Readiness::kNoModel:
       service_.note_event(stillhand_msgs::EVENT_NOTE, why_no_model_.load());
@@ -75,6 +77,7 @@ void Shell::on_assignment(const stillhand_msgs::TrialAssignment& message) {
     const std::lock_guard lock(mutex_);
     wanted_ = parts_of(message);
     wanted_trial_ = wanted_.empty() ? 0 : message.trial();
+    wanted_assignment_ = arming_.newest();
   }
   prepare_mitigation([](const auto&) { return true; });
   note_when_armed();
@@ -90,16 +93,18 @@ std::unique_ptr<Shell::Mitigated> Shell::make_mitigation() {
   std::vector<mitigation::Part> parts;
   mitigation::SessionModels models;
   std::int64_t trial = 0;
+  std::int64_t assignment = 0;
   {
     const std::lock_guard lock(mutex_);
     parts = wanted_;
     models = models_;
     trial = wanted_trial_;
+    assignment = wanted_assignment_;
   }
   if (trial == 0) return nullptr;
   try {
     return std::make_unique<Mitigated>(
-        Mitigated{mitigation::Mitigation(recipe_of(parts, models, config_)), trial});
+        Mitigated{mitigation::Mitigation(recipe_of(parts, models, config_)), trial, assignment});
   } catch (const ConfigError& error) {
     service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
     return nullptr;  // the trial is never armed, and so never begins
@@ -108,7 +113,10 @@ std::unique_ptr<Shell::Mitigated> Shell::make_mitigation() {
 
 void Shell::follow_mitigation(Tick tick) {
   // The one before goes with the next handover: not while its force acts, nor within its trial.
-  if (mitigated_ != nullptr && (mitigated_->force_n != 0.0 || arming_.mitigates(tick))) return;
+  if (mitigated_ != nullptr &&
+      (mitigated_->acts || arming_.mitigates(tick, mitigated_->assignment))) {
+    return;
+  }
   Mitigated* const newest = mitigations_.current();
   if (newest == mitigated_) return;
   mitigated_ = newest;
@@ -195,12 +203,14 @@ stillhand_msgs::MotorCommand Shell::answer(const stillhand_msgs::Sensed& sensed,
   }
   const CancellerOutput output = core_.step(input);
   follow_mitigation(tick);
-  const bool runs = mitigated_ != nullptr &&
-                    (mitigated_->trial == arming_.mitigated_trial() || mitigated_->force_n != 0.0);
+  // From when it is taken until another assignment comes, so that it settles before the trial.
+  const bool runs =
+      mitigated_ != nullptr && (mitigated_->assignment == arming_.newest() || mitigated_->acts);
   if (!runs) return to_idl(output, input, sensed, schedule_.in_use());
-  const CancellerInput asked = from_idl(sensed, arming_.mitigates(tick), permitted);
+  const CancellerInput asked =
+      from_idl(sensed, arming_.mitigates(tick, mitigated_->assignment), permitted);
   const mitigation::MitigationOutput done = mitigated_->core.step(asked);
-  mitigated_->force_n = done.force_n;
+  mitigated_->acts = done.force_n != 0.0 || done.taken_off_rad != 0.0;
   return to_idl(done, output, asked, sensed, schedule_.in_use(), mitigated_->trial);
 }
 

@@ -51,7 +51,8 @@ class Shell {
   struct Mitigated {
     mitigation::Mitigation core;
     std::int64_t trial;
-    double force_n = 0.0;  ///< of the newest answer
+    std::int64_t assignment;  ///< number of the one that it was made of
+    bool acts = false;        ///< the newest answer has a force, or takes something off
   };
 
   void on_assignment(const stillhand_msgs::TrialAssignment& message);
@@ -89,6 +90,7 @@ class Shell {
   mitigation::SessionModels models_;      ///< sound ones, the newest
   std::vector<mitigation::Part> wanted_;  ///< of the newest assignment
   std::int64_t wanted_trial_ = 0;         ///< 0: it wants no mitigation
+  std::int64_t wanted_assignment_ = 0;    ///< its number
   runtime::Handover<Mitigated> mitigations_;
   runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };

@@ -94,6 +94,13 @@ class MitigationProcessTest : public testing::Test {
                                                      const std::lock_guard lock(mutex_);
                                                      tracking_.push_back(message);
                                                    });
+    of("recorder")
+        .subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus,
+                                                  [this](const auto& message, const auto&) {
+                                                    if (message.service() != "cancellation") return;
+                                                    const std::lock_guard lock(mutex_);
+                                                    armed_ = message.armed_trial();
+                                                  });
     for (auto& [name, stand] : stands_) stand->bus.start();
   }
   ~MitigationProcessTest() override {
@@ -150,18 +157,20 @@ class MitigationProcessTest : public testing::Test {
     parts_.emplace_back().kind(kind);
     parts_.back().values(values);
   }
-  void begin_trial() {
+  void begin_trial(std::int32_t trial = kTrial, Tick duration_ticks = 10'000,
+                   bool cancellation = false) {
     stillhand_msgs::TrialAssignment assignment;
-    assignment.trial(kTrial);
-    assignment.mitigation("test");
+    assignment.trial(trial);
+    assignment.cancellation(cancellation);
+    if (!parts_.empty()) assignment.mitigation("test");
     assignment.parts(parts_);
     assignment_.write(assignment);
     stillhand_msgs::TrialControl control;
     control.session(stillhand_msgs::SESSION_RUNNING);
-    control.trial(kTrial);
+    control.trial(trial);
     control.phase(stillhand_msgs::PHASE_TRACKING);
     control.start_tick(tick_ + 1000);
-    control.duration_ticks(10'000);
+    control.duration_ticks(duration_ticks);
     control.ramp_ticks(500);
     control_.write(control);
   }
@@ -202,6 +211,20 @@ class MitigationProcessTest : public testing::Test {
     return compared;
   }
 
+  /// Newest trial for which cancellation says that it is prepared.
+  std::int64_t armed() {
+    const std::lock_guard lock(mutex_);
+    return armed_;
+  }
+  /// Commands of the ticks from `from` on.
+  std::vector<stillhand_msgs::MotorCommand> commands_from(Tick from) {
+    const std::lock_guard lock(mutex_);
+    std::vector<stillhand_msgs::MotorCommand> out;
+    std::ranges::copy_if(commands_, std::back_inserter(out),
+                         [from](const auto& command) { return command.tick() >= from; });
+    return out;
+  }
+
   stillhand_msgs::MotorCommand newest_command() {
     const std::lock_guard lock(mutex_);
     return commands_.empty() ? stillhand_msgs::MotorCommand{} : commands_.back();
@@ -222,6 +245,7 @@ class MitigationProcessTest : public testing::Test {
   std::vector<stillhand_msgs::MotorCommand> commands_;
   std::vector<stillhand_msgs::TrackingSample> tracking_;
   std::map<Tick, stillhand_msgs::Sensed> samples_;
+  std::int64_t armed_ = -1;
   Tick tick_ = 0;
   std::int64_t due_ns_ = runtime::monotonic_ns();  // of the next sample
   support::Child cancellation_{words_of("cancellation"), output_of("cancellation")};
@@ -320,6 +344,28 @@ TEST_F(MitigationProcessTest, APartWithoutItsModelLeavesTheTrialUnmitigated) {
     ASSERT_EQ(command.mitigated_trial(), 0);
     ASSERT_EQ(command.force_n(), 0.0);
     ASSERT_EQ(command.taken_off_rad(), 0.0);
+  }
+}
+
+// A trial's number comes again with parts that are refused: the spring of before stays off.
+TEST_F(MitigationProcessTest, AReusedTrialNumberDoesNotRunTheMitigationOfBefore) {
+  begin_session();
+  add_part(stillhand_msgs::PART_IMPEDANCE, {400.0, 0.0, 0.0});
+  begin_trial(kTrial, 500);
+  ASSERT_TRUE(step_until([this] { return std::abs(newest_command().force_n()) > 0.5; }, 10'000));
+  EXPECT_EQ(armed(), kTrial);
+  ASSERT_TRUE(step_until(
+      [this] { return !newest_command().enabled() && newest_command().force_n() == 0.0; }, 10'000));
+  add_part(stillhand_msgs::PART_SIGNAL);  // whose model never came
+  begin_trial(kTrial, 500);
+  ASSERT_TRUE(step_until([this] { return newest_command().mitigated_trial() == 0; }, 1000));
+  const Tick from = tick_;
+  for (int n = 0; n < 2500; ++n) step();
+  EXPECT_EQ(armed(), -1);
+  for (const auto& command : commands_from(from)) {
+    ASSERT_EQ(command.mitigated_trial(), 0);
+    ASSERT_FALSE(command.enabled());
+    ASSERT_EQ(command.force_n(), 0.0);
   }
 }
 

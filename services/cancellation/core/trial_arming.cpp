@@ -6,10 +6,7 @@ namespace stillhand::cancellation {
 Readiness TrialArming::readiness(bool has_model, std::optional<Tick> next_model,
                                  std::int64_t prepared) const noexcept {
   if (!assigned()) return Readiness::kUnassigned;
-  if (assignment_->mitigation) {
-    return trial_.number > 0 && prepared == trial_.number ? Readiness::kArmed
-                                                          : Readiness::kNoMitigation;
-  }
+  if (assignment_->mitigation) return mitigation(prepared);
   if (!assignment_->cancellation || has_model) return Readiness::kArmed;
   if (!next_model) return Readiness::kNoModel;
   return *next_model <= trial_.start_tick ? Readiness::kArmed : Readiness::kModelTooLate;

@@ -33,11 +33,17 @@ class TrialArming {
  public:
   /// @param trial  sound, see Trial::sound()
   void announce(const Trial& trial) noexcept { trial_ = trial; }
-  void assign(const Assignment& assignment) noexcept { assignment_ = assignment; }
+  /// It replaces the one before, of whatever trial.
+  void assign(const Assignment& assignment) noexcept {
+    assignment_ = assignment;
+    ++assignments_;
+  }
+  /// Number of the newest assignment, from 1 on: a trial's own number can come again.
+  [[nodiscard]] std::int64_t newest() const noexcept { return assignments_; }
 
   /// @param has_model   a model is in use
   /// @param next_model  first tick of a model that is ready but not in use, if there is one
-  /// @param prepared    trial whose mitigation is prepared; 0: none
+  /// @param prepared    number of the assignment whose mitigation is prepared; 0: none
   [[nodiscard]] Readiness readiness(bool has_model, std::optional<Tick> next_model,
                                     std::int64_t prepared = 0) const noexcept;
 
@@ -45,16 +51,18 @@ class TrialArming {
   [[nodiscard]] bool cancels(Tick tick) const noexcept {
     return assigned() && assignment_->cancellation && tracks(tick);
   }
-  /// The same for a mitigation.
-  [[nodiscard]] bool mitigates(Tick tick) const noexcept {
-    return mitigated_trial() != 0 && tracks(tick);
-  }
-  /// The newest trial if it asks for a mitigation, else 0: trial 0 is a session's pegged one.
-  [[nodiscard]] std::int64_t mitigated_trial() const noexcept {
-    return assigned() && assignment_->mitigation ? trial_.number : 0;
+  /// The same for a mitigation, and only with the one that is prepared for the trial.
+  [[nodiscard]] bool mitigates(Tick tick, std::int64_t prepared) const noexcept {
+    return assigned() && assignment_->mitigation && mitigation(prepared) == Readiness::kArmed &&
+           tracks(tick);
   }
 
  private:
+  /// Of a trial that asks for a mitigation.  Trial 0 is a session's pegged one.
+  [[nodiscard]] Readiness mitigation(std::int64_t prepared) const noexcept {
+    return trial_.number > 0 && prepared == assignments_ ? Readiness::kArmed
+                                                         : Readiness::kNoMitigation;
+  }
   [[nodiscard]] bool tracks(Tick tick) const noexcept {
     return trial_.phase == TrialPhase::kTracking && trial_.covers(tick);
   }
@@ -64,6 +72,7 @@ class TrialArming {
 
   Trial trial_;
   std::optional<Assignment> assignment_;
+  std::int64_t assignments_ = 0;
 };
 
 }  // namespace stillhand::cancellation
