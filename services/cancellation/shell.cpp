@@ -53,7 +53,7 @@ Shell::Shell(runtime::Service& service, const Config& config,
 void Shell::note_when_armed() {
   const Readiness readiness =
       arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for(),
-                        mitigated_ != nullptr ? mitigated_->assignment : 0);
+                        mitigated_ != nullptr ? mitigated_->prepared : PreparedMitigation{});
   // Not armed: nor is it for a trial of the same number from before.
   service_.note_armed(readiness == Readiness::kArmed ? service_.trial().number : -1);
   switch (readiness) {
@@ -65,6 +65,10 @@ void Shell::note_when_armed() {
       return;
     case Readiness::kModelTooLate:
       service_.note_event(stillhand_msgs::EVENT_NOTE, "the model is for later than the trial");
+      return;
+    case Readiness::kMitigationTooLate:
+      service_.note_event(stillhand_msgs::EVENT_NOTE,
+                          "the mitigation cannot settle before the trial");
       return;
     case Readiness::kNoMitigation:  // armed when it is prepared
       return;
@@ -104,7 +108,7 @@ std::unique_ptr<Shell::Mitigated> Shell::make_mitigation() {
   if (trial == 0) return nullptr;
   try {
     return std::make_unique<Mitigated>(
-        Mitigated{mitigation::Mitigation(recipe_of(parts, models, config_)), trial, assignment});
+        Mitigated{mitigation::Mitigation(recipe_of(parts, models, config_)), trial, {assignment}});
   } catch (const ConfigError& error) {
     service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
     return nullptr;  // the trial is never armed, and so never begins
@@ -114,12 +118,13 @@ std::unique_ptr<Shell::Mitigated> Shell::make_mitigation() {
 void Shell::follow_mitigation(Tick tick) {
   // The one before goes with the next handover: not while its force acts, nor within its trial.
   if (mitigated_ != nullptr &&
-      (mitigated_->acts || arming_.mitigates(tick, mitigated_->assignment))) {
+      (mitigated_->acts || arming_.mitigates(tick, mitigated_->prepared))) {
     return;
   }
   Mitigated* const newest = mitigations_.current();
   if (newest == mitigated_) return;
   mitigated_ = newest;
+  mitigated_->prepared.in_effect = tick + mitigated_->core.settle_ticks() + config_.fade_ticks;
   note_when_armed();
 }
 
@@ -204,11 +209,11 @@ stillhand_msgs::MotorCommand Shell::answer(const stillhand_msgs::Sensed& sensed,
   const CancellerOutput output = core_.step(input);
   follow_mitigation(tick);
   // From when it is taken until another assignment comes, so that it settles before the trial.
-  const bool runs =
-      mitigated_ != nullptr && (mitigated_->assignment == arming_.newest() || mitigated_->acts);
+  const bool runs = mitigated_ != nullptr &&
+                    (mitigated_->prepared.assignment == arming_.newest() || mitigated_->acts);
   if (!runs) return to_idl(output, input, sensed, schedule_.in_use());
   const CancellerInput asked =
-      from_idl(sensed, arming_.mitigates(tick, mitigated_->assignment), permitted);
+      from_idl(sensed, arming_.mitigates(tick, mitigated_->prepared), permitted);
   const mitigation::MitigationOutput done = mitigated_->core.step(asked);
   mitigated_->acts = done.force_n != 0.0 || done.taken_off_rad != 0.0;
   return to_idl(done, output, asked, sensed, schedule_.in_use(), mitigated_->trial);

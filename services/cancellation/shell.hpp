@@ -51,8 +51,8 @@ class Shell {
   struct Mitigated {
     mitigation::Mitigation core;
     std::int64_t trial;
-    std::int64_t assignment;  ///< number of the one that it was made of
-    bool acts = false;        ///< the newest answer has a force, or takes something off
+    PreparedMitigation prepared;
+    bool acts = false;  ///< the newest answer has a force, or takes something off
   };
 
   void on_assignment(const stillhand_msgs::TrialAssignment& message);

@@ -36,17 +36,21 @@ Mitigation::Mitigation(const Recipe& recipe)
     throw ConfigError("mitigation.lever_m", std::to_string(lever_m_), "above 0");
   }
   if (recipe.force) {
-    const cancellation::Refusal refusal = canceller_.load_model(*recipe.force);
-    if (refusal != cancellation::Refusal::kNone) {
-      throw ConfigError("mitigation.force", std::string(cancellation::describe(refusal)),
+    const cancellation::Preparation made = prepare(*recipe.force, bounds(recipe.canceller));
+    if (made.refusal != cancellation::Refusal::kNone) {
+      throw ConfigError("mitigation.force", std::string(cancellation::describe(made.refusal)),
                         "a model that the canceller accepts");
     }
+    canceller_.take(made.model);
+    settle_ticks_ = made.model.filter.settle_ticks();
   }
   if (recipe.schedule) schedule_.emplace(*recipe.schedule);
   if (recipe.impedance) impedance_.emplace(*recipe.impedance);
   if (recipe.lms_force) lms_force_.emplace(*recipe.lms_force);
   if (recipe.signal) {
     signal_.emplace(recipe.signal->feedthrough_to_position);
+    settle_ticks_ =
+        std::max(settle_ticks_, cancellation::settle_ticks(recipe.signal->feedthrough_to_position));
     if (recipe.signal->moved_by_motor) {
       moved_by_motor_.emplace(*recipe.signal->moved_by_motor, recipe.signal->stick);
     }

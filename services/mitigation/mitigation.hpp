@@ -71,6 +71,9 @@ class Mitigation {
   [[nodiscard]] double schedule_weight() const noexcept {
     return schedule_ ? schedule_->weight() : 0.0;
   }
+  /// From the first step until the models have settled [ticks], CC-4; 0 without a model.  Nothing
+  /// else of a mitigation runs before: what it learns, it learns while it acts.
+  [[nodiscard]] std::int64_t settle_ticks() const noexcept { return settle_ticks_; }
 
  private:
   [[nodiscard]] bool sound(const cancellation::CancellerInput& input) noexcept;
@@ -91,6 +94,7 @@ class Mitigation {
   std::optional<cancellation::CommandFilter> predicted_signal_;
   std::optional<LmsFilter> lms_signal_;
   std::optional<CommandShaping> shaping_;
+  std::int64_t settle_ticks_ = 0;
   double lever_m_;
   double max_acceleration_m_s2_;
   std::int64_t fade_ticks_;

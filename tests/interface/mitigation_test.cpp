@@ -101,6 +101,13 @@ class MitigationProcessTest : public testing::Test {
                                                     const std::lock_guard lock(mutex_);
                                                     armed_ = message.armed_trial();
                                                   });
+    of("recorder")
+        .subscribe<stillhand_msgs::Event>(topics::kEvent, [this](const auto& message, const auto&) {
+          const bool note = message.kind() == stillhand_msgs::EVENT_NOTE;
+          if (!note || message.source() != "cancellation") return;
+          const std::lock_guard lock(mutex_);
+          notes_ += message.text();
+        });
     for (auto& [name, stand] : stands_) stand->bus.start();
   }
   ~MitigationProcessTest() override {
@@ -144,13 +151,14 @@ class MitigationProcessTest : public testing::Test {
     return false;
   }
 
-  void publish_model(bool to_position, double gain) {
+  /// @param pole  of a lag in front of it; 0: none
+  void publish_model(bool to_position, double gain, double pole = 0.0) {
     stillhand_msgs::FeedthroughModel model;
     model.to_position(to_position);
     model.usable(true);
     model.control_rate_hz(1000.0);
-    model.control_numerator({gain});
-    model.control_denominator({1.0});
+    model.control_numerator({gain * (1.0 - pole), 0.0});
+    model.control_denominator({1.0, -pole});
     model_.write(model);
   }
   void add_part(stillhand_msgs::MitigationPartKind kind, const std::vector<double>& values = {}) {
@@ -216,6 +224,11 @@ class MitigationProcessTest : public testing::Test {
     const std::lock_guard lock(mutex_);
     return armed_;
   }
+  /// What cancellation noted, one after the other.
+  std::string notes() {
+    const std::lock_guard lock(mutex_);
+    return notes_;
+  }
   /// Commands of the ticks from `from` on.
   std::vector<stillhand_msgs::MotorCommand> commands_from(Tick from) {
     const std::lock_guard lock(mutex_);
@@ -246,6 +259,7 @@ class MitigationProcessTest : public testing::Test {
   std::vector<stillhand_msgs::TrackingSample> tracking_;
   std::map<Tick, stillhand_msgs::Sensed> samples_;
   std::int64_t armed_ = -1;
+  std::string notes_;
   Tick tick_ = 0;
   std::int64_t due_ns_ = runtime::monotonic_ns();  // of the next sample
   support::Child cancellation_{words_of("cancellation"), output_of("cancellation")};
@@ -343,6 +357,22 @@ TEST_F(MitigationProcessTest, APartWithoutItsModelLeavesTheTrialUnmitigated) {
   for (const auto& command : commands_) {
     ASSERT_EQ(command.mitigated_trial(), 0);
     ASSERT_EQ(command.force_n(), 0.0);
+    ASSERT_EQ(command.taken_off_rad(), 0.0);
+  }
+}
+
+// A pole of 0.995 settles for 919 ticks; with a fade of 250 that is more than the 1000 there are.
+TEST_F(MitigationProcessTest, AModelThatCannotSettleBeforeTheTrialLeavesItUnmitigated) {
+  begin_session();
+  publish_model(true, kPosition_s2, 0.995);
+  add_part(stillhand_msgs::PART_SIGNAL);
+  begin_trial(kTrial, 1000);
+  ASSERT_TRUE(step_until([this] { return newest_command().mitigated_trial() == kTrial; }, 1000));
+  for (int n = 0; n < 2500; ++n) step();
+  EXPECT_EQ(armed(), -1);
+  EXPECT_EQ(notes(), "the mitigation cannot settle before the trial");
+  for (const auto& command : commands_from(0)) {
+    ASSERT_FALSE(command.enabled());
     ASSERT_EQ(command.taken_off_rad(), 0.0);
   }
 }

@@ -183,6 +183,10 @@ std::string_view describe(Refusal refusal) noexcept {
   return "unknown";
 }
 
+std::int64_t settle_ticks(const signal::DifferenceModel& model) {
+  return settle_samples(signal::poles(model));
+}
+
 ModelCheck check_model(const ControlModel& model, const ModelBounds& bounds) noexcept {
   try {
     return checked(model, bounds);

@@ -47,6 +47,10 @@ struct ModelCheck {
   std::int64_t settle_ticks;  ///< slowest pole's time to 1 %; 0 when refused
 };
 
+/// Time until the slowest pole has fallen to 1 % [ticks of the model], CC-4; above kMaxSettle_ticks
+/// where that is too long, or never.
+std::int64_t settle_ticks(const signal::DifferenceModel& model);
+
 /// Checks a control model, README Eq. CC-4 and CC-14.  Stability is judged by the reflection
 /// coefficients (services/signal, Eq. SG-13) and by the poles, which fail differently when
 /// coefficients are ill conditioned; both must agree.  The gain is judged at 0 Hz, at 500 Hz, on

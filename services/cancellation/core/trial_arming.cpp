@@ -4,7 +4,7 @@
 namespace stillhand::cancellation {
 
 Readiness TrialArming::readiness(bool has_model, std::optional<Tick> next_model,
-                                 std::int64_t prepared) const noexcept {
+                                 const PreparedMitigation& prepared) const noexcept {
   if (!assigned()) return Readiness::kUnassigned;
   if (assignment_->mitigation) return mitigation(prepared);
   if (!assignment_->cancellation || has_model) return Readiness::kArmed;

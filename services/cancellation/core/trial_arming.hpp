@@ -16,13 +16,20 @@ struct Assignment {
   bool mitigation = false;    ///< the trial asks for another mitigation, in place of it
 };
 
+/// A mitigation that is made and runs.
+struct PreparedMitigation {
+  std::int64_t assignment = 0;  ///< number of the one that it was made of; 0: there is none
+  Tick in_effect = 0;           ///< first tick at which it can be in full effect
+};
+
 /// Whether the canceller is prepared for the newest trial.
 enum class Readiness : std::uint8_t {
-  kArmed,         ///< prepared
-  kUnassigned,    ///< the trial's assignment has not come
-  kNoModel,       ///< the trial asks for cancellation, and no model is in use or ready
-  kModelTooLate,  ///< the model that is ready may be used only after the trial has begun
-  kNoMitigation,  ///< the trial asks for a mitigation that is not prepared
+  kArmed,              ///< prepared
+  kUnassigned,         ///< the trial's assignment has not come
+  kNoModel,            ///< the trial asks for cancellation, and no model is in use or ready
+  kModelTooLate,       ///< the model that is ready may be used only after the trial has begun
+  kNoMitigation,       ///< the trial asks for a mitigation that is not prepared
+  kMitigationTooLate,  ///< it would not be in full effect at the trial's first measured tick
 };
 
 /// Decides when the canceller is armed for a trial and at which samples it cancels.  Trial and
@@ -43,25 +50,25 @@ class TrialArming {
 
   /// @param has_model   a model is in use
   /// @param next_model  first tick of a model that is ready but not in use, if there is one
-  /// @param prepared    number of the assignment whose mitigation is prepared; 0: none
   [[nodiscard]] Readiness readiness(bool has_model, std::optional<Tick> next_model,
-                                    std::int64_t prepared = 0) const noexcept;
+                                    const PreparedMitigation& prepared = {}) const noexcept;
 
   /// True where the trial asks for cancellation at this tick, ramps included.
   [[nodiscard]] bool cancels(Tick tick) const noexcept {
     return assigned() && assignment_->cancellation && tracks(tick);
   }
   /// The same for a mitigation, and only with the one that is prepared for the trial.
-  [[nodiscard]] bool mitigates(Tick tick, std::int64_t prepared) const noexcept {
+  [[nodiscard]] bool mitigates(Tick tick, const PreparedMitigation& prepared) const noexcept {
     return assigned() && assignment_->mitigation && mitigation(prepared) == Readiness::kArmed &&
            tracks(tick);
   }
 
  private:
   /// Of a trial that asks for a mitigation.  Trial 0 is a session's pegged one.
-  [[nodiscard]] Readiness mitigation(std::int64_t prepared) const noexcept {
-    return trial_.number > 0 && prepared == assignments_ ? Readiness::kArmed
-                                                         : Readiness::kNoMitigation;
+  [[nodiscard]] Readiness mitigation(const PreparedMitigation& prepared) const noexcept {
+    if (trial_.number <= 0 || prepared.assignment != assignments_) return Readiness::kNoMitigation;
+    return prepared.in_effect <= trial_.start_tick ? Readiness::kArmed
+                                                   : Readiness::kMitigationTooLate;
   }
   [[nodiscard]] bool tracks(Tick tick) const noexcept {
     return trial_.phase == TrialPhase::kTracking && trial_.covers(tick);

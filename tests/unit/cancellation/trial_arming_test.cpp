@@ -68,37 +68,51 @@ TEST(TrialArmingTest, AMitigatedTrialIsArmedWithItsOwnMitigationAlone) {
   const TrialArming sut = with(kTracking, {3, false, true});
   EXPECT_EQ(sut.newest(), 1);
   EXPECT_EQ(sut.readiness(true, std::nullopt), Readiness::kNoMitigation);
-  EXPECT_EQ(sut.readiness(true, std::nullopt, 3), Readiness::kNoMitigation);
+  EXPECT_EQ(sut.readiness(true, std::nullopt, PreparedMitigation{3}), Readiness::kNoMitigation);
   // Needed models are part of what is prepared.
-  EXPECT_EQ(sut.readiness(false, std::nullopt, 1), Readiness::kArmed);
+  EXPECT_EQ(sut.readiness(false, std::nullopt, PreparedMitigation{1}), Readiness::kArmed);
 }
 
 // A refused assignment must not run what was made of the one before, for the same trial.
 TEST(TrialArmingTest, AnotherAssignmentOfTheSameTrialNeedsAMitigationOfItsOwn) {
   TrialArming sut = with(kTracking, {3, false, true});
-  ASSERT_TRUE(sut.mitigates(1200, 1));
+  ASSERT_TRUE(sut.mitigates(1200, {1}));
   sut.assign({3, false, true});
   EXPECT_EQ(sut.newest(), 2);
-  EXPECT_EQ(sut.readiness(true, std::nullopt, 1), Readiness::kNoMitigation);
-  EXPECT_FALSE(sut.mitigates(1200, 1));
-  EXPECT_EQ(sut.readiness(true, std::nullopt, 2), Readiness::kArmed);
-  EXPECT_TRUE(sut.mitigates(1200, 2));
+  EXPECT_EQ(sut.readiness(true, std::nullopt, PreparedMitigation{1}), Readiness::kNoMitigation);
+  EXPECT_FALSE(sut.mitigates(1200, {1}));
+  EXPECT_EQ(sut.readiness(true, std::nullopt, PreparedMitigation{2}), Readiness::kArmed);
+  EXPECT_TRUE(sut.mitigates(1200, {2}));
+}
+
+// It has to settle and fade in before the first measured tick; one that cannot does not act at all,
+// so that no trial is mitigated in part.
+TEST(TrialArmingTest, AMitigationThatComesTooLateIsNotArmedAndDoesNotAct) {
+  TrialArming sut = with(kTracking, {3, false, true});
+  EXPECT_EQ(sut.readiness(true, std::nullopt, {1, 1000}), Readiness::kArmed);
+  EXPECT_TRUE(sut.mitigates(1200, {1, 1000}));
+  EXPECT_EQ(sut.readiness(true, std::nullopt, {1, 1001}), Readiness::kMitigationTooLate);
+  EXPECT_FALSE(sut.mitigates(1200, {1, 1001}));
+  Trial later = kTracking;
+  later.start_tick = 1001;
+  sut.announce(later);
+  EXPECT_EQ(sut.readiness(true, std::nullopt, {1, 1001}), Readiness::kArmed);
 }
 
 TEST(TrialArmingTest, AMitigationActsWithinTheTrialAndTheCancellerDoesNot) {
   const TrialArming sut = with(kTracking, {3, false, true});
-  EXPECT_FALSE(sut.mitigates(899, 1));
-  EXPECT_TRUE(sut.mitigates(900, 1));
-  EXPECT_TRUE(sut.mitigates(1599, 1));
-  EXPECT_FALSE(sut.mitigates(1600, 1));
-  EXPECT_FALSE(sut.mitigates(1200, 0));
+  EXPECT_FALSE(sut.mitigates(899, {1}));
+  EXPECT_TRUE(sut.mitigates(900, {1}));
+  EXPECT_TRUE(sut.mitigates(1599, {1}));
+  EXPECT_FALSE(sut.mitigates(1600, {1}));
+  EXPECT_FALSE(sut.mitigates(1200, {0}));
   EXPECT_FALSE(sut.cancels(1200));
-  EXPECT_FALSE(with(kTracking, {3, true}).mitigates(1200, 1));
-  EXPECT_FALSE(with(kTracking, {2, false, true}).mitigates(1200, 1));
+  EXPECT_FALSE(with(kTracking, {3, true}).mitigates(1200, {1}));
+  EXPECT_FALSE(with(kTracking, {2, false, true}).mitigates(1200, {1}));
   // Trial 0 is a session's pegged one, and 0 stands for none.
   Trial first = kTracking;
   first.number = 0;
-  EXPECT_EQ(with(first, {0, false, true}).readiness(true, std::nullopt, 1),
+  EXPECT_EQ(with(first, {0, false, true}).readiness(true, std::nullopt, PreparedMitigation{1}),
             Readiness::kNoMitigation);
 }
 

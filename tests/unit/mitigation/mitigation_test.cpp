@@ -383,6 +383,18 @@ TEST(MitigationTest, NothingDoesNothing) {
   EXPECT_DOUBLE_EQ(sut.command, 1.0);
 }
 
+// A pole of 0.99 falls to 1 % in ln 0.01/ln 0.99 = 458.2 ticks; those of model() have a radius of
+// exp(-0.3 2 pi 3 Hz 1 ms) each: 814.4 ticks.
+TEST(MitigationTest, ItKnowsHowLongItsModelsSettle) {
+  Recipe recipe;
+  recipe.impedance = ImpedanceConfig{.damping_n_s_m = 30.0};
+  EXPECT_EQ(Mitigation(recipe).settle_ticks(), 0);
+  recipe.signal = SignalConfig{{1000.0, {1e-5, 0.0}, {1.0, -0.99}}, {}, {}};
+  EXPECT_EQ(Mitigation(recipe).settle_ticks(), 459);
+  recipe.force = cancellation::control_model(model());
+  EXPECT_EQ(Mitigation(recipe).settle_ticks(), 815);
+}
+
 TEST(MitigationTest, RefusesAnUnsoundModel) {
   Recipe recipe;
   signal::DifferenceModel unstable = model();
