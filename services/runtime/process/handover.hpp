@@ -2,21 +2,21 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 #include <utility>
 
 #include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/wake_up.hpp"
 
 namespace stillhand::runtime {
 
-/// Makes something large in a thread of its own and hands it to the control path, which takes it
-/// without lock or allocation: a trial's motion, a trial's target, a model's filter.
-/// prepare() from one thread, current() from one other.
+/// Makes something large in a thread of its own and hands it to the control path: a trial's motion,
+/// a trial's target, a model's filter.  prepare() from any thread, current() from one.  Neither
+/// takes a lock or frees memory, current() does not allocate either: both may run in the thread
+/// that receives samples, and the worker may be preempted anywhere.
 template <typename T>
 class Handover {
  public:
@@ -25,7 +25,9 @@ class Handover {
   Handover() : worker_([this](const std::stop_token& stop) { work(stop); }) {}
   ~Handover() {
     worker_.request_stop();
+    wake_.post();
     worker_.join();
+    free_all(requests_.load());
     delete fresh_.load();
     delete spent_.load();
     delete current_;
@@ -36,11 +38,13 @@ class Handover {
   /// Asks for a new one; a request not yet begun is replaced.  `make` may return nullptr: no
   /// change.
   void prepare(Make make) {
-    {
-      const std::lock_guard lock(mutex_);
-      pending_ = std::move(make);
+    // The worker takes and frees all that were pushed; nobody takes a single one, so no request is
+    // freed while another thread looks at it.
+    auto* const request = new Request{std::move(make), requests_.load(std::memory_order_relaxed)};
+    while (!requests_.compare_exchange_weak(request->before, request, std::memory_order_release,
+                                            std::memory_order_relaxed)) {
     }
-    wake_.notify_all();
+    wake_.post();
   }
 
   /// Control path: the newest finished one, or nullptr before the first.
@@ -56,22 +60,27 @@ class Handover {
   }
 
  private:
+  struct Request {
+    Make make;
+    Request* before;
+  };
+
   void work(const std::stop_token& stop) {
     become_background();
-    while (!stop.stop_requested()) {
-      Make make;
-      {
-        std::unique_lock lock(mutex_);
-        // With the token: a stop between the look at `pending_` and the sleep wakes it, too.
-        wake_.wait(lock, stop, [this] { return static_cast<bool>(pending_); });
-        make = std::exchange(pending_, nullptr);
-      }
+    while (true) {
+      wake_.wait([&] { return stop.stop_requested() || requests_.load() != nullptr; });
+      if (stop.stop_requested()) return;
+      const std::unique_ptr<Request> newest(requests_.exchange(nullptr, std::memory_order_acquire));
+      free_all(newest->before);
       delete spent_.exchange(nullptr, std::memory_order_acq_rel);
-      if (!make) continue;
-      if (std::unique_ptr<T> made = make_ordinarily(make)) {
+      if (std::unique_ptr<T> made = make_ordinarily(newest->make)) {
         delete fresh_.exchange(made.release(), std::memory_order_acq_rel);
       }
     }
+  }
+
+  static void free_all(Request* newest) {
+    while (newest != nullptr) delete std::exchange(newest, newest->before);
   }
 
   static std::unique_ptr<T> make_ordinarily(const Make& make) {
@@ -79,9 +88,8 @@ class Handover {
     return make();
   }
 
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  Make pending_;
+  WakeUp wake_;
+  std::atomic<Request*> requests_{nullptr};  ///< the newest; each points to the one before
   std::atomic<T*> fresh_{nullptr};
   std::atomic<T*> spent_{nullptr};
   T* current_ = nullptr;

@@ -22,6 +22,12 @@ class WakeUp {
 
   void post() noexcept { sem_post(&semaphore_); }
 
+  /// Waits until `is_there()`.  A post() from before the call only makes it look once more.
+  template <typename IsThere>
+  void wait(IsThere is_there) noexcept {
+    while (!is_there()) sem_wait(&semaphore_);
+  }
+
   /// Waits until `is_there()` or until `until_ns` of CLOCK_MONOTONIC, whatever is first.  A post()
   /// from before the call only makes it look once more.
   /// @returns is_there()

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
 
 #include "tests/support/wait.hpp"
 
@@ -84,6 +87,62 @@ TEST(HandoverTest, ARequestThatWasNotBegunIsReplacedByTheNext) {
     return now != nullptr && now->number == 3;
   }));
   EXPECT_FALSE(second_made.load());
+}
+
+// Neither a request that another replaces is freed by who asks, nor one that was followed: the
+// thread that receives samples asks.
+TEST(HandoverTest, WhoAsksFreesNothing) {
+  struct Freed {
+    explicit Freed(std::atomic<int>& count_in) : count(count_in), by(std::this_thread::get_id()) {}
+    ~Freed() {
+      if (std::this_thread::get_id() == by) ++count;
+    }
+    std::atomic<int>& count;
+    std::thread::id by;
+  };
+  std::atomic<int> freed_by_asking{0};
+  std::atomic<int> made{0};
+  Handover<Counted> sut;
+  constexpr int kRequests = 1000;
+  for (int i = 1; i <= kRequests; ++i) {
+    sut.prepare([i, &made, what = std::make_shared<Freed>(freed_by_asking)] {
+      made = i;
+      return std::make_unique<Counted>(i);
+    });
+    sut.current();
+  }
+  EXPECT_TRUE(support::eventually([&] { return made.load() == kRequests; }));
+  EXPECT_TRUE(support::eventually([&] {
+    const Counted* now = sut.current();
+    return now != nullptr && now->number == kRequests;
+  }));
+  EXPECT_EQ(freed_by_asking.load(), 0);
+}
+
+TEST(HandoverTest, SeveralThreadsMayAsk) {
+  constexpr int kEach = 300;
+  {
+    Handover<Counted> sut;
+    std::atomic<int> asked{0};
+    {
+      std::vector<std::jthread> threads;
+      for (int thread = 0; thread < 3; ++thread) {
+        threads.emplace_back([&] {
+          for (int i = 0; i < kEach; ++i) {
+            sut.prepare([] { return std::make_unique<Counted>(1); });
+            ++asked;
+          }
+        });
+      }
+    }
+    EXPECT_EQ(asked.load(), 3 * kEach);
+    sut.prepare([] { return std::make_unique<Counted>(2); });
+    EXPECT_TRUE(support::eventually([&] {
+      const Counted* now = sut.current();
+      return now != nullptr && now->number == 2;
+    }));
+  }
+  EXPECT_EQ(Counted::alive.load(), 0);
 }
 
 // The control path holds the pointer for the length of a step: current() alone may change it.
