@@ -5,16 +5,23 @@
 #include <cstdio>
 #include <utility>
 
-#include "services/contract/config_error.hpp"
-
 namespace stillhand::cancellation {
+namespace {
+
+// More at once than the threads that prepare them took in meanwhile.
+constexpr const char* kTooMany = "too many models or assignments at once";
+
+}  // namespace
 
 Shell::Shell(runtime::Service& service, const Config& config,
              std::optional<signal::Multisine> perturbation)
     : service_(service),
       config_(config),
       core_(config_),
-      command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)) {
+      command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)),
+      mitigation_(config_, [this](const char* why) {
+        service_.note_event(stillhand_msgs::EVENT_NOTE, why);
+      }) {
   if (perturbation) perturbation_.emplace(*std::move(perturbation), config_);
   runtime::Bus& bus = service.bus();
   service.on_trial([this](const Trial& trial, const auto&) {
@@ -28,12 +35,10 @@ Shell::Shell(runtime::Service& service, const Config& config,
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
         if (!message.usable()) return;
         if (message.to_position()) {
-          {
-            const std::lock_guard lock(mutex_);
-            models_.position = {message.control_rate_hz(), message.control_numerator(),
-                                message.control_denominator()};
+          if (!mitigation_.offer_position({message.control_rate_hz(), message.control_numerator(),
+                                           message.control_denominator()})) {
+            service_.note_event(stillhand_msgs::EVENT_NOTE, kTooMany);
           }
-          prepare_mitigation(mitigation::needs_position);
           return;
         }
         on_model({control_model(from_idl(message, config_.sampling)), message.model(),
@@ -51,9 +56,8 @@ Shell::Shell(runtime::Service& service, const Config& config,
 }
 
 void Shell::note_when_armed() {
-  const Readiness readiness =
-      arming_.readiness(perturbation_ || core_.has_model(), schedule_.waits_for(),
-                        mitigated_ != nullptr ? mitigated_->prepared : PreparedMitigation{});
+  const Readiness readiness = arming_.readiness(perturbation_ || core_.has_model(),
+                                                schedule_.waits_for(), mitigation_.prepared());
   // Not armed: nor is it for a trial of the same number from before.
   service_.note_armed(readiness == Readiness::kArmed ? service_.trial().number : -1);
   switch (readiness) {
@@ -77,89 +81,39 @@ void Shell::note_when_armed() {
 
 void Shell::on_assignment(const stillhand_msgs::TrialAssignment& message) {
   arming_.assign(from_idl(message));
-  {
-    const std::lock_guard lock(mutex_);
-    wanted_ = parts_of(message);
-    wanted_trial_ = wanted_.empty() ? 0 : message.trial();
-    wanted_assignment_ = arming_.newest();
+  if (!mitigation_.want({parts_of(message), message.trial(), arming_.newest()})) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE, kTooMany);
   }
-  prepare_mitigation([](const auto&) { return true; });
   note_when_armed();
 }
 
-void Shell::prepare_mitigation(bool (*concerned)(const std::vector<mitigation::Part>&)) {
-  const std::lock_guard lock(mutex_);
-  if (wanted_trial_ == 0 || !concerned(wanted_)) return;
-  mitigations_.prepare([this] { return make_mitigation(); });
-}
-
-std::unique_ptr<Shell::Mitigated> Shell::make_mitigation() {
-  std::vector<mitigation::Part> parts;
-  mitigation::SessionModels models;
-  std::int64_t trial = 0;
-  std::int64_t assignment = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    parts = wanted_;
-    models = models_;
-    trial = wanted_trial_;
-    assignment = wanted_assignment_;
-  }
-  if (trial == 0) return nullptr;
-  try {
-    return std::make_unique<Mitigated>(
-        Mitigated{mitigation::Mitigation(recipe_of(parts, models, config_)), trial, {assignment}});
-  } catch (const ConfigError& error) {
-    service_.note_event(stillhand_msgs::EVENT_NOTE, error.what());
-    return nullptr;  // the trial is never armed, and so never begins
-  }
-}
-
-void Shell::follow_mitigation(Tick tick) {
-  // The one before goes with the next handover: not while its force acts, nor within its trial.
-  if (mitigated_ != nullptr &&
-      (mitigated_->acts || arming_.mitigates(tick, mitigated_->prepared))) {
+void Shell::on_model(const Received& received) {
+  why_no_model_.store("the model is being prepared");
+  if (!received_.push(received)) {
+    service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, kTooMany);
     return;
   }
-  Mitigated* const newest = mitigations_.current();
-  if (newest == mitigated_) return;
-  mitigated_ = newest;
-  mitigated_->prepared.in_effect = tick + mitigated_->core.settle_ticks() + config_.fade_ticks;
-  note_when_armed();
-}
-
-void Shell::on_model(Received received) {
-  why_no_model_.store("the model is being prepared");
-  {
-    const std::lock_guard lock(mutex_);
-    received_.push_back(std::move(received));
-  }
-  // The handover replaces a request that it has not begun; the list keeps that request's model.
+  // The handover replaces a request that it has not begun; the queue keeps that request's model.
   handover_.prepare([this] { return prepare_received(); });
 }
 
 std::unique_ptr<Shell::Ready> Shell::prepare_received() {
-  std::vector<Received> all;
-  {
-    const std::lock_guard lock(mutex_);
-    all.swap(received_);
-  }
   std::unique_ptr<Ready> newest;
-  for (const Received& received : all) {
+  received_.consume_all([&](const Received& received) {
     Preparation preparation = prepare(received.model, bounds(config_));
     if (preparation.refusal == Refusal::kNone) {
       newest =
           std::make_unique<Ready>(Ready{preparation.model, received.number, received.from_tick});
-      const std::lock_guard lock(mutex_);
-      models_.force = received.model;
-      continue;
+      if (!mitigation_.offer_force(received.model)) {
+        service_.note_event(stillhand_msgs::EVENT_NOTE, kTooMany);
+      }
+      return;
     }
     const char* const why =
         describe(preparation.refusal).data();  // a literal: it outlives the note
     why_no_model_.store(why);
     service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, why);
-  }
-  if (newest) prepare_mitigation(mitigation::needs_force);
+  });
   return newest;
 }
 
@@ -207,16 +161,11 @@ stillhand_msgs::MotorCommand Shell::answer(const stillhand_msgs::Sensed& sensed,
     return to_idl(perturbation_->step(input, service_.trial()), input, sensed, schedule_.in_use());
   }
   const CancellerOutput output = core_.step(input);
-  follow_mitigation(tick);
-  // From when it is taken until another assignment comes, so that it settles before the trial.
-  const bool runs = mitigated_ != nullptr &&
-                    (mitigated_->prepared.assignment == arming_.newest() || mitigated_->acts);
-  if (!runs) return to_idl(output, input, sensed, schedule_.in_use());
-  const CancellerInput asked =
-      from_idl(sensed, arming_.mitigates(tick, mitigated_->prepared), permitted);
-  const mitigation::MitigationOutput done = mitigated_->core.step(asked);
-  mitigated_->acts = done.force_n != 0.0 || done.taken_off_rad != 0.0;
-  return to_idl(done, output, asked, sensed, schedule_.in_use(), mitigated_->trial);
+  if (mitigation_.follow(tick, arming_)) note_when_armed();
+  const auto mitigated = mitigation_.step(input, arming_);
+  if (!mitigated) return to_idl(output, input, sensed, schedule_.in_use());
+  return to_idl(mitigated->output, output, mitigated->input, sensed, schedule_.in_use(),
+                mitigated->trial);
 }
 
 }  // namespace stillhand::cancellation

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <vector>
 
 #include "idl/model.h"
 #include "idl/session.h"
@@ -15,7 +14,7 @@
 #include "services/cancellation/core/model_schedule.hpp"
 #include "services/cancellation/core/perturbation.hpp"
 #include "services/cancellation/core/trial_arming.hpp"
-#include "services/mitigation/recipe.hpp"
+#include "services/cancellation/trial_mitigation.hpp"
 #include "services/runtime/process/handover.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/service.hpp"
@@ -24,8 +23,9 @@ namespace stillhand::cancellation {
 
 /// The canceller's process: one motor command for each sensed sample, in the receiving thread.
 /// Models are prepared in another thread and taken by the sample that ModelSchedule names.  A trial
-/// with a mitigation of its own is answered by a Mitigation, which is prepared in a thread too, of
-/// the session's models; the canceller runs on without its force, so it stays in time.
+/// with a mitigation of its own is answered by TrialMitigation; the canceller runs on without its
+/// force, so it stays in time.  The receiving thread takes no lock that another thread holds:
+/// models and mitigations go to the threads that prepare them by queues.
 class Shell {
  public:
   /// @param perturbation  force in place of cancelling; none: it cancels
@@ -47,24 +47,10 @@ class Shell {
     Tick from_tick;
   };
 
-  /// A trial's mitigation.
-  struct Mitigated {
-    mitigation::Mitigation core;
-    std::int64_t trial;
-    PreparedMitigation prepared;
-    bool acts = false;  ///< the newest answer has a force, or takes something off
-  };
-
   void on_assignment(const stillhand_msgs::TrialAssignment& message);
   void on_sensed(const stillhand_msgs::Sensed& sensed);
   stillhand_msgs::MotorCommand answer(const stillhand_msgs::Sensed& sensed, bool permitted);
-  void on_model(Received received);
-  /// Prepares the wanted mitigation, where there is one that is concerned: one that needs a model
-  /// that has come since could not be made before.
-  void prepare_mitigation(bool (*concerned)(const std::vector<mitigation::Part>&));
-  std::unique_ptr<Mitigated> make_mitigation();
-  /// Takes a mitigation that has become ready, once the one before has let go of the stick.
-  void follow_mitigation(Tick tick);
+  void on_model(const Received& received);
   /// In the preparing thread: every model that has come since, in order.
   /// @return the newest sound one, or nullptr
   std::unique_ptr<Ready> prepare_received();
@@ -84,14 +70,9 @@ class Shell {
   const Ready* ready_ = nullptr;  ///< the newest; the handover owns it
   std::atomic<const char*> why_no_model_{"no model has come"};  ///< a literal
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
-  Mitigated* mitigated_ = nullptr;  ///< the newest; the handover owns it
-  std::mutex mutex_;
-  std::vector<Received> received_;        ///< not yet prepared
-  mitigation::SessionModels models_;      ///< sound ones, the newest
-  std::vector<mitigation::Part> wanted_;  ///< of the newest assignment
-  std::int64_t wanted_trial_ = 0;         ///< 0: it wants no mitigation
-  std::int64_t wanted_assignment_ = 0;    ///< its number
-  runtime::Handover<Mitigated> mitigations_;
+  TrialMitigation mitigation_;
+  /// Not yet prepared.  One that finds no room is refused.
+  boost::lockfree::spsc_queue<Received, boost::lockfree::capacity<16>> received_;
   runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };
 

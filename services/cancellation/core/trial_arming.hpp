@@ -57,7 +57,11 @@ class TrialArming {
   [[nodiscard]] bool cancels(Tick tick) const noexcept {
     return assigned() && assignment_->cancellation && tracks(tick);
   }
-  /// The same for a mitigation, and only with the one that is prepared for the trial.
+  /// True from the first tick of the newest trial's first ramp on.
+  [[nodiscard]] bool begun(Tick tick) const noexcept {
+    return assigned() && tick >= trial_.start_tick - trial_.ramp_ticks;
+  }
+  /// The same as cancels() for a mitigation, and only with the one that is prepared for the trial.
   [[nodiscard]] bool mitigates(Tick tick, const PreparedMitigation& prepared) const noexcept {
     return assigned() && assignment_->mitigation && mitigation(prepared) == Readiness::kArmed &&
            tracks(tick);
