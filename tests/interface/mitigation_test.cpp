@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processes of cancellation and display on the real bus, with the test in place of all others:
 // a trial with a mitigation on the command, what is taken off the stick's angle, and the raw stick
-// when cancellation dies; a force, and its end; a trial that cannot be mitigated.  About 10 s.
+// when cancellation dies; a force, and its end; trials that cannot be mitigated, or not in time; a
+// trial's number that comes again, and condition C behind a mitigation.  About 25 s.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -397,6 +398,33 @@ TEST_F(MitigationProcessTest, AReusedTrialNumberDoesNotRunTheMitigationOfBefore)
     ASSERT_FALSE(command.enabled());
     ASSERT_EQ(command.force_n(), 0.0);
   }
+}
+
+// The canceller ran on without its force, so it is settled when its own trial comes.
+TEST_F(MitigationProcessTest, ConditionCBehindAMitigationIsTheCancellers) {
+  begin_session();
+  publish_model(false, -3.2);
+  add_part(stillhand_msgs::PART_IMPEDANCE, {400.0, 0.0, 0.0});
+  begin_trial(1, 500);
+  ASSERT_TRUE(step_until([this] { return std::abs(newest_command().force_n()) > 0.5; }, 10'000));
+  EXPECT_EQ(newest_command().mitigated_trial(), 1);
+  ASSERT_TRUE(step_until([this] { return !newest_command().enabled(); }, 10'000));
+  ASSERT_TRUE(step_until([this] { return newest_command().force_n() == 0.0; }, 1000));
+  parts_.clear();
+  begin_trial(2, 500, true);
+  ASSERT_TRUE(step_until([this] { return newest_command().enabled(); }, 10'000));
+  const Tick from = tick_ + 300;  // behind the fade of 250
+  for (int n = 0; n < 600; ++n) step();
+  EXPECT_EQ(armed(), 2);
+  const auto commands = commands_from(from);
+  EXPECT_GT(commands.size(), 200u);
+  double most_n = 0.0;
+  for (const auto& command : commands) {
+    ASSERT_EQ(command.mitigated_trial(), 0);
+    ASSERT_NEAR(command.force_n(), -command.predicted_force_n(), 1e-12);  // SG-6 rounds
+    most_n = std::max(most_n, std::abs(command.force_n()));
+  }
+  EXPECT_GT(most_n, 1.0);
 }
 
 }  // namespace
