@@ -126,6 +126,7 @@ TEST(HandoverTest, SeveralThreadsMayAsk) {
     std::atomic<int> asked{0};
     {
       std::vector<std::jthread> threads;
+      threads.reserve(3);
       for (int thread = 0; thread < 3; ++thread) {
         threads.emplace_back([&] {
           for (int i = 0; i < kEach; ++i) {
