@@ -82,7 +82,8 @@ session::PlannedTrial SessionScript::planned_of(const Step& step) const {
 }
 
 session::PlannedTrial SessionScript::free_identification() const {
-  session::PlannedTrial planned = session::free_identification_trial(lab_.protocol, numbers_ + 1);
+  // A number that the pegged trial was stopped with is added where it runs.
+  session::PlannedTrial planned = session::free_identification_trial(lab_.protocol, 1);
   planned.motion_seed =
       session::repeat_seed(identification_seed(folder_.design(), index_, session_), 1);
   return planned;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/lab/control_model.hpp"
+#include "apps/lab/core/prompt.hpp"
 #include "apps/session/live_mitigation.hpp"
 #include "services/cancellation/core/canceller.hpp"
 #include "services/contract/config_error.hpp"
@@ -76,6 +77,19 @@ mitigation::SessionModels models_of(const LabOptions& options, const cancellatio
   return models;
 }
 
+// From its assignment to the first measured tick it settles and fades in (CC-18).  A model that the
+// session identifies is judged when it is there.
+void check_settling(const mitigation::Mitigation& mitigation, const cancellation::Config& config,
+                    const session::PlannedTrial& planned) {
+  const auto lead_ticks =
+      static_cast<std::int64_t>(kTrialLead_s * kControlRateHz) + planned.trial.ramp_ticks;
+  const std::int64_t needs_ticks = mitigation.settle_ticks() + config.fade_ticks;
+  if (needs_ticks <= lead_ticks) return;
+  throw ConfigError("cancellation.fade_ticks and --model",
+                    fmt::format("{} ms to settle and fade in", needs_ticks),
+                    fmt::format("at most the {} ms before a trial", lead_ticks));
+}
+
 // Builds each mitigation as the process of cancellation will: what it refuses at the trial is
 // refused before the first one.
 void check_mitigations(const LabOptions& options,
@@ -90,6 +104,7 @@ void check_mitigations(const LabOptions& options,
     if (planned.parts.empty()) continue;
     try {
       const mitigation::Mitigation sound(recipe_of(planned.parts, models, config));
+      check_settling(sound, config, planned);
     } catch (const ConfigError& error) {
       const std::string name = session::condition_label(planned.label);
       throw ConfigError(

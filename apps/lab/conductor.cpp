@@ -57,6 +57,7 @@ Conductor::Conductor(runtime::Service& service, Watch watch, Show show)
       sources_(service.bus().publisher<stillhand_msgs::SessionSources>(topics::kSessionSources)),
       prompts_(service.bus().publisher<stillhand_msgs::Prompt>(topics::kPrompt)),
       emergency_stop_(service.bus(), "the stop key") {
+  model_.trial(-1);  // none yet; 0 is the pegged trial
   subscribe();
 }
 

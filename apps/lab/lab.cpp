@@ -105,9 +105,7 @@ Prompt before_trial(const LabOptions& options, const std::vector<session::Planne
                     std::size_t place) {
   const double lead_s = kTrialLead_s + options.protocol.ramp_s;
   if (plan[place].trial.phase == TrialPhase::kFree) {
-    return {.kind = PromptKind::kInstructions,
-            .wait_s = lead_s,
-            .text = "Hold the stick still.\nKeep the cross in the box, which does not move.\n"};
+    return {.kind = PromptKind::kInstructions, .wait_s = lead_s, .text = session::kHoldStill};
   }
   const auto tracks = [](const session::PlannedTrial& planned) {
     return planned.label != session::kIdentification &&

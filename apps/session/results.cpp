@@ -181,7 +181,10 @@ RateConversionCost conversion_cost(const SessionRecording& session,
       session.rig_truths, trial, [](const auto& t) { return t.feedthrough_force_n(); }, missing);
   const auto accel = measured(
       session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing);
-  const auto every = static_cast<std::size_t>(kControlRateHz / model.fit.rate_hz);
+  const double ratio = kControlRateHz / model.fit.rate_hz;
+  // Any message may be in a recording: a rate that is no rate has no cost.
+  if (!(ratio >= 1.0 && ratio <= kControlRateHz)) return {NAN, NAN};
+  const auto every = static_cast<std::size_t>(ratio);
   std::vector<double> slow_accel;
   for (std::size_t i = 0; i < accel.size(); i += every) slow_accel.push_back(accel[i]);
   const auto fast = signal::simulated(model.control, accel);

@@ -156,12 +156,14 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
 
 stillhand_msgs::MotorCommand Shell::answer(const stillhand_msgs::Sensed& sensed, bool permitted) {
   const Tick tick = sensed.tick();
-  const CancellerInput input = from_idl(sensed, arming_.cancels(tick), permitted);
+  // One of them has the motor: the other begins when its force, or what it takes off, is zero.
+  const bool cancels = arming_.cancels(tick) && !mitigation_.acts();
+  const CancellerInput input = from_idl(sensed, cancels, permitted);
   if (perturbation_) {
     return to_idl(perturbation_->step(input, service_.trial()), input, sensed, schedule_.in_use());
   }
   const CancellerOutput output = core_.step(input);
-  if (mitigation_.follow(tick, arming_)) note_when_armed();
+  if (output.force_n == 0.0 && mitigation_.follow(tick, arming_)) note_when_armed();
   const auto mitigated = mitigation_.step(input, arming_);
   if (!mitigated) return to_idl(output, input, sensed, schedule_.in_use());
   return to_idl(mitigated->output, output, mitigated->input, sensed, schedule_.in_use(),

@@ -49,6 +49,8 @@ class TrialMitigation {
   [[nodiscard]] PreparedMitigation prepared() const noexcept {
     return running_ == nullptr ? PreparedMitigation{} : running_->prepared;
   }
+  /// Its newest answer has a force, or takes something off.
+  [[nodiscard]] bool acts() const noexcept { return running_ != nullptr && running_->acts; }
   /// From when it is taken, so that it settles before the trial, until another assignment comes and
   /// it has faded.  @return none where no mitigation runs
   std::optional<Answer> step(const CancellerInput& input, const TrialArming& arming) noexcept;
@@ -58,7 +60,7 @@ class TrialMitigation {
     mitigation::Mitigation core;
     std::int64_t trial;
     PreparedMitigation prepared;
-    bool acts = false;  ///< the newest answer has a force, or takes something off
+    bool acts = false;
   };
 
   template <typename T>

@@ -85,11 +85,13 @@ Eigen::MatrixXd stepped(const Continuous<N>& system) {
   if (!system.a.allFinite() || !system.b.allFinite()) {
     throw ConfigError("mitigation.arm", "a value out of range", "finite values of a person's size");
   }
-  // Written so that a NaN says "not stable".
-  for (const std::complex<double>& pole : system.a.eigenvalues()) {
-    if (!(pole.real() < 0.0)) {
-      throw ConfigError("mitigation.arm", "an arm that does not come to rest", "a stable arm");
-    }
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(system.a, false);
+  // Written so that poles that were not found, and a NaN, say "not stable".
+  const bool rests =
+      solver.info() == Eigen::Success &&
+      std::ranges::all_of(solver.eigenvalues(), [](const auto& pole) { return pole.real() < 0.0; });
+  if (!rests) {
+    throw ConfigError("mitigation.arm", "an arm that does not come to rest", "a stable arm");
   }
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(kStates + 2, kStates + 2);
   all.topLeftCorner(kStates, kStates) = system.a * kControlPeriod_s;

@@ -71,8 +71,8 @@ class Mitigation {
   [[nodiscard]] double schedule_weight() const noexcept {
     return schedule_ ? schedule_->weight() : 0.0;
   }
-  /// From the first step until the models have settled [ticks], CC-4; 0 without a model.  Nothing
-  /// else of a mitigation runs before: what it learns, it learns while it acts.
+  /// From the first step until the models of force and position have settled [ticks], CC-4; 0
+  /// without a model.  The arms of MI-5 and the lag of CC-5 are not counted.
   [[nodiscard]] std::int64_t settle_ticks() const noexcept { return settle_ticks_; }
 
  private:

@@ -40,14 +40,8 @@ bool within_bounds(const cancellation::HandCompliance& hand) {
              .refusal == cancellation::Refusal::kNone;
 }
 
-// A hundredth of critical damping: what still has a third of its swing after 16 periods is no arm,
-// and a damping ratio that underflows to 0 is no oscillator that signal::SecondOrderLag can step.
 void require_hand(const Part& part, const cancellation::HandCompliance& hand) {
-  constexpr double kLeastRatio = 0.01;
-  if (within_bounds(hand) &&
-      hand.damping_n_s_m >= kLeastRatio * 2.0 * std::sqrt(hand.mass_kg * hand.stiffness_n_m)) {
-    return;
-  }
+  if (within_bounds(hand)) return;
   std::ostringstream got;
   got << "a hand of " << hand.mass_kg << " kg, " << hand.damping_n_s_m << " N s/m, "
       << hand.stiffness_n_m << " N/m, lever " << hand.lever_m << " m";

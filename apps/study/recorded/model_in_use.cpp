@@ -67,10 +67,11 @@ std::string not_mitigated_in(const SessionRecording& recorded, const SessionTria
   for (const stillhand_msgs::MotorCommand& command : recorded.motor_commands) {
     if (command.rig() != rig || !trial.holds(command.tick())) continue;
     ++commands;
-    if (command.mitigated_trial() != trial.trial.number) ++others;
+    if (!command.enabled() || command.mitigated_trial() != trial.trial.number) ++others;
   }
+  if (commands == 0) return "has no motor command, which would name its mitigation";
   const double share = static_cast<double>(others) / static_cast<double>(commands);
-  if (commands == 0 || share <= kMostOther) return "";
+  if (share <= kMostOther) return "";
   return fmt::format("ran without {} in {:.0f} % of it", trial.named, 100.0 * share);
 }
 

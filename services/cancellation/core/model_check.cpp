@@ -113,10 +113,14 @@ std::int64_t settle_samples(const std::vector<std::complex<double>>& poles) {
   return slowest;
 }
 
+// At least a hundredth of critical damping: what still has a third of its swing after 16 periods is
+// no arm, and a damping ratio that underflows to 0 is no oscillator that signal::SecondOrderLag can
+// step.
 bool is_hand(const HandCompliance& hand) {
+  constexpr double kLeastRatio = 0.01;
   const double critical = 2.0 * std::sqrt(hand.mass_kg * hand.stiffness_n_m);
   return hand.mass_kg >= 0.1 && hand.mass_kg <= 10.0 && hand.stiffness_n_m >= 50.0 &&
-         hand.stiffness_n_m <= 10'000.0 && hand.damping_n_s_m > 0.0 &&
+         hand.stiffness_n_m <= 10'000.0 && hand.damping_n_s_m >= kLeastRatio * critical &&
          hand.damping_n_s_m < critical && hand.lever_m >= 0.02 && hand.lever_m <= 0.5;
 }
 

@@ -220,8 +220,9 @@ void ReaderEndpoint::on_liveliness_changed(
     edds::DataReader* /*reader*/, const eprosima::fastrtps::LivelinessChangedStatus& status) {
   // Not the status's own count, which stays one too low after a lost first change.
   const int change = status.alive_count_change;
-  if (alive_writers_.fetch_add(change, std::memory_order_relaxed) + change < 0) {
-    alive_writers_.store(0, std::memory_order_relaxed);
+  int alive_before = alive_writers_.load(std::memory_order_relaxed);
+  while (!alive_writers_.compare_exchange_weak(alive_before, std::max(0, alive_before + change),
+                                               std::memory_order_relaxed)) {
   }
   heard_of_life_.store(true, std::memory_order_relaxed);
   const bool alive = status.alive_count_change > 0;

@@ -118,8 +118,19 @@ std::string Peers::service_of(const InstanceHandle_t& endpoint) const {
 }
 
 bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
-  const std::string service = service_of(writer);
   const std::lock_guard lock(mutex_);
+  return count_alive(writer, alive);
+}
+
+bool Peers::note_sample(const InstanceHandle_t& writer) {
+  if (all_alive_.load(std::memory_order_acquire)) return false;
+  const std::lock_guard lock(mutex_);
+  return heard_.count(writer) == 0 && count_alive(writer, true);
+}
+
+bool Peers::count_alive(const InstanceHandle_t& writer, bool alive) {
+  const auto found = services_.find(eprosima::fastrtps::rtps::iHandle2GUID(writer).guidPrefix);
+  const std::string service = found == services_.end() ? "" : found->second;
   bool changed = false;
   if (!service.empty()) heard_.insert(writer);
   if (alive && !service.empty()) {
@@ -130,15 +141,6 @@ bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
   }
   refresh();
   return changed;
-}
-
-bool Peers::note_sample(const InstanceHandle_t& writer) {
-  if (all_alive_.load(std::memory_order_acquire)) return false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (heard_.count(writer) != 0) return false;
-  }
-  return set_alive(writer, true);
 }
 
 void Peers::refresh() {

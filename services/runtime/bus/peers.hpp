@@ -86,6 +86,8 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   [[nodiscard]] std::vector<std::string> duplicates() const;
 
  private:
+  // The next three need the lock.
+  bool count_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
   void refresh();
   void refresh_replay();
   [[nodiscard]] bool counts(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;

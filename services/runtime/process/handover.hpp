@@ -53,6 +53,7 @@ class Handover {
     if (spent_.load(std::memory_order_acquire) == nullptr) {
       if (T* fresh = fresh_.exchange(nullptr, std::memory_order_acq_rel)) {
         spent_.store(current_, std::memory_order_release);
+        if (current_ != nullptr) wake_.post();  // freed at once: it would keep the next one away
         current_ = fresh;
       }
     }
@@ -68,11 +69,14 @@ class Handover {
   void work(const std::stop_token& stop) {
     become_background();
     while (true) {
-      wake_.wait([&] { return stop.stop_requested() || requests_.load() != nullptr; });
+      wake_.wait([&] {
+        return stop.stop_requested() || requests_.load() != nullptr || spent_.load() != nullptr;
+      });
       if (stop.stop_requested()) return;
-      const std::unique_ptr<Request> newest(requests_.exchange(nullptr, std::memory_order_acquire));
-      free_all(newest->before);
       delete spent_.exchange(nullptr, std::memory_order_acq_rel);
+      const std::unique_ptr<Request> newest(requests_.exchange(nullptr, std::memory_order_acquire));
+      if (newest == nullptr) continue;
+      free_all(newest->before);
       if (std::unique_ptr<T> made = make_ordinarily(newest->make)) {
         delete fresh_.exchange(made.release(), std::memory_order_acq_rel);
       }

@@ -218,6 +218,7 @@ TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   EXPECT_EQ(spoilt([](auto& m) { m.waves[0].frequency = HUGE_VAL; }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) { m.adapts->mass_kg = std::nan(""); }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) { m.adapts->stiffness_n_m = 1.0; }), Refusal::kCompliance);
+  EXPECT_EQ(spoilt([](auto& m) { m.adapts->damping_n_s_m = 5e-324; }), Refusal::kCompliance);
   EXPECT_EQ(spoilt([](auto& m) { m.waves.resize(7, m.waves[0]); }), Refusal::kTooMany);
   EXPECT_EQ(spoilt([](auto& m) { m.loop->phi.values.resize(130, 1.0); }), Refusal::kTooMany);
 }

@@ -89,6 +89,28 @@ TEST(HandoverTest, ARequestThatWasNotBegunIsReplacedByTheNext) {
   EXPECT_FALSE(second_made.load());
 }
 
+TEST(HandoverTest, OneThatIsTakenWhileTheNextIsMadeKeepsNothingAway) {
+  Handover<Counted> sut;
+  sut.prepare([] { return std::make_unique<Counted>(1); });
+  ASSERT_TRUE(support::eventually([&] { return sut.current() != nullptr; }));
+  std::atomic<bool> second{false}, making{false}, go_on{false};
+  sut.prepare([&] {
+    second = true;
+    return std::make_unique<Counted>(2);
+  });
+  ASSERT_TRUE(support::eventually([&] { return second.load(); }));
+  // The second is handed over before the third is begun, and taken while the third is made.
+  sut.prepare([&] {
+    making = true;
+    support::eventually([&] { return go_on.load(); });
+    return std::make_unique<Counted>(3);
+  });
+  ASSERT_TRUE(support::eventually([&] { return making.load(); }));
+  EXPECT_EQ(sut.current()->number, 2);
+  go_on = true;
+  EXPECT_TRUE(support::eventually([&] { return sut.current()->number == 3; }));
+}
+
 // Neither a request that another replaces is freed by who asks, nor one that was followed: the
 // thread that receives samples asks.
 TEST(HandoverTest, WhoAsksFreesNothing) {

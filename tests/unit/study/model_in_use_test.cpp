@@ -111,8 +111,12 @@ TEST_F(ModelInUseTest, ATrialWithAMitigationIsJudgedByTheTrialThatItsCommandsNam
   trial_.named = "signal";
   trial_.trial.number = 4;
   EXPECT_EQ(condition_in(recorded_, trial_, 0), 's');
+  EXPECT_THAT(other(), HasSubstr("has no motor command"));
   run(0, 1000, 2000);
-  for (auto& command : recorded_.motor_commands) command.mitigated_trial(4);
+  for (auto& command : recorded_.motor_commands) {
+    command.enabled(true);
+    command.mitigated_trial(4);
+  }
   EXPECT_EQ(other(), "");
   for (std::size_t i = 0; i < 300; ++i) recorded_.motor_commands[i].mitigated_trial(3);
   EXPECT_EQ(other(), "ran without signal in 30 % of it");
