@@ -440,5 +440,35 @@ TEST_F(MitigationProcessTest, ConditionCBehindAMitigationIsTheCancellers) {
   EXPECT_GT(most_n, 1.0);
 }
 
+// An assignment replaces a trial under force, and that one another: the one that had the motor lets
+// go by its own ramp before the other begins.
+TEST_F(MitigationProcessTest, CancellerAndMitigationTakeTurnsWithoutAStep) {
+  const signal::ForceLimits limits;
+  begin_session();
+  publish_model(false, -6.0);
+  begin_trial(1, 20'000, true);
+  const auto pushes = [this](double least_n, std::int32_t mitigated) {
+    return newest_command().mitigated_trial() == mitigated &&
+           std::abs(newest_command().force_n()) > least_n;
+  };
+  ASSERT_TRUE(step_until([&] { return pushes(10.0, 0); }, 10'000));
+  add_part(stillhand_msgs::PART_IMPEDANCE, {1000.0, 0.0, 0.0});
+  begin_trial(2, 20'000);
+  ASSERT_TRUE(step_until([&] { return pushes(4.0, 2); }, 10'000));
+  parts_.clear();
+  begin_trial(3, 20'000, true);
+  ASSERT_TRUE(step_until([&] { return pushes(10.0, 0); }, 10'000));
+  const auto commands = commands_from(0);
+  int compared = 0;
+  for (std::size_t i = 1; i < commands.size(); ++i) {
+    if (commands[i].tick() != commands[i - 1].tick() + 1) continue;  // the recorder lost one
+    ++compared;
+    ASSERT_LE(std::abs(commands[i].force_n() - commands[i - 1].force_n()),
+              limits.max_slew_n_s * 1e-3 + 1e-9)
+        << "tick " << commands[i].tick();
+  }
+  EXPECT_GT(compared, 2000);
+}
+
 }  // namespace
 }  // namespace stillhand
