@@ -16,6 +16,7 @@
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/experiment/status.hpp"
 #include "apps/session/instructions.hpp"
+#include "apps/session/protocol.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/settings/check_name.hpp"
@@ -61,7 +62,8 @@ void make(Words words) {
     throw ConfigError("--control-model", words.control_model.string(), "a file");
   }
   if (has_model) words.design.control_model = "control_model.json";
-  check(words.design);
+  // As the file would be read: `run` refuses no folder that was made here.
+  design_of(yaml_of(words.design), "experiment new");
   make_folder(words.folder, words.design, words.seed ? *words.seed : random_seed());
   if (has_model) {
     std::filesystem::copy_file(words.control_model, words.folder / words.design.control_model);
@@ -130,9 +132,11 @@ void add_new(CLI::App& verb, const std::shared_ptr<Words>& words) {
                   "model of condition C+, copied into the folder; `stillhand close-the-loop` and "
                   "`stillhand control-model` write such a file")
       ->check(settings::check_name);
-  sub->add_option("--seed", words->seed,
-                  "seed of the orders, for a folder that can be made again; without: from the "
-                  "system's random source");
+  sub->add_option(
+         "--seed", words->seed,
+         "seed of the orders, which can be drawn again with it; without: from the system's "
+         "random source")
+      ->check(session::check_seed);
   sub->callback([words] { make(*words); });
 }
 

@@ -2,11 +2,13 @@
 #include "apps/lab/lab_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -70,8 +72,16 @@ void take_road(const Words& words, session::ProtocolOptions& protocol) {
 
 // "2", "simulated", "devices", or a file; as many of them as are given.
 void take_rig(const std::vector<std::string>& words, LabOptions& options) {
+  const auto is_number = [](const std::string& word) {
+    return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (std::ranges::count_if(words, is_number) > 1 ||
+      std::ranges::count_if(words, std::not_fn(is_number)) > 1) {
+    throw ConfigError("--rig", fmt::format("{}", fmt::join(words, " and ")),
+                      "at most one number and one of simulated, devices or a file");
+  }
   for (const std::string& word : words) {
-    if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos) {
+    if (is_number(word)) {
       const auto [end, error] =
           std::from_chars(word.data(), word.data() + word.size(), options.rig);
       if (error == std::errc()) continue;

@@ -148,7 +148,10 @@ std::vector<Condition> parse_conditions(const std::string& text, const std::stri
     }
     const auto condition = static_cast<Condition>(letter);
     if (std::find(conditions.begin(), conditions.end(), condition) != conditions.end()) {
-      throw ConfigError("--conditions", word + " twice", "each condition once");
+      const bool alias = word == "none" || word == "force";
+      throw ConfigError(
+          "--conditions", word + " twice",
+          alias ? "each condition once; none is B, and force is C" : "each condition once");
     }
     conditions.push_back(condition);
   }

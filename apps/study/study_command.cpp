@@ -247,6 +247,9 @@ void add_study_command(CLI::App& cli, int& status) {
       throw ConfigError("--population", words->population.string(),
                         "--simulated with it: recorded people have no population");
     }
+    if (study->count("--mitigations") > 0 && words->campaign.mitigations.empty()) {
+      throw ConfigError("--mitigations", "nothing", "all, or names with commas");
+    }
     const bool subjects_given = study->count("--subjects") > 0;
     words->campaign.subjects_given = subjects_given;
     words->campaign.trial_given = study->count("--trial-seconds") > 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
 #include <utility>
 
 #include "services/contract/config_error.hpp"
@@ -39,6 +40,11 @@ void check_conditions(const Design& design) {
                         fmt::format("{}: {} runs in one process alone (`stillhand study`)",
                                     kLiveConditions, word));
     }
+    if (word == "scheduled") {
+      throw ConfigError(
+          "conditions", word,
+          fmt::format("{}: scheduled needs two arms of each participant", kLiveConditions));
+    }
     if (std::ranges::find(kRunnable, word) == kRunnable.end() && !is_mitigation(word)) {
       throw ConfigError("conditions", "\"" + word + "\"", kLiveConditions);
     }
@@ -60,10 +66,16 @@ void check_conditions(const Design& design) {
 }
 
 void check_comparisons(const Design& design) {
+  std::set<std::set<std::string>> seen;
   for (const std::string& text : design.comparisons) {
-    if (!compared_by(text, design.conditions)) {
+    const auto pair = compared_by(text, design.conditions);
+    if (!pair) {
       throw ConfigError("comparisons", "\"" + text + "\"",
                         "two conditions of this experiment, for example A-B");
+    }
+    if (!seen.insert({pair->first, pair->second}).second) {
+      throw ConfigError("comparisons", "\"" + text + "\" twice",
+                        "each pair once, in one order: Holm's correction counts them");
     }
   }
 }

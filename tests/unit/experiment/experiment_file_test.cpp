@@ -63,7 +63,8 @@ TEST(ExperimentFileTest, WhatNoSessionCanRunIsNamed) {
   EXPECT_THAT(refusal("conditions: [A, A]"), HasSubstr("A twice"));
   EXPECT_THAT(refusal("conditions: []"), HasSubstr("nothing"));
   EXPECT_THAT(refusal("conditions: A"), HasSubstr("a list"));
-  EXPECT_THAT(refusal("conditions: [B, scheduled]"), HasSubstr("\"scheduled\""));
+  EXPECT_THAT(refusal("conditions: [B, scheduled]"), HasSubstr("two arms of each participant"));
+  EXPECT_THAT(refusal("comparisons: [A-B, B-A]"), HasSubstr("\"B-A\" twice"));
   EXPECT_THAT(refusal("conditions: [B, C', signal]"), HasSubstr("signal with C' or C+"));
   EXPECT_THAT(refusal("conditions: [B, low-pass]\ncomparisons: [B-low]"), HasSubstr("\"B-low\""));
   EXPECT_THAT(refusal("conditions: [A, C+]\ncomparisons: []"), HasSubstr("control_model"));
