@@ -69,9 +69,11 @@ class BrowserCase(DashboardCase):
         page.resize("laptop")
 
     def assert_everything_is_reached_by_tab(self, page):
+        there = set(page.operable())
         places = page.walk()
+        there &= set(page.operable())  # a loaded machine's event brings and takes a button meanwhile
         self.assertEqual([place["name"] for place in places if not place["shown"]], [], "focus is not to be seen")
-        self.assertEqual(set(page.operable()) - {place["name"] for place in places}, set(), "not reached by Tab")
+        self.assertEqual(there - {place["name"] for place in places}, set(), "not reached by Tab")
 
     def shows(self, page, since_ms, shown, what):
         """How long it took until the page showed it [ms]."""
