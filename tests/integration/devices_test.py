@@ -169,7 +169,8 @@ class DevicesTest(DevicesCase):
     def test_a_session_over_the_devices_is_like_one_of_the_simulated_rig(self):
         self.assert_like_the_simulated_rig()
 
-    # Motor and platform move the free stick at once. The arm's stiffness wanders by some 10 %, differently in each session.
+    # Motor and platform move the free stick at once. The arm's stiffness wanders by some 10 %; the median difference of
+    # the lines was 0.14 to 0.22.
     @campaign
     def test_admittance_and_feedthrough_over_the_devices_are_like_those_of_the_simulated_rig(self):
         session = ["--identify", "admittance,feedthrough", "--perturb-period-s", 10, "--trial-seconds", 60,
@@ -185,8 +186,8 @@ class DevicesTest(DevicesCase):
         found = []
         for lab in (simulated, devices):
             file = lab.out / "admittance.json"
-            subprocess.run([STILLHAND, "identify", lab.out / "session.mcap", "--admittance", "--json", file], check=True,
-                           stdout=subprocess.DEVNULL)
+            subprocess.run([STILLHAND, "identify", lab.out / "session.mcap", "--admittance", "--json", file],
+                           check=True, stdout=subprocess.DEVNULL)
             found.append(json.loads(file.read_text()))
         self.assertLessEqual(found[1]["largest_motor_force_n"], PERTURBATION_PEAK_N)
         for name in ("admittance_m_n", "feedthrough_to_force_n_s2_m", "feedthrough_to_position_s2"):

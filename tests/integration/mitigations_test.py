@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mitigations as conditions of a session over DDS: they act, they are recorded, the same cores answer the same.
 
-A minute: signal cancellation, which needs a trial with the stick free, and damping with the motor. With
-`--campaign` every mitigation that a session runs, in trials of 45 s, next to the study's row of the same person; some
-20 minutes. The table is printed; each share is within bounds of the study's 48 people, each motor's force within a factor
-of two of the same person's.
+A minute: signal cancellation, which needs a trial with the stick free, and damping with the motor. With `--campaign`
+every mitigation that a session runs, in trials of 45 s, next to the study's row of the same person; some 20 minutes.
+The table is printed; each share is within bounds of the study's 48 people, each motor's force within a factor of two of
+the same person's.
 """
 import csv
 import math

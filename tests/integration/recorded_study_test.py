@@ -59,7 +59,8 @@ class RecordedStudyTest(unittest.TestCase):
     def test_each_trial_has_the_error_that_its_session_found(self):
         result = study("--sessions", LIVE, "--out", self.folder / "live")
         self.assertEqual(result.returncode, 0, result.stderr)
-        found = {row["condition"]: float(row[COLUMNS["rms_error_mm"]]) for row in rows(self.folder / "live" / "trials.csv")}
+        found = {row["condition"]: float(row[COLUMNS["rms_error_mm"]])
+                 for row in rows(self.folder / "live" / "trials.csv")}
         own = json.loads((LIVE / "summary.json").read_text())["conditions"]
         self.assertEqual(set(found), set("ABC"))
         for condition, error_mm in found.items():

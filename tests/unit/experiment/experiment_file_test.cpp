@@ -128,6 +128,8 @@ TEST(ExperimentFileTest, APlannedComparisonNamesTwoOfTheConditions) {
 TEST(ExperimentFileTest, EveryMitigationOfASessionButTheScheduledIsACondition) {
   for (const session::LiveMitigation& each : session::live_mitigations()) {
     EXPECT_EQ(is_mitigation(each.name), std::string(each.name) != "scheduled") << each.name;
+    const bool offered = std::string(kLiveConditions).find(each.name) != std::string::npos;
+    EXPECT_EQ(offered, std::string(each.name) != "scheduled") << each.name;
     EXPECT_EQ(meaning_of(each.name).empty(), std::string(each.name) == "scheduled") << each.name;
   }
 }
