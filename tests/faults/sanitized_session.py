@@ -3,7 +3,7 @@
 """A live session in which one process is built with a sanitizer, process after process.
 
 Usage: STILLHAND_BUILD=build /usr/bin/python3 tests/faults/sanitized_session.py --tree build-asan-ubsan --out DIR
-           [--service NAME]...
+           [--service NAME]... [--conditions LIST]
 
 A sanitizer makes a process several times slower, and nine such processes miss the sample clock. So the others come from
 the plain build. The tree needs the executables of the services alone:
@@ -48,8 +48,8 @@ def session(options, service):
     environment = dict(os.environ, ASAN_OPTIONS=f"new_delete_type_mismatch=0:log_path={reports}/asan",
                        UBSAN_OPTIONS=f"print_stacktrace=1:log_path={reports}/ubsan",
                        TSAN_OPTIONS=f"suppressions={TESTS}/support/tsan.supp:log_path={reports}/tsan")
-    lab = LabProcess(folder / "run", "--conditions", "C", "--identify-seconds", 5, "--trial-seconds", 5, "--seed", 2,
-                     "--config", loose_settings(folder / "config"), "--no-real-time", program=program,
+    lab = LabProcess(folder / "run", "--conditions", options.conditions, "--identify-seconds", 5, "--trial-seconds", 5,
+                     "--seed", 2, "--config", loose_settings(folder / "config"), "--no-real-time", program=program,
                      environment=environment)
     try:
         status = lab.end_status(SESSION_LIMIT_S)
@@ -64,6 +64,7 @@ def main():
     parser.add_argument("--tree", type=pathlib.Path, required=True, help="build tree of the sanitizer")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="new folder")
     parser.add_argument("--service", action="append", choices=SERVICES, help="one of them alone [those that are built]")
+    parser.add_argument("--conditions", default="C", help="as those of `stillhand lab`, for example B,signal [C]")
     options = parser.parse_args()
     if options.out.exists():
         print(f"--out {options.out}: it is there already; name a new folder", file=sys.stderr)
