@@ -30,11 +30,12 @@ constexpr double kPeggedMotion_hz = 4.0;  // highest of the pegged trial (apps/s
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Where the platform stands, while nothing moves it.
-double place_of(Station& station) {
+/// @param where  its address in devices.yaml, for the error
+double place_of(Station& station, const std::string& where) {
   station.restart_clock();
   const double place_m = station.rest(kSettle_ticks).truth.platform_position_m;
   if (const char* why = station.plant().unsound(); why != nullptr) {
-    throw ConfigError("platform", why, "a platform that answers");
+    throw ConfigError(where, why, "a platform that answers");
   }
   return place_m;
 }
@@ -42,7 +43,7 @@ double place_of(Station& station) {
 /// @returns nothing: broken off
 std::optional<PlatformResponse> moved(const CalibrateOptions& options, Station& station,
                                       double place_m, const sensing::Config& sensing,
-                                      const runtime::Stop& interrupted) {
+                                      const std::string& where, const runtime::Stop& interrupted) {
   const bool seat = !station.plant().device_of(CalibratedSignal::kAcceleration).empty();
   device_rig::PlatformTest test({.motion_m = options.motion_m}, options.periods);
   station.restart_clock();
@@ -63,7 +64,7 @@ std::optional<PlatformResponse> moved(const CalibrateOptions& options, Station& 
     }
     if (const char* why = station.plant().unsound(); why != nullptr) {
       station.rest(kBrake_ticks);
-      throw ConfigError("platform", why, "devices that work during the motion");
+      throw ConfigError(where, why, "devices that work during the motion");
     }
   }
   const double lost_s = station.lost_s();
@@ -133,7 +134,9 @@ int run_calibrate_platform(const CalibrateOptions& options, const runtime::Stop&
     throw ConfigError("devices.yaml: signals.platform", "simulated",
                       "a device: a simulated platform needs no identification");
   }
-  const double place_m = place_of(station);
+  const std::string where = fmt::format("{} (platform at {}:{})", file.string(),
+                                        devices.platform.address, devices.platform.port);
+  const double place_m = place_of(station, where);
   if (!(std::abs(place_m) + options.motion_m <= rig.platform.workspace_m)) {
     throw ConfigError("platform", fmt::format("it stands at {:+.3f} m", place_m),
                       fmt::format("{:.3f} m of way to both sides, within +-{:.3f} m",
@@ -149,7 +152,7 @@ int run_calibrate_platform(const CalibrateOptions& options, const runtime::Stop&
     return 1;
   };
   if (!done_by_person(step, interrupted)) return broken_off();
-  const auto found = moved(options, station, place_of(station), sensing, interrupted);
+  const auto found = moved(options, station, place_of(station, where), sensing, where, interrupted);
   if (!found) return broken_off();
   print(*found);
   if (const std::string fault = fault_of(*found); !fault.empty()) {

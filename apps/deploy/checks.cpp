@@ -227,6 +227,28 @@ Finding check_serial_port(const SerialPortState& port) {
   return good("serial-port", port.path + " may be read and written");
 }
 
+Finding check_can_interface(const std::string& name, std::string_view flags) {
+  constexpr unsigned kUp = 1;  // IFF_UP of <linux/if.h>
+  if (flags.empty()) {
+    return wrong("can", "there is no CAN interface " + name,
+                 "connect the adapter, and name its interface in devices.yaml (drive.port)");
+  }
+  if (flags.starts_with("0x")) flags.remove_prefix(2);
+  const auto value = number_at<unsigned>(flags, 16);
+  if (!value) return not_checked("can", "the kernel gives no state of " + name);
+  if ((*value & kUp) != 0) return good("can", name + " is up");
+  return wrong(
+      "can", name + " is down",
+      fmt::format("sudo ip link set {} up type can bitrate 1000000 dbitrate 5000000 sjw 10 "
+                  "dsjw 5 sample-point 0.666 dsample-point 0.666 restart-ms 1000 fd on",
+                  name));
+}
+
+Finding check_iio(const std::string& uri, const std::string& device, const std::string& key) {
+  return not_checked("iio", fmt::format("{} at {} ({})", device, uri, key),
+                     fmt::format("iio_info -u {} lists the devices that answer", uri));
+}
+
 Finding check_latency_timer(const SerialPortState& port) {
   const auto timer_ms = number_at<int>(port.latency_timer);
   if (!timer_ms) return not_checked("latency", port.path + " has no latency timer");

@@ -79,6 +79,12 @@ Finding check_serial_port(const SerialPortState& port);
 /// A USB serial chip may collect bytes for 16 ms; at 1 kHz it has to hand them on after 1 ms.
 Finding check_latency_timer(const SerialPortState& port);
 
+/// @param flags  text of /sys/class/net/NAME/flags; empty: there is no such interface
+Finding check_can_interface(const std::string& name, std::string_view flags);
+/// Never wrong: only the process that reads it can say whether it answers.
+/// @param device  name of the device, @param key  where devices.yaml has its context
+Finding check_iio(const std::string& uri, const std::string& device, const std::string& key);
+
 /// @param refused   message of runtime::check_identity() for each service whose keys it refuses
 /// @param expiring  runtime::expiry_warning() of the others
 Finding check_keys(const std::vector<std::string>& refused,

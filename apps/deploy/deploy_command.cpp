@@ -149,7 +149,7 @@ void add_deploy_command(CLI::App& cli, int& status) {
                     "this machine's host; by default the one whose address it has");
   check
       ->add_option("--devices", words->devices,
-                   "devices.yaml of a rig of devices: also check the drive's serial port")
+                   "devices.yaml of a rig of devices: also check the ports and interfaces it names")
       ->check(settings::check_name);
   check->add_option("--json", words->json, "also write the results to this file")
       ->check(settings::check_name);

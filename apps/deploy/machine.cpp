@@ -178,10 +178,19 @@ std::vector<Finding> check_devices(const fs::path& devices) {
     findings.push_back(check_serial_port(port));
     if (port.exists) findings.push_back(check_latency_timer(port));
   };
-  // A CAN interface is no file.
-  if (parts.needs_drive() && parts.drive != device_rig::Parts::Drive::kMoteusCan) {
+  if (parts.needs_drive() && parts.drive == device_rig::Parts::Drive::kMoteusCan) {
+    findings.push_back(check_can_interface(
+        config.drive.port, read_of(fs::path("/sys/class/net") / config.drive.port / "flags")));
+  } else if (parts.needs_drive()) {
     check(config.drive.port, "drive.port");
   }
+  const auto check_context = [&](const device_rig::IioConfig& iio, const std::string& key) {
+    findings.push_back(check_iio(iio.uri, iio.device, key + ".uri"));
+  };
+  if (parts.acceleration == device_rig::Parts::Source::kIio) {
+    check_context(config.accelerometer, "accelerometer");
+  }
+  if (parts.force == device_rig::Parts::Source::kIio) check_context(config.load_cell, "load_cell");
   if (parts.force == device_rig::Parts::Source::kIndicator) {
     check(config.indicator.port, "indicator.port");
   }

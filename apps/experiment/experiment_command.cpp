@@ -63,7 +63,7 @@ void make(Words words) {
   }
   if (has_model) words.design.control_model = "control_model.json";
   // As the file would be read: `run` refuses no folder that was made here.
-  design_of(yaml_of(words.design), "experiment new");
+  design_of(yaml_of(words.design), "experiment.yaml of these options");
   make_folder(words.folder, words.design, words.seed ? *words.seed : random_seed());
   if (has_model) {
     std::filesystem::copy_file(words.control_model, words.folder / words.design.control_model);

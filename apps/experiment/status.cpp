@@ -3,10 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
+#include "apps/experiment/sealed_assignment.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/recording/file_io.hpp"
 
 namespace stillhand::experiment {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::string state_of(const Progress& progress) {
   if (!progress.excluded().empty()) return "excluded: " + progress.excluded();
@@ -45,6 +51,13 @@ Overview overview_of(const Folder& folder) {
     for (std::string& finding : folder.findings(index, entries)) {
       overview.findings.push_back(std::move(finding));
     }
+  }
+  if (const fs::path opened = folder.path() / kOpenedFile;
+      folder.unblinded() &&
+      recording::read_file(opened.string()) != opened_text(folder.design(), folder.assignment())) {
+    overview.findings.push_back(opened.string() +
+                                ": not what assignment.sealed says; `stillhand experiment unblind` "
+                                "writes it again");
   }
   return overview;
 }

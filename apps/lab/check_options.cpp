@@ -2,9 +2,12 @@
 #include "apps/lab/check_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/lab/control_model.hpp"
 #include "apps/lab/core/prompt.hpp"
@@ -40,6 +43,17 @@ void check_devices(const LabOptions& options) {
   device_rig::load_devices(options.devices);
 }
 
+// Refuses an option with those of the others that are given.
+void refuse_with(const char* option, const std::vector<std::pair<const char*, bool>>& others,
+                 const char* want) {
+  std::vector<const char*> given;
+  for (const auto& [name, is_given] : others) {
+    if (is_given) given.push_back(name);
+  }
+  if (given.empty()) return;
+  throw ConfigError(option, fmt::format("{} with it", fmt::join(given, ", ")), want);
+}
+
 void check_combinations(const LabOptions& options) {
   if ((options.protocol.motion == session::Motion::kRide) == options.ride.empty()) {
     throw ConfigError("--ride", options.ride.empty() ? "nothing" : options.ride.string(),
@@ -49,20 +63,25 @@ void check_combinations(const LabOptions& options) {
     throw ConfigError("--operator", "mouse together with --headless", "a window for the mouse");
   }
   if (!options.devices.empty()) check_devices(options);
-  if (options.protocol.perturb_period_s != 0.0 &&
-      (options.attach || !options.inventory.empty() || !options.model.empty() ||
-       !options.vehicle.empty() || options.canceller != "now" ||
-       options.protocol.motion != session::Motion::kBandNoise)) {
-    throw ConfigError("--identify",
-                      "--attach, --inventory, --model, --vehicle, --canceller or --motion with it",
-                      "none of them: the motor perturbs in place of cancelling");
+  const bool other_motion = options.protocol.motion != session::Motion::kBandNoise;
+  if (options.protocol.perturb_period_s != 0.0) {
+    refuse_with("--identify",
+                {{"--attach", options.attach},
+                 {"--inventory", !options.inventory.empty()},
+                 {"--model", !options.model.empty()},
+                 {"--vehicle", !options.vehicle.empty()},
+                 {"--canceller", options.canceller != "now"},
+                 {"--motion", other_motion}},
+                "it alone: the motor perturbs in place of cancelling");
   }
-  if (options.attach &&
-      (options.undeclared_effect != 0 || options.subject != 0 || options.video ||
-       options.who == Operator::kMouse || options.protocol.motion != session::Motion::kBandNoise)) {
-    throw ConfigError("--attach",
-                      "--undeclared-effect, --subject, --video, --operator or --motion with it",
-                      "these as arguments of the services, which run already");
+  if (options.attach) {
+    refuse_with("--attach",
+                {{"--undeclared-effect", options.undeclared_effect != 0},
+                 {"--subject", options.subject != 0},
+                 {"--video", options.video},
+                 {"--operator mouse", options.who == Operator::kMouse},
+                 {"--motion", other_motion}},
+                "these as arguments of the services, which run already");
   }
 }
 

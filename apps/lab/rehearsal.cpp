@@ -45,7 +45,8 @@ ConfigError refusal(const session::PlannedTrial& planned, const session::Protoco
           fmt::format("{} at {:.6g} m/s", options.road_class, options.road_speed_m_s),
           fmt::format("a better road or less speed, so that the platform can follow ({})", why)};
     case session::Motion::kInterleaved:
-      return {"--perturb-period-s", fmt::format("{:.6g}", options.perturb_period_s),
+      return {"--trial-seconds and --perturb-period-s",
+              fmt::format("{:.6g} and {:.6g}", options.trial_s, options.perturb_period_s),
               fmt::format("a motion that the platform can follow ({})", why)};
     case session::Motion::kRide:
       break;

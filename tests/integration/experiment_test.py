@@ -377,7 +377,8 @@ class RefusalTest(ExperimentTestCase):
     def test_what_cannot_run_is_one_line(self):
         for words, expected in ((("--conditions", "A,D"), "in one process alone"),
                                 (("--conditions", "A,Q"), "A, B, C, C' or C+"),
-                                (("--operator", "cat"), "simulated, mouse or gamepad")):
+                                (("--operator", "cat"), "simulated, mouse or gamepad"),
+                                (("--trials", "99"), "experiment.yaml of these options:10:9: experiment.trials")):
             _, errors = experiment("new", self.study, *words, status=2)
             self.assertEqual(len(errors.splitlines()), 1)
             self.assertIn(expected, errors)
@@ -393,6 +394,8 @@ class RefusalTest(ExperimentTestCase):
             self.assertIn("--gamepad", experiment("run", folder, *words, status=2)[1])
             self.assertEqual(os.listdir(folder / "participants"), [])
         self.assertIn("without experiment.yaml", experiment("run", self.folder, status=2)[1])
+        (self.study / "assignment.json").write_text("{}\n")
+        self.assertIn("assignment.json: not what assignment.sealed says", experiment("status", self.study, status=2)[1])
         (self.study / "assignment.sealed").write_text("00\n")
         self.assertIn("assignment.sealed", experiment("status", self.study, status=2)[1])
 

@@ -29,6 +29,14 @@ CancellerInput good(Tick tick) {
   return input;
 }
 
+// w(tick) of Eq. CC-17 before the first measured tick and after the last.
+double weight_at(Tick tick) {
+  const Trial& trial = kPerturbedTrial;
+  const Tick end = trial.start_tick + trial.duration_ticks;
+  const Tick outside = tick < trial.start_tick ? trial.start_tick - tick : tick - end + 1;
+  return 1.0 - static_cast<double>(outside) / static_cast<double>(trial.ramp_ticks);
+}
+
 // Eq. CC-17: 6 N at 3 Hz needs 113 N/s, far below the limits.
 TEST(PerturbationTest, IsTheMultisineOverTheMeasuredTicksAndZeroOutsideTheTrial) {
   Perturbation sut(tone(), {});
@@ -36,6 +44,8 @@ TEST(PerturbationTest, IsTheMultisineOverTheMeasuredTicksAndZeroOutsideTheTrial)
     const double force_n = sut.step(good(tick), kPerturbedTrial).force_n;
     if (kPerturbedTrial.measures(tick)) {
       ASSERT_DOUBLE_EQ(force_n, tone().at(tick - 2000).accel_m_s2) << tick;
+    } else if (kPerturbedTrial.covers(tick)) {
+      ASSERT_LE(std::abs(force_n), kForce_n * weight_at(tick) + 1e-12) << tick;
     } else if (!kPerturbedTrial.covers(tick) && !kPerturbedTrial.covers(tick - kRamp)) {
       ASSERT_EQ(force_n, 0.0) << tick;
     }

@@ -24,6 +24,7 @@ namespace stillhand::deploy {
 namespace {
 
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -154,18 +155,28 @@ TEST(CheckTest, ASerialChipHandsBytesOnAtOnce) {
   EXPECT_THAT(check_latency_timer(port), good());
 }
 
-TEST(CheckTest, EachDeviceBehindASerialPortHasOne) {
+TEST(CheckTest, ACanInterfaceHasToBeUp) {
+  EXPECT_THAT(check_can_interface("can0", ""), wrong("no CAN interface can0", "drive.port"));
+  EXPECT_THAT(check_can_interface("can0", "0x40080\n"), wrong("can0 is down", "ip link set can0"));
+  EXPECT_THAT(check_can_interface("can0", "0x400c1\n"), good());
+  EXPECT_THAT(check_can_interface("can0", "up"), not_checked());
+}
+
+TEST(CheckTest, EachDeviceOfTheRigIsLookedAt) {
   const auto file = std::filesystem::path(testing::TempDir()) / "devices.yaml";
   std::ofstream(file) << "signals:\n  platform: plain_udp\n";
   EXPECT_THAT(check_devices(file), IsEmpty());
   std::ofstream(file) << "signals:\n  force: drive\ndrive:\n  port: /dev/null\n";
   EXPECT_THAT(check_devices(file), SizeIs(2));
-  // No file: nothing to look at before the process opens the interface.
-  std::ofstream(file) << "signals:\n  force: drive\ndrive: {kind: moteus_can, port: can0}\n";
-  EXPECT_THAT(check_devices(file), IsEmpty());
+  std::ofstream(file) << "signals:\n  force: drive\ndrive: {kind: moteus_can, port: none0}\n";
+  EXPECT_THAT(check_devices(file), ElementsAre(wrong("no CAN interface none0", "drive.port")));
+  std::ofstream(file) << "signals: {acceleration: iio, force: iio}\n"
+                         "accelerometer: {uri: \"ip:10.0.0.7\"}\n";
+  const std::vector<Finding> seen = check_devices(file);
+  EXPECT_THAT(seen, ElementsAre(not_checked(), not_checked()));
+  EXPECT_THAT(seen.at(0).what, HasSubstr("ip:10.0.0.7"));
   std::ofstream(file) << "signals: {force: indicator}\nindicator: {port: /dev/there-is-none}\n";
-  EXPECT_THAT(check_devices(file),
-              testing::ElementsAre(wrong("/dev/there-is-none", "(indicator.port)")));
+  EXPECT_THAT(check_devices(file), ElementsAre(wrong("/dev/there-is-none", "(indicator.port)")));
   std::ofstream(file) << "signals: {force: indicator, angle: drive}\ndrive: {port: /dev/null}\n"
                          "indicator: {port: /dev/null}\n";
   EXPECT_THAT(check_devices(file), SizeIs(4));

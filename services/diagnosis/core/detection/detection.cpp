@@ -140,8 +140,10 @@ void ask_about_time(const Screening& screening, Questions& questions) {
 Whiteness whiteness_of(const Screening& screening) {
   constexpr double kQuantile = 2.576;  // of a normal deviate, 99 %
   const Eigen::VectorXd& r = screening.residual();
+  // Those of one second, and one sample at least.
   const auto lags = std::min<Eigen::Index>(
-      r.size() / 4, static_cast<Eigen::Index>(screening.signals().rate_hz()));
+      r.size() / 4,
+      std::max(static_cast<Eigen::Index>(screening.signals().rate_hz()), Eigen::Index{1}));
   Whiteness result;
   const double power = std::max(r.squaredNorm(), 1e-300);
   for (Eigen::Index lag = 0; lag <= lags; ++lag) {
