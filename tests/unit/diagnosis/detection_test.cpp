@@ -163,6 +163,15 @@ TEST(DetectionTest, AFewBlocksThatDependOnAChannelAreNotEnough) {
   EXPECT_FALSE(asked->found);
 }
 
+// A second has no lag of it.
+TEST(DetectionTest, TheAutocorrelationOfSlowSamplesHasALag) {
+  Measurement measurement = made_with(30, [](auto...) { return 0.0; });
+  measurement.rate_hz = 0.5;
+  const Whiteness sut = detected_in(measurement).whiteness;
+  EXPECT_EQ(sut.autocorrelation.size(), 2u);
+  EXPECT_TRUE(std::isfinite(sut.share_outside));
+}
+
 // Colour is reported, and is not an effect.
 TEST(DetectionTest, ColouredNoiseIsNotWhiteAndNoEffect) {
   const auto colour = made::answer({1.0}, {1.0, -0.9}, made::white(kCount, 31));
