@@ -4,14 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/verb.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
@@ -19,22 +17,11 @@ namespace {
 
 using testing::HasSubstr;
 
-int status_of(std::vector<std::string> words) {
-  CLI::App cli;
-  int status = -1;
-  add_deploy_command(cli, status);
-  std::reverse(words.begin(), words.end());  // as CLI11 wants a vector
-  cli.parse(words);
-  return status;
+int status_of(const std::vector<std::string>& words) {
+  return support::run_verb(add_deploy_command, words);
 }
-
 std::string refusal_of(const std::vector<std::string>& words) {
-  try {
-    status_of(words);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return support::refusal_of(add_deploy_command, words);
 }
 
 std::string lab_of(const std::string& address) {

@@ -4,16 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/contract/config_error.hpp"
 #include "services/identification/model_file.hpp"
 #include "services/recording/file_io.hpp"
 #include "tests/support/feedthrough_records.hpp"
+#include "tests/support/verb.hpp"
 
 namespace stillhand::identify {
 namespace {
@@ -45,31 +44,12 @@ class IdentifyCommandTest : public testing::Test {
   }
 
   // What the verb prints.
-  std::string run(const std::vector<std::string>& words) {
-    CLI::App cli;
-    int status = -1;
-    add_identify_command(cli, status);
-    std::vector<std::string> reversed(words.rbegin(), words.rend());
-    reversed.emplace_back("identify");
-    testing::internal::CaptureStdout();
-    try {
-      cli.parse(reversed);
-    } catch (...) {
-      testing::internal::GetCapturedStdout();
-      throw;
-    }
-    std::fflush(stdout);
-    EXPECT_EQ(status, 0);
-    return testing::internal::GetCapturedStdout();
+  static std::string run(const std::vector<std::string>& words) {
+    return support::output_of(add_identify_command, support::named("identify", words));
   }
 
-  std::string error_of(const std::vector<std::string>& words) {
-    try {
-      run(words);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "no error";
+  static std::string error_of(const std::vector<std::string>& words) {
+    return support::refusal_of(add_identify_command, support::named("identify", words));
   }
 
   [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }

@@ -5,8 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -16,6 +14,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/core/csv.hpp"
+#include "tests/support/verb.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 namespace stillhand::predict {
@@ -58,22 +57,8 @@ class PredictCommandTest : public testing::Test {
   }
 
   // What the verb prints.
-  static std::string run(std::vector<std::string> words) {
-    CLI::App cli;
-    int status = -1;
-    add_predict_command(cli, status);
-    std::vector<std::string> reversed(words.rbegin(), words.rend());
-    reversed.emplace_back("predict");
-    testing::internal::CaptureStdout();
-    try {
-      cli.parse(reversed);
-    } catch (...) {
-      testing::internal::GetCapturedStdout();
-      throw;
-    }
-    std::fflush(stdout);
-    EXPECT_EQ(status, 0);
-    return testing::internal::GetCapturedStdout();
+  static std::string run(const std::vector<std::string>& words) {
+    return support::output_of(add_predict_command, support::named("predict", words));
   }
 
   const fs::path folder_ =

@@ -5,12 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <string>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/verb.hpp"
 
 namespace stillhand::replay {
 namespace {
@@ -19,21 +17,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// What the verb says to these words.
-std::string refusal_of(std::vector<std::string> words) {
-  CLI::App cli;
-  int status = -1;
-  add_replay_command(cli, status);
-  words.insert(words.begin(), "replay");
-  std::ranges::reverse(words);  // as CLI11 wants a vector
-  try {
-    cli.parse(words);
-  } catch (const ConfigError& error) {
-    return error.what();
-  } catch (const CLI::ParseError& error) {
-    return std::string("command line: ") + error.what();
-  }
-  return "status " + std::to_string(status);
+std::string refusal_of(const std::vector<std::string>& words) {
+  return support::refusal_of(add_replay_command, support::named("replay", words));
 }
 
 TEST(ReplayCommandTest, ARateOutsideItsBoundsOrWithFourDecimalsIsRefused) {

@@ -5,14 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/verb.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -31,13 +31,8 @@ class StudyCommandTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   void run(std::vector<std::string> words) const {
-    CLI::App cli;
-    int status = -1;
-    add_study_command(cli, status);
     words.insert(words.end(), {"--out", (folder_ / "study").string()});
-    std::vector<std::string> reversed(words.rbegin(), words.rend());
-    reversed.emplace_back("study");
-    cli.parse(reversed);
+    support::run_verb(add_study_command, support::named("study", std::move(words)));
   }
   [[nodiscard]] std::string message_of(const std::vector<std::string>& words) const {
     try {
