@@ -72,7 +72,7 @@ class Shell {
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
   TrialMitigation mitigation_;
   /// Not yet prepared.  One that finds no room is refused.
-  boost::lockfree::spsc_queue<Received, boost::lockfree::capacity<16>> received_;
+  boost::lockfree::spsc_queue<Received> received_{16};
   runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };
 

@@ -63,8 +63,12 @@ class TrialMitigation {
     bool acts = false;
   };
 
+  // Of this size at run time: the destructor of Boost 1.74's queue with a compile-time capacity
+  // does not destroy what is still in it.
   template <typename T>
-  using Queue = boost::lockfree::spsc_queue<T, boost::lockfree::capacity<16>>;
+  struct Queue : boost::lockfree::spsc_queue<T> {
+    Queue() : boost::lockfree::spsc_queue<T>(16) {}
+  };
 
   bool ask(bool pushed);
   std::unique_ptr<Running> make();
