@@ -34,7 +34,7 @@ def programs(folder, tree, service):
     shutil.copy2(BUILD / "bin" / "stillhand", folder / "bin" / "stillhand")
     for name in SERVICES:
         of = tree if name == service else BUILD
-        (folder / "bin" / f"stillhand-{name}").symlink_to(of / "bin" / f"stillhand-{name}")
+        (folder / "bin" / f"stillhand-{name}").symlink_to(of.resolve() / "bin" / f"stillhand-{name}")
     return folder / "bin" / "stillhand"
 
 
