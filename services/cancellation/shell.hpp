@@ -71,7 +71,8 @@ class Shell {
   std::atomic<const char*> why_no_model_{"no model has come"};  ///< a literal
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
   TrialMitigation mitigation_;
-  /// Not yet prepared.  One that finds no room is refused.
+  /// Not yet prepared.  One that finds no room is refused.  Its size is set at run time, as that of
+  /// the queues of TrialMitigation.
   boost::lockfree::spsc_queue<Received> received_{16};
   runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };

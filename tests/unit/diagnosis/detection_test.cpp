@@ -163,7 +163,7 @@ TEST(DetectionTest, AFewBlocksThatDependOnAChannelAreNotEnough) {
   EXPECT_FALSE(asked->found);
 }
 
-// A second has no lag of it.
+// At one sample in two seconds, a second has no lag; one sample is looked at all the same.
 TEST(DetectionTest, TheAutocorrelationOfSlowSamplesHasALag) {
   Measurement measurement = made_with(30, [](auto...) { return 0.0; });
   measurement.rate_hz = 0.5;
