@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/diagnose/detection_json.hpp"
+#include "apps/diagnose/page/wording.hpp"
 #include "apps/report/or_null.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
@@ -52,6 +53,12 @@ std::string with_ties(const FoundEffect& found) {
   return fmt::format("{}; as good an explanation: {}", found.evidence, fmt::join(found.ties, ", "));
 }
 
+// True, false, or the share.
+ordered_json carried_json(double share) {
+  if (share > 0.0 && share < 1.0) return share;
+  return share > 0.0;
+}
+
 ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
   return {{"kind", found.effect.kind},
           {"channel", or_null(found.channel)},
@@ -63,7 +70,15 @@ ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
           {"form", found.effect.form},
           {"signals", found.effect.channels},
           {"p", found.p},
-          {"ties", found.ties}};
+          {"ties", found.ties},
+          {"carried", carried_json(found.carried)},
+          {"why_not_carried", or_null(found.why_not_carried)}};
+}
+
+ordered_json error_json(const diagnosis::HeldOutError& error) {
+  return {{"heldout_rmse", error.rmse},
+          {"vaf_percent", error.vaf_percent},
+          {"ci95", {error.low, error.high}}};
 }
 
 ordered_json baseline_json(const Diagnosis& diagnosis) {
@@ -126,10 +141,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                           {"detection_limits", limits},
                           {"verdict", diagnosis.verdict()},
                           {"effects", effects},
-                          {"final",
-                           {{"heldout_rmse", diagnosis.final_error.rmse},
-                            {"vaf_percent", diagnosis.final_error.vaf_percent},
-                            {"ci95", {diagnosis.final_error.low, diagnosis.final_error.high}}}},
+                          {"final", error_json(diagnosis.final_error)},
+                          {"carried", error_json(diagnosis.carried_error)},
                           {"unexplained", unexplained},
                           {"detection",
                            {{"least_share", diagnosis::kLeastShare},
@@ -152,7 +165,8 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
     add("{:<14}RMS error {:.4g} {}, VAF {:.2f} %{}\n", name, error.rmse, unit, error.vaf_percent,
         how);
   };
-  add("verdict       {}\n", diagnosis.verdict());
+  add("verdict       {}{}\n", diagnosis.verdict(),
+      none_carried(diagnosis) ? ", and the model that is saved carries none of them" : "");
   add("model         {} from {} to {}, order {}, at {:.4g} Hz\n", diagnosis.model_class,
       inputs_of(diagnosis), diagnosis.options.output, diagnosis.baseline.model.body.order(),
       diagnosis.sample_rate_hz);
@@ -164,8 +178,12 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
         found.effect.kind, of, found.before.rmse, found.after.rmse, unit, found.after.low,
         found.after.high);
     add("              {}\n", with_ties(found));
+    add("              {}\n", carried_in_words(found));
   }
-  add_error("final", diagnosis.final_error, "");
+  add_error("final", diagnosis.final_error, diagnosis.effects.empty() ? "" : " (with all effects)");
+  if (!diagnosis.effects.empty()) {
+    add_error("carried", diagnosis.carried_error, " (the model that --save writes)");
+  }
   add("noise floor   {:.4g} {} ({:.4g} to {:.4g})\n", diagnosis.noise_floor.rmse, unit,
       diagnosis.noise_floor.low, diagnosis.noise_floor.high);
   if (diagnosis.unexplained) add("unexplained   {}\n", diagnosis.unexplained->what);

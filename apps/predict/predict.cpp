@@ -97,7 +97,12 @@ void add_bands(const std::vector<diagnosis::ExcitedBand>& bands, const diagnosis
 
 void add_notes(const diagnosis::CarriedModel& carried, Prediction& prediction) {
   for (const diagnosis::LeftOut& each : carried.left_out) {
-    prediction.notes.push_back(each.kind + ": left out, because " + each.why);
+    prediction.notes.push_back(each.effect.kind + ": left out, because " + each.why);
+  }
+  for (const diagnosis::Effect& effect : carried.model.effects) {
+    if (effect.is_whole()) continue;
+    prediction.notes.push_back(effect.kind + ": taken at " + digits_of(100.0 * effect.share) +
+                               " % of its size, as much as its recording bears out");
   }
   if (carried.stability == diagnosis::Stability::kTested) {
     prediction.notes.emplace_back(

@@ -64,6 +64,7 @@ Json json_of(const Effect& effect) {
             {"parameters", parameters},
             {"coefficients", effect.coefficients}};
   if (!effect.seen.empty()) json["seen"] = json_of(effect.seen);
+  if (!effect.is_whole()) json["share"] = effect.share;
   return json;
 }
 
@@ -76,8 +77,10 @@ Json json_of(const std::vector<Effect>& effects) {
 Json json_of(const CarriedModel& carried) {
   Json left_out = Json::array();
   for (const LeftOut& each : carried.left_out) {
-    left_out.push_back(
-        {{"kind", each.kind}, {"form", each.form}, {"channels", each.channels}, {"why", each.why}});
+    left_out.push_back({{"kind", each.effect.kind},
+                        {"form", each.effect.form},
+                        {"channels", each.effect.channels},
+                        {"why", each.why}});
   }
   return {{"body", json_of(carried.model.body)},
           {"effects", json_of(carried.model.effects)},
@@ -141,6 +144,12 @@ Effect effect_of(const Entry& entry, std::size_t order) {
   }
   effect.coefficients = entry.at("coefficients").numbers(0, kMostNumbers);
   if (entry.has("seen")) effect.seen = ranges_of(entry.at("seen"), 2);
+  if (entry.has("share")) {
+    effect.share = entry.at("share").number();
+    if (!(effect.share > 0.0 && effect.share <= 1.0)) {
+      entry.at("share").refuse("a number above 0, at most 1");
+    }
+  }
   if ((*known)->stage(effect) == Stage::kFeedback) {
     const std::size_t count = effect.coefficients.size();
     if (count != loop_coefficients(true, order) && count != loop_coefficients(false, order)) {
@@ -247,6 +256,8 @@ std::string model_json(const Model& model) {
 std::string model_json(const Model& found, const CarriedModel& carried) {
   Json json = json_of(found);
   json["carried"] = json_of(carried);
+  json["in_session"] = {{"body", json_of(carried.in_session.body)},
+                        {"effects", json_of(carried.in_session.effects)}};
   std::string text = json.dump(2) + "\n";
   static_cast<void>(parse_carried_model(text, "model"));
   return text;
@@ -281,14 +292,22 @@ CarriedModel parse_carried_model(std::string_view json, const std::string& origi
   if (!top.has("carried")) return carried_as_it_is(std::move(found));
   const Entry entry = top.at("carried");
   CarriedModel carried = carried_as_it_is(std::move(found));
-  carried.model.effects.clear();
-  read_parts(entry, carried.model);
+  const auto read_model = [](const Entry& from, Model& model) {
+    model.effects.clear();
+    read_parts(from, model);
+  };
+  read_model(entry, carried.model);
+  carried.in_session = carried.model;
+  if (top.has("in_session")) read_model(top.at("in_session"), carried.in_session);
   carried.inputs = ranges_of(entry.at("inputs"), kMostInputs);
   if (entry.has("bands")) carried.bands = bands_of(entry.at("bands"));  // since 2026-11-24
   for (const Entry& each : entry.at("left_out").entries(0, kMostEffects)) {
-    LeftOut left{each.at("kind").text(), each.at("form").text(), {}, each.at("why").text()};
+    LeftOut left;
+    left.effect.kind = each.at("kind").text();
+    left.effect.form = each.at("form").text();
+    left.why = each.at("why").text();
     for (const Entry& channel : each.at("channels").entries(0, 2)) {
-      left.channels.push_back(channel.text());
+      left.effect.channels.push_back(channel.text());
     }
     carried.left_out.push_back(std::move(left));
   }

@@ -128,6 +128,10 @@ Table error_table(const Diagnosis& found) {
     table.rows.push_back(
         error_row("final, against the baseline", found.final_error, found.baseline_error, floor));
   }
+  if (!found.effects.empty()) {
+    table.rows.push_back(error_row("carried by the saved model, against the baseline",
+                                   found.carried_error, found.baseline_error, floor));
+  }
   table.rows.push_back({"noise floor", Cell(short_number(floor), Emphasis::kStrong),
                         interval(found.noise_floor.low, found.noise_floor.high)});
   return table;
@@ -139,13 +143,15 @@ Table effect_table(const Diagnosis& found) {
       "Effects in the order in which they were added. p: probability of such an improvement by "
       "chance, by the signed ranks of the blocks. Ties: other kinds that explain the record "
       "equally "
-      "well; the simplest was taken.";
-  table.header = {"effect", "form", "evidence", "p", "ties"};
-  table.align = {Align::kLeft, Align::kLeft, Align::kLeft, Align::kRight, Align::kLeft};
+      "well; the simplest was taken. Carried: what the saved model, and so `predict` and the "
+      "motor, has of it.";
+  table.header = {"effect", "form", "evidence", "p", "ties", "carried"};
+  table.align = {Align::kLeft,  Align::kLeft, Align::kLeft,
+                 Align::kRight, Align::kLeft, Align::kLeft};
   for (const FoundEffect& effect : found.effects) {
     table.rows.push_back({Cell(effect_title(effect), Emphasis::kStrong), effect.effect.form,
                           shown_sentence(effect.evidence, found.output_unit), p_value(effect.p),
-                          spaced(listed(effect.ties))});
+                          spaced(listed(effect.ties)), carried_in_words(effect)});
   }
   return table;
 }

@@ -39,12 +39,20 @@ std::string enumerated(const std::vector<std::string>& names) {
   return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
+// Of the model that is saved, and of all effects where it does not have them whole.
 std::string error_in_words(const Diagnosis& diagnosis) {
   const std::string unit = diagnosis.output_unit;
+  const diagnosis::HeldOutError& carried = diagnosis.carried_error;
+  const bool whole = std::ranges::all_of(
+      diagnosis.effects, [](const FoundEffect& effect) { return effect.carried == 1.0; });
   return "the RMS error on held-out data is " + shown(diagnosis.baseline_error.rmse, unit) +
-         " instead of " + shown(diagnosis.final_error.rmse, unit) +
-         " (95 %: " + interval(diagnosis.final_error.low, diagnosis.final_error.high) +
-         "); the noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
+         " instead of " + shown(carried.rmse, unit) +
+         " (95 %: " + interval(carried.low, carried.high) + ")" +
+         (whole ? std::string()
+                : " with what the saved model carries of " +
+                      std::string(diagnosis.effects.size() == 1 ? "it" : "them") + ", " +
+                      shown(diagnosis.final_error.rmse, unit) + " with all of it") +
+         "; the noise floor is " + shown(diagnosis.noise_floor.rmse, unit) + " (" +
          interval(diagnosis.noise_floor.low, diagnosis.noise_floor.high) + ")";
 }
 
@@ -119,6 +127,18 @@ std::string percent(double share, int decimals) {
   return report::number(100.0 * share, decimals) + " %";
 }
 
+std::string carried_in_words(const FoundEffect& effect) {
+  if (effect.carried == 1.0) return "carried whole";
+  const std::string why = effect.why_not_carried.empty() ? "" : ": " + effect.why_not_carried;
+  return (effect.carried > 0.0 ? "carried to " + percent(effect.carried, 0) : "not carried") + why;
+}
+
+bool none_carried(const Diagnosis& diagnosis) {
+  return !diagnosis.effects.empty() &&
+         std::ranges::none_of(diagnosis.effects,
+                              [](const FoundEffect& effect) { return effect.carried > 0.0; });
+}
+
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   const std::string model = model_name(diagnosis);
   if (!diagnosis.effects.empty()) {
@@ -132,6 +152,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     }
     return "Effects found: " + model + " lacks " + enumerated(names) +
            (diagnosis.unexplained ? ", and something that no kind of effect explains" : "") +
+           (none_carried(diagnosis) ? ", none of which the saved model carries" : "") +
            ". How sure: by chance an improvement like " +
            (names.size() == 1 ? "it" : "the least of them") + " has p = " + p_value(largest_p) +
            (tied ? ", but other kinds explain some of it equally well (see the ties)" : "") +

@@ -2,6 +2,8 @@
 #include "services/diagnosis/core/apart_from_time.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -12,9 +14,8 @@
 namespace stillhand::diagnosis {
 namespace {
 
-constexpr int kHalfCosines = 8;
-constexpr double kSlow = 0.3;  // of the variance, beyond the half-cosines
-constexpr double kBorneOut = 0.01;
+constexpr int kHalfCosines = 3;  // as many as the richest form of a drift, Eq. DG-32
+constexpr double kSlow = 0.3;    // of the variance, beyond the half-cosines
 constexpr int kTimeIterations = 10;
 
 // The channel as a smooth function of time, Eq. DG-59: a constant and the slowest half-cosines over
@@ -40,35 +41,37 @@ double square_of_difference(const std::vector<double>& x, const std::vector<doub
   return square / static_cast<double>(x.size());
 }
 
-// The quick part of the channel says the same as the slow one: with it the blocks are better.
-bool is_borne_out(const Model& model, const Signals& signals, const Signals& smooth,
-                  const Blocks& blocks) {
+// That the quick part of the channel says the same as the slow one: with it the blocks are better.
+double borne_out(const Model& model, const Signals& signals, const Signals& smooth,
+                 const Blocks& blocks) {
   FitOptions options;
   options.max_iterations = kTimeIterations;
   Model of_time = model;
   fit(of_time, smooth, blocks, options);
   const HeldOut by_time = held_out(of_time, smooth, blocks);
   const HeldOut by_channel = held_out(model, signals, blocks);
-  if (!by_time.finite) return true;
+  if (!by_time.finite) return 1.0;
   const Comparison comparison = compared(by_time, by_channel);
-  return comparison.rmse_ratio < 1.0 && comparison.p < kBorneOut;
+  if (!(comparison.t > 0.0)) return 0.0;
+  const boost::math::students_t chance(static_cast<double>(blocks.count) - 1.0);
+  return 1.0 - 2.0 * boost::math::cdf(boost::math::complement(chance, comparison.t));
 }
 
 }  // namespace
 
-bool is_apart_from_time(const Model& model, std::size_t effect, const Signals& signals,
-                        const Blocks& blocks) {
+double apart_from_time(const Model& model, std::size_t effect, const Signals& signals,
+                       const Blocks& blocks) {
+  double apart = 1.0;
   for (const std::string& channel : model.effects[effect].channels) {
     const Signal& signal = signals.at(channel);
     if (signals.is_input(signal.source)) continue;
     std::vector<double> smooth = smooth_of(signal.values, signals);
     const double quick = square_of_difference(signal.values, smooth);
     if (quick > kSlow * signal.deviation * signal.deviation) continue;
-    if (!is_borne_out(model, signals, signals.replaced(channel, std::move(smooth)), blocks)) {
-      return false;
-    }
+    apart = std::min(
+        apart, borne_out(model, signals, signals.replaced(channel, std::move(smooth)), blocks));
   }
-  return true;
+  return apart;
 }
 
 }  // namespace stillhand::diagnosis

@@ -7,11 +7,11 @@
 
 namespace stillhand::diagnosis {
 
-/// README Eq. DG-59: whether a recording distinguishes an effect of a slow channel from one of time
-/// alone.  Always true for an effect of no channel, of inputs, or of channels that are not slow.
-/// Pure.
+/// [-] 0 to 1, README Eq. DG-59: how surely a recording distinguishes an effect of a slow channel
+/// from one of time alone.  1 for an effect of no channel, of inputs, or of channels that are not
+/// slow.  Pure.
 /// @param model  fitted, the effect among its effects
-bool is_apart_from_time(const Model& model, std::size_t effect, const Signals& signals,
-                        const Blocks& blocks);
+double apart_from_time(const Model& model, std::size_t effect, const Signals& signals,
+                       const Blocks& blocks);
 
 }  // namespace stillhand::diagnosis

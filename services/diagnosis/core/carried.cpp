@@ -5,22 +5,26 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
+#include <utility>
 
 #include "services/diagnosis/core/apart_from_time.hpp"
 #include "services/diagnosis/core/fitting/held_out.hpp"
+#include "services/diagnosis/core/fitting/noise_model.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/share.hpp"
 #include "services/diagnosis/core/trials.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
 
 constexpr std::size_t kThirds = 3;  // of a single recording
-constexpr double kHelps = 0.01;     // of a recording's error, as SearchOptions::least_fall
+constexpr double kAsWell = 0.01;    // of an error, as SearchOptions::least_fall
 constexpr double kSpreads[] = {0.03, 0.1, 0.3, 1.0,
                                3.0};  // of a prior, of the RMS gain in the band
 constexpr int kCarryIterations = 30;
-constexpr int kPartIterations = 3;
+constexpr double kClearlyLower = 0.999;  // of the error of a fit that did not stop short
+constexpr const char* kNotNeeded =
+    "parts of the recording are predicted as well without it from the others";
 
 // Each part is whole: thirds of a recording, or the recordings that were joined.
 Blocks by_part(const Blocks& blocks, const Signals& signals) {
@@ -40,15 +44,13 @@ std::vector<std::size_t> borders_of(const Blocks& parts) {
   return borders;
 }
 
-struct PartErrors {
-  std::vector<double> squares;  ///< [parts] mean squares
-  double rmse = std::numeric_limits<double>::infinity();
-  /// Of the model as it is, fitted to all parts, from the past that `predict` assumes: a mode that
-  /// rings for longer than a part lasts is fitted by its start, which no other recording shares.
-  double own_rmse = std::numeric_limits<double>::infinity();
+// A model's predictions of parts that it was not fitted to, joined.
+struct OutOfParts {
+  bool finite = false;
+  Eigen::VectorXd residual;  ///< [samples] weighted [unit of the output]
 
-  [[nodiscard]] bool is_below(const PartErrors& other) const {
-    return rmse < other.rmse && own_rmse < other.own_rmse;
+  [[nodiscard]] double rmse(double weight) const {
+    return finite ? residual.norm() / std::sqrt(weight) : std::numeric_limits<double>::infinity();
   }
 };
 
@@ -57,7 +59,7 @@ struct PartErrors {
 Model bare_of_terms(const Model& model) {
   Model bare = model;
   for (Effect& effect : bare.effects) {
-    if (effect_kind(effect.kind).stage(effect) == Stage::kTerm) {
+    if (effect.is_whole() && effect_kind(effect.kind).stage(effect) == Stage::kTerm) {
       std::ranges::fill(effect.coefficients, 0.0);
     }
   }
@@ -89,68 +91,47 @@ bool has_body_of_baseline(const Model& model, const Signals& signals) {
          });
 }
 
-// [unit of the output]
-double rms_error(const Model& model, const Signals& signals) {
-  const FreeRun run = free_run(model, signals);
-  if (!run.finite) return std::numeric_limits<double>::infinity();
-  double sum = 0.0;
-  double weight = 0.0;
-  for (std::size_t n = 0; n < signals.size(); ++n) {
-    const double r = run.weight[n] * (signals.output().values[n] - run.prediction[n]);
-    sum += r * r;
-    weight += run.weight[n];
-  }
-  return std::sqrt(sum / std::max(weight, 1.0));
-}
-
 class Carrying {
  public:
-  Carrying(const Signals& signals, const Signals& without_bursts, const Blocks& blocks)
-      : all_(signals),
-        fitted_(without_bursts),
+  // @param signals  bursts weigh nothing
+  // @param noise    [samples] what the model of the verdict leaves, weighted
+  Carrying(const Signals& signals, const Blocks& blocks, const Eigen::VectorXd& noise)
+      : signals_(signals),
         blocks_(blocks),
         parts_(by_part(blocks, signals)),
-        apart_(signals.restarted(borders_of(parts_))),
-        with_pasts_(apart_.with_pasts()) {}
+        apart_(signals.restarted(borders_of(parts_)).whitened(whitening_taps(noise, signals))),
+        with_pasts_(apart_.with_pasts()),
+        weight_(std::max(sum_of(apart_.weight()), 1.0)) {}
 
-  [[nodiscard]] bool several() const { return all_.stretches().back().recording > 0; }
-
-  // Error of each part, by a fit to the others, from the past that `predict` assumes; bursts are
-  // left out of the fits alone.
-  [[nodiscard]] PartErrors errors(const Model& model, const Signals& fitted) const {
-    PartErrors errors;
-    errors.own_rmse = rms_error(model, with_pasts_);
-    double sum = 0.0;
-    double weight = 0.0;
+  // Each part by a fit to the others, from the past that `predict` assumes.
+  [[nodiscard]] OutOfParts out_of_parts(const Model& model) const {
+    OutOfParts out{true, Eigen::VectorXd::Zero(std::ssize(apart_.weight()))};
     for (std::size_t part = 0; part < parts_.folds; ++part) {
-      Model refitted = bare_of_terms(model);
-      FitOptions options;
-      options.max_iterations = kPartIterations;
-      options.prior = prior_of(model);
-      options.without_fold = static_cast<int>(part);
-      fit(refitted, fitted, parts_, options);
-      const FreeRun run = free_run(refitted, with_pasts_);
+      const FreeRun run = free_run(fitted_without(part, model), with_pasts_);
       if (!run.finite) return {};
       const std::vector<double> prediction = apart_.without_pasts(run.prediction);
-      const std::vector<double> weight_of_run = apart_.without_pasts(run.weight);
-      double of_part = 0.0;
-      double weight_of_part = 0.0;
-      for (std::size_t n = 0; n < all_.size(); ++n) {
+      for (std::size_t n = 0; n < prediction.size(); ++n) {
         if (parts_.fold_of(n / parts_.length) != part) continue;
-        const double r = weight_of_run[n] * (all_.output().values[n] - prediction[n]);
-        of_part += r * r;
-        weight_of_part += weight_of_run[n];
+        out.residual[static_cast<Eigen::Index>(n)] =
+            apart_.weight()[n] * (apart_.output().values[n] - prediction[n]);
       }
-      errors.squares.push_back(of_part / std::max(weight_of_part, 1.0));
-      sum += of_part;
-      weight += weight_of_part;
     }
-    errors.rmse = std::sqrt(sum / std::max(weight, 1.0));
-    return errors;
+    return out;
   }
-  [[nodiscard]] PartErrors errors(const Model& model) const { return errors(model, fitted_); }
-  [[nodiscard]] PartErrors errors_of_baseline(const Model& model) const {
-    return errors(model, all_);
+  [[nodiscard]] double rmse(const Model& model) const { return out_of_parts(model).rmse(weight_); }
+
+  // Of what one model predicts beyond the other, Eq. DG-69: as it is or behind the noise model, by
+  // the one with the smaller standard error.
+  [[nodiscard]] Share share(const OutOfParts& without, const OutOfParts& with) const {
+    if (!with.finite) return {};
+    if (!without.finite) return {1.0, 0.0};
+    if (several() && !helps_one(without, with)) return {};
+    Eigen::MatrixXd columns(without.residual.size(), 2);
+    columns << without.residual, without.residual - with.residual;
+    const Share plain = share_of(columns.col(0), columns.col(1), parts_);
+    apart_.whiten(columns, apart_.weight());
+    const Share behind = share_of(columns.col(0), columns.col(1), parts_);
+    return behind.std_error < plain.std_error ? behind : plain;
   }
 
   // Of the body, from now on.  The prior stays with the caller.
@@ -168,11 +149,11 @@ class Carrying {
       starts.back().body = other;
     }
     Model again = model;
-    start_afresh(again, fitted_, static_cast<int>(other.order()));
+    start_afresh(again, signals_, static_cast<int>(other.order()));
     if (again.body.denominator != model.body.denominator) starts.push_back(std::move(again));
     double least = std::numeric_limits<double>::infinity();
     for (Model& start : starts) {
-      const FitResult result = fit(start, fitted_, blocks_, options);
+      const FitResult result = fit(start, signals_, blocks_, options);
       if (!result.finite || !(result.rmse < least)) continue;
       least = result.rmse;
       model = start;
@@ -181,29 +162,72 @@ class Carrying {
   }
 
  private:
-  [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
-    return prior_ != nullptr && has_body_of_baseline(model, all_) ? prior_ : nullptr;
+  [[nodiscard]] bool several() const { return signals_.stretches().back().recording > 0; }
+
+  // What only one of several recordings shows, none of the others can bear out.
+  [[nodiscard]] bool helps_one(const OutOfParts& without, const OutOfParts& with) const {
+    std::vector<double> before(parts_.folds, 0.0);
+    std::vector<double> after(parts_.folds, 0.0);
+    for (Eigen::Index n = 0; n < without.residual.size(); ++n) {
+      const std::size_t part = parts_.fold_of(static_cast<std::size_t>(n) / parts_.length);
+      before[part] += without.residual[n] * without.residual[n];
+      after[part] += with.residual[n] * with.residual[n];
+    }
+    for (std::size_t part = 0; part < parts_.folds; ++part) {
+      if (std::sqrt(after[part]) < (1.0 - kAsWell) * std::sqrt(before[part])) return true;
+    }
+    return false;
   }
 
-  const Signals& all_;
-  const Signals& fitted_;
+  // From terms that weigh nothing, or from the model's own numbers where that ends clearly lower:
+  // from nothing a fit may stop short.
+  [[nodiscard]] Model fitted_without(std::size_t part, const Model& model) const {
+    FitOptions options;
+    options.max_iterations = kCarryIterations;
+    options.prior = prior_of(model);
+    options.without_fold = static_cast<int>(part);
+    Model bare = bare_of_terms(model);
+    Model own = model;
+    const double from_nothing = fit(bare, signals_, parts_, options).rmse;
+    const double from_own = fit(own, signals_, parts_, options).rmse;
+    return from_own < kClearlyLower * from_nothing ? own : bare;
+  }
+
+  [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
+    return prior_ != nullptr && has_body_of_baseline(model, signals_) ? prior_ : nullptr;
+  }
+
+  const Signals& signals_;
   const Blocks& blocks_;
   const ResponsePrior* prior_ = nullptr;
   const Blocks parts_;
   const Signals apart_;  // every part starts as a recording does
   const Signals with_pasts_;
+  const double weight_;
 };
 
 LeftOut left_out(const Effect& effect, std::string why) {
-  return {effect.kind, effect.form, effect.channels, std::move(why)};
+  return {{effect.kind, effect.form, effect.channels, {}, {}}, std::move(why)};
 }
 
-void leave_all(const Model& model, const std::string& why, std::vector<LeftOut>& out) {
-  for (const Effect& effect : model.effects) out.push_back(left_out(effect, why));
+// [effects] that an effect is not one of time alone, Eq. DG-59.
+std::vector<double> certainty_of(const Model& found, const Signals& signals, const Blocks& blocks) {
+  std::vector<double> certainty(found.effects.size(), 1.0);
+  for (std::size_t e = 0; e < certainty.size(); ++e) {
+    if (effect_kind(found.effects[e].kind).time_only(found.effects[e])) continue;
+    certainty[e] = rounded_share(apart_from_time(found, e, signals, blocks));
+  }
+  return certainty;
+}
+
+std::size_t index_of(const Effect& effect, const Model& found) {
+  const auto same = std::ranges::find_if(found.effects,
+                                         [&](const Effect& each) { return is_same(each, effect); });
+  return static_cast<std::size_t>(same - found.effects.begin());
 }
 
 // The part of a model that another recording can share; the rest goes to `out`.
-Model shared_part(const Model& found, const Signals& signals, const Blocks& blocks,
+Model shared_part(const Model& found, const std::vector<double>& certainty,
                   std::vector<LeftOut>& out) {
   Model shared = found;
   shared.effects.clear();
@@ -214,7 +238,7 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
       out.push_back(left_out(effect, "nothing predicts when a burst comes"));
     } else if (kind.time_only(effect)) {
       out.push_back(left_out(effect, "the inputs do not determine it"));
-    } else if (!is_apart_from_time(found, e, signals, blocks)) {
+    } else if (certainty[e] == 0.0) {
       out.push_back(
           left_out(effect, "this recording does not distinguish its slow channel from time alone"));
       out.back().like_time = true;
@@ -226,21 +250,20 @@ Model shared_part(const Model& found, const Signals& signals, const Blocks& bloc
 }
 
 // With the narrowest prior that predicts parts of the recording as well from the others as a fit
-// without one.  If the samples contradict each, the body has a response outside of the band that
-// the baseline's does not have, and neither is known: nothing is carried.
+// without one; with the widest where there is none.
 // @param fitted  the shared part is the whole, as it was found
 // @param priors  from narrow to wide; they stay as long as `carrying`
-std::optional<Model> first_fit(const Model& shared, bool fitted, const Body& baseline,
-                               Carrying& carrying, const std::vector<ResponsePrior>& priors) {
+Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
+                const std::vector<ResponsePrior>& priors) {
   Model plain = fitted ? shared : carrying.refitted(shared, baseline);
   if (priors.empty()) return plain;
-  const double error = carrying.errors(plain).rmse;
+  const double error = carrying.rmse(plain);
   for (const ResponsePrior& prior : priors) {
     carrying.assume(prior);
     Model with = carrying.refitted(shared, baseline);
-    if (carrying.errors(with).rmse <= (1.0 + kHelps) * error) return with;
+    if (&prior == &priors.back() || carrying.rmse(with) <= (1.0 + kAsWell) * error) return with;
   }
-  return std::nullopt;
+  return plain;
 }
 
 // From narrow to wide; none where they say nothing.
@@ -263,24 +286,6 @@ Model without(const Model& model, std::size_t effect) {
   Model other = model;
   other.effects.erase(other.effects.begin() + static_cast<std::ptrdiff_t>(effect));
   return other;
-}
-
-// The effect, last added first, without which the parts are predicted as well or better, or that
-// helps none of several recordings.
-std::optional<std::size_t> idle(const Model& model, const PartErrors& with, const Body& baseline,
-                                const Carrying& carrying) {
-  if (model.effects.size() < 2 && !carrying.several()) return std::nullopt;
-  for (std::size_t e = model.effects.size(); e-- > 0;) {
-    const PartErrors bare = carrying.errors(carrying.refitted(without(model, e), baseline));
-    if (!with.is_below(bare)) return e;
-    if (!carrying.several()) continue;
-    bool helps = bare.squares.empty();  // without it the model's run is not finite
-    for (std::size_t r = 0; r < bare.squares.size(); ++r) {
-      helps = helps || std::sqrt(with.squares[r] / bare.squares[r]) < 1.0 - kHelps;
-    }
-    if (!helps) return e;
-  }
-  return std::nullopt;
 }
 
 bool has_feedback(const Effect& effect) {
@@ -318,6 +323,54 @@ Signals bursts_masked(const Model& found, const Signals& signals) {
   return signals.weighed(std::move(weight));
 }
 
+// What the evidence leaves of each effect next to the others and of all of them, Eq. DG-68.  One
+// that keeps nothing goes, the least of them first, and the others are asked again.
+void keep_shares(CarriedModel& carried, const Model& baseline, const Carrying& carrying) {
+  const OutOfParts bare = carrying.out_of_parts(baseline);
+  while (!carried.model.effects.empty()) {
+    const std::size_t count = carried.model.effects.size();
+    const OutOfParts with = carrying.out_of_parts(carried.model);
+    const double of_all = carrying.share(bare, with).earned();
+    std::vector<double> shares(1, of_all);
+    if (count > 1) {
+      for (std::size_t e = 0; e < count; ++e) {
+        const Model other = carrying.refitted(without(carried.model, e), baseline.body);
+        const double own = carrying.share(carrying.out_of_parts(other), with).earned();
+        shares.resize(count);
+        shares[e] = own;
+      }
+    }
+    // Of equals, the one that was added last.
+    const auto least = std::ranges::min_element(shares.rbegin(), shares.rend());
+    if (*least > 0.0 && of_all > 0.0) {
+      for (std::size_t e = 0; e < count; ++e) {
+        carried.model.effects[e].share = std::min(shares[e], of_all);
+      }
+      return;
+    }
+    drop(carried, static_cast<std::size_t>(shares.rend() - least) - 1, kNotNeeded, baseline.body,
+         carrying);
+  }
+}
+
+// The carried model next to the effects of time alone that were found, fitted again together.
+Model with_time(const Model& carried, const Model& found, const Signals& signals,
+                const Blocks& blocks) {
+  Model whole = carried;
+  for (const Effect& effect : found.effects) {
+    if (effect_kind(effect.kind).time_only(effect)) whole.effects.push_back(effect);
+  }
+  if (whole.effects.size() == carried.effects.size()) return whole;
+  for (Effect& effect : whole.effects) effect.seen.clear();
+  FitOptions options;
+  options.max_iterations = kCarryIterations;
+  fit(whole, signals, blocks, options);
+  for (std::size_t e = 0; e < carried.effects.size(); ++e) {
+    whole.effects[e].seen = carried.effects[e].seen;
+  }
+  return whole;
+}
+
 }  // namespace
 
 CarriedModel carried_model(const Model& found, const Model& baseline, const Signals& signals,
@@ -330,43 +383,35 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
   carried.model = baseline;
   if (!found.effects.empty()) {
     const Signals masked = bursts_masked(found, signals);
-    Carrying carrying(signals, masked, blocks);
-    const Model shared = shared_part(found, signals, blocks, carried.left_out);
+    FreeRun run;
+    const Eigen::VectorXd noise = residual_of(found, masked, run);
+    Carrying carrying(masked, blocks, noise);
+    const std::vector<double> certainty = certainty_of(found, signals, blocks);
+    const Model shared = shared_part(found, certainty, carried.left_out);
+    const double rms = noise.norm() / std::sqrt(std::max(sum_of(masked.weight()), 1.0));
     const std::vector<ResponsePrior> priors =
-        priors_of(shared, baseline, rms_error(found, masked), carried.bands, signals);
-    const auto first = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
-    carried.model = first.value_or(baseline);
-    if (!first) {
-      leave_all(shared,
-                "next to it the body differs from the linear model's where nothing excited it",
-                carried.left_out);
-    }
+        priors_of(shared, baseline, rms, carried.bands, signals);
+    carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
     keep_stable(carried, signals, baseline.body, carrying);
-    PartErrors errors = carrying.errors(carried.model);
-    while (const auto effect = idle(carried.model, errors, baseline.body, carrying)) {
-      drop(carried, *effect,
-           carrying.several() ? "it helps to predict no recording that it was not fitted to"
-                              : "it helps to predict no third of the recording from the others",
-           baseline.body, carrying);
-      errors = carrying.errors(carried.model);
+    keep_shares(carried, baseline, carrying);
+    for (Effect& effect : carried.model.effects) {
+      effect.share *= certainty[index_of(effect, found)];
+    }
+    if (!std::ranges::all_of(carried.model.effects, &Effect::is_whole)) {
+      carried.model = carrying.refitted(carried.model, baseline.body);
     }
     keep_stable(carried, signals, baseline.body, carrying);
     // A body that was fitted next to effects that stay behind is as right as the baseline's where
     // the recording is excited.  Elsewhere neither is known, and the baseline is what it is
     // compared with.
-    if (carried.model.effects.empty() ||
-        !carrying.errors(carried.model).is_below(carrying.errors_of_baseline(baseline))) {
-      leave_all(carried.model,
-                "parts of the recording are predicted as well without it from the others",
-                carried.left_out);
-      carried.model = baseline;
-    }
+    if (carried.model.effects.empty()) carried.model = baseline;
   }
   note_seen(carried.model, signals);
   carried.stability = stability_of(carried.model, signals);
+  carried.in_session = with_time(carried.model, found, signals, blocks);
   return carried;
 }
 
-CarriedModel carried_as_it_is(Model model) { return {std::move(model), {}, {}, {}, {}}; }
+CarriedModel carried_as_it_is(Model model) { return {model, model, {}, {}, {}, {}}; }
 
 }  // namespace stillhand::diagnosis

@@ -13,9 +13,7 @@ namespace stillhand::diagnosis {
 
 /// An effect that was found in a recording and does not help to predict another one.
 struct LeftOut {
-  std::string kind;
-  std::string form;
-  std::vector<std::string> channels;
+  Effect effect;    ///< its kind, form and channels
   std::string why;  ///< a clause
   /// Its slow channel is not distinguished from time, Eq. DG-59.
   bool like_time = false;
@@ -26,6 +24,9 @@ struct LeftOut {
 /// was seen.
 struct CarriedModel {
   Model model;
+  /// For the canceller of the same session: with the effects of time alone that its clock goes on
+  /// with (EffectKind::time_only), and with the same shares of the others.
+  Model in_session;
   std::vector<LeftOut> left_out;
   std::vector<SeenRange> inputs;   ///< ranges of the inputs
   std::vector<ExcitedBand> bands;  ///< of the inputs, Eq. DG-65; empty: not known

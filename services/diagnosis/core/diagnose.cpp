@@ -257,21 +257,32 @@ void add_ties_with_time(Diagnosis& diagnosis) {
   for (const LeftOut& each : diagnosis.carried.left_out) {
     if (!each.like_time) continue;
     for (std::size_t e = 0; e < diagnosis.effects.size(); ++e) {
-      const Effect& effect = diagnosis.effects[e].effect;
-      if (effect.kind == each.kind && effect.form == each.form &&
-          effect.channels == each.channels) {
+      if (is_same(diagnosis.effects[e].effect, each.effect)) {
         tie_with_time(diagnosis.effects[e], diagnosis.search.additions[e]);
       }
     }
   }
 }
 
-// A note for each effect that `predict` leaves out.
-void note_left_out(Diagnosis& diagnosis) {
-  for (const LeftOut& each : diagnosis.carried.left_out) {
-    diagnosis.notes.push_back("predict leaves " + each.kind + " (" + each.form +
-                              ") out: " + each.why);
+// What the carried model keeps of each effect, and why not all of it.
+void add_carried(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks,
+                 double variance) {
+  const CarriedModel& carried = diagnosis.carried;
+  for (FoundEffect& found : diagnosis.effects) {
+    for (const Effect& effect : carried.model.effects) {
+      if (is_same(effect, found.effect)) found.carried = effect.share;
+    }
+    if (found.carried > 0.0) {
+      if (found.carried < 1.0) {
+        found.why_not_carried = "parts of the recording bear this share of it out";
+      }
+      continue;
+    }
+    for (const LeftOut& each : carried.left_out) {
+      if (is_same(each.effect, found.effect)) found.why_not_carried = each.why;
+    }
   }
+  diagnosis.carried_error = held_out_error(held_out(carried.model, signals, blocks), variance);
 }
 
 // RMS behind the noise model over RMS before it, of what the model predicts about its mean: an
@@ -356,7 +367,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   note_refuted(diagnosis);
   diagnosis.carried = carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks);
   add_ties_with_time(diagnosis);
-  note_left_out(diagnosis);
+  add_carried(diagnosis, signals, blocks, variance);
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);
   diagnosis.after = detected(screening, excitation);
   if (!is_rounding(diagnosis.final_error.rmse, signals)) {

@@ -52,6 +52,8 @@ struct FoundEffect {
   double p = 1.0;                 ///< [-] of the improvement by chance
   std::string evidence;           ///< one sentence
   std::vector<std::string> ties;  ///< kinds that explain the data equally well
+  double carried = 0.0;           ///< [-] share that the carried model has of it, Eq. DG-68
+  std::string why_not_carried;    ///< a clause; empty where it is whole
 };
 
 /// The verdict and everything that it is based on.
@@ -70,6 +72,7 @@ struct Diagnosis {
   double detection_limit = 0.0;  ///< [unit of the output] of a further effect, Eq. DG-62
   Model model;                   ///< baseline and effects, fitted together to all samples
   CarriedModel carried;          ///< what predicts other recordings
+  HeldOutError carried_error;    ///< of `carried`, judged as final_error
   DetectionResult before;        ///< of the baseline's residual
   DetectionResult after;         ///< of the final model's
   SearchResult search;           ///< the candidates of every step

@@ -71,9 +71,7 @@ bool retest(SearchResult& result, const Signals& signals, const Blocks& blocks,
 
 // In any order.
 bool same_effects(const Model& a, const Model& b) {
-  return std::ranges::is_permutation(a.effects, b.effects, [](const Effect& x, const Effect& y) {
-    return x.kind == y.kind && x.form == y.form && x.channels == y.channels;
-  });
+  return std::ranges::is_permutation(a.effects, b.effects, is_same);
 }
 
 // The forward selection, from the baseline alone or with bursts left out from the start.

@@ -96,7 +96,7 @@ CarriedModel carried_path() {
   carried.model.body.offset = 1.0 / 3.0;
   carried.inputs = {{"a_y", "m/s^2", -4.0, 5.0}};
   carried.bands = {{"a_y", 0.7, 2.0}};
-  carried.left_out.push_back({"tone", "fixed", {}, "the inputs do not determine it"});
+  carried.left_out.push_back({{"tone", "fixed", {}, {}, {}}, "the inputs do not determine it"});
   carried.stability = Stability::kTested;
   return carried;
 }

@@ -71,6 +71,23 @@ TEST(DiagnosisJsonTest, ErrorsAndTheBodyAreGivenAsTheyAre) {
   EXPECT_TRUE(sut["unexplained"].is_null());
 }
 
+TEST(DiagnosisJsonTest, AnEffectIsCarriedNotCarriedOrCarriedInPart) {
+  diagnosis::Diagnosis diagnosis = diagnosis_with({diagnosis::made::every_effect().front(),
+                                                   diagnosis::made::every_effect().back(),
+                                                   diagnosis::made::every_effect().front()});
+  diagnosis.carried_error = {1.25, 1.0, 1.5, 90.0};
+  diagnosis.effects[0].carried = 1.0;
+  diagnosis.effects[1].carried = 0.25;
+  diagnosis.effects[2].why_not_carried = "the inputs do not determine it";
+  const json sut = json_of(diagnosis);
+  EXPECT_EQ(sut["carried"]["heldout_rmse"], 1.25);
+  EXPECT_EQ(sut["effects"][0]["carried"], true);
+  EXPECT_TRUE(sut["effects"][0]["why_not_carried"].is_null());
+  EXPECT_EQ(sut["effects"][1]["carried"], 0.25);
+  EXPECT_EQ(sut["effects"][2]["carried"], false);
+  EXPECT_EQ(sut["effects"][2]["why_not_carried"], "the inputs do not determine it");
+}
+
 TEST(DiagnosisJsonTest, EveryKindCanBeWrittenWithItsParametersAndUnits) {
   const auto effects = diagnosis::made::every_effect();
   const json sut = json_of(diagnosis_with(effects));

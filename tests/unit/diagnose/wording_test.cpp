@@ -91,6 +91,7 @@ diagnosis::Diagnosis of_order(std::size_t order) {
   diagnosis.baseline.model.body.denominator.assign(order + 1, 0.0);
   diagnosis.baseline_error = {2.0, 1.9, 2.1, 80.0};
   diagnosis.final_error = {1.0, 0.9, 1.1, 95.0};
+  diagnosis.carried_error = {1.25, 1.2, 1.3, 92.0};
   diagnosis.noise_floor.rmse = 0.75;
   diagnosis.noise_floor.low = 0.7;
   diagnosis.noise_floor.high = 0.8;
@@ -104,16 +105,38 @@ diagnosis::FoundEffect found(const char* kind, const char* channel = "") {
   return effect;
 }
 
+// The headline is the saved model's error; what all effects leave on this record stands behind it.
 TEST(WordingTest, AVerdictNamesEffectsAndErrors) {
   diagnosis::Diagnosis diagnosis = of_order(4);
   diagnosis.effects = {found("coulomb_friction", "omega"), found("tone"), found("drift")};
+  diagnosis.effects[0].carried = 1.0;
   const std::string sut = verdict_in_words(diagnosis);
   EXPECT_THAT(
       sut, AllOf(HasSubstr("order 4"), HasSubstr("coulomb friction (omega), tone and drift"),
-                 HasSubstr("2 N"), HasSubstr("1 N"), HasSubstr("0.9 to 1.1"), HasSubstr("0.75 N"),
-                 HasSubstr("0.7 to 0.8")));
+                 HasSubstr("2 N instead of 1.25 N (95 %: 1.2 to 1.3)"), HasSubstr("1 N with all"),
+                 HasSubstr("0.75 N (0.7 to 0.8)")));
+  EXPECT_THAT(sut, Not(HasSubstr("none of which")));
   EXPECT_THAT(sut, Not(HasSubstr(" ties")));
   EXPECT_TRUE(sut.ends_with("."));
+}
+
+TEST(WordingTest, AVerdictOfWhichNothingIsCarriedSaysSoInTheSameSentence) {
+  diagnosis::Diagnosis diagnosis = of_order(4);
+  diagnosis.effects = {found("tone")};
+  EXPECT_THAT(verdict_in_words(diagnosis), HasSubstr("lacks tone, none of which the saved model"));
+  diagnosis.effects[0].carried = 1.0;
+  EXPECT_THAT(verdict_in_words(diagnosis), Not(HasSubstr("saved model")));
+}
+
+TEST(WordingTest, AnEffectSaysHowMuchOfItIsCarried) {
+  diagnosis::FoundEffect effect = found("tone");
+  effect.why_not_carried = "the inputs do not determine it";
+  EXPECT_EQ(carried_in_words(effect), "not carried: the inputs do not determine it");
+  effect.carried = 0.67;
+  effect.why_not_carried = "so much is borne out";
+  EXPECT_EQ(carried_in_words(effect), "carried to 67 %: so much is borne out");
+  effect.carried = 1.0;
+  EXPECT_EQ(carried_in_words(effect), "carried whole");
 }
 
 TEST(WordingTest, AVerdictMentionsTiesAndWhatIsLeft) {

@@ -45,7 +45,7 @@ TEST(CarriedPredictionTest, WhatWasLeftOutAndWhatIsHeldIsNoted) {
       made::model_of(made::two_pole_body(), {{"coupled_input", "static", {"v"}, {}, {2.0}}}));
   carried.model.effects[0].seen.push_back({"v", "V", -1.0, 1.0});
   carried.inputs.push_back({"u", "V", -9.0, 9.0});
-  carried.left_out.push_back({"drift", "linear", {}, "the inputs do not determine it"});
+  carried.left_out.push_back({{"drift", "linear", {}, {}, {}}, "the inputs do not determine it"});
   carried.stability = diagnosis::Stability::kTested;
   std::vector<double> v(400, 0.5);
   for (std::size_t n = 300; n < 400; ++n) v[n] = 7.0;

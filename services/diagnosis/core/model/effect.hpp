@@ -58,9 +58,15 @@ struct Effect {
   std::vector<Parameter> parameters;  ///< nonlinear ones
   std::vector<double> coefficients;   ///< linear ones, of the terms or of the feedback path
   std::vector<SeenRange> seen = {};   ///< empty: everywhere, as while it is fitted
+  /// [-] 0 to 1, of its size, Eq. DG-68.  One that acts in part keeps its numbers in every fit.
+  double share = 1.0;
 
+  [[nodiscard]] bool is_whole() const noexcept { return share == 1.0; }
   [[nodiscard]] double value(std::size_t i) const { return parameters.at(i).value; }
 };
+
+/// The same kind, form and channels, whatever the numbers.
+bool is_same(const Effect& one, const Effect& other) noexcept;
 
 /// What an effect without a law draws: straight between its knots, level beyond them.
 struct Curve {
@@ -80,7 +86,7 @@ struct Curve {
 /// A number that is given, not fitted: the mean of a channel, from which it is counted.
 Parameter constant(std::string name, std::string unit, double value);
 
-/// Number of numbers that the data chose.
+/// Number of numbers that the data chose; none of an effect that acts in part.
 std::size_t complexity(const Effect& effect) noexcept;
 
 }  // namespace stillhand::diagnosis

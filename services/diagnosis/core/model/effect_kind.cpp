@@ -54,6 +54,28 @@ std::vector<double> EffectKind::own_poles(const Effect& /*effect*/,
 void EffectKind::weigh(const Effect& /*effect*/, const Signals& /*signals*/,
                        std::span<double> /*weight*/) const {}
 
+double delay_in_part(const Effect& effect, double time_s) {
+  return effect.share * effect_kind(effect.kind).input_delay_s(effect, time_s);
+}
+
+double mapped_in_part(const Effect& effect, double value) {
+  const double whole = effect_kind(effect.kind).mapped(effect, value);
+  return effect.is_whole() ? whole : value + effect.share * (whole - value);
+}
+
+double slope_in_part(const Effect& effect, double value) {
+  const double whole = effect_kind(effect.kind).slope(effect, value);
+  return effect.is_whole() ? whole : 1.0 + effect.share * (whole - 1.0);
+}
+
+void gain_in_part(const Effect& effect, const Signals& signals, std::span<double> gain) {
+  const EffectKind& kind = effect_kind(effect.kind);
+  if (effect.is_whole()) return kind.gain(effect, signals, gain);
+  std::vector<double> whole(gain.size(), 1.0);
+  kind.gain(effect, signals, whole);
+  for (std::size_t n = 0; n < gain.size(); ++n) gain[n] *= 1.0 + effect.share * (whole[n] - 1.0);
+}
+
 bool passes_through_body(const Model& model) {
   return std::ranges::any_of(model.effects, [](const Effect& effect) {
     return effect_kind(effect.kind).through_body(effect);

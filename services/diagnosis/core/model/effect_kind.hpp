@@ -95,6 +95,14 @@ class EffectKind {
   virtual void weigh(const Effect& effect, const Signals& signals, std::span<double> weight) const;
 };
 
+/// What an effect does when it acts with its share, Eq. DG-68: a delay and the factors of terms and
+/// of a feedback times the share s, a map u + s (m(u) - u), a gain 1 + s (g - 1).
+double delay_in_part(const Effect& effect, double time_s);
+double mapped_in_part(const Effect& effect, double value);
+double slope_in_part(const Effect& effect, double value);
+/// Multiplies `gain`, one a sample.
+void gain_in_part(const Effect& effect, const Signals& signals, std::span<double> gain);
+
 /// True when an effect of the model passes the body's poles: the body keeps its order.
 bool passes_through_body(const Model& model);
 

@@ -15,16 +15,16 @@ namespace stillhand::diagnosis {
 namespace {
 
 // A map goes on straight where it was not seen, Eq. DG-56.
-double mapped_within(const EffectKind& kind, const Effect& effect, double value) {
-  if (effect.seen.empty()) return kind.mapped(effect, value);
+double mapped_within(const Effect& effect, double value) {
+  if (effect.seen.empty()) return mapped_in_part(effect, value);
   constexpr double kStep = 1e-6;  // of the way from the middle to the edge
   const SeenRange& range = effect.seen.front();
   const double edge = range.held(value);
-  const double inside = kind.mapped(effect, edge);
+  const double inside = mapped_in_part(effect, edge);
   if (edge == value) return inside;
   const double step = kStep * (edge - 0.5 * (range.low + range.high));
   if (step == 0.0) return inside;
-  const double slope = (inside - kind.mapped(effect, edge - step)) / step;
+  const double slope = (inside - mapped_in_part(effect, edge - step)) / step;
   return inside + slope * (value - edge);
 }
 
@@ -32,13 +32,11 @@ std::vector<double> shaped_input(const Model& model, const Signals& signals, std
   std::vector<double> u = signals.inputs()[k].values;
   for (const Effect& effect : model.effects) {
     if (!acts_at(effect, Stage::kInputTime)) continue;
-    const EffectKind& kind = effect_kind(effect.kind);
-    u = delayed(u, signals, [&](double t_s) { return kind.input_delay_s(effect, t_s); });
+    u = delayed(u, signals, [&](double t_s) { return delay_in_part(effect, t_s); });
   }
   for (const Effect& effect : model.effects) {
     if (!acts_at(effect, Stage::kInputValue) || effect.channels.at(0) != model.inputs[k]) continue;
-    const EffectKind& kind = effect_kind(effect.kind);
-    for (double& value : u) value = mapped_within(kind, effect, value);
+    for (double& value : u) value = mapped_within(effect, value);
   }
   return u;
 }
@@ -105,7 +103,7 @@ void weigh_columns(const Model& model, const Signals& signals, const Columns& co
   std::size_t next = 0;
   for (const auto& each : columns) {
     if (!effect_kind(effect.kind).through_body(effect)) {
-      add_scaled(each, effect.coefficients.at(next++), run.free.prediction);
+      add_scaled(each, effect.share * effect.coefficients.at(next++), run.free.prediction);
       run.term_columns[e].push_back(each);
       continue;
     }
@@ -114,7 +112,7 @@ void weigh_columns(const Model& model, const Signals& signals, const Columns& co
         through_poles(settled(each, signals), model.body.denominator, signals.stretches());
     for (std::size_t i = 0; i <= model.body.order(); ++i) {
       if (i > 0) column = differenced(column, signals.stretches());
-      const double weight = effect.coefficients.at(next++);
+      const double weight = effect.share * effect.coefficients.at(next++);
       add_scaled(column.values, weight, run.free.prediction);
       add_scaled(column, weight, run.through_body);
       run.term_columns[e].push_back(column.values);
@@ -143,11 +141,10 @@ void apply_gain(const Model& model, const Signals& signals, ModelRun& run) {
   run.gain.assign(signals.size(), 1.0);
   for (const Effect& effect : model.effects) {
     if (!acts_at(effect, Stage::kGain)) continue;
-    const EffectKind& kind = effect_kind(effect.kind);
     if (effect.seen.empty()) {
-      kind.gain(effect, signals, run.gain);
+      gain_in_part(effect, signals, run.gain);
     } else {
-      kind.gain(effect, signals.within(effect.seen), run.gain);
+      gain_in_part(effect, signals.within(effect.seen), run.gain);
     }
   }
   run.free.prediction.resize(signals.size());
@@ -166,8 +163,8 @@ void apply_output_maps(const Model& model, const Signals& signals, ModelRun& run
     if (stage != Stage::kOutputValue) continue;
     if (!effect.seen.empty()) run.free.unmapped.push_back(run.free.prediction);
     for (std::size_t n = 0; n < signals.size(); ++n) {
-      run.free.output_slope[n] *= kind.slope(effect, run.free.prediction[n]);
-      run.free.prediction[n] = mapped_within(kind, effect, run.free.prediction[n]);
+      run.free.output_slope[n] *= slope_in_part(effect, run.free.prediction[n]);
+      run.free.prediction[n] = mapped_within(effect, run.free.prediction[n]);
     }
   }
 }

@@ -33,6 +33,7 @@ std::vector<bool> by_differences(const Model& model, Loop loop) {
   which.insert(which.end(), numerators, loop == Loop::kOfOutput);
   which.insert(which.end(), model.body.order(), loop != Loop::kNone);
   for (const Effect& effect : model.effects) {
+    if (!effect.is_whole()) continue;
     const bool feedback = acts_at(effect, Stage::kFeedback);
     const std::size_t exact = feedback && loop == Loop::kInside ? model.body.order() + 1 : 0;
     which.insert(which.end(), exact, false);
@@ -124,6 +125,7 @@ void write_exact_columns(const Model& model, const Signals& signals, const Model
   }
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const Effect& effect = model.effects[e];
+    if (!effect.is_whole()) continue;
     if (loop == Loop::kInside && acts_at(effect, Stage::kFeedback)) {
       const Settled phi{run.free.phi, run.phi_before};
       write_differences(through_poles(phi, model.body.denominator, signals.stretches()), model,

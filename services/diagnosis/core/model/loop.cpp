@@ -204,14 +204,18 @@ LoopPath loop_path(const Effect& effect, std::size_t order) {
   STILLHAND_EXPECTS(of_output || effect.coefficients.size() == loop_coefficients(false, order));
   const std::span<const double> all(effect.coefficients);
   LoopPath path;
+  const auto in_part = [&](std::vector<double> e) {
+    for (double& each : e) each *= effect.share;
+    return e;
+  };
   if (of_output) {
-    path.e = late(all);
+    path.e = in_part(late(all));
     return path;
   }
   const auto powers = [](std::span<const double> part) {
     return difference_basis({part.begin(), part.end()});
   };
-  path.e = powers(all.first(order + 1));
+  path.e = in_part(powers(all.first(order + 1)));
   path.n = powers(all.subspan(order + 1, order + 1));
   path.m = late(all.last(order));
   return path;

@@ -48,6 +48,7 @@ struct LoopRun {
 
 /// Coefficients that a feedback effect has for a body of this order.
 std::size_t loop_coefficients(bool of_output, std::size_t order) noexcept;
+/// E times the effect's share, Eq. DG-68.
 LoopPath loop_path(const Effect& effect, std::size_t order);
 
 /// As many cases take hardly longer than one.

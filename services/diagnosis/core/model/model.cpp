@@ -80,6 +80,7 @@ Eigen::VectorXd packed(const Model& model) {
   for (const auto& numerator : model.body.numerators) append(difference_basis(numerator), all);
   append(denominator_numbers(model.body.denominator), all);
   for (const Effect& effect : model.effects) {
+    if (!effect.is_whole()) continue;
     append(effect.coefficients, all);
     for (const Parameter& parameter : effect.parameters) {
       if (parameter.fitted) all.push_back(parameter.value);
@@ -102,6 +103,7 @@ void unpack(const Eigen::VectorXd& numbers, Model& model) {
   const auto tail = difference_basis(take(model.body.order()));
   std::ranges::copy(tail, model.body.denominator.begin() + 1);
   for (Effect& effect : model.effects) {
+    if (!effect.is_whole()) continue;
     effect.coefficients = take(effect.coefficients.size());
     for (Parameter& parameter : effect.parameters) {
       if (parameter.fitted) {

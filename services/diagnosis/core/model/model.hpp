@@ -50,7 +50,7 @@ void stabilise(Body& body);
 
 /// The fitted numbers in one vector, in a basis in which they are well conditioned: polynomials in
 /// q^-1 by powers of the difference D = 1 - q^-1, Eq. DG-8.  Order: offset, numerators,
-/// denominator, then each effect's coefficients and fitted parameters.
+/// denominator, then the coefficients and fitted parameters of each effect that is whole.
 Eigen::VectorXd packed(const Model& model);
 /// The reverse; parameters are kept within their bounds.
 void unpack(const Eigen::VectorXd& numbers, Model& model);

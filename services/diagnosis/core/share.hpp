@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "services/diagnosis/core/fitting/blocks.hpp"
+
+namespace stillhand::diagnosis {
+
+/// How much of what effects add to a prediction another recording will show, README Eq. DG-69.
+struct Share {
+  double estimate = 0.0;   ///< [-] least squares on parts that no fit has seen
+  double std_error = 0.0;  ///< [-] over the blocks or over the parts, the larger
+
+  /// [-] 0 to 1: the estimate times what its standard error leaves of it, Eq. DG-69, rounded.
+  [[nodiscard]] double earned() const;
+};
+
+/// Within a tenth of 0 or 1 it is 0 or 1: a share that is wrong by x loses x^2 of what the effects
+/// explain, here at most a hundredth.
+double rounded_share(double share);
+
+/// @param residual    [samples] weighted, of the prediction without the effects
+/// @param difference  [samples] weighted, what the effects add to that prediction
+/// @param parts       of which each fold was held out whole
+/// Pure.
+Share share_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& difference,
+               const Blocks& parts);
+
+}  // namespace stillhand::diagnosis
