@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Table, summary and picture of the rows of carried_chain.py."""
+import pathlib
+import subprocess
+import tempfile
+
+import numpy
+
+WORST = 1.05
+LEAST_GAIN = 0.02  # of the linear error: below, a share of what could go is a quotient of two accidents
+
+
+def share(row):
+    """(linear - carried) / (linear - least possible) on the unseen record, or None."""
+    linear, carried, least = (row.get(name) for name in ("unseen_linear", "unseen_carried", "least_possible"))
+    if None in (linear, carried, least) or linear - least < LEAST_GAIN * linear:
+        return None
+    return (linear - carried) / (linear - least)
+
+
+def ratio(row, after="unseen_carried", before="unseen_linear"):
+    return row[after] / row[before] if row.get(after) and row.get(before) else None
+
+
+def shown(value):
+    return "-" if value is None else f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def effect_name(effect):
+    carried = effect.get("carried")
+    return effect["kind"] + (f":{effect['channel']}" if effect.get("channel") else "") + (
+        "" if carried in (None, True) else " (not carried)" if carried is False else f" (x{carried:.2f})")
+
+
+def exported(row):
+    """How many of the effects the motor cancels, and by how much the exported model differs at most from the diagnosed one."""
+    treatments = row.get("export") or []
+    off = [each["difference_percent"] for each in treatments if each.get("difference_percent") is not None]
+    if "export" in row.get("errors", {}):
+        return "refused"
+    return "-" if not treatments else (f"{sum(bool(each['cancelled']) for each in treatments)} of {len(treatments)}" +
+                                       (f", {max(off):.2g} %" if off else ""))
+
+
+def print_table(rows):
+    print("| record | truth | named | | verdict: linear -> found, carried | unseen: linear -> carried (least) | carried | "
+          "exported | motor: linear -> carried | kept | cpu [s] |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    for row in rows:
+        named = ", ".join(map(effect_name, row.get("effects") or [])) or row.get("errors", {}).get("diagnose", "nothing")
+        truth = "?" if row["truth"] is None else ", ".join(each["kind"] for each in row["truth"]) or "no effect"
+        kept = row.get("kept")
+        print(f"| {row['record']} | {truth} | {named} | {row['named'] or ''} | {shown(row.get('verdict_linear'))} -> "
+              f"{shown(row.get('verdict_after'))}, {shown(row.get('verdict_carried'))} | {shown(row.get('unseen_linear'))} -> "
+              f"{shown(row.get('unseen_carried'))} ({shown(row.get('least_possible'))}) | "
+              f"{shown(share(row))} | {exported(row)} | "
+              f"{shown(row.get('motor_linear'))} -> {shown(row.get('motor_carried'))} | "
+              f"{'-' if kept is None else 'yes' if kept is True else 'no' if kept is False else kept} | "
+              f"{shown(row.get('diagnose_cpu_s'))} |")
+    print()
+    print_summary(rows)
+
+
+def median(values):
+    values = [value for value in values if value is not None]
+    return f"{numpy.median(values):.2f} (of {len(values)})" if values else "-"
+
+
+def worst(rows, *names):
+    found = [(ratio(row, *names), row["record"]) for row in rows if ratio(row, *names)]
+    if not found:
+        return "-"
+    above = sum(value > WORST for value, _ in found)
+    return f"{max(found)[0]:.3f} ({max(found)[1]}), {above} of {len(found)} above {WORST}"
+
+
+def print_summary(rows):
+    counts = {name: sum(row["named"] == name for row in rows) for name in
+              ("all", "part", "wrong", "missed", "quiet", "false alarm")}
+    print(f"records: {len(rows)}; " + ", ".join(f"{count} {name}" for name, count in counts.items() if count))
+    print(f"carried share, median: named all {median(share(row) for row in rows if row['named'] == 'all')}; all or part "
+          f"{median(share(row) for row in rows if row['named'] in ('all', 'part'))}; every record {median(map(share, rows))}")
+    print(f"harm, unseen error over the linear one's, worst: {worst(rows)}")
+    motor = ("motor_carried", "motor_linear")
+    print(f"motor, what is left with the carried model over the linear one's, worst: {worst(rows, *motor)}")
+    kept_worse = [row["record"] for row in rows if row.get("kept") is True and (ratio(row, *motor) or 0.0) > 1.0]
+    print(f"kept although the motor leaves more: {', '.join(kept_worse) or 'none'}")
+    seconds = [row["diagnose_cpu_s"] for row in rows if row.get("diagnose_cpu_s")]
+    if seconds:
+        print(f"diagnose, user time: {numpy.median(seconds):.1f} s in the median, {max(seconds):.1f} s at most")
+
+
+def compare(sets, picture):
+    """Summary of each set on the records that all have, and both distributions on one picture."""
+    common = set.intersection(*({row["record"] for row in rows} for rows in sets))
+    names = ("old rule", "new rule") if len(sets) == 2 else ("this run",)
+    sets = [[row for row in rows if row["record"] in common] for rows in sets]
+    if len(sets) == 2:
+        for name, rows in zip(names, sets):
+            print(f"{name}:")
+            print_summary(rows)
+    if picture:
+        draw(dict(zip(names, sets)), picture)
+
+
+def draw(sets, picture):
+    """Cumulated share of the records: what was carried of what could go, and the error over the linear one's."""
+    gain, harm = [], []
+    with tempfile.TemporaryDirectory() as holder:
+        for index, (name, rows) in enumerate(sets.items()):
+            for plots, values in ((gain, [share(row) for row in rows if row["named"] in ("all", "part")]),
+                                  (harm, [ratio(row) for row in rows])):
+                values = sorted(value for value in values if value is not None)
+                if not values:
+                    continue
+                path = pathlib.Path(holder) / f"{index}_{len(gain)}_{len(harm)}"
+                numpy.savetxt(path, [(value, 100.0 * (i + 1) / len(values)) for i, value in enumerate(values)])
+                colour = ("#b2182b", "#2166ac")[index]
+                plots.append(f"'{path}' with fsteps lw 2 lc rgb '{colour}' title '{name} ({len(values)})'")
+        script = pathlib.Path(holder) / "carried.gnuplot"
+        script.write_text("\n".join((
+            "set terminal pngcairo size 1500,560 font 'sans,13'", f"set output '{picture}'", "set multiplot layout 1,2",
+            "set grid lc rgb '#dddddd'", "set yrange [0:100]", "set key top left", "set ylabel 'records, cumulated [%]'",
+            "set xrange [-0.5:1.3]", "set xlabel 'share of what could go that the carried model takes'",
+            "set arrow 1 from 0.8,0 to 0.8,100 nohead dt 2", "set title 'Gain, rightly named records'",
+            "plot " + (", ".join(gain) or "NaN notitle"), "unset arrow 1", "set xrange [0.4:1.4]",
+            "set xlabel 'unseen error of the carried model over that of the linear one'",
+            "set arrow 2 from 1.05,0 to 1.05,100 nohead dt 2", "set title 'Harm, all records'",
+            "plot " + (", ".join(harm) or "NaN notitle"), "unset multiplot", "")))
+        subprocess.run(["gnuplot", str(script)], check=True)
