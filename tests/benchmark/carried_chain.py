@@ -7,7 +7,7 @@ both models on the unseen record; `control-model` exports the model; `close-the-
 
   verdict    error on held-out blocks, linear -> with effects, and `carried`, as the verdict's JSON gives them
   unseen     RMSE of measured - predicted on the unseen record, linear -> carried, and the least possible, where known
-  carried    (linear - predicted) / (linear - least possible) on the unseen record
+  carried    (linear - predicted) / (linear - least possible) on the unseen record; not where time alone is the cause
   exported   effects that the motor cancels, and the largest difference of exported and diagnosed model, where printed
   motor      RMS that the motor leaves of the unseen record, with the linear and with the carried model; which was kept
 
@@ -28,6 +28,7 @@ import json
 import pathlib
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -85,8 +86,12 @@ class Chain:
         done = self.step("diagnose", ["diagnose", self.pair.train, *self.roles, *self.pair.options, *self.titles,
                                       "--save", self.folder / "model.json", "--json", verdict], verdict)
         linear = self.folder / "linear.json"
-        self.step("linear", ["diagnose", self.pair.train, *self.roles, *self.pair.options, *self.titles, "--most-effects", 0,
-                             "--save", linear, "--json", self.folder / "linear_verdict.json"], linear)
+        found = (read(verdict) or {}).get("effects")
+        if found == [] and not linear.is_file():  # it is the linear model
+            shutil.copy(self.folder / "model.json", linear)
+        if found != []:
+            self.step("linear", ["diagnose", self.pair.train, *self.roles, *self.pair.options, *self.titles, "--most-effects",
+                                 0, "--save", linear], linear)
         verdict = read(verdict)
         if verdict is None:
             return {}
@@ -114,7 +119,7 @@ class Chain:
         linear, _ = self.error_of("linear")
         carried, notes = self.error_of("model")
         return {"unseen_linear": linear, "unseen_carried": carried, "notes": notes,
-                "least_possible": self.pair.least_possible()}
+                "least_possible": self.pair.least_possible(), "best_linear": self.pair.best_linear}
 
     def export(self):
         out, table = self.folder / "control.json", self.folder / "export.json"

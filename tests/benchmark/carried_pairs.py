@@ -17,6 +17,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("STILLHAND_DATA", SOURCE.parent / "shared" / "data"))
 BUILD = pathlib.Path(os.environ.get("STILLHAND_BUILD", SOURCE / "build"))
 # Titles and units that recordings of others use, in SI.
+TITLES = ("Time (s)=t [s]", "Acc Y (g)=a_y [g]", "Force (lbf)=f [lbf]", "Temp=temp [degC]")  # for --map
 OTHERS = {"Time (s)": ("t", 1.0), "Force (lbf)": ("f", 4.4482216152605)}
 
 
@@ -37,6 +38,7 @@ class Pair:
     truth: typing.Optional[list] = None  # [{"kind", "right": [[kind, channel or null]]}]; [] no effect; None unknown
     noise_free: typing.Optional[pathlib.Path] = None
     known_least: typing.Optional[float] = None
+    best_linear: typing.Optional[float] = None  # error of a long response on the unseen record
     edge_hz: typing.Optional[float] = None  # low-pass of every error on the unseen record, as that of known_least
     input: typing.Optional[str] = None
     output: typing.Optional[str] = None
@@ -75,7 +77,7 @@ def folder_of_pairs(folder):
         truth = [{"kind": effect["kind"], "channel": effect["channel"], "known": effect["known"], "right": effect["right"]}
                  for effect in effects]
         pairs.append(Pair(name, folder / f"{name}_train.csv", folder / f"{name}_test.csv", truth,
-                          folder / f"{name}_test.noise_free.csv",
+                          folder / f"{name}_test.noise_free.csv", best_linear=errors["linear_rmse_n"],
                           too_small=errors["linear_rmse_n"] < 1.01 * errors["oracle_rmse_n"]))
     return pairs
 
@@ -103,9 +105,8 @@ def field(folder):
         truth = [{"kind": kind, "right": right}] if right else [
             {"kind": "friction in the stick", "right": [["coulomb_friction", "omega"]]},
             {"kind": "path of a_x", "right": [["coupled_input", "a_x"]]}]
-        pairs.append(Pair(name, folder / (name + ends[0]), folder / (name + ends[1]), truth, known_least=least, edge_hz=least and 10.0,
-                          titles=("Time (s)=t [s]", "Acc Y (g)=a_y [g]", "Force (lbf)=f [lbf]", "Temp=temp [degC]")
-                          if name == "arm_friction_ride" else ()))
+        pairs.append(Pair(name, folder / (name + ends[0]), folder / (name + ends[1]), truth, known_least=least,
+                          edge_hz=least and 10.0, titles=TITLES if name == "arm_friction_ride" else ()))
     return [pair for pair in pairs if pair.train.is_file()]
 
 

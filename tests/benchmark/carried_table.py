@@ -8,10 +8,14 @@ import numpy
 
 WORST = 1.05
 LEAST_GAIN = 0.02  # of the linear error: below, a share of what could go is a quotient of two accidents
+# Effects that only the time of a record tells: no rule can know them in another record.
+TIME_ALONE = ("fatigue", "friction_in_first_half")
 
 
 def share(row):
     """(linear - carried) / (linear - least possible) on the unseen record, or None."""
+    if any(effect["kind"] in TIME_ALONE for effect in row["truth"] or []):
+        return None
     linear, carried, least = (row.get(name) for name in ("unseen_linear", "unseen_carried", "least_possible"))
     if None in (linear, carried, least) or linear - least < LEAST_GAIN * linear:
         return None
@@ -81,6 +85,7 @@ def print_summary(rows):
     print(f"carried share, median: named all {median(share(row) for row in rows if row['named'] == 'all')}; all or part "
           f"{median(share(row) for row in rows if row['named'] in ('all', 'part'))}; every record {median(map(share, rows))}")
     print(f"harm, unseen error over the linear one's, worst: {worst(rows)}")
+    print(f"linear model's unseen error over that of a long response, worst: {worst(rows, 'unseen_linear', 'best_linear')}")
     motor = ("motor_carried", "motor_linear")
     print(f"motor, what is left with the carried model over the linear one's, worst: {worst(rows, *motor)}")
     kept_worse = [row["record"] for row in rows if row.get("kept") is True and (ratio(row, *motor) or 0.0) > 1.0]
