@@ -15,6 +15,7 @@ class MotorCommand;
 class TrackingSample;
 class TrialAssignment;
 class FeedthroughModel;
+class AugmentedModel;
 }  // namespace stillhand_msgs
 
 namespace stillhand {
@@ -42,10 +43,15 @@ inline constexpr EarlierForm kEarlierForm<stillhand_msgs::TrialAssignment>{77, 1
 template <>
 inline constexpr EarlierForm kEarlierForm<stillhand_msgs::FeedthroughModel>{0, 1};
 
+// Ends in numbers of 8 bytes behind sequences: the four bytes of an empty sequence's length.
+template <>
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::AugmentedModel>{0, 4};
+
 /// True for the types above, by their names in a schema.
 inline bool has_earlier_form(std::string_view type) noexcept {
   return type == "stillhand_msgs::MotorCommand" || type == "stillhand_msgs::TrackingSample" ||
-         type == "stillhand_msgs::TrialAssignment" || type == "stillhand_msgs::FeedthroughModel";
+         type == "stillhand_msgs::TrialAssignment" || type == "stillhand_msgs::FeedthroughModel" ||
+         type == "stillhand_msgs::AugmentedModel";
 }
 
 /// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.  A

@@ -12,6 +12,8 @@ stillhand_msgs::ModelChannel to_idl(Channel channel) {
 static_assert(static_cast<std::size_t>(stillhand_msgs::MODEL_OMEGA) ==
               static_cast<std::size_t>(Channel::kOmega));
 
+constexpr std::int32_t kOfSpring = -1;
+
 ValueMap from_idl(const stillhand_msgs::ValueMap& map) {
   return {map.low(), map.high(), map.values()};
 }
@@ -22,6 +24,31 @@ stillhand_msgs::ValueMap to_idl(const ValueMap& map) {
   message.values(map.values);
   return message;
 }
+
+// Operators of core and bus have one order; a number that is none stays one, and is refused, as is
+// a path that the model does not have.
+Hysteresis from_idl(const stillhand_msgs::ModelHysteresis& message) {
+  Hysteresis out;
+  if (message.path() != kOfSpring) out.path = static_cast<std::size_t>(message.path());
+  out.operation = static_cast<signal::HysteresisOperator>(message.operation());
+  out.threshold = message.threshold();
+  out.low = message.low();
+  out.high = message.high();
+  out.ticks = message.ticks();
+  return out;
+}
+stillhand_msgs::ModelHysteresis to_idl(const Hysteresis& hysteresis) {
+  stillhand_msgs::ModelHysteresis message;
+  message.path(hysteresis.path ? static_cast<std::int32_t>(*hysteresis.path) : kOfSpring);
+  message.operation(static_cast<stillhand_msgs::ModelOperator>(hysteresis.operation));
+  message.threshold(hysteresis.threshold);
+  message.low(hysteresis.low);
+  message.high(hysteresis.high);
+  message.ticks(static_cast<std::int32_t>(hysteresis.ticks));
+  return message;
+}
+static_assert(static_cast<std::size_t>(stillhand_msgs::MODEL_DAHL) ==
+              static_cast<std::size_t>(signal::HysteresisOperator::kDahl));
 
 }  // namespace
 
@@ -84,6 +111,7 @@ ControlModel from_idl(const stillhand_msgs::AugmentedModel& message) {
     to.sine_n = wave.sine_n();
     to.cosine_n = wave.cosine_n();
   }
+  for (const auto& each : message.hysteresis()) model.hysteresis.push_back(from_idl(each));
   if (message.adapts()) {
     model.adapts = HandCompliance{message.hand_mass_kg(), message.hand_damping_n_s_m(),
                                   message.hand_stiffness_n_m(), message.hand_lever_m()};
@@ -124,6 +152,7 @@ stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t nu
     to.sine_n(wave.sine_n);
     to.cosine_n(wave.cosine_n);
   }
+  for (const Hysteresis& each : model.hysteresis) message.hysteresis().push_back(to_idl(each));
   const HandCompliance hand = model.adapts.value_or(HandCompliance{});
   message.adapts(model.adapts.has_value());
   message.hand_mass_kg(hand.mass_kg);

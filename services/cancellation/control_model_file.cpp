@@ -2,6 +2,7 @@
 #include "services/cancellation/control_model_file.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/core/value_table.hpp"
@@ -64,6 +65,38 @@ Json json_of(const std::optional<HandCompliance>& hand) {
           {"lever_m", hand->lever_m}};
 }
 
+constexpr std::array kOperators{std::string_view("stop"), std::string_view("dahl")};
+
+Json json_of(const std::vector<Hysteresis>& all) {
+  Json list = Json::array();
+  for (const Hysteresis& each : all) {
+    list.push_back({{"path", each.path ? Json(*each.path) : Json(nullptr)},
+                    {"operator", kOperators.at(static_cast<std::size_t>(each.operation))},
+                    {"threshold", each.threshold},
+                    {"low", each.low},
+                    {"high", each.high},
+                    {"ticks", each.ticks}});
+  }
+  return list;
+}
+
+Hysteresis hysteresis_of(const Entry& entry) {
+  entry.allow_only({"path", "operator", "threshold", "low", "high", "ticks"});
+  Hysteresis out;
+  if (const Entry path = entry.at("path"); !path.is_null()) out.path = path.count();
+  const auto* const found = std::ranges::find(kOperators, entry.at("operator").text());
+  if (found == kOperators.end()) entry.at("operator").refuse("stop or dahl");
+  out.operation = static_cast<signal::HysteresisOperator>(found - kOperators.begin());
+  out.threshold = entry.at("threshold").number();
+  if (!(out.threshold > 0.0)) entry.at("threshold").refuse("a number above 0");
+  out.low = entry.at("low").number();
+  out.high = entry.at("high").number();
+  if (out.high <= out.low) entry.at("high").refuse("a number above low");
+  out.ticks = entry.at("ticks").whole();
+  if (out.ticks < 1) entry.at("ticks").refuse("1 or more");
+  return out;
+}
+
 HandCompliance hand_of(const Entry& entry) {
   entry.allow_only({"mass_kg", "damping_n_s_m", "stiffness_n_m", "lever_m"});
   return {entry.at("mass_kg").number(), entry.at("damping_n_s_m").number(),
@@ -103,6 +136,7 @@ std::string control_model_json(const ControlModel& model, std::uint32_t rig) {
                   {"output", json_of(model.output)},
                   {"paths", paths},
                   {"waves", waves},
+                  {"hysteresis", json_of(model.hysteresis)},
                   {"adapts", json_of(model.adapts)}};
   std::string text = json.dump(2) + "\n";
   // A number that is not finite would be written as null: nothing is written that cannot be read.
@@ -119,12 +153,13 @@ ControlModel parse_control_model(std::string_view json, const std::string& origi
         "\"stillhand control model\", as `stillhand control-model` and `stillhand close-the-loop` "
         "write");
   }
-  if (top.at("version").count() != kModelFormatVersion) {
-    top.at("version").refuse("1: a newer stillhand wrote this file");
+  const std::size_t version = top.at("version").count();
+  if (version < 1 || version > kModelFormatVersion) {
+    top.at("version").refuse("1 or 2: a newer stillhand wrote this file");
   }
   // A limit in the file has no effect: it is refused, so that nobody relies on it.
   top.allow_only({"format", "version", "rig", "rate_hz", "denominator", "inputs", "loop", "output",
-                  "paths", "waves", "adapts"});
+                  "paths", "waves", "hysteresis", "adapts"});
   if (top.at("rig").count() != rig) {
     top.at("rig").refuse("rig " + std::to_string(rig) + ", which the model is wanted for");
   }
@@ -154,6 +189,12 @@ ControlModel parse_control_model(std::string_view json, const std::string& origi
     if (to.frequency < 0.0) wave.at("frequency").refuse("0 or more");
     to.sine_n = wave.at("sine_n").number();
     to.cosine_n = wave.at("cosine_n").number();
+  }
+  // Version 1 knew no element with memory.
+  if (version > 1 || top.has("hysteresis")) {
+    for (const Entry& each : top.at("hysteresis").entries(0, kMostParts)) {
+      model.hysteresis.push_back(hysteresis_of(each));
+    }
   }
   if (const Entry hand = top.at("adapts"); !hand.is_null()) model.adapts = hand_of(hand);
   return model;

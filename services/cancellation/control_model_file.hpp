@@ -10,7 +10,7 @@
 namespace stillhand::cancellation {
 
 /// Newest "stillhand control model" format that this program writes and reads.
-inline constexpr int kModelFormatVersion = 1;
+inline constexpr int kModelFormatVersion = 2;
 
 /// JSON text of a model at the control rate, README "Model file".  Numbers keep every bit.
 /// @param rig  number of the rig whose hand it was identified on

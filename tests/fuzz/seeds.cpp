@@ -135,6 +135,8 @@ cancellation::ControlModel every_part() {
   model.loop = cancellation::LoopPath{{0.0, 0.1}, {}, {}, {-1.0, 1.0, {-0.1, 0.1}}};
   model.paths = {{cancellation::Channel::kOmega, 0.01, {-1.0, 1.0, {-1.0, 1.0}}, 0.5}};
   model.waves = {{std::nullopt, 3.0, 0.2, 0.1}};
+  model.hysteresis = {{std::nullopt, signal::HysteresisOperator::kStop, 0.2, -1.0, 1.0},
+                      {0, signal::HysteresisOperator::kDahl, 0.5, -2.0, 2.0}};
   model.adapts = cancellation::HandCompliance{1.5, 30.0, 900.0, 0.1};
   return model;
 }

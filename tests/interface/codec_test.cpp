@@ -212,6 +212,24 @@ TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
   EXPECT_EQ(std::tuple(enabled, permitted), std::tuple(true, false));
 }
 
+// A path that the model does not have, or no path at all: check_model() refuses it.
+TEST(CancellationCodecTest, AnElementWithMemoryWithoutAPlaceIsRefused) {
+  using namespace cancellation;
+  ControlModel model;
+  model.rate_hz = 1000.0;
+  model.denominator = {1.0, 0.0};
+  model.inputs = {{Channel::kAccelY, {}, {1.0, 0.0}}};
+  model.paths = {{Channel::kRoll, 0.0, {}, 1.0}};
+  model.hysteresis = {{0, signal::HysteresisOperator::kStop, 1.0, -1.0, 1.0}};
+  const auto refusal = [&](std::int32_t path) {
+    auto message = to_idl(model, 1003);
+    message.hysteresis()[0].path(path);
+    return check_model(from_idl(message), {60.0, 25.0}).refusal;
+  };
+  EXPECT_EQ(refusal(0), Refusal::kNone);
+  for (const std::int32_t path : {-1, -2, 1, 7}) EXPECT_EQ(refusal(path), Refusal::kMalformed);
+}
+
 TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
   using namespace cancellation;
   ControlModel model;
@@ -224,6 +242,8 @@ TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
   model.paths = {{Channel::kOmega, 0.15, {-1.0, 1.0, {-2.0, 2.0}}, 0.16}};
   model.waves = {{std::nullopt, 17.0, 18.0, 19.0}, {Channel::kTheta, 20.0, 21.0, 22.0}};
   model.adapts = HandCompliance{23.0, 24.0, 25.0, 26.0};
+  model.hysteresis = {{0, signal::HysteresisOperator::kDahl, 27.0, -28.0, 29.0, 10},
+                      {std::nullopt, signal::HysteresisOperator::kStop, 30.0, -31.0, 32.0}};
   const auto message = to_idl(model, 1003);
   EXPECT_EQ(message.model(), 1003);
   const ControlModel back = from_idl(message);
@@ -244,6 +264,15 @@ TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
   EXPECT_EQ(back.loop->m, model.loop->m);
   EXPECT_TRUE(same_map(back.loop->phi, model.loop->phi));
   EXPECT_TRUE(same_map(back.output, model.output));
+  ASSERT_EQ(back.hysteresis.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [path, operation, threshold, low, high, ticks] = back.hysteresis[i];
+    EXPECT_EQ(path, model.hysteresis[i].path);
+    EXPECT_EQ(operation, model.hysteresis[i].operation);
+    EXPECT_EQ(std::tuple(threshold, low, high, ticks),
+              std::tuple(model.hysteresis[i].threshold, model.hysteresis[i].low,
+                         model.hysteresis[i].high, model.hysteresis[i].ticks));
+  }
   ASSERT_EQ(back.paths.size(), 1u);
   EXPECT_EQ(back.paths[0].channel, Channel::kOmega);
   EXPECT_EQ(back.paths[0].lag_s, 0.15);

@@ -78,6 +78,25 @@ TEST(EarlierFormTest, AnAssignmentWithoutAMitigationIsRead) {
   }
 }
 
+// Empty sequences are a length of 0; the map of the output has two numbers before its own.
+TEST(EarlierFormTest, AControlModelWithoutElementsWithMemoryIsRead) {
+  const std::vector<double> numbers{1.0, -0.5};
+  const auto old = bytes_of(U32{1}, I64{2}, I32{1003}, I64{4}, 1000.0, numbers, U32{0}, U32{0}, 0.0,
+                            0.0, U32{0}, U32{0}, U32{0}, true, 5.5, 6.5, 7.5, 8.5);
+  stillhand_msgs::AugmentedModel message;
+  message.hysteresis().resize(2);
+  ASSERT_TRUE(from_cdr(old, message));
+  EXPECT_EQ(std::tuple(message.model(), message.from_tick(), message.rate_hz()),
+            std::tuple(1003, 4, 1000.0));
+  EXPECT_EQ(message.denominator(), numbers);
+  EXPECT_EQ(std::tuple(message.adapts(), message.hand_mass_kg(), message.hand_lever_m()),
+            std::tuple(true, 5.5, 8.5));
+  EXPECT_TRUE(message.hysteresis().empty());
+  auto cut = old;
+  cut.resize(old.size() - 8);
+  EXPECT_FALSE(from_cdr(cut, message));
+}
+
 TEST(EarlierFormTest, AModelOfAForceIsRead) {
   const std::vector<double> numerator{0.5, 1.5};
   const auto old =

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "services/signal/difference_model.hpp"
+#include "services/signal/hysteresis.hpp"
 
 namespace stillhand::cancellation {
 
@@ -49,7 +50,8 @@ struct InputPath {
   std::vector<double> numerator;  ///< c_0 .. c_p [N a unit of the channel]
 };
 
-/// A nonlinear spring inside the body, README Eq. CC-7; by powers of q^-1, each p + 1 long.
+/// A nonlinear spring inside the body, README Eq. CC-7; by powers of q^-1, each p + 1 long.  With a
+/// Hysteresis of its own, phi is over w and may be empty.
 struct LoopPath {
   std::vector<double> e;  ///< from phi to the force
   std::vector<double> n;  ///< from the first input to z; empty: z is the body's force
@@ -57,12 +59,23 @@ struct LoopPath {
   ValueMap phi;
 };
 
-/// A path next to the body, README Eq. CC-8: gain * map(lag(channel)).
+/// A path next to the body, README Eq. CC-8: gain * map(lag(channel)); with a Hysteresis of its
+/// own, gain * map(w(lag(channel))).
 struct DirectPath {
   Channel channel = Channel::kAccelX;
   double lag_s = 0.0;  ///< of a first-order lag; 0: none
   ValueMap map;
   double gain = 0.0;  ///< [N a unit of the map]
+};
+
+/// An element with memory in front of the map of the spring or of a path, README Eq. CC-19.
+struct Hysteresis {
+  std::optional<std::size_t> path;  ///< its place in ControlModel::paths; none: the spring's
+  signal::HysteresisOperator operation = signal::HysteresisOperator::kStop;
+  double threshold = 1.0;  ///< [unit of the argument] above 0
+  double low = 0.0;        ///< [unit of the argument], which is held within
+  double high = 0.0;       ///< [unit of the argument]
+  std::int64_t ticks = 1;  ///< from one value of w to the next: it is held from each multiple on
 };
 
 /// Periodic in a channel (cogging) or, without one, in time (a tone), README Eq. CC-9.
@@ -82,10 +95,10 @@ struct HandCompliance {
   double lever_m = 0.0;  ///< hand to pivot
 };
 
-/// The model that the canceller runs, README Eq. CC-6 to CC-9: the feedthrough force as a function
-/// of the sensed channels at the control rate.  A linear body with several inputs, at most one
-/// nonlinear spring inside it, and paths and waves next to it.
-/// On the bus it is stillhand_msgs::AugmentedModel; its file is control_model.json.
+/// The model that the canceller runs, README Eq. CC-6 to CC-9 and CC-19: the feedthrough force as a
+/// function of the sensed channels at the control rate.  A linear body with several inputs, at most
+/// one nonlinear spring inside it, and paths and waves next to it; the spring and each path may
+/// have a memory. On the bus it is stillhand_msgs::AugmentedModel; its file is control_model.json.
 struct ControlModel {
   double rate_hz = 0.0;
   std::vector<double> denominator;  ///< 1, d_1 .. d_p
@@ -94,11 +107,15 @@ struct ControlModel {
   ValueMap output;  ///< of the body's force
   std::vector<DirectPath> paths;
   std::vector<Wave> waves;
+  std::vector<Hysteresis> hysteresis;    ///< at most one for each place
   std::optional<HandCompliance> adapts;  ///< present: gain and phase are followed, Eq. CC-10
 };
 
 /// The paper's model: a_y alone.
 ControlModel control_model(const signal::DifferenceModel& model);
+
+/// The element with memory of a path, or of the spring; null: it has none.
+const Hysteresis* hysteresis_of(const ControlModel& model, std::optional<std::size_t> path);
 
 /// The linear part from one input, as a difference model [N a unit of the channel].
 signal::DifferenceModel path_model(const ControlModel& model, const InputPath& input);

@@ -24,6 +24,11 @@ ControlModel control_model(const signal::DifferenceModel& model) {
   return whole;
 }
 
+const Hysteresis* hysteresis_of(const ControlModel& model, std::optional<std::size_t> path) {
+  const auto found = std::ranges::find(model.hysteresis, path, &Hysteresis::path);
+  return found == model.hysteresis.end() ? nullptr : &*found;
+}
+
 signal::DifferenceModel path_model(const ControlModel& model, const InputPath& input) {
   return {model.rate_hz, input.numerator, model.denominator};
 }
@@ -52,8 +57,15 @@ ControlModelFilter::ControlModelFilter(const ControlModel& model,
   for (const DirectPath& path : model.paths) {
     const double blend = path.lag_s > 0.0 ? -std::expm1(-kControlPeriod_s / path.lag_s) : 1.0;
     const bool of_stick = path.channel == Channel::kTheta || path.channel == Channel::kOmega;
-    paths_[paths_used_++] = {static_cast<std::size_t>(path.channel), blend, ValueTable(path.map),
-                             path.gain, of_stick};
+    paths_[paths_used_++] = {static_cast<std::size_t>(path.channel),
+                             blend,
+                             {},
+                             ValueTable(path.map),
+                             path.gain,
+                             of_stick};
+  }
+  for (const Hysteresis& each : model.hysteresis) {
+    (each.path ? paths_[*each.path].memory : spring_memory_) = HysteresisElement(each);
   }
   for (const Wave& wave : model.waves) {
     waves_[waves_used_++] = {wave.channel ? static_cast<std::size_t>(*wave.channel) : kChannels,
@@ -65,9 +77,12 @@ void ControlModelFilter::reset() noexcept {
   s_.fill(0.0);
   t_.fill(0.0);
   lagged_.fill(0.0);
+  spring_memory_.reset();
+  for (Path& path : paths_) path.memory.reset();
+  at_rest_ = true;
 }
 
-double ControlModelFilter::body(const ChannelSample& sample) noexcept {
+double ControlModelFilter::body(const ChannelSample& sample, Tick tick) noexcept {
   std::array<double, kMostInputs> v{};
   for (std::size_t k = 0; k < inputs_used_; ++k) {
     v[k] = inputs_[k].map(sample[inputs_[k].channel]);
@@ -77,7 +92,7 @@ double ControlModelFilter::body(const ChannelSample& sample) noexcept {
   double phi = 0.0;
   if (loop_) {
     const double z = of_output_ ? y : n_[0] * v[0] + t_[0];
-    phi = phi_(z);
+    phi = phi_(spring_memory_.step(z, tick));
     y += e_[0] * phi;
     for (std::size_t i = 1; i <= order_; ++i) {
       t_[i - 1] = n_[i] * v[0] + m_[i] * phi - d_[i] * z + t_[i];
@@ -93,13 +108,14 @@ double ControlModelFilter::body(const ChannelSample& sample) noexcept {
 
 ControlModelFilter::Force ControlModelFilter::step(const ChannelSample& sample,
                                                    Tick tick) noexcept {
-  Force force{output_(body(sample)), 0.0};
+  Force force{output_(body(sample, tick)), 0.0};
   for (std::size_t k = 0; k < paths_used_; ++k) {
-    const Path& path = paths_[k];
-    lagged_[k] += path.blend * (sample[path.channel] - lagged_[k]);
-    const double force_n = path.gain * path.map(lagged_[k]);
+    Path& path = paths_[k];
+    lagged_[k] += (at_rest_ ? 1.0 : path.blend) * (sample[path.channel] - lagged_[k]);
+    const double force_n = path.gain * path.map(path.memory.step(lagged_[k], tick));
     (path.of_stick ? force.beside_n : force.feedthrough_n) += force_n;
   }
+  at_rest_ = false;
   for (std::size_t k = 0; k < waves_used_; ++k) {
     const Turning& wave = waves_[k];
     const double at = wave.channel < kChannels ? sample[wave.channel]

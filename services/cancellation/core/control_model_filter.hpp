@@ -6,25 +6,29 @@
 #include <cstdint>
 
 #include "services/cancellation/core/control_model.hpp"
+#include "services/cancellation/core/hysteresis_element.hpp"
 #include "services/cancellation/core/value_table.hpp"
 #include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 
-/// A control model as a running filter of fixed size, README Eq. CC-6 to CC-9, transposed direct
-/// form II of services/signal Eq. SG-12 with further inputs:
+/// A control model as a running filter of fixed size, README Eq. CC-6 to CC-9 and CC-19,
+/// transposed direct form II of services/signal Eq. SG-12 with further inputs:
 ///
 ///   z = n_0 v_1 + t_1,   t_i = n_i v_1 + m_i phi(z) - d_i z + t_{i+1}
 ///   y = sum_k c_k0 v_k + e_0 phi(z) + s_1,
 ///   s_i = sum_k c_ki v_k + e_i phi(z) - d_i y + s_{i+1}
 ///
-/// It trusts its model: prepare() checks it first.  Pure; step() allocates nothing.
+/// The body starts from rest, lags where their channels are at the first step, and elements with
+/// memory from w = 0 there.  It trusts its model: prepare() checks it first.  Pure; step()
+/// allocates nothing.
 class ControlModelFilter {
  public:
   static constexpr std::size_t kMaxOrder = 12;
   static constexpr std::size_t kMostInputs = 4;
   static constexpr std::size_t kMostPaths = 6;
   static constexpr std::size_t kMostWaves = 6;
+  static constexpr std::size_t kMostHysteresis = kMostPaths + 1;  ///< and the spring's
 
   ControlModelFilter() = default;
   /// @param model         within the sizes above
@@ -53,6 +57,7 @@ class ControlModelFilter {
   struct Path {
     std::size_t channel;
     double blend;  ///< of the lag, 1: none
+    HysteresisElement memory;
     ValueTable map;
     double gain;
     bool of_stick;
@@ -63,7 +68,7 @@ class ControlModelFilter {
     double sine_n, cosine_n;
   };
 
-  double body(const ChannelSample& sample) noexcept;
+  double body(const ChannelSample& sample, Tick tick) noexcept;
 
   std::array<Input, kMostInputs> inputs_{};
   std::array<Path, kMostPaths> paths_{};
@@ -76,6 +81,7 @@ class ControlModelFilter {
   Taps e_{};
   Taps n_{};
   Taps m_{};
+  HysteresisElement spring_memory_;
   ValueTable phi_;
   ValueTable output_;
   bool loop_ = false;
@@ -83,6 +89,7 @@ class ControlModelFilter {
   Taps s_{};  ///< the last one stays 0
   Taps t_{};  ///< the last one stays 0
   std::array<double, kMostPaths> lagged_{};
+  bool at_rest_ = true;  ///< nothing was stepped yet
   std::int64_t settle_ticks_ = 0;
   bool loaded_ = false;
 };

@@ -39,13 +39,18 @@ bool finite(const ControlModel& model) {
   const auto loop = [](const LoopPath& each) {
     return finite(each.e) && finite(each.n) && finite(each.m) && finite(each.phi);
   };
+  const auto memory = [](const Hysteresis& each) {
+    // The argument in thresholds, too.
+    return finite(std::array{each.threshold, each.low, each.high, each.low / each.threshold,
+                             each.high / each.threshold});
+  };
   const auto hand = [](const HandCompliance& each) {
     return finite(std::array{each.mass_kg, each.damping_n_s_m, each.stiffness_n_m, each.lever_m});
   };
   return finite(model.denominator) && finite(model.output) &&
          std::ranges::all_of(model.inputs, input) && std::ranges::all_of(model.paths, path) &&
          std::ranges::all_of(model.waves, wave) && (!model.loop || loop(*model.loop)) &&
-         (!model.adapts || hand(*model.adapts));
+         std::ranges::all_of(model.hysteresis, memory) && (!model.adapts || hand(*model.adapts));
 }
 
 bool is_table(const ValueMap& map) {
@@ -53,6 +58,17 @@ bool is_table(const ValueMap& map) {
 }
 
 bool is_channel(Channel channel) { return static_cast<std::size_t>(channel) < kChannels; }
+
+// Each element has a place, and no two have the same.
+bool in_place(const ControlModel& model) {
+  return std::ranges::all_of(model.hysteresis, [&](const Hysteresis& each) {
+    const bool there = each.path ? *each.path < model.paths.size() : model.loop.has_value();
+    return there && hysteresis_of(model, each.path) == &each && each.threshold > 0.0 &&
+           each.low < each.high && each.ticks >= 1 && each.ticks <= kMostHeld_ticks &&
+           (each.operation == signal::HysteresisOperator::kStop ||
+            each.operation == signal::HysteresisOperator::kDahl);
+  });
+}
 
 bool well_formed(const ControlModel& model) {
   const std::size_t taps = model.denominator.size();
@@ -67,16 +83,17 @@ bool well_formed(const ControlModel& model) {
   const auto wave = [](const Wave& each) {
     return (!each.channel || is_channel(*each.channel)) && each.frequency >= 0.0;
   };
-  const auto loop = [taps](const LoopPath& each) {
+  const bool remembers = hysteresis_of(model, {}) != nullptr;
+  const auto loop = [taps, remembers](const LoopPath& each) {
     const bool inside = each.n.size() == taps && each.m.size() == taps && each.m[0] == 0.0;
     const bool of_output = each.n.empty() && each.m.empty() && !each.e.empty() && each.e[0] == 0.0;
-    return each.e.size() == taps && (inside || of_output) && each.phi.values.size() >= 2 &&
-           is_table(each.phi);
+    return each.e.size() == taps && (inside || of_output) &&
+           (remembers || each.phi.values.size() >= 2) && is_table(each.phi);
   };
   // The first input is the platform's lateral acceleration, for which the gain is bounded.
   return model.inputs[0].channel == Channel::kAccelY && std::ranges::all_of(model.inputs, input) &&
          std::ranges::all_of(model.paths, path) && std::ranges::all_of(model.waves, wave) &&
-         (!model.loop || loop(*model.loop));
+         (!model.loop || loop(*model.loop)) && in_place(model);
 }
 
 bool fits(const ControlModel& model) {
@@ -86,6 +103,7 @@ bool fits(const ControlModel& model) {
   return small(model.output) && model.inputs.size() <= ControlModelFilter::kMostInputs &&
          model.paths.size() <= ControlModelFilter::kMostPaths &&
          model.waves.size() <= ControlModelFilter::kMostWaves &&
+         model.hysteresis.size() <= ControlModelFilter::kMostHysteresis &&
          std::ranges::all_of(model.inputs, [&](const auto& each) { return small(each.map); }) &&
          std::ranges::all_of(model.paths, [&](const auto& each) { return small(each.map); }) &&
          (!model.loop || small(model.loop->phi));
@@ -113,6 +131,15 @@ std::int64_t settle_samples(const std::vector<std::complex<double>>& poles) {
   return slowest;
 }
 
+// Of the slowest lag next to the body.  A lag starts where its channel is, so that a longer one is
+// near already and need not be waited for.
+std::int64_t lag_settle_ticks(const ControlModel& model) {
+  double slowest_s = 0.0;
+  for (const DirectPath& path : model.paths) slowest_s = std::max(slowest_s, path.lag_s);
+  const double ticks = std::ceil(-std::log(0.01) * slowest_s * kControlRateHz);
+  return static_cast<std::int64_t>(std::min(ticks, static_cast<double>(kMaxSettle_ticks)));
+}
+
 // At least a hundredth of critical damping: what still has a third of its swing after 16 periods is
 // no arm, and a damping ratio that underflows to 0 is no oscillator that signal::SecondOrderLag can
 // step.
@@ -137,8 +164,9 @@ ModelCheck checked(const ControlModel& model, const ModelBounds& bounds) {
   for (const std::complex<double>& pole : poles) {
     if (!(std::abs(pole) < 1.0)) return refused(Refusal::kUnstable);
   }
-  const std::int64_t settle = settle_samples(poles) * bounds.model_ticks;
+  std::int64_t settle = settle_samples(poles) * bounds.model_ticks;
   if (settle > kMaxSettle_ticks) return refused(Refusal::kSettling);
+  settle = std::max(settle, lag_settle_ticks(model));
   if (const Refusal why = check_strength(model, poles, bounds); why != Refusal::kNone) {
     return refused(why);
   }
@@ -158,7 +186,7 @@ std::string_view describe(Refusal refusal) noexcept {
       return "model taken";
     case Refusal::kMalformed:
       return "model is empty, its sizes differ, its denominator does not start with 1, or a lag, a "
-             "frequency or a table's ends are out of order";
+             "frequency, a table's ends or an element with memory are out of order";
     case Refusal::kNotFinite:
       return "a coefficient is not a finite number";
     case Refusal::kWrongRate:
@@ -173,9 +201,12 @@ std::string_view describe(Refusal refusal) noexcept {
     case Refusal::kGain:
       return "model gain is above the bound";
     case Refusal::kTooMany:
-      return "more than 4 inputs, 6 paths, 6 waves or 129 values in a table";
+      return "more than 4 inputs, 6 paths, 6 waves, 7 elements with memory or 129 values in a "
+             "table";
     case Refusal::kPath:
-      return "a further channel, a path next to the body or a wave is stronger than its bound";
+      return "a further channel, a path next to the body, a wave or what is held at rest is "
+             "stronger "
+             "than its bound";
     case Refusal::kLoop:
       return "the spring inside the body is not stable at each of its slopes, or its motion does "
              "not die away";

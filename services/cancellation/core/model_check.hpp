@@ -19,7 +19,7 @@ enum class Refusal : std::uint8_t {
   kUnstable,    ///< a pole on or outside the unit circle
   kSettling,    ///< slower than kMaxSettle_ticks to settle to 1 %
   kGain,        ///< |H| above the bound at some frequency
-  kTooMany,     ///< more inputs, paths, waves or table values than ControlModelFilter has room for
+  kTooMany,     ///< more inputs, paths, waves, .. than ControlModelFilter has room for
   kPath,        ///< a further channel, a path next to the body or a wave above its bound
   kLoop,        ///< the spring inside the body: unstable at one of its slopes, or in a trial run
   kRest,        ///< a force above kMaxRest_n while nothing moves
@@ -32,13 +32,16 @@ std::string_view describe(Refusal refusal) noexcept;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.
 inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
+/// Longest time that an element with memory may hold its value [ticks]: a model of 5 Hz.
+inline constexpr std::int64_t kMostHeld_ticks = 200;
+
 /// [N] Feedthrough comes from motion: a model that pushes without motion is refused.
 inline constexpr double kMaxRest_n = 1.0;
 
 /// What a model may ask for at most; from the process's own settings.
 struct ModelBounds {
   double max_gain_n_s2_m;   ///< |H| from an acceleration; from roll as much for each g it tips over
-  double max_path_force_n;  ///< from theta, from omega at its full scale, and of all waves
+  double max_path_force_n;  ///< from theta, from omega at its full scale, of all waves, and at rest
   std::int64_t model_ticks = 1;  ///< from sample to sample of the model
 };
 

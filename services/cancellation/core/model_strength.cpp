@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "services/cancellation/core/value_table.hpp"
 #include "services/contract/tick.hpp"
@@ -37,16 +38,31 @@ double full_scale(Channel channel) {
   return kChannelFacts[static_cast<std::size_t>(channel)].full_scale;
 }
 
-// Largest force of a path next to the body, on its channel's whole range.
-double greatest(const DirectPath& path) {
-  const ValueTable map(path.map);
+// Largest magnitude of a map on a range about 0.
+double largest_of(const ValueMap& map, double range) {
+  const ValueTable table(map);
   constexpr int kPoints = 1000;
   double most = 0.0;
   for (int i = -kPoints; i <= kPoints; ++i) {
-    const double value = map(full_scale(path.channel) * i / kPoints);
-    most = std::max(most, std::abs(path.gain * value));
+    most = std::max(most, std::abs(table(range * i / kPoints)));
   }
   return most;
+}
+
+// Largest force of a path next to the body, on its channel's whole range; behind an element with
+// memory, on that of w.
+double greatest(const DirectPath& path, const Hysteresis* memory) {
+  return std::abs(path.gain) *
+         largest_of(path.map, memory != nullptr ? 1.0 : full_scale(path.channel));
+}
+
+// What a spring with memory holds at rest at most: w = 1 over the body's stiffness.
+double held_by_spring(const ControlModel& model) {
+  if (!model.loop || hysteresis_of(model, {}) == nullptr) return 0.0;
+  const auto sum = [](const std::vector<double>& c) {
+    return std::accumulate(c.begin(), c.end(), 0.0);
+  };
+  return std::abs(sum(model.loop->e) / sum(model.denominator)) * largest_of(model.loop->phi, 1.0);
 }
 
 bool of_stick(Channel channel) { return channel == Channel::kTheta || channel == Channel::kOmega; }
@@ -59,9 +75,12 @@ double gain_bound(Channel channel, const ModelBounds& bounds) {
   return bounds.max_gain_n_s2_m * (channel == Channel::kRoll ? kGravity_m_s2 : 1.0);
 }
 
-// What a path may ask for at most, in the terms of gain_bound().
-double gain_of(const DirectPath& path) {
-  if (of_stick(path.channel)) return greatest(path) / full_scale(path.channel);
+// What a path may ask for at most, in the terms of gain_bound().  However steep an element with
+// memory is, it asks for no more than its ends.
+double gain_of(const DirectPath& path, const Hysteresis* memory) {
+  if (of_stick(path.channel) || memory != nullptr) {
+    return greatest(path, memory) / full_scale(path.channel);
+  }
   return std::abs(path.gain) * slopes_of(path.map).steepest();
 }
 
@@ -79,6 +98,14 @@ Slopes slopes_of(const ValueMap& map) {
   return slopes;
 }
 
+Slopes slopes_of(const ValueMap& map, const Hysteresis* memory) {
+  const Slopes slopes = slopes_of(map);
+  if (memory == nullptr) return slopes;
+  const double steepest = signal::steepest_slope(memory->operation) / memory->threshold;
+  const auto [least, most] = std::minmax({0.0, steepest * slopes.least, steepest * slopes.most});
+  return {least, most};
+}
+
 Refusal check_strength(const ControlModel& model, const std::vector<std::complex<double>>& poles,
                        const ModelBounds& bounds) {
   const double behind = slopes_of(model.output).steepest();
@@ -87,8 +114,12 @@ Refusal check_strength(const ControlModel& model, const std::vector<std::complex
     gains[static_cast<std::size_t>(input.channel)] +=
         peak_gain(path_model(model, input), poles) * slopes_of(input.map).steepest() * behind;
   }
-  for (const DirectPath& path : model.paths) {
-    gains[static_cast<std::size_t>(path.channel)] += gain_of(path);
+  double at_rest_n = held_by_spring(model) * behind;
+  for (std::size_t i = 0; i < model.paths.size(); ++i) {
+    const DirectPath& path = model.paths[i];
+    const Hysteresis* memory = hysteresis_of(model, i);
+    gains[static_cast<std::size_t>(path.channel)] += gain_of(path, memory);
+    if (memory != nullptr) at_rest_n += greatest(path, memory);
   }
   // Written so that a NaN is refused, too.
   for (std::size_t i = 0; i < kChannels; ++i) {
@@ -96,9 +127,8 @@ Refusal check_strength(const ControlModel& model, const std::vector<std::complex
     if (gains[i] <= gain_bound(channel, bounds)) continue;
     return channel == Channel::kAccelY ? Refusal::kGain : Refusal::kPath;
   }
-  double waves_n = 0.0;
-  for (const Wave& wave : model.waves) waves_n += std::hypot(wave.sine_n, wave.cosine_n);
-  return waves_n <= bounds.max_path_force_n ? Refusal::kNone : Refusal::kPath;
+  for (const Wave& wave : model.waves) at_rest_n += std::hypot(wave.sine_n, wave.cosine_n);
+  return at_rest_n <= bounds.max_path_force_n ? Refusal::kNone : Refusal::kPath;
 }
 
 }  // namespace stillhand::cancellation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <complex>
 #include <vector>
 
@@ -17,6 +19,9 @@ struct Slopes {
 };
 /// @param map  finite, with two values or more; without values the identity
 Slopes slopes_of(const ValueMap& map);
+
+/// The same behind an element with memory; null: without one.
+Slopes slopes_of(const ValueMap& map, const Hysteresis* memory);
 
 /// The gains of README Eq. CC-14 against their bounds.  Paths of one channel add up, and so do
 /// waves: a force that one of them may not ask for is refused from all of them together, too. Pure.

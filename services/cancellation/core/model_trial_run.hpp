@@ -14,8 +14,9 @@ namespace stillhand::cancellation {
 bool rests(const ControlModel& model, std::int64_t settle);
 
 /// README Eq. CC-14 for a spring inside the body (Eq. CC-7): stable with its least, middle and
-/// greatest slope, and a trial run through the motion's band stays bounded and dies away.  A test,
-/// no proof: the force envelope stands behind it.  Takes milliseconds.
+/// greatest slope, and a trial run through the motion's band stays bounded and dies away, to what a
+/// spring with memory may hold.  A test, no proof: the force envelope stands behind it.  Takes
+/// milliseconds.
 Refusal check_loop(const ControlModel& model, std::int64_t settle, const ModelBounds& bounds);
 
 }  // namespace stillhand::cancellation

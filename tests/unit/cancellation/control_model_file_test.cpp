@@ -29,6 +29,8 @@ ControlModel full_model() {
   model.output = map;
   model.paths = {{Channel::kOmega, 0.05, map, -0.8}};
   model.waves = {{Channel::kTheta, 12.0, 0.1, 0.2}, {std::nullopt, 9.3, 0.3, 0.4}};
+  model.hysteresis = {{std::nullopt, signal::HysteresisOperator::kStop, 1.0 / 3.0, -0.7, 0.8, 10},
+                      {0, signal::HysteresisOperator::kDahl, 0.2, -15.0, 15.0}};
   model.adapts = HandCompliance{1.4, 30.0, 900.0, 0.09};
   return model;
 }
@@ -57,6 +59,12 @@ TEST(ControlModelFileTest, EveryNumberIsReadBackAsItWasWritten) {
   EXPECT_EQ(back.paths[0].channel, Channel::kOmega);
   EXPECT_EQ(back.waves[0].channel, Channel::kTheta);
   EXPECT_FALSE(back.waves[1].channel);
+  ASSERT_EQ(back.hysteresis.size(), 2u);
+  EXPECT_FALSE(back.hysteresis[0].path);
+  EXPECT_EQ(back.hysteresis[0].threshold, 1.0 / 3.0);
+  EXPECT_EQ(back.hysteresis[0].ticks, 10);
+  EXPECT_EQ(back.hysteresis[1].path, 0u);
+  EXPECT_EQ(back.hysteresis[1].operation, signal::HysteresisOperator::kDahl);
   EXPECT_EQ(back.adapts->lever_m, 0.09);
 }
 
@@ -74,12 +82,25 @@ TEST(ControlModelFileTest, ThePapersModelNeedsNoneOfTheParts) {
 TEST(ControlModelFileTest, AnotherRigANewerVersionAndAForgedLimitAreRefusedByName) {
   const std::string text = control_model_json(full_model(), 1);
   EXPECT_THAT(refusal(text, 2), AllOf(HasSubstr("m.json.rig"), HasSubstr("rig 2")));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["version"] = 2; })),
+  EXPECT_THAT(refusal(changed([](Json& json) { json["version"] = 3; })),
               AllOf(HasSubstr("m.json.version"), HasSubstr("newer")));
   EXPECT_THAT(refusal(changed([](Json& json) { json["max_force_n"] = 60.0; })),
               HasSubstr("m.json.max_force_n"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["adapts"]["max_gain"] = 9.0; })),
               HasSubstr("m.json.adapts.max_gain"));
+}
+
+// Version 1 had no elements with memory.
+TEST(ControlModelFileTest, AFileOfTheFirstVersionIsStillRead) {
+  const std::string first = changed([](Json& json) {
+    json["version"] = 1;
+    json.erase("hysteresis");
+  });
+  const ControlModel back = parse_control_model(first, "m.json", 1);
+  EXPECT_TRUE(back.hysteresis.empty());
+  EXPECT_EQ(back.paths[0].gain, -0.8);
+  EXPECT_THAT(refusal(changed([](Json& json) { json.erase("hysteresis"); })),
+              HasSubstr("m.json.hysteresis"));
 }
 
 TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
@@ -100,6 +121,14 @@ TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
               HasSubstr("m.json.inputs[1].numerator"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["waves"][1]["sine_n"] = nullptr; })),
               HasSubstr("m.json.waves[1].sine_n"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][0]["operator"] = "play"; })),
+              HasSubstr("m.json.hysteresis[0].operator"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["threshold"] = 0.0; })),
+              HasSubstr("m.json.hysteresis[1].threshold"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["ticks"] = 0; })),
+              HasSubstr("m.json.hysteresis[1].ticks"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["low"] = 15.0; })),
+              HasSubstr("m.json.hysteresis[1].high"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["denominator"] = Json::array(); })),
               HasSubstr("m.json.denominator"));
   EXPECT_THAT(refusal(changed([](Json& json) {

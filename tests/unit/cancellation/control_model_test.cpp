@@ -2,8 +2,10 @@
 // A control model in the canceller: Eq. CC-6 to CC-9 and CC-14.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "services/cancellation/core/canceller.hpp"
@@ -109,6 +111,81 @@ TEST(ControlModelFilterTest, PathsAndWavesActBesideTheBody) {
   EXPECT_NEAR(force_n, 4.0 * 0.2 + 0.3 - 1.0, 1e-4);
 }
 
+// Of a path: w(0.2 rad / 0.1 rad) = 1 after the way up, and 1 - 0.05/0.1 on the way back.
+TEST(ControlModelFilterTest, APathWithMemoryGoesBackAnotherWay) {
+  ControlModel model = control_model({1000.0, {0.0}, {1.0}});
+  model.paths = {{Channel::kRoll, 0.0, {}, 4.0}};
+  model.hysteresis = {{0, signal::HysteresisOperator::kStop, 0.1, -1.0, 1.0}};
+  ControlModelFilter sut(model, 1);
+  Tick tick = 0;
+  const auto go = [&](double roll) { return total(sut.step(at(0.0, roll), tick++)); };
+  EXPECT_DOUBLE_EQ(go(0.0), 0.0);
+  EXPECT_DOUBLE_EQ(go(0.05), 2.0);
+  EXPECT_DOUBLE_EQ(go(0.2), 4.0);
+  EXPECT_DOUBLE_EQ(go(0.15), 2.0);
+  EXPECT_DOUBLE_EQ(go(0.0), -4.0);
+  EXPECT_DOUBLE_EQ(go(7.0), 4.0);
+  EXPECT_DOUBLE_EQ(go(1.0), 4.0) << "held at 1: coming back from 7 is no motion";
+  sut.reset();
+  EXPECT_DOUBLE_EQ(go(0.7), 0.0) << "from rest where it is";
+}
+
+// At the rate of the model that was fitted: w changes at multiples of its ticks alone.
+TEST(ControlModelFilterTest, AnElementWithMemoryHoldsItsValueBetween) {
+  ControlModel model = control_model({1000.0, {0.0}, {1.0}});
+  model.paths = {{Channel::kRoll, 0.0, {}, 4.0}};
+  model.hysteresis = {{0, signal::HysteresisOperator::kStop, 0.1, -1.0, 1.0, 10}};
+  ControlModelFilter sut(model, 1);
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.3), 7)), 0.0);
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.0), 10)), 0.0);
+  for (Tick tick = 11; tick < 20; ++tick) {
+    EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.5), tick)), 0.0);
+  }
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.05), 20)), 2.0) << "0.5 in between was not seen";
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.5), 21)), 2.0);
+}
+
+// Against the plain difference equations, and the operator that the diagnosis fits with.
+TEST(ControlModelFilterTest, ASpringWithMemoryIsThatOfEq19) {
+  for (const auto operation :
+       {signal::HysteresisOperator::kStop, signal::HysteresisOperator::kDahl}) {
+    ControlModel model = oscillator();
+    model.loop = LoopPath{{0.01, -0.02, 0.005}, {0.0, 1e-3, 1e-3}, {0.0, -2e-4, 0.0}, {}};
+    constexpr double kThreshold = 0.7;
+    constexpr double kEnd = 4.0;
+    model.hysteresis = {{std::nullopt, operation, kThreshold, -kEnd, kEnd}};
+    ControlModelFilter sut(model, 1);
+    const LoopPath& loop = *model.loop;
+    signal::HysteresisMemory memory;
+    double v1 = 0.0, v2 = 0.0, z1 = 0.0, z2 = 0.0, p1 = 0.0, p2 = 0.0, y1 = 0.0, y2 = 0.0;
+    signal::Gaussian draw(2, 1);
+    bool beyond = false;
+    for (Tick n = 0; n < 3000; ++n) {
+      const double v = 3.0 * std::sin(0.02 * static_cast<double>(n)) + draw();
+      const double z = loop.n[1] * v1 + loop.n[2] * v2 + loop.m[1] * p1 -
+                       model.denominator[1] * z1 - model.denominator[2] * z2;
+      beyond = beyond || std::abs(z) > kEnd;
+      const double p = signal::step_of(operation)(std::clamp(z, -kEnd, kEnd) / kThreshold, memory);
+      const double y = model.inputs[0].numerator[1] * v1 + loop.e[0] * p + loop.e[1] * p1 +
+                       loop.e[2] * p2 - model.denominator[1] * y1 - model.denominator[2] * y2;
+      // Sums of numbers below 100 in another order, through poles of radius 0.995: 200 roundings.
+      ASSERT_NEAR(total(sut.step(at(v), n)), y, 1e-9 * (1.0 + std::abs(y))) << n;
+      v2 = v1, v1 = v, z2 = z1, z1 = z, p2 = p1, p1 = p, y2 = y1, y1 = y;
+    }
+    EXPECT_TRUE(beyond);
+  }
+}
+
+// A lag next to the body has no transient of a level that was there before.
+TEST(ControlModelFilterTest, ALagStartsWhereItsChannelIs) {
+  ControlModel model = control_model({1000.0, {0.0}, {1.0}});
+  model.paths = {{Channel::kRoll, 5.0, {}, 4.0}};
+  ControlModelFilter sut(model, 1);
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.3), 0)), 1.2);
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.3), 1)), 1.2);
+  EXPECT_NEAR(total(sut.step(at(0.0, 0.0), 2)), 1.2 * std::exp(-1e-3 / 5.0), 1e-12);
+}
+
 Refusal refusal_of(const ControlModel& model) { return check_model(model, kBounds).refusal; }
 
 TEST(ModelCheckTest, APushWithoutMotionIsRefusedWhereverItComesFrom) {
@@ -194,6 +271,35 @@ TEST(ControlModelTest, ASpringThatLosesStabilityAtOneSlopeIsRefused) {
   EXPECT_EQ(refusal_of(model), Refusal::kLoop);
 }
 
+// Force that nobody moves for is bounded, however many elements and waves share it.
+TEST(ControlModelTest, WhatElementsWithMemoryHoldAtRestIsBounded) {
+  ControlModel model = oscillator();
+  model.paths = {{Channel::kTheta, 0.0, {}, 6.0}, {Channel::kRoll, 0.0, {}, 3.0}};
+  model.hysteresis = {{0, signal::HysteresisOperator::kStop, 1e-3, -1.0, 1.0},
+                      {1, signal::HysteresisOperator::kDahl, 1e-3, -1.0, 1.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kNone) << "steep, but no stronger than its ends";
+  model.paths[1].gain = 4.1;  // 10.1 N, and 10 N are allowed
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+  model.paths[1].gain = 3.0;
+  model.waves = {{std::nullopt, 8.0, 1.1, 0.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+}
+
+TEST(ControlModelTest, ASpringWithMemoryMayHoldAForceAndNotSwing) {
+  ControlModel model = oscillator();
+  // z'' = v - c z' - (1 + 1) k z up to its threshold: it yields at 0.5.
+  model.loop = LoopPath{{0.0, -1e-4, 0.0}, {0.0, 2e-4, 0.0}, {0.0, -1e-4, 0.0}, {}};
+  model.hysteresis = {{std::nullopt, signal::HysteresisOperator::kStop, 0.5, -99.0, 99.0}};
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.loop->m[1] = 2e-4;  // pushes away instead of back
+  EXPECT_EQ(refusal_of(model), Refusal::kLoop);
+  model.loop->m[1] = -1e-4;
+  model.loop->e[1] = -1.9e-3;  // at rest 1.9e-3 / 2e-4 = 9.5 N, and 10 N are allowed
+  EXPECT_EQ(refusal_of(model), Refusal::kNone);
+  model.loop->e[1] = -2.1e-3;
+  EXPECT_EQ(refusal_of(model), Refusal::kPath);
+}
+
 TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   const auto spoilt = [](const auto& spoil) {
     ControlModel model = oscillator();
@@ -201,6 +307,8 @@ TEST(ControlModelTest, WhatIsNoModelIsRefused) {
     model.paths = {{Channel::kRoll, 0.0, {}, 1.0}};
     model.waves = {{Channel::kTheta, 10.0, 0.1, 0.1}};
     model.adapts = HandCompliance{1.38, 9.5, 844.0, 0.1};
+    model.hysteresis = {{0, signal::HysteresisOperator::kDahl, 0.1, -1.0, 1.0},
+                        {std::nullopt, signal::HysteresisOperator::kStop, 0.5, -1.0, 1.0}};
     spoil(model);
     return refusal_of(model);
   };
@@ -219,6 +327,22 @@ TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   EXPECT_EQ(spoilt([](auto& m) { m.adapts->mass_kg = std::nan(""); }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) { m.adapts->stiffness_n_m = 1.0; }), Refusal::kCompliance);
   EXPECT_EQ(spoilt([](auto& m) { m.adapts->damping_n_s_m = 5e-324; }), Refusal::kCompliance);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].path = 1; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].path = SIZE_MAX; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].path.reset(); }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop.reset(); }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = 0.0; }), Refusal::kNotFinite);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = -1.0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].low = 1.0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].ticks = 0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].ticks = 201; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].high = std::nan(""); }), Refusal::kNotFinite);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = 1e-320; }), Refusal::kNotFinite);
+  EXPECT_EQ(spoilt([](auto& m) {
+              m.hysteresis[0].operation = static_cast<signal::HysteresisOperator>(2);
+            }),
+            Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis.resize(8, m.hysteresis[0]); }), Refusal::kTooMany);
   EXPECT_EQ(spoilt([](auto& m) { m.waves.resize(7, m.waves[0]); }), Refusal::kTooMany);
   EXPECT_EQ(spoilt([](auto& m) { m.loop->phi.values.resize(130, 1.0); }), Refusal::kTooMany);
 }
@@ -230,6 +354,10 @@ TEST(CancellerTest, CostOfAFullModelIsReported) {
       LoopPath{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {-1.0, 1.0, {-1.0, 1.0}}};
   model.paths.resize(6, {Channel::kRoll, 0.1, {}, 1.0});
   model.waves.resize(6, {std::nullopt, 10.0, 0.1, 0.1});
+  model.hysteresis = {{std::nullopt, signal::HysteresisOperator::kDahl, 1.0, -9.0, 9.0}};
+  for (std::size_t i = 0; i < 6; ++i) {
+    model.hysteresis.push_back({i, signal::HysteresisOperator::kDahl, 0.1, -1.0, 1.0});
+  }
   model.adapts = HandCompliance{1.38, 9.5, 844.0, 0.1};
   Canceller sut{Config{}};
   ASSERT_EQ(sut.load_model(model), Refusal::kNone);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "services/cancellation/core/control_model.hpp"
+#include "services/contract/tick.hpp"
+
+namespace stillhand::cancellation {
+
+/// A Hysteresis of the control model as it runs, README Eq. CC-19:
+///
+///   w(clip(x, low, high) / threshold)  at every tick that is a multiple of `ticks`, held between
+///
+/// w is services/signal Eq. SG-19 or SG-20, the same function that the diagnosis fits with.  |w| is
+/// at most 1.  It trusts its numbers: check_model() comes first.  step() allocates nothing.
+class HysteresisElement {
+ public:
+  /// Without memory: passes its argument on.
+  HysteresisElement() = default;
+  explicit HysteresisElement(const Hysteresis& of) noexcept
+      : operator_(signal::step_of(of.operation)),
+        threshold_(of.threshold),
+        low_(of.low),
+        high_(of.high),
+        ticks_(of.ticks) {}
+
+  double step(double x, Tick tick) noexcept {
+    if (operator_ == nullptr) return x;
+    if (tick % ticks_ == 0) operator_(std::clamp(x, low_, high_) / threshold_, memory_);
+    return memory_.state;
+  }
+  void reset() noexcept { memory_ = {}; }
+
+ private:
+  signal::HysteresisStep operator_ = nullptr;
+  double threshold_ = 1.0;
+  double low_ = 0.0;
+  double high_ = 0.0;
+  Tick ticks_ = 1;
+  signal::HysteresisMemory memory_;
+};
+
+}  // namespace stillhand::cancellation
