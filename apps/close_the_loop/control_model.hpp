@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +12,21 @@
 
 namespace stillhand::close_the_loop {
 
+/// README Eq. CL-7: what an effect's force in the canceller differs by from that in the diagnosed
+/// model, of the latter [-].
+struct EffectDifference {
+  double source = 0.0;  ///< over the motion that the model was fitted to
+  double second = 0.0;  ///< over another one, made from its spectrum
+  [[nodiscard]] double worst() const { return std::max(source, second); }
+};
+
 /// What the canceller does about an effect.
 struct Treatment {
   std::string kind;
   bool cancelled = false;
-  std::string how;  ///< one clause: what the motor does about it, or why it does nothing
+  std::string how;           ///< one clause: what the motor does about it, or why it does nothing
+  std::string channel = {};  ///< the first that it reads; empty: none
+  std::optional<EffectDifference> difference = {};  ///< none: there was nothing to compare
 };
 
 /// A diagnosed model as the canceller runs it.
@@ -30,7 +42,9 @@ struct ControlOptions {
   double high_hz = 4.0;     ///< [Hz]
   double upper_hz = 10.0;   ///< [Hz] met with less weight to here
   double max_error = 0.05;  ///< [-] Eq. CL-2
-  double lead_s = 0.0;      ///< [s] delay of the motor: the prediction comes as much sooner
+  /// [-] Eq. CL-7: an effect that differs by more is left alone.
+  double max_difference = 0.01;
+  double lead_s = 0.0;  ///< [s] delay of the motor: the prediction comes as much sooner
 };
 
 /// The hand that the adaptation assumes: that of the population's mean subject (study SU-2).
@@ -39,7 +53,8 @@ cancellation::HandCompliance average_hand();
 /// Converts a diagnosed model to the control rate, README Eq. CL-1 to CL-4: the body's poles by
 /// z' = z^(rate/1000 Hz), each numerator by least squares on its response, springs inside the body,
 /// paths next to it and waves unchanged.  What becomes of an effect is its body_role()
-/// (services/diagnosis/core/model/control_role.hpp).
+/// (services/diagnosis/core/model/control_role.hpp).  Then each effect runs next to the diagnosed
+/// one, Eq. CL-7; the model is converted again without those that differ too much.
 /// @param signals  what the model was fitted to: ranges of its tables
 /// @throws stillhand::ConfigError when an error exceeds options.max_error.
 ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,

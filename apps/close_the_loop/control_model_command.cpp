@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/close_the_loop/control_model_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "apps/close_the_loop/control_model.hpp"
 #include "apps/close_the_loop/drive.hpp"
+#include "apps/close_the_loop/output.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "apps/measurement/read_options.hpp"
 #include "apps/report/result_files.hpp"
@@ -28,14 +33,31 @@ struct ControlModelWords {
   std::string recording;
   measurement::ReadOptions read;
   std::filesystem::path save;
+  std::filesystem::path json;
   std::filesystem::path config;
   std::uint32_t rig = 1;
   double lead_ms = 1e3 * DeclaredDrive{}.motor_delay_s;
   bool as_it_is = false;
 };
 
+// What is known of an effect's force, for people.
+std::string difference_of(const Treatment& treatment) {
+  if (!treatment.difference) return {};
+  return fmt::format(
+      "; its force differs by {:.2g} % from the diagnosed one, and by {:.2g} % over "
+      "another motion",
+      100.0 * treatment.difference->source, 100.0 * treatment.difference->second);
+}
+
+std::string summary_of(const ConvertedModel& control) {
+  const nlohmann::ordered_json summary{{"conversion_error", control.conversion_error},
+                                       {"treatments", treatments_json(control)}};
+  return summary.dump(2) + "\n";
+}
+
 int run(const ControlModelWords& words) {
-  report::ResultFiles files({{"--save", words.save}}, {words.model, words.recording});
+  report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
+                            {words.model, words.recording});
   const diagnosis::Model model =
       diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
   const diagnosis::Measurement whole = measurement::read_measurement(words.recording, words.read);
@@ -51,13 +73,14 @@ int run(const ControlModelWords& words) {
       settings::load<cancellation::Config>(words.config / "cancellation.yaml", "cancellation"),
       words.model.string());
   files.set("--save", cancellation::control_model_json(control.model, words.rig));
+  if (!words.json.empty()) files.set("--json", summary_of(control));
   files.publish();
   std::printf("%s at 1 kHz, off by at most %.2g %% in the band, in %s\n",
               words.model.string().c_str(), 100.0 * control.conversion_error,
               words.save.string().c_str());
   for (const Treatment& each : control.treatments) {
-    std::printf("%s: %s: %s\n", each.kind.c_str(), each.cancelled ? "cancelled" : "left alone",
-                each.how.c_str());
+    std::printf("%s: %s: %s%s\n", each.kind.c_str(), each.cancelled ? "cancelled" : "left alone",
+                each.how.c_str(), difference_of(each).c_str());
   }
   return 0;
 }
@@ -73,6 +96,9 @@ void add_control_model_command(CLI::App& cli, int& status) {
       "control-model",
       "Converts a model that `stillhand diagnose --save` wrote to the canceller's 1 kHz, for\n"
       "`stillhand lab --model`, and prints for each effect what the motor will do about it.\n"
+      "The converted effect runs next to the diagnosed one, over REC and over another motion of "
+      "the\n"
+      "same spectrum: where the forces differ by more than 1 %, the effect is left alone.\n"
       "REC is the recording that was diagnosed: its ranges are those of the model's tables.\n"
       "Example: stillhand control-model model.json run1/session.mcap --trial I --save "
       "control.json");
@@ -84,6 +110,9 @@ void add_control_model_command(CLI::App& cli, int& status) {
   measurement::add_read_options(*verb, words->read);
   verb->add_option("--save", words->save, "file of the control model")
       ->required()
+      ->check(settings::check_name);
+  verb->add_option("--json", words->json,
+                   "file of what becomes of each effect, with the difference of its force")
       ->check(settings::check_name);
   verb->add_option("--rig", words->rig, "number of the rig that the model is for")
       ->capture_default_str();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/close_the_loop/control_laws.hpp"
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/contract/units.hpp"
@@ -20,6 +22,7 @@ namespace {
 
 using diagnosis::Effect;
 using Complex = std::complex<double>;
+using cancellation::ControlModelFilter;
 
 constexpr Eigen::Index kPoints = 241;  // of a response, each with a real and an imaginary part
 constexpr double kOuterWeight = 0.2;
@@ -41,7 +44,7 @@ std::vector<double> carried_poles(const std::vector<double>& denominator, double
 
 // A mode in addition to the body, at the model's own rate.
 struct ModeOf {
-  const Effect& effect;
+  std::vector<double> factors;
   std::vector<double> denominator;
 };
 
@@ -50,11 +53,26 @@ std::vector<ModeOf> modes_of(const diagnosis::Model& model) {
   for (const Effect& effect : model.effects) {
     const diagnosis::ControlRole role = diagnosis::effect_kind(effect.kind).body_role(effect);
     if (const auto* mode = std::get_if<diagnosis::control::Mode>(&role)) {
-      modes.push_back({effect, diagnosis::mode_denominator(mode->frequency_hz, mode->damping_ratio,
-                                                           model.rate_hz)});
+      modes.push_back(
+          {factors_of(effect),
+           diagnosis::mode_denominator(mode->frequency_hz, mode->damping_ratio, model.rate_hz)});
     }
   }
   return modes;
+}
+
+// Poles of Pade's approximation of order 4 to a delay, at the control rate: with zeros beside them
+// a path is late by as much.  1: no delay.
+std::vector<double> delay_poles(double delay_s) {
+  if (delay_s < kControlPeriod_s) return {1.0};
+  // Roots of 1 + x/2 + 3 x^2/28 + x^3/84 + x^4/1680.
+  constexpr Complex kRoots[] = {{-5.7924211, 1.7344683}, {-4.2075788, 5.3148361}};
+  std::vector<double> product{1.0};
+  for (const Complex& root : kRoots) {
+    const Complex z = std::exp(root * kControlPeriod_s / delay_s);
+    product = diagnosis::product(product, {1.0, -2.0 * z.real(), std::norm(z)});
+  }
+  return product;
 }
 
 // Body and modes as one difference model, from the first input.
@@ -64,9 +82,8 @@ identification::DifferenceModel all_of(const diagnosis::Model& model) {
   std::vector<double> denominator = model.body.denominator;
   for (const ModeOf& mode : modes_of(model)) {
     // c_0 (1 - q^-1) + c_1 over the mode.
-    const double c0 = mode.effect.coefficients.at(0);
-    const std::vector<double> of_mode =
-        product({c0 + mode.effect.coefficients.at(1), -c0}, denominator);
+    const double c0 = mode.factors.at(0);
+    const std::vector<double> of_mode = product({c0 + mode.factors.at(1), -c0}, denominator);
     numerator = product(numerator, mode.denominator);
     denominator = product(denominator, mode.denominator);
     for (std::size_t i = 0; i < of_mode.size(); ++i) numerator[i] += of_mode[i];
@@ -124,6 +141,16 @@ std::vector<double> nearest_differences(const std::vector<double>& denominator,
   return differences;
 }
 
+std::vector<double> impulse_response(const std::vector<double>& c, const std::vector<double>& a,
+                                     std::size_t samples) {
+  std::vector<double> h(samples, 0.0);
+  for (std::size_t n = 0; n < samples; ++n) {
+    if (n < c.size()) h[n] = c[n];
+    for (std::size_t j = 1; j < a.size() && j <= n; ++j) h[n] -= a[j] * h[n - j];
+  }
+  return h;
+}
+
 }  // namespace
 
 Complex polynomial_at(const std::vector<double>& c, double turn_rad) {
@@ -133,11 +160,16 @@ Complex polynomial_at(const std::vector<double>& c, double turn_rad) {
 }
 
 std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& model) {
+  const std::vector<double> late = delay_poles(input_delay_s(model));
+  const auto with_delay = [&](std::vector<double> denominator) {
+    const bool fits = denominator.size() + late.size() - 2 <= ControlModelFilter::kMaxOrder;
+    return fits ? diagnosis::product(denominator, late) : denominator;
+  };
   const auto with_modes = [&](std::vector<double> denominator) {
     for (const ModeOf& mode : modes_of(model)) {
       denominator = diagnosis::product(denominator, carried_poles(mode.denominator, model.rate_hz));
     }
-    return denominator;
+    return with_delay(std::move(denominator));
   };
   std::vector<std::vector<double>> all{
       with_modes(carried_poles(model.body.denominator, model.rate_hz))};
@@ -148,32 +180,37 @@ std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& m
     }
   };
   add_fitted({model.rate_hz, model.body.numerators.front(), model.body.denominator}, with_modes);
-  add_fitted(all_of(model), [](std::vector<double> denominator) { return denominator; });
+  add_fitted(all_of(model), with_delay);
   return all;
 }
 
-Complex linear_response(const diagnosis::Model& model, std::size_t k, double gain,
-                        double frequency_hz) {
+Complex body_response(const diagnosis::Model& model, std::size_t k, double frequency_hz) {
   const double w = kTwoPi * frequency_hz / model.rate_hz;
-  Complex sum =
-      gain * polynomial_at(model.body.numerators[k], w) / polynomial_at(model.body.denominator, w);
+  return polynomial_at(model.body.numerators[k], w) / polynomial_at(model.body.denominator, w);
+}
+
+Complex mode_response(const diagnosis::Model& model, std::size_t k, double frequency_hz) {
+  const double w = kTwoPi * frequency_hz / model.rate_hz;
+  Complex sum = 0.0;
   for (const ModeOf& mode : modes_of(model)) {
     const Complex difference = 1.0 - std::polar(1.0, -w);
-    sum +=
-        (mode.effect.coefficients.at(2 * k) * difference + mode.effect.coefficients.at(2 * k + 1)) /
-        polynomial_at(mode.denominator, w);
+    sum += (mode.factors.at(2 * k) * difference + mode.factors.at(2 * k + 1)) /
+           polynomial_at(mode.denominator, w);
   }
   return sum;
 }
 
+bool has_modes(const diagnosis::Model& model) { return !modes_of(model).empty(); }
+
 double input_delay_s(const diagnosis::Model& model) {
+  double delay_s = 0.0;
   for (const Effect& effect : model.effects) {
     const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
     if (std::holds_alternative<diagnosis::control::InputDelay>(kind.body_role(effect))) {
-      return kind.input_delay_s(effect, 0.0);
+      delay_s += kind.input_delay_s(effect, 0.0);
     }
   }
-  return 0.0;
+  return delay_s;
 }
 
 NumeratorFit fit_numerator(const std::vector<double>& denominator, const Response& wanted,
@@ -196,6 +233,42 @@ NumeratorFit fit_numerator(const std::vector<double>& denominator, const Respons
     largest = std::max(largest, std::abs(target[static_cast<std::size_t>(row)]));
   }
   if (largest > 0.0) fit.error = error / largest;
+  return fit;
+}
+
+NumeratorFit held_numerator(const std::vector<double>& denominator, const std::vector<double>& c,
+                            const std::vector<double>& a, std::size_t ticks, bool late) {
+  constexpr std::size_t kSamples = 400;
+  const std::size_t order = denominator.size() - 1;
+  const auto wanted = impulse_response(c, a, kSamples);
+  const auto columns = static_cast<Eigen::Index>(late ? order : order + 1);
+  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(kSamples), columns);
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    // D^i, or q^-1 D^i.
+    std::vector<double> basis(static_cast<std::size_t>(i) + 1, 0.0);
+    basis.back() = 1.0;
+    basis = diagnosis::difference_basis(basis);
+    if (late) basis.insert(basis.begin(), 0.0);
+    const auto fast = impulse_response(basis, denominator, ticks * (kSamples - 1) + 1);
+    matrix(0, i) = fast[0];
+    for (std::size_t n = 1; n < kSamples; ++n) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < ticks; ++k) sum += fast[ticks * n - k];
+      matrix(static_cast<Eigen::Index>(n), i) = sum;
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> right(wanted.data(), static_cast<Eigen::Index>(kSamples));
+  const Eigen::RowVectorXd norms = matrix.colwise().norm();
+  matrix.array().rowwise() /= norms.array();
+  const Eigen::VectorXd x = signal::least_squares(matrix, right);
+  NumeratorFit fit;
+  if (right.norm() > 0.0) fit.error = (matrix * x - right).norm() / right.norm();
+  std::vector<double> differences(static_cast<std::size_t>(columns));
+  for (Eigen::Index i = 0; i < columns; ++i) {
+    differences[static_cast<std::size_t>(i)] = x[i] / norms[i];
+  }
+  fit.numerator = diagnosis::difference_basis(differences);
+  if (late) fit.numerator.insert(fit.numerator.begin(), 0.0);
   return fit;
 }
 

@@ -144,7 +144,16 @@ ordered_json latency_json(const std::optional<Latency>& latency) {
 ordered_json treatments_json(const ConvertedModel& control) {
   ordered_json list = ordered_json::array();
   for (const Treatment& each : control.treatments) {
-    list.push_back({{"kind", each.kind}, {"cancelled", each.cancelled}, {"how", each.how}});
+    ordered_json difference = nullptr;
+    if (each.difference) {
+      difference = {{"source", or_null(100.0 * each.difference->source)},
+                    {"second", or_null(100.0 * each.difference->second)}};
+    }
+    list.push_back({{"kind", each.kind},
+                    {"channel", or_null(each.channel)},
+                    {"cancelled", each.cancelled},
+                    {"how", each.how},
+                    {"difference_percent", difference}});
   }
   return list;
 }

@@ -351,6 +351,15 @@ Signals Signals::replaced(std::string_view name, std::vector<double> values) con
   return other;
 }
 
+Signals Signals::moved(
+    const std::function<std::vector<double>(const Signal& signal)>& values) const {
+  Signals other = *this;
+  for (auto* list : {&other.inputs_, &other.all_}) {
+    for (Signal& signal : *list) signal.values = values(signal);
+  }
+  return other;
+}
+
 Signals Signals::within(const std::vector<SeenRange>& ranges) const {
   Signals other = *this;
   for (const SeenRange& range : ranges) {

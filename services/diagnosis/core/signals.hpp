@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -73,6 +74,10 @@ class Signals {
   [[nodiscard]] std::vector<double> without_pasts(const std::vector<double>& run) const;
   /// The same signals, one of them with other values.
   [[nodiscard]] Signals replaced(std::string_view name, std::vector<double> values) const;
+  /// The same instants of another motion: every signal but the output with other values; means and
+  /// deviations stay those of the measurement.
+  [[nodiscard]] Signals moved(
+      const std::function<std::vector<double>(const Signal& signal)>& values) const;
   /// The same signals, each held within its range; the inputs as the body sees them stay.
   [[nodiscard]] Signals within(const std::vector<SeenRange>& ranges) const;
   [[nodiscard]] const std::vector<double>& time_s() const noexcept { return time_s_; }

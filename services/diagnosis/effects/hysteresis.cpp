@@ -11,8 +11,12 @@ constexpr double kTriedThresholds[] = {0.2, 0.5, 1.0};  // [standard deviations]
 
 bool smooth(const Effect& effect) { return effect.form.starts_with("smooth"); }
 
+signal::HysteresisOperator operator_of(const Effect& effect) {
+  return smooth(effect) ? signal::HysteresisOperator::kDahl : signal::HysteresisOperator::kStop;
+}
+
 Nonlinearity element_of(const Effect& effect, double threshold) {
-  return {smooth(effect) ? dahl_operator : stop_operator, threshold};
+  return {signal::step_of(operator_of(effect)), threshold};
 }
 
 class Hysteresis final : public EffectKind {
@@ -45,6 +49,10 @@ class Hysteresis final : public EffectKind {
                                         std::size_t i) const override {
     return i == 0 ? "-" : signals.at(effect.channels.at(0)).unit;
   }
+  [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
+    if (effect.channels.empty()) return control::Spring{operator_of(effect)};
+    return control::Hysteresis{operator_of(effect), effect.value(0)};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     const std::string element =
@@ -62,8 +70,8 @@ std::vector<Proposal> Hysteresis::proposed(const Screening& screening) const {
   const auto add = [&proposals](std::vector<Proposal> more) {
     for (Proposal& each : more) proposals.push_back(std::move(each));
   };
-  add(loop_proposals(screening, "hysteresis", "elastic-plastic", stop_operator, false));
-  add(loop_proposals(screening, "hysteresis", "smooth", dahl_operator, false));
+  add(loop_proposals(screening, "hysteresis", "elastic-plastic", signal::stop_operator, false));
+  add(loop_proposals(screening, "hysteresis", "smooth", signal::dahl_operator, false));
   std::vector<Proposal> of_channels;
   for (const Signal& signal : signals.all()) {
     if (signal.quantity != Quantity::kPosition) continue;

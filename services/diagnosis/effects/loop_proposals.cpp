@@ -129,21 +129,4 @@ double threshold_of(const Effect& effect) {
   return effect.parameters.empty() ? 1.0 : effect.value(0);
 }
 
-double stop_operator(double z, LoopMemory& memory) {
-  if (!memory.started) memory = {0.0, z, true};
-  memory.state = std::clamp(memory.state + z - memory.previous, -1.0, 1.0);
-  memory.previous = z;
-  return memory.state;
-}
-
-double dahl_operator(double z, LoopMemory& memory) {
-  if (!memory.started) memory = {0.0, z, true};
-  const double change = z - memory.previous;
-  // Exact over a step on which z moves one way: w tends to sign(dz) with e^-|dz|.
-  const double towards = change >= 0.0 ? 1.0 : -1.0;
-  memory.state = towards + (memory.state - towards) * std::exp(-std::abs(change));
-  memory.previous = z;
-  return memory.state;
-}
-
 }  // namespace stillhand::diagnosis

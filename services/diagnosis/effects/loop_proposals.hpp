@@ -8,7 +8,7 @@
 #include "services/diagnosis/core/fitting/screening.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 
-/// Nonlinearities inside the body, Eq. DG-4: proposals, and elements with memory.
+/// Nonlinearities inside the body, Eq. DG-4: proposals.
 namespace stillhand::diagnosis {
 
 /// phi of a signal in units of its threshold, with memory.
@@ -23,11 +23,5 @@ std::vector<Proposal> loop_proposals(const Screening& screening, const std::stri
 
 /// Threshold of a feedback effect; 1 inside the body, where the path holds the scale.
 double threshold_of(const Effect& effect);
-
-/// Elastic and perfectly plastic element with limit 1 ("stop" operator): hysteresis and, as
-/// z - stop(z), play.  Source: Visintin, Differential Models of Hysteresis, 1994.
-double stop_operator(double z, LoopMemory& memory);
-/// Dahl's (1968) smooth relative: dw = dz (1 - w sign(dz)).
-double dahl_operator(double z, LoopMemory& memory);
 
 }  // namespace stillhand::diagnosis

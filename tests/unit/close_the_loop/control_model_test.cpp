@@ -167,7 +167,7 @@ TEST(ControlModelTest, WhatCantBeCancelledIsSaid) {
   const Motion motion;
   diagnosis::Model model = two_modes();
   model.effects.push_back(
-      {"hysteresis", "smooth, of a channel", {"a_x"}, {{"yield", "m/s^2", 0.5, 0.0, 1.0}}, {0.5}});
+      {"asymmetry", "square, beside the body", {"a_x"}, {{"centre", "m/s^2", 0.0}}, {0.5}});
   const ConvertedModel control = to_control_model(model, motion.signals());
   ASSERT_EQ(control.treatments.size(), 1u);
   EXPECT_FALSE(control.treatments[0].cancelled);

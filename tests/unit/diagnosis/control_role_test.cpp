@@ -50,8 +50,9 @@ std::vector<Role> every_role() {
        kNone},
       {{"asymmetry", "square inside the body", {}, {}, {}}, spring, kNone},
       {{"hysteresis", "smooth, beside the body", {"theta"}, {{"threshold", "rad", 1.0}}, {1.0}},
-       kNone,
+       index_of(Hysteresis{}),
        kNone},
+      {{"hysteresis", "smooth inside the body", {}, {}, {}}, spring, kNone},
       {{"dead_zone", "at the input", {"a_y"}, {{"half_width", "m/s^2", 0.1}}, {}}, before, kNone},
       {{"output_saturation", "hard", {}, {{"limit", "N", 5.0}}, {}}, index_of(NotFelt{}), kNone},
       {{"input_saturation", "soft", {"a_y"}, {{"limit", "m/s^2", 1.0}}, {}}, before, kNone},
@@ -65,7 +66,7 @@ std::vector<Role> every_role() {
        gain,
        kNone},
       {{"bilinear", "gain of the body", {"temp"}, {{"s", "-", 0.1}, {"c", "degC", 1.0}}, {}},
-       gain,
+       kNone,
        kNone},
       {{"bilinear", "beside the body", {"a_x", "theta"}, {{"c", "", 0.0}, {"d", "", 0.0}}, {1.0}},
        kNone,
@@ -101,6 +102,17 @@ TEST(ControlRoleTest, ARoleCarriesItsNumbers) {
   EXPECT_EQ(path({"coupled_input", "lagged", {"a_x"}, {{"lag", "s", 0.3}}, {1.0}}).lag_s, 0.3);
   EXPECT_EQ(path({"coupled_input", "static", {"a_x"}, {}, {1.0}}).lag_s, 0.0);
   EXPECT_TRUE(path({"coupled_input", "through the body", {"a_x"}, {}, {1.0}}).through_body);
+  const Effect stop{"hysteresis",
+                    "elastic-plastic, beside the body",
+                    {"theta"},
+                    {{"threshold", "rad", 0.4}},
+                    {0.3, -0.1}};
+  const auto memory = std::get<Hysteresis>(effect_kind("hysteresis").body_role(stop));
+  EXPECT_EQ(memory.operation, signal::HysteresisOperator::kStop);
+  EXPECT_EQ(memory.threshold, 0.4);
+  const Effect dahl{"hysteresis", "smooth inside the body", {}, {}, {}};
+  EXPECT_EQ(std::get<Spring>(effect_kind("hysteresis").body_role(dahl)).memory,
+            signal::HysteresisOperator::kDahl);
   const Effect smooth{
       "coulomb_friction", "smooth sign, beside the body", {"omega"}, {{"v", "rad/s", 0.2}}, {1.0}};
   const auto friction = std::get<Friction>(effect_kind("coulomb_friction").drive_role(smooth));

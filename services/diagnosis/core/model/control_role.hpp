@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
+
+#include "services/signal/hysteresis.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -26,8 +29,10 @@ struct InputMap {};
 /// EffectKind::mapped() of the body's force.
 struct OutputMap {};
 /// EffectKind::feedback() inside the body.
-struct Spring {};
-/// EffectKind::gain() at the end of the recording.
+struct Spring {
+  std::optional<signal::HysteresisOperator> memory = {};  ///< its phi; none: without memory
+};
+/// EffectKind::gain() at the end of the recording: of time alone, which the session continues.
 struct Gain {};
 /// Two poles in addition to the body's; coefficients 2 k and 2 k + 1 are those of input k on the
 /// difference of the mode's response and on the response.
@@ -35,10 +40,17 @@ struct Mode {
   double frequency_hz;
   double damping_ratio;  ///< [-]
 };
-/// A linear path from the first channel to the force.
+/// A linear path from each channel to the force, one coefficient a channel; through the body from
+/// the first alone.
 struct Path {
   bool through_body;  ///< with the body's poles; otherwise one gain behind a first-order lag
   double lag_s;       ///< 0: none
+};
+/// Coefficient 0 times an operator with memory of the first channel, and coefficient 1, where there
+/// is one, times the channel.
+struct Hysteresis {
+  signal::HysteresisOperator operation;
+  double threshold;  ///< [unit of the channel]
 };
 /// Sines and cosines of the harmonics of a frequency, coefficients in that order.
 struct Waves {
@@ -54,6 +66,6 @@ struct Friction {
 using ControlRole =
     std::variant<control::LeftOut, control::NotFelt, control::InputDelay, control::InputMap,
                  control::OutputMap, control::Spring, control::Gain, control::Mode, control::Path,
-                 control::Waves, control::Friction>;
+                 control::Hysteresis, control::Waves, control::Friction>;
 
 }  // namespace stillhand::diagnosis

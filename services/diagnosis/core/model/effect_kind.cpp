@@ -16,7 +16,8 @@ ControlRole EffectKind::body_role(const Effect& effect) const {
     case Stage::kFeedback:
       return control::Spring{};
     case Stage::kGain:
-      return control::Gain{};
+      if (time_only(effect)) return control::Gain{};
+      return control::LeftOut{"the canceller has no gain that follows a channel"};
     case Stage::kOutputValue:
       return control::OutputMap{};
     case Stage::kTerm:

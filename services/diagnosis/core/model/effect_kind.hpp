@@ -11,17 +11,14 @@
 #include "services/diagnosis/core/model/effect.hpp"
 #include "services/diagnosis/core/model/model.hpp"
 #include "services/diagnosis/core/signals.hpp"
+#include "services/signal/hysteresis.hpp"
 
 namespace stillhand::diagnosis {
 
 class Screening;
 
 /// What a nonlinearity with memory remembers from one sample to the next.
-struct LoopMemory {
-  double state = 0.0;
-  double previous = 0.0;
-  bool started = false;
-};
+using LoopMemory = signal::HysteresisMemory;
 
 /// phi of a signal in units of its threshold, as a function that the loop calls once a sample.
 struct Nonlinearity {

@@ -24,7 +24,23 @@ Weights lagrange(double fraction) {
   return weights;
 }
 
+// Of the samples around whole, first to last.
+double weighted(std::span<const double> x, double whole, const Weights& weights) {
+  const double last = static_cast<double>(x.size() - 1);
+  double sum = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const auto at = static_cast<std::size_t>(std::clamp(whole + i - 2.0, 0.0, last));
+    sum += weights[static_cast<std::size_t>(i)] * x[at];
+  }
+  return sum;
+}
+
 }  // namespace
+
+double value_at(std::span<const double> x, double place) {
+  const double whole = std::floor(place);
+  return weighted(x, whole, lagrange(place - whole));
+}
 
 std::vector<double> delayed(const std::vector<double>& x, const Signals& signals,
                             const std::function<double(double)>& delay_s) {
@@ -32,10 +48,9 @@ std::vector<double> delayed(const std::vector<double>& x, const Signals& signals
   double last_fraction = -1.0;
   Weights weights{};
   for (const Stretch& stretch : signals.stretches()) {
-    const auto first = static_cast<std::ptrdiff_t>(stretch.first);
-    const auto last = static_cast<std::ptrdiff_t>(stretch.end) - 1;
-    for (std::ptrdiff_t n = first; n <= last; ++n) {
-      const auto index = static_cast<std::size_t>(n);
+    const auto part = std::span(x).subspan(stretch.first, stretch.end - stretch.first);
+    for (std::size_t n = 0; n < part.size(); ++n) {
+      const std::size_t index = stretch.first + n;
       const double position =
           static_cast<double>(n) - delay_s(signals.time_s()[index]) * signals.rate_hz();
       const double whole = std::floor(position);
@@ -44,13 +59,7 @@ std::vector<double> delayed(const std::vector<double>& x, const Signals& signals
         weights = lagrange(fraction);
         last_fraction = fraction;
       }
-      double sum = 0.0;
-      for (int i = 0; i < kPoints; ++i) {
-        const auto at = static_cast<std::ptrdiff_t>(
-            std::clamp(whole + i - 2.0, static_cast<double>(first), static_cast<double>(last)));
-        sum += weights[static_cast<std::size_t>(i)] * x[static_cast<std::size_t>(at)];
-      }
-      result[index] = sum;
+      result[index] = weighted(part, whole, weights);
     }
   }
   return result;

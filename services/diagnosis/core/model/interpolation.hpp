@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "services/diagnosis/core/signals.hpp"
@@ -15,5 +16,9 @@ namespace stillhand::diagnosis {
 /// @param delay_s  of a time [s] since the measurement's start; negative: ahead
 std::vector<double> delayed(const std::vector<double>& x, const Signals& signals,
                             const std::function<double(double)>& delay_s);
+
+/// The same polynomial at a place between the samples of one run, held beyond its ends.
+/// @param place  [samples] from the first
+double value_at(std::span<const double> x, double place);
 
 }  // namespace stillhand::diagnosis

@@ -2,17 +2,15 @@
 #include "services/diagnosis/core/model/stability.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/loop.hpp"
 #include "services/diagnosis/core/model/model_run.hpp"
+#include "services/diagnosis/core/other_phases.hpp"
 #include "services/signal/difference_model.hpp"
-#include "services/signal/random.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -95,27 +93,6 @@ bool contracts(const Polynomial& a, const Polynomial& path, const Slopes& slopes
     if (!((at(low, turn_rad) * std::conj(at(high, turn_rad))).real() > 0.0)) return false;
   }
   return true;
-}
-
-// The same power at every frequency, other phases; alike for all inputs, so that what they share
-// stays shared.
-std::vector<double> other_phases(std::vector<double> x, signal::Gaussian draw) {
-  const std::size_t count = x.size();
-  x.resize(std::bit_ceil(std::max<std::size_t>(count, 2)), 0.0);
-  std::vector<std::complex<double>> spectrum;
-  Eigen::FFT<double> transform;
-  transform.fwd(spectrum, x);
-  const std::size_t size = spectrum.size();
-  for (std::size_t k = 1; k < size / 2; ++k) {
-    spectrum[k] *= std::polar(1.0, 2.0 * std::numbers::pi * draw.uniform());
-    spectrum[size - k] = std::conj(spectrum[k]);
-  }
-  transform.inv(x, spectrum);
-  // What was filled up with zeros is spread over all.
-  const double louder = std::sqrt(static_cast<double>(x.size()) / static_cast<double>(count));
-  x.resize(count);
-  for (double& value : x) value *= louder;
-  return x;
 }
 
 // Eq. DG-57 d: the loop on its own inputs and on others of the same spectrum.
