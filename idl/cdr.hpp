@@ -43,9 +43,9 @@ inline constexpr EarlierForm kEarlierForm<stillhand_msgs::TrialAssignment>{77, 1
 template <>
 inline constexpr EarlierForm kEarlierForm<stillhand_msgs::FeedthroughModel>{0, 1};
 
-// Ends in numbers of 8 bytes behind sequences: the four bytes of an empty sequence's length.
+// Ended in numbers of 8 bytes behind sequences: the length of an empty sequence, and a number of 4.
 template <>
-inline constexpr EarlierForm kEarlierForm<stillhand_msgs::AugmentedModel>{0, 4};
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::AugmentedModel>{0, 8};
 
 /// True for the types above, by their names in a schema.
 inline bool has_earlier_form(std::string_view type) noexcept {

@@ -93,8 +93,7 @@ class Conversion {
   }
   // What the input drives comes sooner by the lead; what the spring drives is driven by it.
   std::vector<double> numerator(const Response& wanted);
-  std::vector<double> of_spring(const std::vector<double>& c, bool late,
-                                const control::Spring& law);
+  std::vector<double> of_spring(const std::vector<double>& c, bool late);
   std::vector<double> taken(NumeratorFit fit) {
     out_.conversion_error = std::max(out_.conversion_error, fit.error);
     return std::move(fit.numerator);
@@ -133,9 +132,8 @@ std::vector<double> Conversion::numerator(const Response& wanted) {
   return taken(fit_numerator(out_.model.denominator, sooner, false, options_));
 }
 
-std::vector<double> Conversion::of_spring(const std::vector<double>& c, bool late,
-                                          const control::Spring& law) {
-  if (law.memory && held_ticks_ > 1) {
+std::vector<double> Conversion::of_spring(const std::vector<double>& c, bool late) {
+  if (held_ticks_ > 1) {
     return taken(
         held_numerator(out_.model.denominator, c, model_.body.denominator, held_ticks_, late));
   }
@@ -235,7 +233,8 @@ void Conversion::carry(const Effect& effect, const control::Spring& law) {
   const SeenRange range = seen(effect, 0, run.free.argument);
   const diagnosis::Nonlinearity shape = diagnosis::effect_kind(effect.kind).feedback(effect);
   cancellation::LoopPath loop;
-  loop.e = of_spring(path.e, path.of_output(), law);
+  loop.ticks = static_cast<Tick>(held_ticks_);
+  loop.e = of_spring(path.e, path.of_output());
   for (double& e : loop.e) e *= gain_;
   if (!of_force) {
     // Around the body's force without its gain and what lies next to it: z has its numerator.
@@ -243,15 +242,15 @@ void Conversion::carry(const Effect& effect, const control::Spring& law) {
     const Response z = over_poles(n);
     const auto later = [&](double f) { return z(f) * std::polar(1.0, -kTwoPi * f * delay_s_); };
     loop.n = numerator(later);
-    loop.m = of_spring(path.of_output() ? path.e : path.m, true, law);
+    loop.m = of_spring(path.of_output() ? path.e : path.m, true);
   }
   // Where z is the force itself, it is the one behind the gain.
   const double z_gain = of_force ? gain_ : 1.0;
   const double low = std::min(z_gain * range.lower_edge(), z_gain * range.upper_edge());
   const double high = std::max(z_gain * range.lower_edge(), z_gain * range.upper_edge());
   if (law.memory) {
-    out_.model.hysteresis.push_back({std::nullopt, *law.memory, std::abs(z_gain) * shape.threshold,
-                                     low, high, static_cast<Tick>(held_ticks_)});
+    out_.model.hysteresis.push_back(
+        {std::nullopt, *law.memory, std::abs(z_gain) * shape.threshold, low, high});
     // The operators are odd.
     if (z_gain < 0.0) {
       for (double& e : loop.e) e = -e;

@@ -79,7 +79,13 @@ class Export {
   }
 
  private:
+  // Without its spring the body is not the one that was fitted, and may be worse than a linear one.
   void drop(std::size_t i) {
+    if (has_role<diagnosis::control::Spring>(carried_.effects[i])) {
+      const Treatment& spring = treatments_[places_[i]];
+      throw ConfigError(spring.kind + " inside the body", spring.how,
+                        "an effect that the canceller's body can hold");
+    }
     const auto at = static_cast<std::ptrdiff_t>(i);
     carried_.effects.erase(carried_.effects.begin() + at);
     places_.erase(places_.begin() + at);
@@ -112,8 +118,10 @@ class Export {
     Treatment& to = treatments_[places_[i]];
     to.cancelled = false;
     to.how = fmt::format(
-        "in the canceller its force differs by more than {:.2g} % from that of the diagnosed model",
-        100.0 * options_.max_difference);
+        "in the canceller its force differs by {:.2g} % from that of the diagnosed model, and "
+        "{:.2g} "
+        "% are allowed",
+        100.0 * worst->worst(), 100.0 * options_.max_difference);
     drop(i);
     return true;
   }

@@ -56,7 +56,8 @@ cancellation::HandCompliance average_hand();
 /// (services/diagnosis/core/model/control_role.hpp).  Then each effect runs next to the diagnosed
 /// one, Eq. CL-7; the model is converted again without those that differ too much.
 /// @param signals  what the model was fitted to: ranges of its tables
-/// @throws stillhand::ConfigError when an error exceeds options.max_error.
+/// @throws stillhand::ConfigError when an error exceeds options.max_error, or a spring inside the
+/// body cannot be carried.
 ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
                                 const ControlOptions& options = {});
 

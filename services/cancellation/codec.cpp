@@ -34,7 +34,6 @@ Hysteresis from_idl(const stillhand_msgs::ModelHysteresis& message) {
   out.threshold = message.threshold();
   out.low = message.low();
   out.high = message.high();
-  out.ticks = message.ticks();
   return out;
 }
 stillhand_msgs::ModelHysteresis to_idl(const Hysteresis& hysteresis) {
@@ -44,7 +43,6 @@ stillhand_msgs::ModelHysteresis to_idl(const Hysteresis& hysteresis) {
   message.threshold(hysteresis.threshold);
   message.low(hysteresis.low);
   message.high(hysteresis.high);
-  message.ticks(static_cast<std::int32_t>(hysteresis.ticks));
   return message;
 }
 static_assert(static_cast<std::size_t>(stillhand_msgs::MODEL_DAHL) ==
@@ -98,6 +96,8 @@ ControlModel from_idl(const stillhand_msgs::AugmentedModel& message) {
   if (!message.loop().empty()) {
     const auto& loop = message.loop().front();
     model.loop = LoopPath{loop.e(), loop.n(), loop.m(), from_idl(loop.phi())};
+    // 0 in a recording from before springs held their value.
+    if (message.spring_ticks() != 0) model.loop->ticks = message.spring_ticks();
   }
   model.output = from_idl(message.output());
   for (const auto& path : message.paths()) {
@@ -136,6 +136,7 @@ stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t nu
     to.n(model.loop->n);
     to.m(model.loop->m);
     to.phi(to_idl(model.loop->phi));
+    message.spring_ticks(static_cast<std::int32_t>(model.loop->ticks));
   }
   message.output(to_idl(model.output));
   for (const DirectPath& path : model.paths) {

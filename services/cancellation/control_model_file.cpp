@@ -48,13 +48,22 @@ Channel channel_of(const Entry& entry) {
 
 Json json_of(const std::optional<LoopPath>& loop) {
   if (!loop) return nullptr;
-  return {{"e", loop->e}, {"n", loop->n}, {"m", loop->m}, {"phi", json_of(loop->phi)}};
+  return {{"e", loop->e},
+          {"n", loop->n},
+          {"m", loop->m},
+          {"phi", json_of(loop->phi)},
+          {"ticks", loop->ticks}};
 }
 
+// Version 1 had no ticks: a value at each of them.
 LoopPath loop_of(const Entry& entry) {
-  entry.allow_only({"e", "n", "m", "phi"});
-  return {entry.at("e").numbers(1, kMostNumbers), entry.at("n").numbers(0, kMostNumbers),
-          entry.at("m").numbers(0, kMostNumbers), map_of(entry.at("phi"))};
+  entry.allow_only({"e", "n", "m", "phi", "ticks"});
+  LoopPath loop{entry.at("e").numbers(1, kMostNumbers), entry.at("n").numbers(0, kMostNumbers),
+                entry.at("m").numbers(0, kMostNumbers), map_of(entry.at("phi"))};
+  if (!entry.has("ticks")) return loop;
+  loop.ticks = entry.at("ticks").whole();
+  if (loop.ticks < 1) entry.at("ticks").refuse("1 or more");
+  return loop;
 }
 
 Json json_of(const std::optional<HandCompliance>& hand) {
@@ -74,14 +83,13 @@ Json json_of(const std::vector<Hysteresis>& all) {
                     {"operator", kOperators.at(static_cast<std::size_t>(each.operation))},
                     {"threshold", each.threshold},
                     {"low", each.low},
-                    {"high", each.high},
-                    {"ticks", each.ticks}});
+                    {"high", each.high}});
   }
   return list;
 }
 
 Hysteresis hysteresis_of(const Entry& entry) {
-  entry.allow_only({"path", "operator", "threshold", "low", "high", "ticks"});
+  entry.allow_only({"path", "operator", "threshold", "low", "high"});
   Hysteresis out;
   if (const Entry path = entry.at("path"); !path.is_null()) out.path = path.count();
   const auto* const found = std::ranges::find(kOperators, entry.at("operator").text());
@@ -92,8 +100,6 @@ Hysteresis hysteresis_of(const Entry& entry) {
   out.low = entry.at("low").number();
   out.high = entry.at("high").number();
   if (out.high <= out.low) entry.at("high").refuse("a number above low");
-  out.ticks = entry.at("ticks").whole();
-  if (out.ticks < 1) entry.at("ticks").refuse("1 or more");
   return out;
 }
 

@@ -237,12 +237,12 @@ TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
   model.denominator = {1.0, 0.5};
   model.inputs = {{Channel::kAccelY, {-1.0, 2.0, {3.0, 4.0}}, {5.0, 6.0}},
                   {Channel::kAccelX, {}, {7.0, 8.0}}};
-  model.loop = LoopPath{{1.0, 2.0}, {3.0, 4.0}, {0.0, 5.0}, {-6.0, 7.0, {8.0, 9.0}}};
+  model.loop = LoopPath{{1.0, 2.0}, {3.0, 4.0}, {0.0, 5.0}, {-6.0, 7.0, {8.0, 9.0}}, 33};
   model.output = {-10.0, 11.0, {12.0, 13.0, 14.0}};
   model.paths = {{Channel::kOmega, 0.15, {-1.0, 1.0, {-2.0, 2.0}}, 0.16}};
   model.waves = {{std::nullopt, 17.0, 18.0, 19.0}, {Channel::kTheta, 20.0, 21.0, 22.0}};
   model.adapts = HandCompliance{23.0, 24.0, 25.0, 26.0};
-  model.hysteresis = {{0, signal::HysteresisOperator::kDahl, 27.0, -28.0, 29.0, 10},
+  model.hysteresis = {{0, signal::HysteresisOperator::kDahl, 27.0, -28.0, 29.0},
                       {std::nullopt, signal::HysteresisOperator::kStop, 30.0, -31.0, 32.0}};
   const auto message = to_idl(model, 1003);
   EXPECT_EQ(message.model(), 1003);
@@ -263,15 +263,16 @@ TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
   EXPECT_EQ(back.loop->n, model.loop->n);
   EXPECT_EQ(back.loop->m, model.loop->m);
   EXPECT_TRUE(same_map(back.loop->phi, model.loop->phi));
+  EXPECT_EQ(back.loop->ticks, 33);
   EXPECT_TRUE(same_map(back.output, model.output));
   ASSERT_EQ(back.hysteresis.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto& [path, operation, threshold, low, high, ticks] = back.hysteresis[i];
+    const auto& [path, operation, threshold, low, high] = back.hysteresis[i];
     EXPECT_EQ(path, model.hysteresis[i].path);
     EXPECT_EQ(operation, model.hysteresis[i].operation);
-    EXPECT_EQ(std::tuple(threshold, low, high, ticks),
+    EXPECT_EQ(std::tuple(threshold, low, high),
               std::tuple(model.hysteresis[i].threshold, model.hysteresis[i].low,
-                         model.hysteresis[i].high, model.hysteresis[i].ticks));
+                         model.hysteresis[i].high));
   }
   ASSERT_EQ(back.paths.size(), 1u);
   EXPECT_EQ(back.paths[0].channel, Channel::kOmega);

@@ -92,6 +92,7 @@ TEST(EarlierFormTest, AControlModelWithoutElementsWithMemoryIsRead) {
   EXPECT_EQ(std::tuple(message.adapts(), message.hand_mass_kg(), message.hand_lever_m()),
             std::tuple(true, 5.5, 8.5));
   EXPECT_TRUE(message.hysteresis().empty());
+  EXPECT_EQ(message.spring_ticks(), 0);
   auto cut = old;
   cut.resize(old.size() - 8);
   EXPECT_FALSE(from_cdr(cut, message));

@@ -57,6 +57,7 @@ struct LoopPath {
   std::vector<double> n;  ///< from the first input to z; empty: z is the body's force
   std::vector<double> m;  ///< from phi to z, the first 0
   ValueMap phi;
+  std::int64_t ticks = 1;  ///< from one value of phi to the next: held from each multiple on
 };
 
 /// A path next to the body, README Eq. CC-8: gain * map(lag(channel)); with a Hysteresis of its
@@ -75,7 +76,6 @@ struct Hysteresis {
   double threshold = 1.0;  ///< [unit of the argument] above 0
   double low = 0.0;        ///< [unit of the argument], which is held within
   double high = 0.0;       ///< [unit of the argument]
-  std::int64_t ticks = 1;  ///< from one value of w to the next: it is held from each multiple on
 };
 
 /// Periodic in a channel (cogging) or, without one, in time (a tone), README Eq. CC-9.

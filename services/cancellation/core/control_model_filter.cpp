@@ -53,6 +53,7 @@ ControlModelFilter::ControlModelFilter(const ControlModel& model,
     copy(model.loop->n, n_);
     copy(model.loop->m, m_);
     phi_ = ValueTable(model.loop->phi);
+    phi_ticks_ = model.loop->ticks;
   }
   for (const DirectPath& path : model.paths) {
     const double blend = path.lag_s > 0.0 ? -std::expm1(-kControlPeriod_s / path.lag_s) : 1.0;
@@ -78,6 +79,7 @@ void ControlModelFilter::reset() noexcept {
   t_.fill(0.0);
   lagged_.fill(0.0);
   spring_memory_.reset();
+  held_phi_ = 0.0;
   for (Path& path : paths_) path.memory.reset();
   at_rest_ = true;
 }
@@ -92,7 +94,8 @@ double ControlModelFilter::body(const ChannelSample& sample, Tick tick) noexcept
   double phi = 0.0;
   if (loop_) {
     const double z = of_output_ ? y : n_[0] * v[0] + t_[0];
-    phi = phi_(spring_memory_.step(z, tick));
+    if (tick % phi_ticks_ == 0) held_phi_ = phi_(spring_memory_.step(z));
+    phi = held_phi_;
     y += e_[0] * phi;
     for (std::size_t i = 1; i <= order_; ++i) {
       t_[i - 1] = n_[i] * v[0] + m_[i] * phi - d_[i] * z + t_[i];
@@ -112,7 +115,7 @@ ControlModelFilter::Force ControlModelFilter::step(const ChannelSample& sample,
   for (std::size_t k = 0; k < paths_used_; ++k) {
     Path& path = paths_[k];
     lagged_[k] += (at_rest_ ? 1.0 : path.blend) * (sample[path.channel] - lagged_[k]);
-    const double force_n = path.gain * path.map(path.memory.step(lagged_[k], tick));
+    const double force_n = path.gain * path.map(path.memory.step(lagged_[k]));
     (path.of_stick ? force.beside_n : force.feedthrough_n) += force_n;
   }
   at_rest_ = false;

@@ -19,6 +19,7 @@ namespace stillhand::cancellation {
 ///   y = sum_k c_k0 v_k + e_0 phi(z) + s_1,
 ///   s_i = sum_k c_ki v_k + e_i phi(z) - d_i y + s_{i+1}
 ///
+/// phi takes a value at every tick that is a multiple of LoopPath::ticks, and holds it between.
 /// The body starts from rest, lags where their channels are at the first step, and elements with
 /// memory from w = 0 there.  It trusts its model: prepare() checks it first.  Pure; step()
 /// allocates nothing.
@@ -84,6 +85,8 @@ class ControlModelFilter {
   HysteresisElement spring_memory_;
   ValueTable phi_;
   ValueTable output_;
+  Tick phi_ticks_ = 1;
+  double held_phi_ = 0.0;
   bool loop_ = false;
   bool of_output_ = false;
   Taps s_{};  ///< the last one stays 0

@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "services/cancellation/core/control_model.hpp"
-#include "services/contract/tick.hpp"
 
 namespace stillhand::cancellation {
 
 /// A Hysteresis of the control model as it runs, README Eq. CC-19:
 ///
-///   w(clip(x, low, high) / threshold)  at every tick that is a multiple of `ticks`, held between
+///   w(clip(x, low, high) / threshold)
 ///
 /// w is services/signal Eq. SG-19 or SG-20, the same function that the diagnosis fits with.  |w| is
 /// at most 1.  It trusts its numbers: check_model() comes first.  step() allocates nothing.
@@ -22,13 +21,11 @@ class HysteresisElement {
       : operator_(signal::step_of(of.operation)),
         threshold_(of.threshold),
         low_(of.low),
-        high_(of.high),
-        ticks_(of.ticks) {}
+        high_(of.high) {}
 
-  double step(double x, Tick tick) noexcept {
+  double step(double x) noexcept {
     if (operator_ == nullptr) return x;
-    if (tick % ticks_ == 0) operator_(std::clamp(x, low_, high_) / threshold_, memory_);
-    return memory_.state;
+    return operator_(std::clamp(x, low_, high_) / threshold_, memory_);
   }
   void reset() noexcept { memory_ = {}; }
 
@@ -37,7 +34,6 @@ class HysteresisElement {
   double threshold_ = 1.0;
   double low_ = 0.0;
   double high_ = 0.0;
-  Tick ticks_ = 1;
   signal::HysteresisMemory memory_;
 };
 

@@ -64,7 +64,7 @@ bool in_place(const ControlModel& model) {
   return std::ranges::all_of(model.hysteresis, [&](const Hysteresis& each) {
     const bool there = each.path ? *each.path < model.paths.size() : model.loop.has_value();
     return there && hysteresis_of(model, each.path) == &each && each.threshold > 0.0 &&
-           each.low < each.high && each.ticks >= 1 && each.ticks <= kMostHeld_ticks &&
+           each.low < each.high &&
            (each.operation == signal::HysteresisOperator::kStop ||
             each.operation == signal::HysteresisOperator::kDahl);
   });
@@ -87,8 +87,9 @@ bool well_formed(const ControlModel& model) {
   const auto loop = [taps, remembers](const LoopPath& each) {
     const bool inside = each.n.size() == taps && each.m.size() == taps && each.m[0] == 0.0;
     const bool of_output = each.n.empty() && each.m.empty() && !each.e.empty() && each.e[0] == 0.0;
-    return each.e.size() == taps && (inside || of_output) &&
-           (remembers || each.phi.values.size() >= 2) && is_table(each.phi);
+    return each.e.size() == taps && (inside || of_output) && each.ticks >= 1 &&
+           each.ticks <= kMostHeld_ticks && (remembers || each.phi.values.size() >= 2) &&
+           is_table(each.phi);
   };
   // The first input is the platform's lateral acceleration, for which the gain is bounded.
   return model.inputs[0].channel == Channel::kAccelY && std::ranges::all_of(model.inputs, input) &&

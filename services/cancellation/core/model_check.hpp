@@ -32,7 +32,7 @@ std::string_view describe(Refusal refusal) noexcept;
 /// 10 s leaves room for the slow pole of a model that was fitted to drift.
 inline constexpr std::int64_t kMaxSettle_ticks = 10'000;
 
-/// Longest time that an element with memory may hold its value [ticks]: a model of 5 Hz.
+/// Longest time that a spring may hold its phi [ticks]: a model of 5 Hz.
 inline constexpr std::int64_t kMostHeld_ticks = 200;
 
 /// [N] Feedthrough comes from motion: a model that pushes without motion is refused.

@@ -25,11 +25,11 @@ ControlModel full_model() {
   const ValueMap map{-2.0, 2.0, {-1.0 / 3.0, 0.0, 0.1}};
   model.inputs = {{Channel::kAccelY, map, {0.0, 2e-4, 1e-5}},
                   {Channel::kRoll, {}, {1e-4, 0.0, 0.0}}};
-  model.loop = LoopPath{{0.1, 0.2, 0.3}, {0.0, 1e-4, 0.0}, {0.0, 1e-5, 0.0}, map};
+  model.loop = LoopPath{{0.1, 0.2, 0.3}, {0.0, 1e-4, 0.0}, {0.0, 1e-5, 0.0}, map, 10};
   model.output = map;
   model.paths = {{Channel::kOmega, 0.05, map, -0.8}};
   model.waves = {{Channel::kTheta, 12.0, 0.1, 0.2}, {std::nullopt, 9.3, 0.3, 0.4}};
-  model.hysteresis = {{std::nullopt, signal::HysteresisOperator::kStop, 1.0 / 3.0, -0.7, 0.8, 10},
+  model.hysteresis = {{std::nullopt, signal::HysteresisOperator::kStop, 1.0 / 3.0, -0.7, 0.8},
                       {0, signal::HysteresisOperator::kDahl, 0.2, -15.0, 15.0}};
   model.adapts = HandCompliance{1.4, 30.0, 900.0, 0.09};
   return model;
@@ -56,13 +56,13 @@ TEST(ControlModelFileTest, EveryNumberIsReadBackAsItWasWritten) {
   EXPECT_EQ(control_model_json(back, 7), text);
   EXPECT_EQ(back.inputs[0].map.values, full_model().inputs[0].map.values);
   EXPECT_EQ(back.loop->e, full_model().loop->e);
+  EXPECT_EQ(back.loop->ticks, 10);
   EXPECT_EQ(back.paths[0].channel, Channel::kOmega);
   EXPECT_EQ(back.waves[0].channel, Channel::kTheta);
   EXPECT_FALSE(back.waves[1].channel);
   ASSERT_EQ(back.hysteresis.size(), 2u);
   EXPECT_FALSE(back.hysteresis[0].path);
   EXPECT_EQ(back.hysteresis[0].threshold, 1.0 / 3.0);
-  EXPECT_EQ(back.hysteresis[0].ticks, 10);
   EXPECT_EQ(back.hysteresis[1].path, 0u);
   EXPECT_EQ(back.hysteresis[1].operation, signal::HysteresisOperator::kDahl);
   EXPECT_EQ(back.adapts->lever_m, 0.09);
@@ -90,14 +90,16 @@ TEST(ControlModelFileTest, AnotherRigANewerVersionAndAForgedLimitAreRefusedByNam
               HasSubstr("m.json.adapts.max_gain"));
 }
 
-// Version 1 had no elements with memory.
+// Version 1 had no elements with memory, and a spring that takes a value at each tick.
 TEST(ControlModelFileTest, AFileOfTheFirstVersionIsStillRead) {
   const std::string first = changed([](Json& json) {
     json["version"] = 1;
     json.erase("hysteresis");
+    json["loop"].erase("ticks");
   });
   const ControlModel back = parse_control_model(first, "m.json", 1);
   EXPECT_TRUE(back.hysteresis.empty());
+  EXPECT_EQ(back.loop->ticks, 1);
   EXPECT_EQ(back.paths[0].gain, -0.8);
   EXPECT_THAT(refusal(changed([](Json& json) { json.erase("hysteresis"); })),
               HasSubstr("m.json.hysteresis"));
@@ -125,8 +127,8 @@ TEST(ControlModelFileTest, WhatHasTheWrongShapeIsRefusedByName) {
               HasSubstr("m.json.hysteresis[0].operator"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["threshold"] = 0.0; })),
               HasSubstr("m.json.hysteresis[1].threshold"));
-  EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["ticks"] = 0; })),
-              HasSubstr("m.json.hysteresis[1].ticks"));
+  EXPECT_THAT(refusal(changed([](Json& json) { json["loop"]["ticks"] = 0; })),
+              HasSubstr("m.json.loop.ticks"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["hysteresis"][1]["low"] = 15.0; })),
               HasSubstr("m.json.hysteresis[1].high"));
   EXPECT_THAT(refusal(changed([](Json& json) { json["denominator"] = Json::array(); })),

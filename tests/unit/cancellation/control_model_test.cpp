@@ -130,19 +130,18 @@ TEST(ControlModelFilterTest, APathWithMemoryGoesBackAnotherWay) {
   EXPECT_DOUBLE_EQ(go(0.7), 0.0) << "from rest where it is";
 }
 
-// At the rate of the model that was fitted: w changes at multiples of its ticks alone.
-TEST(ControlModelFilterTest, AnElementWithMemoryHoldsItsValueBetween) {
-  ControlModel model = control_model({1000.0, {0.0}, {1.0}});
-  model.paths = {{Channel::kRoll, 0.0, {}, 4.0}};
-  model.hysteresis = {{0, signal::HysteresisOperator::kStop, 0.1, -1.0, 1.0, 10}};
+// At the rate of the model that was fitted: phi changes at multiples of its ticks alone.  Of a body
+// that passes its input on at once, z = v, y = v + phi.
+TEST(ControlModelFilterTest, ASpringHoldsItsValueBetween) {
+  ControlModel model = control_model({1000.0, {1.0, 0.0}, {1.0, 0.0}});
+  model.loop = LoopPath{{1.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}, {-9.0, 9.0, {-90.0, 90.0}}, 10};
   ControlModelFilter sut(model, 1);
-  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.3), 7)), 0.0);
-  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.0), 10)), 0.0);
-  for (Tick tick = 11; tick < 20; ++tick) {
-    EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.5), tick)), 0.0);
-  }
-  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.05), 20)), 2.0) << "0.5 in between was not seen";
-  EXPECT_DOUBLE_EQ(total(sut.step(at(0.0, 0.5), 21)), 2.0);
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.5), 7)), 0.5) << "nothing is held yet";
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.5), 10)), 5.5);
+  for (Tick tick = 11; tick < 20; ++tick) EXPECT_DOUBLE_EQ(total(sut.step(at(0.2), tick)), 5.2);
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.2), 20)), 2.2);
+  sut.reset();
+  EXPECT_DOUBLE_EQ(total(sut.step(at(0.2), 21)), 0.2);
 }
 
 // Against the plain difference equations, and the operator that the diagnosis fits with.
@@ -334,8 +333,8 @@ TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = 0.0; }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = -1.0; }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].low = 1.0; }), Refusal::kMalformed);
-  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].ticks = 0; }), Refusal::kMalformed);
-  EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].ticks = 201; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->ticks = 0; }), Refusal::kMalformed);
+  EXPECT_EQ(spoilt([](auto& m) { m.loop->ticks = 201; }), Refusal::kMalformed);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].high = std::nan(""); }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) { m.hysteresis[0].threshold = 1e-320; }), Refusal::kNotFinite);
   EXPECT_EQ(spoilt([](auto& m) {

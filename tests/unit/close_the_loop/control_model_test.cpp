@@ -199,6 +199,24 @@ TEST(ControlModelTest, APathThroughTheBodyBecomesAnInputOfItsOwn) {
   EXPECT_GT(difference(two_modes(), control.model, motion), 0.05);
 }
 
+// The body that was fitted with a spring is not that of the hand without it.
+TEST(ControlModelTest, AModelWhoseSpringCantBeCarriedIsRefused) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  const Effect spring{"dead_zone",
+                      "play of the output",
+                      {},
+                      {{"threshold", "N", 0.2, 0.0, 9.0}},
+                      {-1e-4, 0.0, 0.0, 0.0}};
+  model.effects = {spring};
+  EXPECT_TRUE(to_control_model(model, motion.signals()).treatments.front().cancelled);
+  ControlOptions strict;
+  strict.max_difference = 1e-9;
+  EXPECT_THROW(to_control_model(model, motion.signals(), strict), ConfigError);
+  model.effects.push_back(spring);
+  EXPECT_THROW(to_control_model(model, motion.signals()), ConfigError) << "it holds one";
+}
+
 TEST(ControlModelTest, AModelOfAnotherChannelIsRefused) {
   const Motion motion;
   diagnosis::Model model = two_modes();
