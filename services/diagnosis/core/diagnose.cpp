@@ -23,6 +23,16 @@ constexpr double kSameChannel = 0.95;
 // leaves, which freer poles imitate (the shaking table of the README: 0.92).
 constexpr double kWorthSlowPoles = 0.5;
 
+// Half of the 95 % interval of the blocks' mean, Student's t.
+double half_width(const std::vector<double>& of_blocks) {
+  const auto count = static_cast<double>(of_blocks.size());
+  const double mean = std::accumulate(of_blocks.begin(), of_blocks.end(), 0.0) / count;
+  double square = 0.0;
+  for (const double each : of_blocks) square += (each - mean) * (each - mean);
+  const double standard_error = std::sqrt(square / (count - 1.0) / count);
+  return boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) * standard_error;
+}
+
 HeldOutError held_out_error(const HeldOut& held_out, double variance) {
   HeldOutError error;
   std::vector<double> squares;
@@ -30,16 +40,24 @@ HeldOutError held_out_error(const HeldOut& held_out, double variance) {
     if (held_out.weights[b] >= 1.0) squares.push_back(held_out.squares[b] / held_out.weights[b]);
   }
   error.rmse = held_out.rmse();
-  const auto count = static_cast<double>(squares.size());
-  const double mean = std::accumulate(squares.begin(), squares.end(), 0.0) / count;
-  double square = 0.0;
-  for (const double each : squares) square += (each - mean) * (each - mean);
-  const double standard_error = std::sqrt(square / (count - 1.0) / count);
-  const double t = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975);
-  error.low = std::sqrt(std::max(error.rmse * error.rmse - t * standard_error, 0.0));
-  error.high = std::sqrt(error.rmse * error.rmse + t * standard_error);
+  const double half = half_width(squares);
+  error.low = std::sqrt(std::max(error.rmse * error.rmse - half, 0.0));
+  error.high = std::sqrt(error.rmse * error.rmse + half);
   error.vaf_percent = 100.0 * (1.0 - error.rmse * error.rmse / std::max(variance, 1e-300));
   return error;
+}
+
+// Eq. DG-68.
+Explained explained_by(const HeldOut& before, const HeldOut& after) {
+  std::vector<double> falls;
+  for (std::size_t b = 0; b < before.squares.size(); ++b) {
+    if (before.weights[b] < 1.0 || after.weights[b] < 1.0) continue;
+    falls.push_back(before.squares[b] / before.weights[b] - after.squares[b] / after.weights[b]);
+  }
+  const double fall = before.rmse() * before.rmse() - after.rmse() * after.rmse();
+  const double half = half_width(falls);
+  const auto root = [](double square) { return std::sqrt(std::max(square, 0.0)); };
+  return {root(fall), root(fall - half), root(fall + half)};
 }
 
 double correlation(const std::vector<double>& x, const std::vector<double>& y) {
@@ -211,6 +229,9 @@ void add_effects(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
                                             : compared(errors[e], errors[e + 1]).p;
     found.evidence = effect_kind(effect.kind).evidence(effect);
     found.ties = diagnosis.search.additions[e].ties;
+    found.explained = explained_by(errors[e], errors[e + 1]);
+    found.counts =
+        diagnosis.output_unit != "N" || found.explained.rms >= diagnosis.options.least_force_n;
     diagnosis.effects.push_back(std::move(found));
   }
   diagnosis.final_error = held_out_error(errors.back(), variance);
@@ -319,8 +340,12 @@ double limit_of(const Diagnosis& diagnosis, const Signals& signals, const Blocks
 
 }  // namespace
 
+bool Diagnosis::has_effect_that_counts() const {
+  return std::ranges::any_of(effects, &FoundEffect::counts);
+}
+
 std::string Diagnosis::verdict() const {
-  if (!effects.empty()) return "effects found";
+  if (has_effect_that_counts()) return "effects found";
   return unexplained ? "unexplained residual" : "nothing missing";
 }
 

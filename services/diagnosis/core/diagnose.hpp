@@ -18,13 +18,18 @@ namespace stillhand::diagnosis {
 /// Which baseline: the paper's difference model, static in the inputs, or the one that fits.
 enum class ModelClass { kAuto, kArx, kLinear };
 
-/// What to diagnose, and how.
+/// [N] RMS force from which on an effect counts: 0.1 N move the cursor of the mean subject by 0.8
+/// mm RMS, a 26th of the error of a hand at rest; README Eq. DG-68.
+inline constexpr double kLeastForce_n = 0.1;
+
+/// What to diagnose, and how.  As it is, it is what `stillhand diagnose` does without options.
 struct DiagnoseOptions {
   std::vector<std::string> inputs{"a_y"};
   std::string output = "f";
   ModelClass model = ModelClass::kAuto;
   int order = 4;  ///< of the difference model; paper III-A
   SearchOptions search;
+  double least_force_n = kLeastForce_n;  ///< [N] a smaller effect does not count, Eq. DG-68
   ForEach for_each = in_order;
   /// Called before each longer step with its name; false ends the diagnosis (Interrupted).
   std::function<bool(const std::string&)> progress = [](const std::string&) { return true; };
@@ -43,6 +48,14 @@ struct HeldOutError {
   double vaf_percent = 0.0;  ///< [%] of the output's variance
 };
 
+/// RMS of what an effect explains of samples that the fit has not seen, with its interval of 95 %
+/// over the blocks, README Eq. DG-68.
+struct Explained {
+  double rms = 0.0;  ///< [unit of the output]
+  double low = 0.0;
+  double high = 0.0;
+};
+
 /// One effect of the verdict.
 struct FoundEffect {
   Effect effect;
@@ -54,6 +67,8 @@ struct FoundEffect {
   std::vector<std::string> ties;  ///< kinds that explain the data equally well
   double carried = 0.0;           ///< [-] share that the carried model has of it, Eq. DG-68
   std::string why_not_carried;    ///< a clause; empty where it is whole
+  Explained explained;            ///< its own size
+  bool counts = true;             ///< no output in newtons, or at least least_force_n
 };
 
 /// The verdict and everything that it is based on.
@@ -77,7 +92,9 @@ struct Diagnosis {
   DetectionResult after;         ///< of the final model's
   SearchResult search;           ///< the candidates of every step
 
+  /// "effects found" if one of them counts.
   [[nodiscard]] std::string verdict() const;
+  [[nodiscard]] bool has_effect_that_counts() const;
   /// [unit of the output] the size from which a further effect of that kind is found as often as
   /// not.
   [[nodiscard]] double detection_limit_of(const EffectKind& kind) const;

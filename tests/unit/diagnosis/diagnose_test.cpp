@@ -91,6 +91,32 @@ TEST(DiagnoseTest, WhatIsMissingIsNamedWithItsErrorBeforeAndAfter) {
   EXPECT_FALSE(std::ranges::any_of(sut.after.detections, &Detection::found));
 }
 
+// 0.15 N of a channel with RMS 1; 30 blocks of 80 samples, each mean square known to 16 %.
+TEST(DiagnoseTest, AnEffectHasASizeOfItsOwnWithItsInterval) {
+  const Diagnosis sut = diagnose(recording(0.15), options_of());
+  ASSERT_EQ(sut.effects.size(), 1u);
+  const FoundEffect& found = sut.effects[0];
+  EXPECT_NEAR(found.explained.rms, 0.15, 0.015);
+  EXPECT_LT(found.explained.low, found.explained.rms);
+  EXPECT_GT(found.explained.high, found.explained.rms);
+  EXPECT_NEAR(found.explained.rms,
+              std::sqrt(std::pow(found.before.rmse, 2) - std::pow(found.after.rmse, 2)), 1e-12);
+  EXPECT_TRUE(found.counts);
+}
+
+TEST(DiagnoseTest, AnEffectBelowTheLeastForceStaysInTheListAndDoesNotCount) {
+  DiagnoseOptions options = options_of();
+  options.least_force_n = 0.3;
+  const Diagnosis sut = diagnose(recording(0.15), options);
+  EXPECT_EQ(sut.verdict(), "nothing missing");
+  ASSERT_EQ(sut.effects.size(), 1u);
+  EXPECT_FALSE(sut.effects[0].counts);
+  EXPECT_EQ(sut.effects[0].after.rmse, diagnose(recording(0.15), options_of()).final_error.rmse);
+  Measurement volts = recording(0.15);
+  volts.channels.back().unit = "V";
+  EXPECT_EQ(diagnose(volts, options).verdict(), "effects found") << "no newtons, no threshold";
+}
+
 TEST(DiagnoseTest, WhereNothingIsMissingTheVerdictSaysSo) {
   const Diagnosis sut = diagnose(recording(), options_of());
   EXPECT_EQ(sut.verdict(), "nothing missing");
