@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/diagnose/diagnose_options.hpp"
 #include "apps/diagnose/diagnosis_json.hpp"
 #include "apps/diagnose/page/diagnosis_report.hpp"
 #include "apps/measurement/read_options.hpp"
@@ -27,11 +28,7 @@ namespace {
 struct Words {
   std::vector<std::string> recordings;
   measurement::ReadOptions read;
-  std::vector<std::string> inputs{"a_y"};
-  std::string output = "f";
-  std::string model = "auto";
-  int order = 4;
-  std::size_t most_effects = diagnosis::SearchOptions{}.most_effects;
+  diagnosis::DiagnoseOptions options;
   std::filesystem::path save;
   std::filesystem::path json;
   std::filesystem::path report;
@@ -70,13 +67,7 @@ int run(const Words& words) {
   }
   const diagnosis::Measurement measurement = read_all(words);
   report::ProgressLine progress;
-  diagnosis::DiagnoseOptions options;
-  options.inputs = words.inputs;
-  options.output = words.output;
-  options.order = words.order;
-  options.search.most_effects = words.most_effects;
-  if (words.model == "arx") options.model = diagnosis::ModelClass::kArx;
-  if (words.model == "linear") options.model = diagnosis::ModelClass::kLinear;
+  diagnosis::DiagnoseOptions options = words.options;
   options.for_each = runtime::on_all_cores;
   double done = 0.0;
   options.progress = [&](const std::string& step) {
@@ -113,25 +104,15 @@ void add_diagnose_command(CLI::App& cli, int& status) {
       "Example: stillhand diagnose ride.csv --input a_y --output f --json out.json --report DIR");
   verb->add_option("REC", words->recordings, "recording(s): MCAP, CSV, MATLAB, HDF5 or sound")
       ->required();
-  verb->add_option("--input", words->inputs, "inputs of the model: channel(s), comma-separated")
+  verb->add_option("--input", words->options.inputs,
+                   "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->capture_default_str();
-  verb->add_option("--output", words->output, "channel that the model predicts")
+  verb->add_option("--output", words->options.output, "channel that the model predicts")
       ->capture_default_str();
-  verb->add_option("--model", words->model,
-                   "baseline: arx (the paper's difference model, refined on its free-run error),\n"
-                   "linear (static in the inputs: inverse dynamics), auto (the one that fits)")
-      ->check(CLI::IsMember({"auto", "arx", "linear"}))
-      ->capture_default_str();
-  verb->add_option("--order", words->order, "order of the difference model, 1 to 12")
-      ->check(CLI::Range(1, 12))
-      ->capture_default_str();
-  verb->add_option("--most-effects", words->most_effects,
-                   "stop after this many effects; 0: the baseline alone")
-      ->check(CLI::Range(0, 8))
-      ->capture_default_str();
+  add_diagnose_options(*verb, words->options);
   verb->add_option("--trial", words->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
   measurement::add_read_options(*verb, words->read);

@@ -59,6 +59,22 @@ ordered_json carried_json(double share) {
   return share > 0.0;
 }
 
+// Its size in newtons; null for an output in another unit.
+ordered_json force_json(const Diagnosis& diagnosis, const FoundEffect& found) {
+  if (diagnosis.output_unit != "N") return nullptr;
+  return {{"value", found.explained.rms}, {"ci95", {found.explained.low, found.explained.high}}};
+}
+
+// The same as a line of the table.
+std::string force_text(const Diagnosis& diagnosis, const FoundEffect& found) {
+  const std::string text =
+      fmt::format("{:.3g} {} RMS of its own (95 %: {:.3g} to {:.3g})", found.explained.rms,
+                  diagnosis.output_unit, found.explained.low, found.explained.high);
+  if (found.counts) return text;
+  return fmt::format("{}; does not count: less than {:.3g} N (--least-force)", text,
+                     diagnosis.options.least_force_n);
+}
+
 ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
   return {{"kind", found.effect.kind},
           {"channel", or_null(found.channel)},
@@ -66,6 +82,8 @@ ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
           {"heldout_rmse_before", found.before.rmse},
           {"heldout_rmse_after", found.after.rmse},
           {"ci95", {found.after.low, found.after.high}},
+          {"force_n", force_json(diagnosis, found)},
+          {"counts", found.counts},
           {"evidence", with_ties(found)},
           {"form", found.effect.form},
           {"signals", found.effect.channels},
@@ -79,6 +97,11 @@ ordered_json error_json(const diagnosis::HeldOutError& error) {
   return {{"heldout_rmse", error.rmse},
           {"vaf_percent", error.vaf_percent},
           {"ci95", {error.low, error.high}}};
+}
+
+// Outputs in other units have no threshold.
+double least_force_json(const Diagnosis& diagnosis) {
+  return diagnosis.output_unit == "N" ? diagnosis.options.least_force_n : 0.0;
 }
 
 ordered_json baseline_json(const Diagnosis& diagnosis) {
@@ -140,6 +163,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                           {"detection_limit", diagnosis.detection_limit},
                           {"detection_limits", limits},
                           {"verdict", diagnosis.verdict()},
+                          {"least_force_n", least_force_json(diagnosis)},
                           {"effects", effects},
                           {"final", error_json(diagnosis.final_error)},
                           {"carried", error_json(diagnosis.carried_error)},
@@ -167,6 +191,9 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   };
   add("verdict       {}{}\n", diagnosis.verdict(),
       none_carried(diagnosis) ? ", and the model that is saved carries none of them" : "");
+  if (!diagnosis.has_effect_that_counts() && !diagnosis.effects.empty()) {
+    add("              {}\n", too_small_in_words(diagnosis));
+  }
   add("model         {} from {} to {}, order {}, at {:.4g} Hz\n", diagnosis.model_class,
       inputs_of(diagnosis), diagnosis.options.output, diagnosis.baseline.model.body.order(),
       diagnosis.sample_rate_hz);
@@ -178,6 +205,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
         found.effect.kind, of, found.before.rmse, found.after.rmse, unit, found.after.low,
         found.after.high);
     add("              {}\n", with_ties(found));
+    add("              {}\n", force_text(diagnosis, found));
     add("              {}\n", carried_in_words(found));
   }
   add_error("final", diagnosis.final_error, diagnosis.effects.empty() ? "" : " (with all effects)");

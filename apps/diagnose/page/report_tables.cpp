@@ -99,6 +99,13 @@ Table tried_table(const Diagnosis& found, const Step& step, const std::string& c
   return table;
 }
 
+Cell own_size(const FoundEffect& effect) {
+  const std::string text = short_number(effect.explained.rms) + " [" +
+                           short_number(effect.explained.low) + ", " +
+                           short_number(effect.explained.high) + "]";
+  return effect.counts ? Cell(text) : Cell(text + ", does not count", Emphasis::kFaint);
+}
+
 std::string candidates_in_words(const std::vector<diagnosis::Trial>& tried) {
   const std::string count = std::to_string(tried.size());
   return tried.size() > kMostTried
@@ -145,13 +152,15 @@ Table effect_table(const Diagnosis& found) {
       "equally "
       "well; the simplest was taken. Carried: what the saved model, and so `predict` and the "
       "motor, has of it.";
-  table.header = {"effect", "form", "evidence", "p", "ties", "carried"};
-  table.align = {Align::kLeft,  Align::kLeft, Align::kLeft,
+  table.header = {"effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",
+                  "p",      "ties", "carried"};
+  table.align = {Align::kLeft,  Align::kLeft, Align::kLeft, Align::kRight,
                  Align::kRight, Align::kLeft, Align::kLeft};
   for (const FoundEffect& effect : found.effects) {
     table.rows.push_back({Cell(effect_title(effect), Emphasis::kStrong), effect.effect.form,
-                          shown_sentence(effect.evidence, found.output_unit), p_value(effect.p),
-                          spaced(listed(effect.ties)), carried_in_words(effect)});
+                          shown_sentence(effect.evidence, found.output_unit), own_size(effect),
+                          p_value(effect.p), spaced(listed(effect.ties)),
+                          carried_in_words(effect)});
   }
   return table;
 }

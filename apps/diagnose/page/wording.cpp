@@ -139,13 +139,27 @@ bool none_carried(const Diagnosis& diagnosis) {
                               [](const FoundEffect& effect) { return effect.carried > 0.0; });
 }
 
+std::string too_small_in_words(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : diagnosis.effects) {
+    if (effect.counts) continue;
+    names.push_back(effect_title(effect) + " of " +
+                    shown(effect.explained.rms, diagnosis.output_unit) + " RMS");
+  }
+  if (names.empty()) return {};
+  return "Found and too small to count: " + enumerated(names) + ", less than " +
+         shown(diagnosis.options.least_force_n, "N") + " (--least-force).";
+}
+
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   const std::string model = model_name(diagnosis);
-  if (!diagnosis.effects.empty()) {
+  const std::string too_small = too_small_in_words(diagnosis);
+  if (diagnosis.has_effect_that_counts()) {
     std::vector<std::string> names;
     double largest_p = 0.0;
     bool tied = false;
     for (const FoundEffect& effect : diagnosis.effects) {
+      if (!effect.counts) continue;
       names.push_back(effect_title(effect));
       largest_p = std::max(largest_p, effect.p);
       tied = tied || !effect.ties.empty();
@@ -157,7 +171,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            (names.size() == 1 ? "it" : "the least of them") + " has p = " + p_value(largest_p) +
            (tied ? ", but other kinds explain some of it equally well (see the ties)" : "") +
            ". What it costs: without " + (names.size() == 1 ? "it " : "them ") +
-           error_in_words(diagnosis) + ".";
+           error_in_words(diagnosis) + "." + (too_small.empty() ? "" : " " + too_small);
   }
   const std::string left = shown(diagnosis.baseline_error.rmse, diagnosis.output_unit) +
                            " RMS on held-out data (95 %: " +
@@ -170,6 +184,10 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            "costs: the model leaves " +
            left + ", where the noise floor is " +
            shown(diagnosis.noise_floor.rmse, diagnosis.output_unit) + ".";
+  }
+  if (!too_small.empty()) {
+    return "Nothing missing that counts. " + too_small + " With them " + error_in_words(diagnosis) +
+           ".";
   }
   return "Nothing missing: no effect reduces the error of " + model +
          " by more than chance does. How sure: an effect that adds " +

@@ -23,6 +23,9 @@ std::string shown_sentence(std::string_view sentence, std::string_view output_un
 std::string effect_title(const diagnosis::FoundEffect& effect);
 std::string spaced(std::string_view kind);
 
+/// The effects that were found and do not count, as a sentence; empty: there are none.
+std::string too_small_in_words(const diagnosis::Diagnosis& diagnosis);
+
 /// "1.2 to 3.4"
 std::string interval(double low, double high);
 /// p as text; "< 10⁻³⁰⁰" where a double cannot hold it.

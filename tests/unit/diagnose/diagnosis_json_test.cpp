@@ -88,6 +88,31 @@ TEST(DiagnosisJsonTest, AnEffectIsCarriedNotCarriedOrCarriedInPart) {
   EXPECT_EQ(sut["effects"][2]["why_not_carried"], "the inputs do not determine it");
 }
 
+TEST(DiagnosisJsonTest, AnEffectHasItsForceInNewtonsAndWhetherItCounts) {
+  diagnosis::Diagnosis diagnosis = diagnosis_with({diagnosis::made::every_effect().front()});
+  diagnosis.effects[0].explained = {0.5, 0.25, 0.75};
+  json sut = json_of(diagnosis);
+  EXPECT_EQ(sut["effects"][0]["force_n"]["value"], 0.5);
+  EXPECT_EQ(sut["effects"][0]["force_n"]["ci95"], json({0.25, 0.75}));
+  EXPECT_EQ(sut["effects"][0]["counts"], true);
+  EXPECT_EQ(sut["least_force_n"], diagnosis::kLeastForce_n);
+  EXPECT_EQ(sut["verdict"], "effects found");
+
+  diagnosis.effects[0].counts = false;
+  sut = json_of(diagnosis);
+  EXPECT_EQ(sut["effects"][0]["counts"], false);
+  EXPECT_EQ(sut["verdict"], "nothing missing");
+  EXPECT_THAT(diagnosis_table(diagnosis),
+              AllOf(HasSubstr("nothing missing"), HasSubstr("too small to count"),
+                    HasSubstr("does not count")));
+
+  diagnosis.output_unit = "V";
+  diagnosis.effects[0].counts = true;
+  sut = json_of(diagnosis);
+  EXPECT_TRUE(sut["effects"][0]["force_n"].is_null());
+  EXPECT_EQ(sut["least_force_n"], 0.0);
+}
+
 TEST(DiagnosisJsonTest, EveryKindCanBeWrittenWithItsParametersAndUnits) {
   const auto effects = diagnosis::made::every_effect();
   const json sut = json_of(diagnosis_with(effects));

@@ -151,6 +151,21 @@ TEST(WordingTest, AVerdictMentionsTiesAndWhatIsLeft) {
   EXPECT_NE(verdict_in_words(diagnosis), tied);
 }
 
+TEST(WordingTest, WhatIsTooSmallIsNamedAndIsNotWhatTheModelLacks) {
+  diagnosis::Diagnosis diagnosis = of_order(4);
+  diagnosis.effects = {found("tone"), found("drift")};
+  EXPECT_EQ(too_small_in_words(diagnosis), "");
+  diagnosis.effects[1].counts = false;
+  diagnosis.effects[1].explained.rms = 0.04;
+  const std::string one = verdict_in_words(diagnosis);
+  EXPECT_THAT(one, AllOf(HasSubstr("lacks tone."), HasSubstr("too small to count: drift of 0.04 N"),
+                         HasSubstr("less than 0.1 N")));
+  diagnosis.effects[0].counts = false;
+  const std::string none = verdict_in_words(diagnosis);
+  EXPECT_THAT(none, AllOf(HasSubstr("Nothing missing that counts"), HasSubstr("tone of"),
+                          HasSubstr("1 N"), Not(HasSubstr("lacks"))));
+}
+
 TEST(WordingTest, WithoutEffectsTheVerdictGivesTheBaselinesError) {
   diagnosis::Diagnosis diagnosis = of_order(2);
   const std::string nothing = verdict_in_words(diagnosis);
