@@ -53,10 +53,10 @@ class Loop {
 // Why the verdict's model is not run on a motor; empty: it is.
 std::string why_not_augmented(const Verdict& verdict) {
   if (!verdict.not_carried.empty()) return verdict.not_carried;
-  if (!verdict.findings.empty()) return {};
+  if (verdict.strongest() != nullptr) return {};
   return verdict.conclusion() == kUnexplained
              ? "the residual has a cause that no kind of effect explains"
-             : "nothing is missing that moves a hand";
+             : "nothing is missing that counts";
 }
 
 void Loop::paper_trials() {
@@ -119,9 +119,9 @@ void Loop::try_model(Round& round, std::string why_not) {
     return;
   }
   round.trial = again("C+");
-  round.kept = keep_if_best(round.trial, round.model);
-  round.outcome = round.kept ? "the tracking error is smaller: the model is kept"
-                             : "the tracking error is not smaller: the last good model stays";
+  round.better = keep_if_best(round.trial, round.model);
+  round.outcome = round.better ? "the tracking error is smaller in its trial"
+                               : "the tracking error is not smaller in its trial";
 }
 
 const TrialRun& Loop::newest_cancelled() const {
@@ -141,8 +141,7 @@ bool Loop::anything_new() const {
 bool Loop::round() {
   if (!anything_new()) return false;
   step("diagnosis " + std::to_string(result_.rounds.size() + 1));
-  diagnosis::DiagnoseOptions diagnose;
-  diagnose.for_each = options_.for_each;
+  diagnosis::DiagnoseOptions diagnose = options_.diagnose;
   diagnose.progress = [&](const std::string& what) {
     return options_.progress("diagnosis: " + what);
   };
@@ -155,12 +154,12 @@ bool Loop::round() {
   Round round;
   options_.aside([&] { round.verdict = diagnose_all(evidence, options_.declared, diagnose); });
   try_model(round, why_not_augmented(round.verdict));
-  const bool kept = round.kept;
+  const bool better = round.better;
   result_.rounds.push_back(std::move(round));
   const auto error = [&](std::size_t n) { return result_.rounds[n].trial.metrics.rms_error_mm; };
   const std::size_t newest = result_.rounds.size() - 1;
   if (error(newest) < error(result_.final_round)) result_.final_round = newest;
-  return kept;
+  return better;
 }
 
 LoopResult Loop::run() {

@@ -17,7 +17,7 @@ struct LoopOptions {
   DeclaredDrive declared;
   cancellation::HandCompliance hand;  ///< the hand that the adaptation assumes
   int most_rounds = 3;
-  diagnosis::ForEach for_each = diagnosis::in_order;
+  diagnosis::DiagnoseOptions diagnose;  ///< of the body, a_y to f; with for_each
   /// Before each longer step; false ends the loop (diagnosis::Interrupted).
   std::function<bool(const std::string& step)> progress = [](const std::string&) { return true; };
   /// Runs work that takes long and has no deadline.
@@ -30,7 +30,7 @@ struct Round {
   TrialRun trial;                    ///< C+
   bool augmented = false;            ///< it ran with the verdict's model; else it is C'
   cancellation::ControlModel model;  ///< with which it ran
-  bool kept = false;                 ///< C+ has a smaller RMS error than the best before it
+  bool better = false;               ///< its trial has a smaller RMS error than the best before it
   std::string outcome;               ///< one sentence
 };
 
@@ -40,7 +40,7 @@ struct LoopResult {
   cancellation::ControlModel followed_model;  ///< of C': the paper's, gain and phase followed
   std::vector<Round> rounds;                  ///< at least one
   std::size_t final_round = 0;                ///< the round with the best C+
-  cancellation::ControlModel control_model;   ///< the model of the best trial
+  cancellation::ControlModel control_model;   ///< of the best trial: where the next round begins
 
   [[nodiscard]] const TrialRun& trial(const std::string& label) const;
   /// C+ of the final round, whether or not it was better than C.

@@ -10,6 +10,7 @@
 #include "apps/close_the_loop/output.hpp"
 #include "apps/close_the_loop/recorded/recorded_command.hpp"
 #include "apps/close_the_loop/repeats.hpp"
+#include "apps/diagnose/diagnose_options.hpp"
 #include "apps/lab/lab.hpp"
 #include "apps/lab/undeclared_effect.hpp"
 #include "apps/report/command_line.hpp"
@@ -70,7 +71,9 @@ LoopRecord new_record(const Words& words) {
   record.options.protocol = words.lab.protocol;
   record.options.declared = declared_drive(session::CoreConfigs{}.rig);
   record.options.hand = average_hand();
-  record.options.for_each = [threads = threads_of(words)](std::size_t count, const auto& job) {
+  record.options.diagnose = words.recorded.diagnose;
+  record.options.diagnose.for_each = [threads = threads_of(words)](std::size_t count,
+                                                                   const auto& job) {
     runtime::run_jobs(count, threads, job);
   };
   return record;
@@ -81,7 +84,7 @@ void write_files(const LoopRecord& record, std::uint32_t rig, report::StagedFold
   const diagnosis::Diagnosis& body = record.result.verdict().body;
   folder.write("model.json", diagnosis::model_json(body.model, body.carried));
   folder.write(kControlModelFile,
-               cancellation::control_model_json(record.result.control_model, rig));
+               cancellation::control_model_json(chosen_model(record.result, record.decision), rig));
   const auto drawings = report::render(loop_figures(record), folder.path());
   loop_page(record, drawings).write(folder.path() / "report.html");
 }
@@ -118,6 +121,7 @@ void run_in_process(const Words& words) {
     return !stop.requested();
   };
   record.conditions = run_repeats(record.result, words.lab.protocol, rig, repeats);
+  record.decision = decide(record.conditions, record.result);
   progress.finish();
   if (record.undeclared_effect != 0) {
     rig::open_effect(folder.path(), session.open_effect(), kVerdictFile);
@@ -146,6 +150,7 @@ void run_live(const Words& words) {
   if (record.result.rounds.empty()) throw diagnosis::Interrupted();
   judge_cancellation(recording, live.outcomes, record.result);
   record.conditions = own_trials(record.result);
+  record.decision = decide(record.conditions, record.result);
   // The verdict is written before the truth is opened.
   if (const auto status = recording::write_file_atomically((out / kVerdictFile).string(),
                                                            verdict_json(record.result.verdict()));
@@ -232,6 +237,7 @@ void add_closed_loop_command(CLI::App& cli, int& status) {
       ->needs(live)
       ->capture_default_str();
   add_comparison_options(*verb, words, effect, live);
+  diagnose::add_diagnose_options(*verb, words->recorded.diagnose);
   words->recorded.declared = declared_drive(session::CoreConfigs{}.rig);
   add_recorded_options(*verb, words->recorded,
                        {effect, seed, trial, identify, live, verb->get_option("--repeats"),

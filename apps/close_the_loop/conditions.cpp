@@ -70,4 +70,39 @@ Estimate restored(const Conditions& conditions, const std::string& label, const 
   return each_repeat(conditions, share, std::string("A"), std::string("B"), label);
 }
 
+bool LoopDecision::certain() const {
+  const auto below_0 = [](const Estimate& change) {
+    return change.interval95 && (change.interval95->second < 0.0 || change.interval95->first > 0.0);
+  };
+  return below_0(over_c) && below_0(over_c_prime);
+}
+
+LoopDecision decide(const Conditions& conditions, const LoopResult& result) {
+  const Verdict& verdict = result.verdict();
+  const bool drive_alone = verdict.strongest() != nullptr &&
+                           std::ranges::all_of(verdict.findings, [](const Finding& finding) {
+                             return !finding.counts || finding.where == kDrive;
+                           });
+  LoopDecision out;
+  // The force left is the feedthrough's: what the motor does about the drive counts as left.
+  if (drive_alone) out.measure = kRmsError;
+  const Measure& measure = kMeasures[out.measure];
+  out.over_c = change(conditions, "C", "C+", measure);
+  out.over_c_prime = change(conditions, "C'", "C+", measure);
+  out.augmented = result.rounds[result.final_round].augmented;
+  if (out.kept()) {
+    out.model_of = "C+";
+  } else if (change(conditions, "C", "C'", measure).mean < 0.0) {
+    out.model_of = "C'";
+  }
+  return out;
+}
+
+cancellation::ControlModel chosen_model(const LoopResult& result, const LoopDecision& decision) {
+  const std::string of = decision.model_of;
+  if (of == "C+") return result.rounds[result.final_round].model;
+  if (of == "C'") return result.followed_model;
+  return cancellation::control_model(result.paper_model.control);
+}
+
 }  // namespace stillhand::close_the_loop

@@ -86,4 +86,23 @@ Estimate change(const Conditions& conditions, const std::string& from, const std
 /// (B - X)/(B - A) of a measure, repeat by repeat.
 Estimate restored(const Conditions& conditions, const std::string& label, const Measure& measure);
 
+/// Whether C+ is kept, README Eq. CL-8: by what its motor leaves in trials that no fit has seen.
+struct LoopDecision {
+  std::size_t measure = kForceLeft;  ///< in kMeasures
+  Estimate over_c;                   ///< change of the measure from C to C+, repeat by repeat
+  Estimate over_c_prime;             ///< from C' to C+
+  bool augmented = false;            ///< C+ ran with the augmented model; else it is C'
+  const char* model_of = "C";        ///< condition whose model the loop writes
+
+  [[nodiscard]] bool kept() const {
+    return augmented && over_c.mean < 0.0 && over_c_prime.mean < 0.0;
+  }
+  /// Neither interval contains 0.
+  [[nodiscard]] bool certain() const;
+};
+
+LoopDecision decide(const Conditions& conditions, const LoopResult& result);
+/// The model that the loop writes for the canceller.
+cancellation::ControlModel chosen_model(const LoopResult& result, const LoopDecision& decision);
+
 }  // namespace stillhand::close_the_loop

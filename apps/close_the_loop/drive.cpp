@@ -144,6 +144,7 @@ diagnosis::Diagnosis diagnose_drive(const std::vector<const recording::Recording
   own.output = "f_drive";
   own.model = diagnosis::ModelClass::kLinear;
   own.search.most_effects = 1;
+  own.least_force_n = std::max(options.least_force_n, declared.stick.coulomb_friction_n);
   std::vector<diagnosis::Measurement> parts;
   for (const recording::Recording* trial : trials) {
     parts.push_back(drive_measurement(*trial, declared));

@@ -42,7 +42,9 @@ std::optional<Latency> measure_latency(const recording::Recording& trial,
 diagnosis::Measurement drive_measurement(const recording::Recording& trial,
                                          const DeclaredDrive& declared);
 
-/// Diagnoses it, over all trials together: friction and ripple that are not declared.
+/// Diagnoses it, over all trials together: friction and ripple that are not declared.  An effect
+/// counts from options.least_force_n on, and from the declared friction on: a data sheet's friction
+/// is not known better than to itself.
 diagnosis::Diagnosis diagnose_drive(const std::vector<const recording::Recording*>& trials,
                                     const DeclaredDrive& declared,
                                     const diagnosis::DiagnoseOptions& options);

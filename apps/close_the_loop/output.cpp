@@ -17,11 +17,6 @@ using nlohmann::ordered_json;
 using report::or_null;
 using session::kMetrics;
 
-ordered_json interval_json(const Estimate& estimate) {
-  if (!estimate.interval95) return nullptr;
-  return {estimate.interval95->first, estimate.interval95->second};
-}
-
 ordered_json repeats_json(const Conditions& conditions, const std::string& label,
                           const Measure& measure) {
   ordered_json list = ordered_json::array();
@@ -43,11 +38,11 @@ ordered_json condition_json(const Conditions& conditions, const std::string& lab
         condition[measure.key]["std"] = nullptr;
         condition[measure.key]["per_subject"] = ordered_json::array({or_null(value.mean)});
       }
-      condition[measure.key]["interval95"] = interval_json(value);
+      condition[measure.key]["interval95"] = interval_json(value.interval95);
       condition[measure.key]["repeats"] = repeats_json(conditions, label, measure);
     } else if (k < kMeasuresOfAll || cancels) {
       condition[measure.key] = or_null(value.mean);
-      intervals[measure.key] = interval_json(value);
+      intervals[measure.key] = interval_json(value.interval95);
     }
   }
   if (!cancels) condition["cancelled_share"] = nullptr;
@@ -68,7 +63,7 @@ ordered_json restoration_intervals_json(const Conditions& conditions) {
   for (const char* label : kCancelling) {
     for (std::size_t k = 0; k < kMetrics.size(); ++k) {
       json[label][kMetrics[k].restoration_key] =
-          interval_json(restored(conditions, label, kMeasures[k]));
+          interval_json(restored(conditions, label, kMeasures[k]).interval95);
     }
   }
   return json;
@@ -80,21 +75,25 @@ ordered_json changes_json(const Conditions& conditions) {
   for (const auto& [from, to] : kSteps) {
     for (const Measure& measure : kMeasures) {
       const Estimate difference = change(conditions, from, to, measure);
-      json[step_name(from, to)][measure.key] = {{"mean_difference", or_null(difference.mean)},
-                                                {"interval95", interval_json(difference)}};
+      json[step_name(from, to)][measure.key] = {
+          {"mean_difference", or_null(difference.mean)},
+          {"interval95", interval_json(difference.interval95)}};
     }
   }
   return json;
 }
 
 ordered_json finding_json(const Finding& finding) {
-  return {{"kind", finding.kind},
-          {"channel", or_null(finding.channel)},
-          {"where", finding.where},
-          {"explained_rms_n", finding.explained_n},
-          {"heldout_rmse_before", finding.before_n},
-          {"heldout_rmse_after", finding.after_n},
-          {"evidence", finding.evidence}};
+  return {
+      {"kind", finding.kind},
+      {"channel", or_null(finding.channel)},
+      {"where", finding.where},
+      {"force_n", {{"value", finding.explained_n}, {"ci95", interval_json(finding.interval95)}}},
+      {"counts", finding.counts},
+      {"explained_rms_n", finding.explained_n},
+      {"heldout_rmse_before", finding.before_n},
+      {"heldout_rmse_after", finding.after_n},
+      {"evidence", finding.evidence}};
 }
 
 ordered_json findings_json(const Verdict& verdict) {
@@ -103,7 +102,19 @@ ordered_json findings_json(const Verdict& verdict) {
   return list;
 }
 
-ordered_json round_json(const Round& round) {
+// Eq. CL-8.
+ordered_json decision_json(const LoopDecision& decision) {
+  const auto step = [](const Estimate& change) {
+    return ordered_json{{"mean_difference", or_null(change.mean)},
+                        {"interval95", interval_json(change.interval95)}};
+  };
+  return {{"measure", kMeasures[decision.measure].key},
+          {"C-C+", step(decision.over_c)},
+          {"C'-C+", step(decision.over_c_prime)},
+          {"model_of", decision.model_of}};
+}
+
+ordered_json round_json(const Round& round, bool kept) {
   ordered_json treatments = treatments_json(round.verdict.control);
   if (!round.augmented) {
     for (ordered_json& each : treatments) {
@@ -116,7 +127,8 @@ ordered_json round_json(const Round& round) {
                     {"conversion_error", round.verdict.control.conversion_error},
                     {"latency", latency_json(round.verdict.latency)},
                     {"augmented", round.augmented},
-                    {"kept", round.kept},
+                    {"kept", kept},
+                    {"tracks_better", round.better},
                     {"outcome", round.outcome},
                     {"rms_error_mm", or_null(round.trial.metrics.rms_error_mm)},
                     {"weights", nullptr}};
@@ -125,6 +137,11 @@ ordered_json round_json(const Round& round) {
 }
 
 }  // namespace
+
+ordered_json interval_json(const std::optional<std::pair<double, double>>& interval) {
+  if (!interval) return nullptr;
+  return {interval->first, interval->second};
+}
 
 ordered_json prediction_json(const Verdict& verdict) {
   const diagnosis::Diagnosis& body = verdict.body;
@@ -191,8 +208,8 @@ bool Truth::agrees_with(const Verdict& verdict) const {
     return shape || conclusion == kUnexplained || (small && conclusion == kNothing);
   }
   if (verdict.kind() != kind) return false;
-  if (verdict.findings.empty()) return true;
-  const Finding& strongest = verdict.findings.front();
+  if (verdict.strongest() == nullptr) return true;
+  const Finding& strongest = *verdict.strongest();
   // The rig names a part of the body; a verdict names the body as a whole.
   const bool outside = place == kDrive || place == kMotorPath || place == kLoadCell;
   return strongest.channel == channel && strongest.where == (outside ? place : kBody);
@@ -203,9 +220,9 @@ std::string verdict_json(const Verdict& verdict) {
                     {"channel", nullptr},
                     {"where", nullptr},
                     {"conclusion", verdict.conclusion()}};
-  if (!verdict.findings.empty()) {
-    json["channel"] = or_null(verdict.findings.front().channel);
-    json["where"] = verdict.findings.front().where;
+  if (const Finding* strongest = verdict.strongest()) {
+    json["channel"] = or_null(strongest->channel);
+    json["where"] = strongest->where;
   }
   json["findings"] = findings_json(verdict);
   return json.dump(2) + "\n";
@@ -228,7 +245,14 @@ std::string summary_json(const LoopRecord& record) {
   summary["verdict"] = ordered_json::parse(verdict_json(result.verdict()));
   summary["force_prediction"] = prediction_json(result.verdict());
   summary["rounds"] = ordered_json::array();
-  for (const Round& round : result.rounds) summary["rounds"].push_back(round_json(round));
+  for (std::size_t i = 0; i < result.rounds.size(); ++i) {
+    const bool kept = record.decision.kept() && i == result.final_round;
+    summary["rounds"].push_back(round_json(result.rounds[i], kept));
+  }
+  summary["kept"] = record.decision.kept();
+  summary["decided_on"] = "motor";
+  summary["decision"] = decision_json(record.decision);
+  summary["least_force_n"] = result.verdict().body.options.least_force_n;
   summary["truth"] = nullptr;
   if (record.truth) {
     summary["truth"] = {{"kind", record.truth->kind},
@@ -257,6 +281,27 @@ std::string summary_json(const LoopRecord& record) {
   summary["identify_seconds"] = protocol.identify_s;
   summary["version"] = kVersion;
   return summary.dump(2) + "\n";
+}
+
+std::string nothing_that_counts(double least_force_n) {
+  if (least_force_n <= 0.0) return "The model lacks nothing.";
+  return "The model lacks nothing of " + report::short_number(least_force_n) +
+         " N RMS or more (--least-force).";
+}
+
+std::string kept_text(const LoopRecord& record) {
+  const LoopDecision& decision = record.decision;
+  if (!decision.augmented) return {};
+  const Measure& measure = kMeasures[decision.measure];
+  const std::size_t repeats = record.conditions.at("A").size();
+  return std::string("C+ is ") + (decision.kept() ? "kept" : "not kept") + ": over " +
+         std::to_string(repeats) + (repeats == 1 ? " repeat" : " repeats") +
+         " that no fit has seen, its " + measure.title + " differs from that of C by " +
+         with_interval(decision.over_c, measure.decimals) + " and from that of C' by " +
+         with_interval(decision.over_c_prime, measure.decimals) +
+         (decision.certain() ? ", and both intervals exclude 0"
+                             : ", as far as these repeats show") +
+         ". The canceller gets the model of " + decision.model_of + ".";
 }
 
 std::string with_interval(const Estimate& estimate, int decimals, double factor) {

@@ -43,6 +43,7 @@ struct LoopRecord {
   std::string command_line;
   LoopResult result;
   Conditions conditions;       ///< what tables and figures show
+  LoopDecision decision;       ///< by the conditions: is C+ kept?
   std::optional<Truth> truth;  ///< empty: nothing was sealed
 
   /// Verdict and truth agree: README, "Right".
@@ -52,6 +53,7 @@ struct LoopRecord {
 /// verdict.json: kind, channel and findings, written before the truth is opened.
 std::string verdict_json(const Verdict& verdict);
 /// Parts of summary.json.
+nlohmann::ordered_json interval_json(const std::optional<std::pair<double, double>>& interval);
 nlohmann::ordered_json prediction_json(const Verdict& verdict);
 nlohmann::ordered_json latency_json(const std::optional<Latency>& latency);
 nlohmann::ordered_json treatments_json(const ConvertedModel& control);
@@ -61,6 +63,10 @@ report::Table treatment_table(const ConvertedModel& control, bool used);
 std::string summary_json(const LoopRecord& record);
 /// Tables and verdict, to standard output.
 void print_result(const LoopRecord& record);
+/// One sentence of an output in newtons; 0: of another one.
+std::string nothing_that_counts(double least_force_n);
+/// What became of C+, with the rows that decide, README Eq. CL-8; empty: it is C'.
+std::string kept_text(const LoopRecord& record);
 /// "mean [low, high]" of an estimate, or the mean alone.
 std::string with_interval(const Estimate& estimate, int decimals, double factor = 1.0);
 

@@ -100,17 +100,17 @@ std::string lead(const LoopRecord& record) {
   const auto left = [&](const char* label) {
     return number(measured(record.conditions, label, kMeasures[kForceLeft]).mean, 2) + " N";
   };
-  const std::string lacks = !verdict.findings.empty()
+  const std::string lacks = verdict.strongest() != nullptr
                                 ? "The paper's model lacks: " + verdict.kind() + ". "
                             : verdict.conclusion() == kUnexplained
                                 ? "The residual has a cause that no kind explains. "
-                                : "The paper's model lacks nothing that moves a hand. ";
+                                : nothing_that_counts(verdict.body.options.least_force_n) + " ";
   return lacks + "Of the tracking error that the motion costs, C restores " +
          percent(restored(record.conditions, "C", error)) + ", C' " +
          percent(restored(record.conditions, "C'", error)) + ", C+ " +
          percent(restored(record.conditions, "C+", error)) +
          ", the paper 47 %. Of the force, C leaves " + left("C") + ", C' " + left("C'") + ", C+ " +
-         left("C+") + ".";
+         left("C+") + ". " + kept_text(record);
 }
 
 void add_tracking(report::Page& page, const Conditions& conditions,
@@ -131,14 +131,15 @@ void add_verdict(report::Page& page, const LoopResult& result,
                  const std::vector<report::Drawing>& drawings) {
   const Verdict& verdict = result.verdict();
   page.section("What the model lacked");
-  if (verdict.findings.empty()) {
-    page.paragraph("Nothing was found that is large enough to move a hand.");
+  if (verdict.strongest() == nullptr) {
+    page.paragraph(nothing_that_counts(verdict.body.options.least_force_n));
   }
   std::vector<std::string> findings;
   for (const Finding& each : verdict.findings) {
     findings.push_back(each.kind + (each.channel.empty() ? "" : " (" + each.channel + ")") +
-                       " in the " + each.where + ", " + number(each.explained_n, 2) +
-                       " N RMS: " + each.evidence + ".");
+                       " in the " + each.where + ", " + report::short_number(each.explained_n) +
+                       " N RMS" + (each.counts ? ": " : ", too small to count: ") + each.evidence +
+                       ".");
   }
   if (!findings.empty()) page.list(findings);
   page.table(prediction_table(verdict));

@@ -52,22 +52,23 @@ void print_result(const LoopRecord& record) {
   const LoopResult& result = record.result;
   print_measures(record.conditions);
   const Verdict& verdict = result.verdict();
-  if (verdict.findings.empty()) {
-    std::printf("%s\n", verdict.conclusion() == kUnexplained
-                            ? "the residual has a cause that no kind of effect explains"
-                            : "the model lacks nothing that moves a hand");
+  if (verdict.strongest() == nullptr) {
+    fmt::print("{}\n", verdict.conclusion() == kUnexplained
+                           ? "The residual has a cause that no kind of effect explains."
+                           : nothing_that_counts(verdict.body.options.least_force_n));
   }
   for (const Finding& finding : verdict.findings) {
-    std::printf("missing: %s%s%s%s in the %s, %.2f N: %s\n", finding.kind.c_str(),
-                finding.channel.empty() ? "" : " (", finding.channel.c_str(),
-                finding.channel.empty() ? "" : ")", finding.where.c_str(), finding.explained_n,
-                finding.evidence.c_str());
+    fmt::print("{}: {}{} in the {}, {} N{}: {}\n", finding.counts ? "missing" : "found",
+               finding.kind, finding.channel.empty() ? "" : " (" + finding.channel + ")",
+               finding.where, report::short_number(finding.explained_n),
+               finding.counts ? "" : ", too small to count", finding.evidence);
   }
   std::printf(
       "prediction of the pegged force, held out: %.4f N before, %.4f N after, noise %.4f N\n",
       verdict.body.baseline_error.rmse, verdict.body.final_error.rmse,
       verdict.body.noise_floor.rmse);
   for (const Round& round : result.rounds) std::printf("C+: %s\n", round.outcome.c_str());
+  if (const std::string kept = kept_text(record); !kept.empty()) fmt::print("{}\n", kept);
   if (record.truth) {
     std::printf("the sealed truth: %s%s%s; the verdict is %s\n", record.truth->kind.c_str(),
                 record.truth->place.empty() ? "" : ", ", record.truth->place.c_str(),

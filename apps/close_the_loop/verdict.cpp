@@ -14,17 +14,20 @@
 namespace stillhand::close_the_loop {
 namespace {
 
-// A smaller effect does not move a hand: a fifth of the held-out error; of the drive, more than the
-// uncertainty of its friction.
-constexpr double kWorthFall = 0.2;
-constexpr double kWorthDrive_n = 0.2;
 // Of the friction that was found: the rest keeps the stick from hunting.
 constexpr double kFrictionShare = 0.8;
 
-double explained(const diagnosis::FoundEffect& effect) {
-  const double before = effect.before.rmse;
-  const double after = effect.after.rmse;
-  return std::sqrt(std::max(before * before - after * after, 0.0));
+Finding finding_of(const diagnosis::FoundEffect& effect, const char* where,
+                   const std::string& unit) {
+  return {effect.effect.kind,
+          effect.channel,
+          where,
+          effect.explained.rms,
+          effect.before.rmse,
+          effect.after.rmse,
+          diagnose::shown_sentence(effect.evidence, unit),
+          std::pair{effect.explained.low, effect.explained.high},
+          effect.counts};
 }
 
 // The latest of several recordings: the median would hide a drive that is late now and then.
@@ -40,7 +43,7 @@ std::optional<Latency> latest(const std::vector<const recording::Recording*>& ca
 }
 
 // What the hand does not feel is the load cell's alone.
-std::string place_of(const diagnosis::Effect& effect) {
+const char* place_of(const diagnosis::Effect& effect) {
   const auto role = diagnosis::effect_kind(effect.kind).body_role(effect);
   return std::holds_alternative<diagnosis::control::NotFelt>(role) ? kLoadCell : kBody;
 }
@@ -52,7 +55,7 @@ std::string milliseconds(double seconds) {
 }
 
 std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
-                                       const DeclaredDrive& declared) {
+                                       const DeclaredDrive& declared, double least_force_n) {
   if (!latency) return std::nullopt;
   const double motor_s = latency->motor_s - declared.motor_delay_s;
   const bool of_cell = latency->cell_s > motor_s;
@@ -67,21 +70,16 @@ std::optional<Finding> latency_finding(const std::optional<Latency>& latency,
                  latency->residual_n,
                  std::string(of_cell ? "the load cell reports a force " : "the motor acts ") +
                      milliseconds(late_s) + (of_cell ? " late" : " later than declared") +
-                     ", by the stick's own equation"};
-}
-
-std::string unit_of(const diagnosis::Measurement& measurement, const std::string& output) {
-  const diagnosis::Channel* channel = measurement.find(output);
-  return channel == nullptr ? std::string() : channel->unit;
+                     ", by the stick's own equation",
+                 {},
+                 latency->explained_n >= least_force_n};
 }
 
 void add_drive_findings(Verdict& out) {
   for (const diagnosis::FoundEffect& effect : out.drive->effects) {
-    if (explained(effect) < kWorthDrive_n) continue;
-    out.findings.push_back({effect.effect.kind, effect.channel, kDrive, explained(effect),
-                            effect.before.rmse, effect.after.rmse,
-                            diagnose::shown_sentence(effect.evidence, "N")});
-    if (out.not_carried.empty()) add_drive_effect(effect.effect, kFrictionShare, out.control);
+    out.findings.push_back(finding_of(effect, kDrive, "N"));
+    if (effect.counts && out.not_carried.empty())
+      add_drive_effect(effect.effect, kFrictionShare, out.control);
   }
 }
 
@@ -104,13 +102,12 @@ diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std:
 }
 
 double detectable_n(const Verdict& verdict, bool in_drive) {
-  if (in_drive) return kWorthDrive_n;
-  const double kept = 1.0 - kWorthFall;
-  return verdict.body.noise_floor.rmse * std::sqrt(1.0 / (kept * kept) - 1.0);
+  const diagnosis::Diagnosis& of = in_drive && verdict.drive ? *verdict.drive : verdict.body;
+  return std::max(of.options.least_force_n, of.detection_limit);
 }
 
 std::string Verdict::conclusion() const {
-  if (!findings.empty()) return kFound;
+  if (strongest() != nullptr) return kFound;
   return body.verdict() == kUnexplained ? kUnexplained : kNothing;
 }
 
@@ -118,31 +115,23 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                      const diagnosis::DiagnoseOptions& options) {
   Verdict out;
   out.latency = latest(evidence.cancelled, declared);
-  const auto late = latency_finding(out.latency, declared);
+  const auto late = latency_finding(out.latency, declared, options.least_force_n);
   if (late) out.findings.push_back(*late);
   const bool cell_late = late && late->where == kLoadCell;
   out.cell_is_late = cell_late;
 
-  diagnosis::DiagnoseOptions own = options;
-  own.inputs = evidence.inputs;
-  own.output = evidence.output;
-  own.model = diagnosis::ModelClass::kArx;
-  own.search.first_least_fall = own.search.least_fall = kWorthFall;
   const diagnosis::Measurement measurement =
-      advanced(*evidence.pegged, evidence.output, cell_late ? out.latency->cell_s : 0.0);
-  const std::string unit = unit_of(measurement, evidence.output);
-  out.body = diagnosis::diagnose(measurement, own);
+      advanced(*evidence.pegged, options.output, cell_late ? out.latency->cell_s : 0.0);
+  out.body = diagnosis::diagnose(measurement, options);
   for (const diagnosis::FoundEffect& effect : out.body.effects) {
-    out.findings.push_back({effect.effect.kind, effect.channel, place_of(effect.effect),
-                            explained(effect), effect.before.rmse, effect.after.rmse,
-                            diagnose::shown_sentence(effect.evidence, unit)});
+    out.findings.push_back(finding_of(effect, place_of(effect.effect), out.body.output_unit));
   }
-  const diagnosis::Signals signals(diagnosis::working_set(measurement, own.inputs), own.inputs,
-                                   own.output);
+  const diagnosis::Signals signals(diagnosis::working_set(measurement, options.inputs),
+                                   options.inputs, options.output);
   ControlOptions control;
   control.lead_s = out.latency ? out.latency->motor_s : declared.motor_delay_s;
   try {
-    out.control = to_control_model(out.body.model, signals, control);
+    out.control = to_control_model(out.model(), signals, control);
   } catch (const ConfigError& error) {
     out.not_carried = error.what();
   }
@@ -152,7 +141,9 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
     // A late cell distorts the stick's equation; it is among the findings already.
     if (!cell_late) add_drive_findings(out);
   }
-  std::ranges::stable_sort(out.findings, std::ranges::greater{}, &Finding::explained_n);
+  std::ranges::stable_sort(out.findings, std::ranges::greater{}, [](const Finding& finding) {
+    return std::pair(finding.counts, finding.explained_n);
+  });
   return out;
 }
 

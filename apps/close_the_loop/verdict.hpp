@@ -12,7 +12,7 @@
 
 namespace stillhand::close_the_loop {
 
-/// [s] A shorter delay does not move a hand.
+/// [s] A shorter delay is none: the stick's own equation does not distinguish it.
 inline constexpr double kWorthLatency_s = 0.005;
 
 /// Where an effect acts, as far as a verdict says.
@@ -29,8 +29,6 @@ inline constexpr const char* kNothing = "nothing missing";
 /// The recordings that a verdict is made from; it uses nothing else of the rig.
 struct Evidence {
   const diagnosis::Measurement* pegged = nullptr;  ///< identification: inputs to output
-  std::vector<std::string> inputs{"a_y"};
-  std::string output = "f";
   /// B, 1 kHz: the stick's own equation; none: the drive is not diagnosed.
   std::vector<const recording::Recording*> moving = {};
   /// C, or the newest C+, 1 kHz: the motor's too; none: no latency is measured.
@@ -46,6 +44,8 @@ struct Finding {
   double before_n = 0.0;     ///< held-out error before and after, where it was found
   double after_n = 0.0;
   std::string evidence;
+  std::optional<std::pair<double, double>> interval95 = {};  ///< of explained_n; none of a delay
+  bool counts = true;  ///< explained_n is at least what the options ask for
 };
 
 /// What is missing, and what the canceller does about it.
@@ -54,21 +54,34 @@ struct Verdict {
   std::optional<diagnosis::Diagnosis> drive;  ///< of the stick's own equation
   std::optional<Latency> latency;
   bool cell_is_late = false;      ///< the latency is the load cell's, and large enough to count
-  std::vector<Finding> findings;  ///< strongest first
+  std::vector<Finding> findings;  ///< those that count first, then strongest first
   ConvertedModel control;
   std::string not_carried;  ///< why there is no control model, or empty
 
-  /// Kind of the strongest, or "none".
+  /// The strongest that counts; null: none does.
+  [[nodiscard]] const Finding* strongest() const {
+    return findings.empty() || !findings.front().counts ? nullptr : &findings.front();
+  }
+  /// Its kind, or "none".
   [[nodiscard]] std::string kind() const {
-    return findings.empty() ? std::string("none") : findings.front().kind;
+    return strongest() == nullptr ? std::string("none") : strongest()->kind;
+  }
+  /// Of the body, with its effects if one of them counts: what the canceller is given, and what
+  /// predicts.
+  [[nodiscard]] const diagnosis::Model& model() const {
+    return body.has_effect_that_counts() ? body.model : body.baseline.model;
+  }
+  [[nodiscard]] diagnosis::CarriedModel carried() const {
+    return body.effects.empty() || body.has_effect_that_counts()
+               ? body.carried
+               : diagnosis::carried_as_it_is(body.baseline.model);
   }
   /// kFound, kUnexplained or kNothing.
   [[nodiscard]] std::string conclusion() const;
 };
 
-/// [N] RMS force from which on a verdict can name an effect.  In the body it is that which makes
-/// the held-out error a quarter larger than the noise floor, so that an effect's part of it counts;
-/// in the drive it is the least that counts.
+/// [N] RMS force from which on a verdict can name an effect: from which it counts, and is found as
+/// often as not (diagnosis, Eq. DG-62).
 double detectable_n(const Verdict& verdict, bool in_drive);
 
 /// A record with the output as if its sensor were not late; the last samples of a stretch then
@@ -78,7 +91,8 @@ diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std:
 
 /// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
 /// verdict".
-/// @param options  threads and progress; inputs, model and search are set here
+/// @param options  of the body, as `stillhand diagnose` takes them; the drive has a model of its
+/// own
 /// @throws ConfigError when a recording cannot be diagnosed
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
                      const diagnosis::DiagnoseOptions& options);

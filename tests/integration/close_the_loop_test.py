@@ -18,6 +18,7 @@ from lab_process import wait_for
 
 STILLHAND = str(lab_process.STILLHAND)
 SHORT = ["--trial-seconds", "60", "--identify-seconds", "60", "--seed", "3", "--repeats", "3"]
+DATA = os.environ.get("STILLHAND_DATA", lab_process.SOURCE.parent / "shared" / "data")
 METRICS = ("rms_error", "dwell_ratio", "crossover")
 
 
@@ -207,6 +208,8 @@ class FromRecordingsTest(unittest.TestCase):
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual((summary["verdict"]["kind"], summary["verdict"]["channel"]), ("coupled_input", "a_x"))
         self.assertTrue(summary["kept"])
+        self.assertEqual(summary["decided_on"], "motor")
+        self.assertGreater(summary["decision"]["less_interval95"][0], 0.0)
         self.assertEqual([record["source"] for record in summary["unseen"]], ["second.csv"])
         left = {name: summary["unseen"][0][name]["left"]["rms"] for name in ("linear", "augmented", "motor_augmented")}
         # The noise of 0.2 N is left in any case; the motor is 2 ms late, 5 % of a sine of 4 Hz.
@@ -226,6 +229,41 @@ class FromRecordingsTest(unittest.TestCase):
         self.assertEqual(both["verdict"]["kind"], "none")
         self.assertLess(both["unseen"][0]["linear"]["left"]["rms"], 0.25)
 
+    def test_one_file_has_one_verdict_in_diagnose_and_in_the_loop(self):
+        first, second = self.stand("first.csv", 1), self.stand("second.csv", 2)
+        for options, conclusion in (((), "effects found"), (("--least-force", 50), "nothing missing")):
+            out, verdict = self.folder / f"loop{len(options)}", self.folder / f"verdict{len(options)}.json"
+            for arguments in (["diagnose", first, "--json", verdict],
+                              ["close-the-loop", "--pegged", first, "--unseen", second, "--out", out]):
+                ran = subprocess.run([STILLHAND, *map(str, [*arguments, *options])], capture_output=True, text=True,
+                                     timeout=600)
+                self.assertEqual(ran.returncode, 0, ran.stderr)
+            alone = json.loads(verdict.read_text())
+            summary = json.loads((out / "summary.json").read_text())
+            loop = summary["verdict"]
+            self.assertEqual((alone["verdict"], loop["conclusion"]), (conclusion, conclusion))
+            same = ("kind", "channel", "heldout_rmse_before", "heldout_rmse_after", "force_n", "counts")
+            self.assertEqual([[each[name] for name in same] for each in loop["findings"]],
+                             [[each[name] for name in same] for each in alone["effects"]])
+            self.assertEqual(len(loop["findings"]), 1)
+        # What does not count is not put into the canceller.
+        self.assertEqual(summary["treatments"], [])
+        self.assertEqual(summary["unseen"][0]["motor_augmented"], summary["unseen"][0]["motor_linear"])
+
+    def test_what_the_motor_leaves_decides_and_not_the_prediction(self):
+        rides = [pathlib.Path(DATA) / "field" / f"arm_friction_ride_{each}.csv" for each in "ab"]
+        if not all(ride.exists() for ride in rides):
+            self.skipTest(f"no {rides[0]}; set STILLHAND_DATA")
+        ran = close_the_loop("--pegged", rides[0], "--unseen", rides[1], "--map", "Time (s)=t [s]", "Acc Y (g)=a_y [g]",
+                             "Force (lbf)=f [lbf]", "--out", self.out)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual(summary["decided_on"], "motor")
+        left = {name: summary["unseen"][0][name]["left"]["rms"] for name in ("motor_linear", "motor_augmented")}
+        self.assertEqual(summary["kept"], left["motor_augmented"] < left["motor_linear"])
+        self.assertIn("C+ is kept" if summary["kept"] else "C+ is not kept", ran.stdout)
+        self.assertIn("C+ is kept" if summary["kept"] else "C+ is not kept", (self.out / "report.html").read_text())
+
     def test_wrong_words_are_refused_and_leave_nothing(self):
         first = self.stand("first.csv", 1)
         empty = self.folder / "empty.csv"
@@ -238,6 +276,7 @@ class FromRecordingsTest(unittest.TestCase):
                                 (["--pegged", first, "--input", "a_q"], "a_q"),
                                 (["--pegged", first, "--output", "g"], "--output"),
                                 (["--pegged", first, "--unseen", self.constant()], "constant"),
+                                (["--pegged", first, "--least-force", "nan"], "--least-force"),
                                 (["--pegged", first, "--live"], "--live"),
                                 (["--pegged", first, "--undeclared-effect", 3], "--undeclared-effect"),
                                 (["--cancelled", first], "--pegged")):

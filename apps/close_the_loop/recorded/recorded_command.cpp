@@ -33,7 +33,7 @@ void check_apart(const RecordedOptions& options) {
 
 // The model for `stillhand lab --model`; none where no motor could run.
 std::optional<cancellation::ControlModel> control_model_of(const RecordedLoop& loop) {
-  if (!loop.kept) return loop.linear_control;
+  if (!loop.decision.kept()) return loop.linear_control;
   if (!loop.no_motor.empty() || !loop.verdict.not_carried.empty()) return std::nullopt;
   return loop.verdict.control.model;
 }
@@ -79,14 +79,15 @@ void add_recorded_options(CLI::App& verb, RecordedOptions& options,
   add_files(verb, "--unseen", options.unseen,
             "pegged recording(s) for judging; without: the last of --pegged, or its last 30 %")
       ->needs(pegged);
-  verb.add_option("--input", options.inputs, "inputs of the model: channel(s), comma-separated")
+  verb.add_option("--input", options.diagnose.inputs,
+                  "inputs of the model: channel(s), comma-separated")
       ->delimiter(',')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->needs(pegged)
       ->capture_default_str()
       ->group("From recordings");
-  verb.add_option("--output", options.output, "channel that the model predicts")
+  verb.add_option("--output", options.diagnose.output, "channel that the model predicts")
       ->needs(pegged)
       ->capture_default_str()
       ->group("From recordings");
@@ -110,7 +111,7 @@ void run_recorded(RecordedOptions options, const std::filesystem::path& out, std
     done += 0.3 * (1.0 - done);  // the number of steps is not known in advance
     return !stop.requested();
   };
-  options.for_each = [threads](std::size_t count, const auto& job) {
+  options.diagnose.for_each = [threads](std::size_t count, const auto& job) {
     runtime::run_jobs(count, threads, job);
   };
   const RecordedLoop loop = close_recorded_loop(options);
@@ -118,8 +119,9 @@ void run_recorded(RecordedOptions options, const std::filesystem::path& out, std
   folder.write(kVerdictFile, verdict_json(loop.verdict));
   folder.write("summary.json", recorded_summary_json(loop, options));
   folder.write("model.json",
-               loop.kept ? diagnosis::model_json(loop.verdict.body.model, loop.verdict.body.carried)
-                         : diagnosis::model_json(loop.verdict.body.baseline.model));
+               loop.decision.kept()
+                   ? diagnosis::model_json(loop.verdict.model(), loop.verdict.carried())
+                   : diagnosis::model_json(loop.verdict.body.baseline.model));
   if (auto model = control_model_of(loop)) {
     model->adapts = average_hand();
     folder.write(kControlModelFile, cancellation::control_model_json(*model, rig));

@@ -105,13 +105,10 @@ class RecordedLoopRun {
       out_.verdict.not_carried = refused(out_.verdict.control.model);
     }
     for (const diagnosis::Measurement& record : unseen_) judge(record);
-    double linear = 0.0;
-    double augmented = 0.0;
-    for (const Judged& judged : out_.judged) {
-      linear += judged.linear.left.rms * judged.linear.left.rms * judged.seconds;
-      augmented += judged.augmented.left.rms * judged.augmented.left.rms * judged.seconds;
-    }
-    out_.kept = augmented <= linear;
+    const bool same =
+        !out_.verdict.body.has_effect_that_counts() && out_.verdict.control.treatments.empty();
+    out_.decision =
+        decide(out_.judged, same, out_.no_motor.empty(), out_.verdict.not_carried.empty());
     return std::move(out_);
   }
 
@@ -146,9 +143,10 @@ class RecordedLoopRun {
       unseen_.push_back(std::move(unseen));
     }
     pegged_ = parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
-    const diagnosis::Channel* output = pegged_.find(options_.output);
+    const diagnosis::Channel* output = pegged_.find(options_.diagnose.output);
     if (output == nullptr) {
-      throw ConfigError(pegged_.source, "no channel " + options_.output, "--output with its name");
+      throw ConfigError(pegged_.source, "no channel " + options_.diagnose.output,
+                        "--output with its name");
     }
     out_.unit = output->unit;
     out_.notes = pegged_.notes;
@@ -156,8 +154,8 @@ class RecordedLoopRun {
   }
 
   void check_unseen(const diagnosis::Measurement& record) {
-    std::vector<std::string> wanted = options_.inputs;
-    wanted.push_back(options_.output);
+    std::vector<std::string> wanted = options_.diagnose.inputs;
+    wanted.push_back(options_.diagnose.output);
     for (const std::string& name : wanted) {
       if (record.find(name) == nullptr) {
         throw ConfigError(record.source, "no channel " + name, "those of the first --pegged");
@@ -169,12 +167,11 @@ class RecordedLoopRun {
   }
 
   void diagnose() {
-    diagnosis::DiagnoseOptions diagnose;
-    diagnose.for_each = options_.for_each;
+    diagnosis::DiagnoseOptions diagnose = options_.diagnose;
     diagnose.progress = [&](const std::string& what) {
       return options_.progress("diagnosis: " + what);
     };
-    Evidence evidence{&pegged_, options_.inputs, options_.output};
+    Evidence evidence{&pegged_};
     for (const recording::Recording& record : moving_) evidence.moving.push_back(&record);
     for (const recording::Recording& record : cancelled_) evidence.cancelled.push_back(&record);
     out_.verdict = diagnose_all(evidence, options_.declared, diagnose);
@@ -186,12 +183,13 @@ class RecordedLoopRun {
       return std::ranges::any_of(cancellation::kChannelFacts,
                                  [&](const auto& facts) { return facts.name == name; });
     };
-    if (out_.unit != "N" || !std::ranges::all_of(options_.inputs, carried)) {
+    if (out_.unit != "N" || !std::ranges::all_of(options_.diagnose.inputs, carried)) {
       out_.no_motor = "the canceller reads a_x, a_y, a_z, roll, theta and omega, and gives N";
       return;
     }
-    const diagnosis::Signals signals(diagnosis::working_set(pegged_, options_.inputs),
-                                     options_.inputs, options_.output);
+    const std::vector<std::string>& inputs = options_.diagnose.inputs;
+    const diagnosis::Signals signals(diagnosis::working_set(pegged_, inputs), inputs,
+                                     options_.diagnose.output);
     ControlOptions control;
     control.lead_s =
         out_.verdict.latency ? out_.verdict.latency->motor_s : options_.declared.motor_delay_s;
@@ -205,14 +203,22 @@ class RecordedLoopRun {
     if (!out_.linear_not_carried.empty()) out_.linear_control.reset();
   }
 
+  [[nodiscard]] bool verdict_runs() const {
+    return out_.no_motor.empty() && out_.verdict.not_carried.empty();
+  }
+
   // What the motor leaves; none for a record that ends before the model has settled.
   std::optional<Remaining> by_motor(const cancellation::ControlModel& model,
                                     const diagnosis::Measurement& record) {
     const double late_s = out_.verdict.latency
                               ? out_.verdict.latency->motor_s - options_.declared.motor_delay_s
                               : 0.0;
+    // Both models are judged on the same samples.
+    double from_s = 0.0;
+    if (out_.linear_control) from_s = settled_after_s(*out_.linear_control);
+    if (verdict_runs()) from_s = std::max(from_s, settled_after_s(out_.verdict.control.model));
     try {
-      return left_by_motor(model, record, options_.output, std::max(late_s, 0.0));
+      return left_by_motor(model, record, options_.diagnose.output, std::max(late_s, 0.0), from_s);
     } catch (const ConfigError& error) {
       out_.notes.push_back(fmt::format("{}: no motor was run: {}", record.source, error.what()));
       return std::nullopt;
@@ -223,18 +229,19 @@ class RecordedLoopRun {
     step("judging " + as_measured.source);
     const Verdict& verdict = out_.verdict;
     // A late load cell is late here, too.
-    const diagnosis::Measurement record = advanced(
-        as_measured, options_.output, verdict.cell_is_late ? verdict.latency->cell_s : 0.0);
+    const diagnosis::Measurement record =
+        advanced(as_measured, options_.diagnose.output,
+                 verdict.cell_is_late ? verdict.latency->cell_s : 0.0);
     Judged judged;
     judged.source = std::filesystem::path(record.source).filename().string();
     judged.seconds = static_cast<double>(record.size()) / record.rate_hz;
     judged.linear =
         left_by_prediction(diagnosis::carried_as_it_is(verdict.body.baseline.model), record);
-    judged.augmented = left_by_prediction(verdict.body.carried, record);
+    judged.augmented = left_by_prediction(verdict.carried(), record);
     if (out_.linear_control) {
       judged.motor_linear = by_motor(*out_.linear_control, record);
     }
-    if (out_.no_motor.empty() && verdict.not_carried.empty()) {
+    if (verdict_runs()) {
       judged.motor_augmented = by_motor(verdict.control.model, record);
     }
     out_.judged.push_back(std::move(judged));

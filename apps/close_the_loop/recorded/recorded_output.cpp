@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/close_the_loop/output.hpp"
+#include "apps/close_the_loop/recorded/recorded_words.hpp"
 #include "apps/diagnose/page/wording.hpp"
 #include "apps/report/or_null.hpp"
 #include "apps/report/text.hpp"
@@ -19,11 +20,6 @@ using report::number;
 
 using Interval = std::optional<std::pair<double, double>>;
 
-ordered_json interval_json(const Interval& interval) {
-  if (!interval) return nullptr;
-  return {interval->first, interval->second};
-}
-
 ordered_json level_json(const Level& level) {
   return {{"rms", level.rms}, {"interval95", interval_json(level.interval95)}};
 }
@@ -35,29 +31,28 @@ ordered_json remaining_json(const std::optional<Remaining>& remaining) {
           {"cut_interval95", interval_json(remaining->cut_interval95())}};
 }
 
+// What the effects explain of a record that no fit has seen.
+ordered_json force_json(const Level& level) {
+  return {{"value", level.rms}, {"ci95", interval_json(level.interval95)}};
+}
+
 ordered_json judged_json(const Judged& judged) {
   return {{"source", judged.source},
           {"seconds", judged.seconds},
           {"without", level_json(judged.linear.without)},
           {"linear", remaining_json(judged.linear)},
           {"augmented", remaining_json(judged.augmented)},
+          {"force_n", force_json(explained_beyond(judged.linear.left, judged.augmented.left))},
           {"motor_linear", remaining_json(judged.motor_linear)},
           {"motor_augmented", remaining_json(judged.motor_augmented)}};
 }
 
-std::string level_text(const Level& level) {
-  std::string text = report::short_number(level.rms);
-  if (!level.interval95) return text;
-  return fmt::format("{} [{}, {}]", text, report::short_number(level.interval95->first),
-                     report::short_number(level.interval95->second));
-}
-
-std::string cut_text(const Remaining& remaining) {
-  std::string text = number(100.0 * remaining.cut(), 1) + " %";
-  const Interval interval = remaining.cut_interval95();
-  if (!interval) return text;
-  return fmt::format("{} [{}, {}]", text, number(100.0 * interval->first, 1),
-                     number(100.0 * interval->second, 1));
+ordered_json decision_json(const Decision& decision) {
+  if (!decision.step) return nullptr;
+  return {{"linear", level_json(decision.step->without)},
+          {"augmented", level_json(decision.step->left)},
+          {"less", decision.step->cut()},
+          {"less_interval95", interval_json(decision.step->cut_interval95())}};
 }
 
 // The rows of both tables: what acted, what is left, what share it took away.
@@ -81,42 +76,6 @@ std::vector<Row> rows_of(const Judged& judged) {
   return rows;
 }
 
-std::string finding_text(const Finding& finding, const std::string& unit) {
-  return fmt::format("{}{} in the {}, {} {} RMS: {}", diagnose::spaced(finding.kind),
-                     finding.channel.empty() ? "" : " (" + finding.channel + ")", finding.where,
-                     report::short_number(finding.explained_n), diagnose::shown_unit(unit),
-                     finding.evidence);
-}
-
-std::string conclusion_text(const Verdict& verdict) {
-  if (!verdict.findings.empty()) return {};
-  return verdict.conclusion() == kUnexplained
-             ? "The residual has a cause that no kind of effect explains."
-             : "The model lacks nothing that is large enough to move a hand.";
-}
-
-// What became of the augmented model on the unseen records.
-std::string kept_text(const RecordedLoop& loop) {
-  if (loop.verdict.body.effects.empty()) return {};
-  return loop.kept ? "The augmented model leaves less on the unseen records: it is kept."
-                   : "The augmented model leaves more on the unseen records: the linear model is "
-                     "kept, also for the canceller.";
-}
-
-// Why no motor ran, or ran with one model alone; empty: both ran.
-std::string motor_text(const RecordedLoop& loop) {
-  if (!loop.no_motor.empty()) return "No motor was run: " + loop.no_motor + ".";
-  std::string text;
-  const auto add = [&](const char* model, const std::string& why) {
-    if (why.empty()) return;
-    text += fmt::format("{}The motor was not run with the {} model: {}.", text.empty() ? "" : " ",
-                        model, why);
-  };
-  add("linear", loop.linear_not_carried);
-  add("augmented", loop.verdict.not_carried);
-  return text;
-}
-
 }  // namespace
 
 std::string recorded_summary_json(const RecordedLoop& loop, const RecordedOptions& options) {
@@ -125,8 +84,8 @@ std::string recorded_summary_json(const RecordedLoop& loop, const RecordedOption
                            {"moving", options.moving},
                            {"cancelled", options.cancelled},
                            {"unseen", options.unseen}};
-  summary["inputs"] = options.inputs;
-  summary["output"] = options.output;
+  summary["inputs"] = options.diagnose.inputs;
+  summary["output"] = options.diagnose.output;
   summary["unit"] = loop.unit;
   summary["verdict"] = ordered_json::parse(verdict_json(loop.verdict));
   summary["prediction"] = prediction_json(loop.verdict);
@@ -134,7 +93,9 @@ std::string recorded_summary_json(const RecordedLoop& loop, const RecordedOption
   summary["treatments"] = treatments_json(loop.verdict.control);
   summary["unseen"] = ordered_json::array();
   for (const Judged& judged : loop.judged) summary["unseen"].push_back(judged_json(judged));
-  summary["kept"] = loop.kept;
+  summary["kept"] = loop.decision.kept();
+  summary["decided_on"] = loop.decision.by_motor ? "motor" : "prediction";
+  summary["decision"] = decision_json(loop.decision);
   summary["no_motor"] = report::or_null(loop.no_motor);
   summary["linear_not_carried"] = report::or_null(loop.linear_not_carried);
   summary["not_carried"] = report::or_null(loop.verdict.not_carried);
@@ -146,9 +107,10 @@ std::string recorded_summary_json(const RecordedLoop& loop, const RecordedOption
 void print_recorded(const RecordedLoop& loop) {
   for (const std::string& note : loop.notes) fmt::print("note: {}\n", note);
   for (const Finding& finding : loop.verdict.findings) {
-    fmt::print("missing: {}\n", finding_text(finding, loop.unit));
+    fmt::print("{}: {}\n", finding.counts ? "missing" : "found", finding_text(finding, loop.unit));
   }
-  if (loop.verdict.findings.empty()) fmt::print("{}\n", conclusion_text(loop.verdict));
+  if (loop.verdict.strongest() == nullptr) fmt::print("{}\n", conclusion_text(loop));
+  if (!loop.decision.same) fmt::print("{}\n", unseen_size_text(loop));
   for (const Judged& judged : loop.judged) {
     fmt::print("\n{}, {:.0f} s that no fit has seen\n{:<44} {:<28} {}\n", judged.source,
                judged.seconds, "what acts against the force",
@@ -157,7 +119,7 @@ void print_recorded(const RecordedLoop& loop) {
       fmt::print("{:<44} {:<28} {}\n", row.what, row.left, row.cut);
     }
   }
-  for (const std::string& text : {kept_text(loop), motor_text(loop)}) {
+  for (const std::string& text : {kept_text(loop), motor_text(loop), parted_text(loop)}) {
     if (!text.empty()) fmt::print("\n{}\n", text);
   }
 }
@@ -166,18 +128,15 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
                            const std::string& command_line,
                            const std::vector<report::Drawing>& drawings) {
   const Verdict& verdict = loop.verdict;
-  const Judged& last = loop.judged.back();
-  report::Page page(
-      "Closing the loop from recordings",
-      fmt::format("{} On {}, which no fit has seen, the linear model takes {} of the force away "
-                  "and the augmented model {}.",
-                  verdict.findings.empty()
-                      ? conclusion_text(verdict)
-                      : "Missing: " + finding_text(verdict.findings.front(), loop.unit) + ".",
-                  last.source, cut_text(last.linear), cut_text(last.augmented)));
+  const std::string missing =
+      verdict.strongest() == nullptr
+          ? conclusion_text(loop)
+          : "Missing: " + finding_text(*verdict.strongest(), loop.unit) + ".";
+  report::Page page("Closing the loop from recordings",
+                    fmt::format("{} {} {}", missing, cuts_text(loop), kept_text(loop)));
   page.facts({{"command", command_line},
-              {"inputs", fmt::format("{}", fmt::join(options.inputs, ", "))},
-              {"output", diagnose::axis_label(options.output, loop.unit)},
+              {"inputs", fmt::format("{}", fmt::join(options.diagnose.inputs, ", "))},
+              {"output", diagnose::axis_label(options.diagnose.output, loop.unit)},
               {"version", kVersion}});
   page.section("What is left on unseen records");
   for (const Judged& judged : loop.judged) {
@@ -189,7 +148,7 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
     for (const Row& row : rows_of(judged)) table.rows.push_back({row.what, row.left, row.cut});
     page.table(table);
   }
-  for (const std::string& text : {kept_text(loop), motor_text(loop)}) {
+  for (const std::string& text : {kept_text(loop), motor_text(loop), parted_text(loop)}) {
     if (!text.empty()) page.paragraph(text);
   }
   for (const report::Drawing& drawing : drawings) page.figure(drawing);
@@ -198,9 +157,11 @@ report::Page recorded_page(const RecordedLoop& loop, const RecordedOptions& opti
   for (const Finding& finding : verdict.findings) {
     findings.push_back(finding_text(finding, loop.unit) + ".");
   }
-  if (findings.empty()) page.paragraph(conclusion_text(verdict));
+  if (verdict.strongest() == nullptr) page.paragraph(conclusion_text(loop));
   if (!findings.empty()) page.list(findings);
-  if (!verdict.control.treatments.empty()) page.table(treatment_table(verdict.control, loop.kept));
+  if (!loop.decision.same) page.paragraph(unseen_size_text(loop));
+  if (!verdict.control.treatments.empty())
+    page.table(treatment_table(verdict.control, loop.decision.kept()));
   return page;
 }
 

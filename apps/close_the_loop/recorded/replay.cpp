@@ -12,6 +12,7 @@
 #include "services/cancellation/core/canceller.hpp"
 #include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/statistics/descriptive.hpp"
@@ -24,6 +25,8 @@ constexpr double kSettle_s = 2.0;
 constexpr double kBlock_s = 10.0;
 constexpr double kExcerpt_s = 12.0;
 constexpr std::size_t kLeastBlocks = 3;
+
+constexpr Flags kLimited = kSaturated | kSlewLimited;
 
 // Force and what is left of it, sample by sample, in runs without a gap.
 struct Run {
@@ -39,6 +42,13 @@ double mean_over(const std::vector<Run>& runs, const std::vector<double> Run::*o
     count += static_cast<double>((run.*of).size());
   }
   return sum / count;
+}
+
+// Of whole blocks.
+void set_from_blocks(Level& level) {
+  const auto interval = statistics::mean_interval(level.block_mean_squares);
+  level.rms = std::sqrt(interval.mean);
+  level.interval95 = {std::sqrt(std::max(interval.low, 0.0)), std::sqrt(interval.high)};
 }
 
 // Eq. CL-6; incomplete blocks count only if there is no interval.
@@ -62,11 +72,7 @@ Level level_of(const std::vector<Run>& runs, const std::vector<double> Run::*of,
     }
   }
   out.rms = std::sqrt(square / count);
-  if (out.block_mean_squares.size() >= kLeastBlocks) {
-    const auto interval = statistics::mean_interval(out.block_mean_squares);
-    out.rms = std::sqrt(statistics::mean(out.block_mean_squares));  // of the same samples
-    out.interval95 = {std::sqrt(std::max(interval.low, 0.0)), std::sqrt(interval.high)};
-  }
+  if (out.block_mean_squares.size() >= kLeastBlocks) set_from_blocks(out);
   return out;
 }
 
@@ -139,10 +145,14 @@ std::vector<cancellation::ChannelSample> sensed(const diagnosis::Measurement& re
   return out;
 }
 
-// Motor force [N] at the hand, tick by tick, for the motion of a stretch.
-std::vector<double> motor_force(const cancellation::ControlModel& model,
-                                const std::vector<cancellation::ChannelSample>& motion,
-                                double late_s) {
+// Motor force at the hand, tick by tick, for the motion of a stretch.
+struct MotorRun {
+  std::vector<double> force_n;
+  std::vector<bool> limited;  ///< the canceller wanted more, or sooner
+};
+
+MotorRun motor_run(const cancellation::ControlModel& model,
+                   const std::vector<cancellation::ChannelSample>& motion, double late_s) {
   cancellation::Canceller canceller{cancellation::Config{}};
   const cancellation::Refusal refusal = canceller.load_model(model);
   if (refusal != cancellation::Refusal::kNone) {
@@ -152,11 +162,12 @@ std::vector<double> motor_force(const cancellation::ControlModel& model,
   rig::RigConfig rig;
   rig.motor.delay_s = late_s;
   rig::Motor motor(rig.motor, rig.stick.lever_m);
-  std::vector<double> out;
-  double command_n = 0.0;
+  MotorRun out;
+  cancellation::CancellerOutput command{};
   for (std::size_t n = 0; n < motion.size(); ++n) {
-    out.push_back(motor.step({n > 0, 1, command_n, true}).force_n);
-    command_n = canceller.step({static_cast<Tick>(n + 1), motion[n], 0, true, true}).force_n;
+    out.force_n.push_back(motor.step({n > 0, 1, command.force_n, true}).force_n);
+    command = canceller.step({static_cast<Tick>(n + 1), motion[n], 0, true, true});
+    out.limited.push_back((command.flags & kLimited) != 0);
   }
   return out;
 }
@@ -194,30 +205,71 @@ Remaining left_by_prediction(const diagnosis::CarriedModel& model,
   return remaining(runs, record.rate_hz, record.source);
 }
 
+double settled_after_s(const cancellation::ControlModel& model) {
+  const cancellation::Config config;
+  const auto ticks = cancellation::check_model(model, cancellation::bounds(config)).settle_ticks +
+                     config.fade_ticks;
+  return kSettle_s + static_cast<double>(ticks) * kControlPeriod_s;
+}
+
+Level pooled(const std::vector<Level>& levels, const std::vector<double>& seconds) {
+  Level out;
+  double square = 0.0;
+  double time_s = 0.0;
+  for (std::size_t r = 0; r < levels.size(); ++r) {
+    const std::vector<double>& blocks = levels[r].block_mean_squares;
+    out.block_mean_squares.insert(out.block_mean_squares.end(), blocks.begin(), blocks.end());
+    square += levels[r].rms * levels[r].rms * seconds.at(r);
+    time_s += seconds.at(r);
+  }
+  out.rms = std::sqrt(square / time_s);
+  if (out.block_mean_squares.size() >= kLeastBlocks) set_from_blocks(out);
+  return out;
+}
+
+Level explained_beyond(const Level& left_before, const Level& left_after) {
+  const auto root = [](double square) { return std::sqrt(std::max(square, 0.0)); };
+  Level out;
+  out.rms = root(left_before.rms * left_before.rms - left_after.rms * left_after.rms);
+  const std::size_t blocks =
+      std::min(left_before.block_mean_squares.size(), left_after.block_mean_squares.size());
+  for (std::size_t b = 0; b < blocks; ++b) {
+    out.block_mean_squares.push_back(left_before.block_mean_squares[b] -
+                                     left_after.block_mean_squares[b]);
+  }
+  if (blocks >= kLeastBlocks) {
+    const auto interval = statistics::mean_interval(out.block_mean_squares);
+    out.interval95 = {root(interval.low), root(interval.high)};
+  }
+  return out;
+}
+
 Remaining left_by_motor(const cancellation::ControlModel& model,
                         const diagnosis::Measurement& record, const std::string& output,
-                        double late_s) {
+                        double late_s, double from_s) {
   const std::vector<double>& force = channel_of(record, output).values;
-  const cancellation::Config config;
   const auto settle = static_cast<std::size_t>(
-      kSettle_s * kControlRateHz +
-      static_cast<double>(
-          cancellation::check_model(model, cancellation::bounds(config)).settle_ticks +
-          config.fade_ticks));
+      std::lround(std::max(from_s, settled_after_s(model)) * kControlRateHz));
   std::vector<Run> runs;
+  double limited = 0.0;
+  double count = 0.0;
   for (const diagnosis::Stretch& stretch : record.stretches) {
     if (stretch.end - stretch.first < 2) continue;
-    const std::vector<double> motor = motor_force(model, sensed(record, stretch), late_s);
+    const MotorRun motor = motor_run(model, sensed(record, stretch), late_s);
     const std::vector<double> felt = at_control_rate(force, stretch, record.rate_hz);
     const std::vector<double> counts = at_control_rate(record.weight, stretch, record.rate_hz);
     runs.emplace_back();
-    for (std::size_t n = settle; n < motor.size(); ++n) {
+    for (std::size_t n = settle; n < motor.force_n.size(); ++n) {
       if (counts[n] < 0.5) continue;
       runs.back().force.push_back(felt[n]);
-      runs.back().left.push_back(felt[n] + motor[n]);
+      runs.back().left.push_back(felt[n] + motor.force_n[n]);
+      limited += motor.limited[n] ? 1.0 : 0.0;
+      count += 1.0;
     }
   }
-  return remaining(runs, kControlRateHz, record.source);
+  Remaining out = remaining(runs, kControlRateHz, record.source);
+  out.limited_share = limited / count;
+  return out;
 }
 
 std::pair<diagnosis::Measurement, diagnosis::Measurement> split_off_end(

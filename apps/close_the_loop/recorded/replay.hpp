@@ -32,6 +32,7 @@ struct Remaining {
   Level without;  ///< the force itself
   Level left;     ///< the force less the prediction, or plus the motor's
   Excerpt excerpt;
+  double limited_share = 0.0;  ///< [-] of the time in which the canceller's limits held the motor
   /// 1 - rms(left) / rms(without), with its 95 % interval over the blocks where there is one.
   [[nodiscard]] double cut() const { return 1.0 - left.rms / without.rms; }
   [[nodiscard]] std::optional<std::pair<double, double>> cut_interval95() const;
@@ -46,10 +47,24 @@ Remaining left_by_prediction(const diagnosis::CarriedModel& model,
 /// force: limits, fades, lags and the delay of a tick act as in a session.
 /// @param output  channel of the force [N]
 /// @param late_s  [s] delay of the motor path beyond the rig's
+/// @param from_s  [s] of each stretch that at least do not count, so that two models are judged on
+///                the same samples; as long as the model needs if it is less
 /// @throws stillhand::ConfigError if the canceller refuses the model; it reports why
 Remaining left_by_motor(const cancellation::ControlModel& model,
                         const diagnosis::Measurement& record, const std::string& output,
-                        double late_s = 0.0);
+                        double late_s = 0.0, double from_s = 0.0);
+
+/// [s] of each stretch that do not count: until the model has settled and faded in.
+double settled_after_s(const cancellation::ControlModel& model);
+
+/// Several records as one: over all of their whole blocks, or, where these are too few for an
+/// interval, over their time.
+/// @param seconds  [s] length of each record
+Level pooled(const std::vector<Level>& levels, const std::vector<double>& seconds);
+
+/// RMS that the better of two models of one record explains beyond the other, over the blocks of
+/// both (diagnosis, Eq. DG-68); 0 if it leaves more.
+Level explained_beyond(const Level& left_before, const Level& left_after);
 
 /// The last part of a record, and what comes before it.
 std::pair<diagnosis::Measurement, diagnosis::Measurement> split_off_end(

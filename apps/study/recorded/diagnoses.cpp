@@ -71,6 +71,7 @@ PersonDiagnosis diagnosis_of(RecordedLoop loop) {
   PersonDiagnosis out;
   out.verdict = loop.verdict.conclusion();
   out.findings = std::move(loop.verdict.findings);
+  std::erase_if(out.findings, [](const close_the_loop::Finding& each) { return !each.counts; });
   close_the_loop::Judged& judged = loop.judged.back();
   out.unseen_s = judged.seconds;
   out.by_linear = std::move(judged.motor_linear);

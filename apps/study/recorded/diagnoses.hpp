@@ -19,7 +19,7 @@ namespace stillhand::study {
 /// What the model lacks in one person, and what C+ would have gained.
 struct PersonDiagnosis {
   std::string verdict;  ///< "nothing missing", "effects found", "unexplained residual"
-  std::vector<close_the_loop::Finding> findings;  ///< strongest first
+  std::vector<close_the_loop::Finding> findings;  ///< that count, strongest first
   /// The motion of pegged samples that no fit saw, through canceller and motor.
   std::optional<close_the_loop::Remaining> by_linear;     ///< with the linear model, as in C
   std::optional<close_the_loop::Remaining> by_augmented;  ///< as in C+

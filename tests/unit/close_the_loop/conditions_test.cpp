@@ -84,5 +84,68 @@ TEST(ConditionsTest, EveryMeasureHasAKeyOfItsOwnAndThePapersComeFirst) {
   EXPECT_TRUE(has("C'", kMeasuresOfAll));
 }
 
+LoopResult with_finding(const char* where, bool augmented = true) {
+  LoopResult result;
+  Round round;
+  round.augmented = augmented;
+  round.verdict.findings = {{"tone", "", where, 0.5, 2.0, 1.0, "it is there"}};
+  round.model.rate_hz = 3.0;
+  result.followed_model.rate_hz = 2.0;
+  result.rounds = {round};
+  return result;
+}
+
+// Forces left in place of the errors.
+Conditions left(const std::vector<double>& c, const std::vector<double>& c_prime,
+                const std::vector<double>& c_plus) {
+  Conditions out = made();
+  const auto set = [&](const char* label, const std::vector<double>& forces_n) {
+    for (std::size_t r = 0; r < 3; ++r) out[label][r].forces.left_n = forces_n[r];
+  };
+  set("C", c);
+  set("C'", c_prime);
+  set("C+", c_plus);
+  return out;
+}
+
+TEST(LoopDecisionTest, AModelThatLeavesMoreThanEitherYardstickIsNotKept) {
+  const std::vector<double> low{1.0, 1.1, 0.9};
+  const std::vector<double> middle{2.0, 2.1, 1.9};
+  const std::vector<double> high{3.0, 3.1, 2.9};
+  const LoopResult result = with_finding(kBody);
+  const LoopDecision kept = decide(left(high, middle, low), result);
+  EXPECT_TRUE(kept.kept());
+  EXPECT_TRUE(kept.certain());
+  EXPECT_EQ(chosen_model(result, kept).rate_hz, 3.0);
+  // The tracking error of `made` is smallest with C+ in each of these.
+  const LoopDecision worse_than_followed = decide(left(high, low, middle), result);
+  EXPECT_FALSE(worse_than_followed.kept());
+  EXPECT_EQ(chosen_model(result, worse_than_followed).rate_hz, 2.0) << "that of C'";
+  const LoopDecision worse_than_both = decide(left(low, middle, high), result);
+  EXPECT_FALSE(worse_than_both.kept());
+  EXPECT_STREQ(worse_than_both.model_of, "C");
+}
+
+TEST(LoopDecisionTest, AnIntervalWithNoneInItIsSaid) {
+  const LoopDecision sut =
+      decide(left({3.0, 3.0, 3.0}, {2.0, 2.0, 2.0}, {1.0, 2.9, 1.0}), with_finding(kBody));
+  EXPECT_TRUE(sut.kept());
+  EXPECT_FALSE(sut.certain());
+}
+
+TEST(LoopDecisionTest, WhatTheMotorDoesAboutTheDriveIsJudgedByTheTracking) {
+  const Conditions more_force = left({1.0, 1.1, 0.9}, {1.0, 1.1, 0.9}, {2.0, 2.1, 1.9});
+  EXPECT_FALSE(decide(more_force, with_finding(kBody)).kept());
+  const LoopDecision sut = decide(more_force, with_finding(kDrive));
+  EXPECT_EQ(sut.measure, kRmsError);
+  EXPECT_TRUE(sut.kept());
+}
+
+TEST(LoopDecisionTest, WithoutAnAugmentedModelNothingIsKept) {
+  EXPECT_FALSE(
+      decide(left({3.0, 3.0, 3.0}, {2.0, 2.0, 2.0}, {1.0, 1.0, 1.0}), with_finding(kBody, false))
+          .kept());
+}
+
 }  // namespace
 }  // namespace stillhand::close_the_loop

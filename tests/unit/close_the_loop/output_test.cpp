@@ -48,10 +48,11 @@ LoopRecord made() {
   round.verdict.body.noise_floor.rmse = 0.5;
   round.verdict.body.final_error.rmse = 1.0;
   round.augmented = true;
-  round.kept = true;
+  round.better = true;
   round.outcome = "kept";
   result.rounds = {round};
   record.conditions = own_trials(result);
+  record.decision = decide(record.conditions, result);
   return record;
 }
 
@@ -182,16 +183,16 @@ TEST(OutputTest, AVerdictIsRightWhenItNamesKindChannelAndPlace) {
   EXPECT_TRUE(sut.right()) << "a part of the body";
 }
 
-// A fall of the error by a fifth: sqrt(1/0.8^2 - 1) = 0.75 of the noise floor, here 0.5 N.
 TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
   LoopRecord sut = made();
+  sut.result.rounds[0].verdict.body.detection_limit = 0.375;
   sut.truth = Truth{"delayed_reflex", "", "shoulder", "", 1.0, {}};
   EXPECT_FALSE(sut.right()) << "a kind of the catalogue is named";
   const std::string named = sut.result.rounds[0].verdict.findings[0].kind;
   sut.result.rounds[0].verdict.findings[0].kind = "free_form";
   EXPECT_TRUE(sut.right()) << "a shape without a name is right";
   sut.result.rounds[0].verdict.findings[0].kind = named;
-  EXPECT_NEAR(summary_of(sut)["truth"]["detectable_n"], 0.375, 1e-12);
+  EXPECT_EQ(summary_of(sut)["truth"]["detectable_n"], 0.375);
   sut.result.rounds[0].verdict.findings.clear();
   EXPECT_FALSE(sut.right()) << "large enough to be seen";
   sut.truth->force_n = 0.374;
@@ -202,6 +203,8 @@ TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
   sut.truth->beyond_linear_n = 0.3;
   EXPECT_TRUE(sut.right()) << "a linear model contains the rest";
   sut.truth->place = "drive";
+  sut.result.rounds[0].verdict.drive.emplace();
+  sut.result.rounds[0].verdict.drive->options.least_force_n = 0.2;
   EXPECT_FALSE(sut.right()) << "0.2 N are enough in the drive";
   EXPECT_FALSE((Truth{"tone", "", "hand", "", 0.0, {}}).outside());
   EXPECT_FALSE((Truth{"none", "", "", "", 0.0, {}}).outside());
@@ -213,6 +216,43 @@ TEST(OutputTest, WithoutAnEffectEveryFindingIsAFalseAlarm) {
   EXPECT_FALSE(sut.right());
   sut.result.rounds[0].verdict.findings.clear();
   EXPECT_TRUE(sut.right());
+}
+
+// 1.5 N of force left in each condition of `made`: C+ leaves no less.
+TEST(OutputTest, WhetherCPlusIsKeptIsDecidedOnceForTheWholeSummary) {
+  LoopRecord sut = made();
+  json summary = summary_of(sut);
+  EXPECT_EQ(summary["kept"], false);
+  EXPECT_EQ(summary["decided_on"], "motor");
+  EXPECT_EQ(summary["decision"]["measure"], "force_left_n");
+  EXPECT_EQ(summary["decision"]["C-C+"]["mean_difference"], 0.0);
+  EXPECT_EQ(summary["rounds"][0]["kept"], false);
+  EXPECT_EQ(summary["rounds"][0]["tracks_better"], true);
+  EXPECT_NE(kept_text(sut).find("not kept"), std::string::npos);
+  sut.conditions.at("C+")[0].forces.left_n = 1.25;
+  sut.decision = decide(sut.conditions, sut.result);
+  summary = summary_of(sut);
+  EXPECT_EQ(summary["kept"], true);
+  EXPECT_EQ(summary["decision"]["C-C+"]["mean_difference"], -0.25);
+  EXPECT_EQ(summary["decision"]["model_of"], "C+");
+  EXPECT_EQ(summary["rounds"][0]["kept"], true);
+  EXPECT_EQ(kept_text(sut).find("not kept"), std::string::npos);
+}
+
+TEST(OutputTest, AFindingThatDoesNotCountIsNotTheVerdict) {
+  LoopRecord record = made();
+  auto& findings = record.result.rounds[0].verdict.findings;
+  findings = {finding("tone", "")};
+  findings[0].counts = false;
+  findings[0].explained_n = 0.0625;
+  findings[0].interval95 = {0.03125, 0.09375};
+  const json sut = json::parse(verdict_json(record.result.verdict()));
+  EXPECT_EQ(sut["kind"], "none");
+  EXPECT_EQ(sut["conclusion"], "nothing missing");
+  ASSERT_EQ(sut["findings"].size(), 1u);
+  EXPECT_EQ(sut["findings"][0]["counts"], false);
+  EXPECT_EQ(sut["findings"][0]["force_n"]["value"], 0.0625);
+  EXPECT_EQ(sut["findings"][0]["force_n"]["ci95"], json({0.03125, 0.09375}));
 }
 
 TEST(OutputTest, TheSealedTextIsReadBack) {

@@ -65,6 +65,44 @@ TEST(ReplayTest, AModelOfHalfTheGainTakesHalfAndOneOfTheWrongSignAdds) {
   EXPECT_NEAR(left_by_motor(gain(-kGain), pegged(200.0, 40.0), "f").cut(), -1.0, 0.02);
 }
 
+TEST(ReplayTest, TwoModelsAreJudgedOnTheSameSamples) {
+  const auto record = pegged(200.0, 40.0);
+  const double from_s = settled_after_s(gain(kGain)) + 3.0;
+  const Remaining early = left_by_motor(gain(kGain), record, "f");
+  const Remaining late = left_by_motor(gain(kGain), record, "f", 0.0, from_s);
+  // 37.75 s and 34.75 s of each stretch: three blocks; other samples.
+  EXPECT_EQ(late.left.block_mean_squares.size(), early.left.block_mean_squares.size());
+  EXPECT_NE(late.without.block_mean_squares, early.without.block_mean_squares);
+}
+
+// 20 N/(m/s^2) of at most 2.5 m/s^2: more than the canceller's 25 N at the peaks alone.
+TEST(ReplayTest, TheTimeAtTheLimitsIsCounted) {
+  EXPECT_EQ(left_by_motor(gain(kGain), pegged(200.0, 40.0), "f").limited_share, 0.0);
+  const double share = left_by_motor(gain(20.0), pegged(200.0, 40.0), "f").limited_share;
+  EXPECT_GT(share, 0.0);
+  EXPECT_LT(share, 1.0);
+}
+
+TEST(ReplayTest, RecordsArePooledOverTheirBlocksOrTheirTime) {
+  const Level one{2.0, {}, {4.0, 4.0}};
+  const Level two{1.0, {}, {1.0}};
+  EXPECT_DOUBLE_EQ(pooled({one, two}, {20.0, 10.0}).rms, std::sqrt(3.0));
+  EXPECT_TRUE(pooled({one, two}, {20.0, 10.0}).interval95);
+  const Level brief{1.0, {}, {}};
+  const Level sut = pooled({one, brief}, {20.0, 10.0});
+  EXPECT_DOUBLE_EQ(sut.rms, std::sqrt(3.0)) << "4 for 20 s and 1 for 10 s";
+  EXPECT_FALSE(sut.interval95);
+}
+
+TEST(ReplayTest, WhatAModelExplainsBeyondAnotherIsTheRootOfTheFall) {
+  const Level before{5.0, {}, {25.0, 26.0, 24.0}};
+  const Level after{4.0, {}, {16.0, 17.0, 15.0}};
+  const Level sut = explained_beyond(before, after);
+  EXPECT_DOUBLE_EQ(sut.rms, 3.0);
+  EXPECT_EQ(sut.interval95, (std::pair{3.0, 3.0})) << "it falls by 9 in each block";
+  EXPECT_EQ(explained_beyond(after, before).rms, 0.0);
+}
+
 TEST(ReplayTest, AShortRecordHasNoInterval) {
   const Remaining sut = left_by_motor(gain(kGain), pegged(200.0, 9.0), "f");
   EXPECT_FALSE(sut.without.interval95);
