@@ -156,7 +156,7 @@ std::function<double(double)> Conversion::maps_of(const std::string& channel, bo
   any = !maps.empty();
   return [maps = std::move(maps)](double value) {
     for (const Effect* effect : maps) {
-      value = diagnosis::effect_kind(effect->kind).mapped(*effect, value);
+      value = diagnosis::mapped_in_part(*effect, value);
     }
     return value;
   };
@@ -353,7 +353,7 @@ ConvertedModel Conversion::run(const std::vector<double>& denominator) {
 
 double gain_at_the_end(const Effect& effect, const diagnosis::Signals& signals) {
   std::vector<double> gain(signals.size(), 1.0);
-  diagnosis::effect_kind(effect.kind).gain(effect, signals, gain);
+  diagnosis::gain_in_part(effect, signals, gain);
   const std::size_t from = gain.size() - gain.size() / 10 - 1;
   double sum = 0.0;
   for (std::size_t n = from; n < gain.size(); ++n) sum += gain[n];

@@ -48,7 +48,11 @@ std::optional<Channel> channel_of(std::string_view name) {
   return std::nullopt;
 }
 
-std::vector<double> factors_of(const diagnosis::Effect& effect) { return effect.coefficients; }
+std::vector<double> factors_of(const diagnosis::Effect& effect) {
+  std::vector<double> factors = effect.coefficients;
+  for (double& each : factors) each *= effect.share;
+  return factors;
+}
 
 cancellation::ValueMap table(double low, double high, const std::function<double(double)>& map) {
   return lines(low, (high - low) / kCells, map);

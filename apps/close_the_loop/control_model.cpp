@@ -146,4 +146,19 @@ ConvertedModel to_control_model(const Model& model, const diagnosis::Signals& si
   return Export(model, signals, options).run();
 }
 
+ConvertedModel to_control_model(const diagnosis::CarriedModel& carried,
+                                const diagnosis::Signals& signals, const ControlOptions& options) {
+  ConvertedModel control = to_control_model(carried.in_session, signals, options);
+  for (const diagnosis::LeftOut& left : carried.left_out) {
+    const bool in_session = std::ranges::any_of(
+        carried.in_session.effects,
+        [&](const Effect& effect) { return diagnosis::is_same(effect, left.effect); });
+    if (in_session) continue;
+    const auto& channels = left.effect.channels;
+    control.treatments.push_back({left.effect.kind, false, "not carried: " + left.why,
+                                  channels.empty() ? "" : channels.front()});
+  }
+  return control;
+}
+
 }  // namespace stillhand::close_the_loop

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "services/cancellation/core/control_model.hpp"
-#include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/carried.hpp"
 #include "services/diagnosis/core/signals.hpp"
 
 namespace stillhand::close_the_loop {
@@ -59,6 +59,11 @@ cancellation::HandCompliance average_hand();
 /// @throws stillhand::ConfigError when an error exceeds options.max_error, or a spring inside the
 /// body cannot be carried.
 ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
+                                const ControlOptions& options = {});
+/// What a session goes on with of a carried model, diagnosis DG-58; an effect that it does not
+/// carry is left alone.
+ConvertedModel to_control_model(const diagnosis::CarriedModel& carried,
+                                const diagnosis::Signals& signals,
                                 const ControlOptions& options = {});
 
 }  // namespace stillhand::close_the_loop

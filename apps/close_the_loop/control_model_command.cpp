@@ -58,15 +58,16 @@ std::string summary_of(const ConvertedModel& control) {
 int run(const ControlModelWords& words) {
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.model, words.recording});
-  const diagnosis::Model model =
-      diagnosis::parse_model(recording::read_file(words.model.string()), words.model.string());
+  const diagnosis::CarriedModel carried =
+      diagnosis::parse_carried_model(recording::read_file(words.model.string()), words.model.string());
+  const diagnosis::Model& model = carried.in_session;
   const diagnosis::Measurement whole = measurement::read_measurement(words.recording, words.read);
   const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);
   const diagnosis::Signals signals(factor == 1 ? whole : diagnosis::decimated(whole, factor),
                                    model.inputs, model.output);
   ControlOptions options;
   options.lead_s = 1e-3 * words.lead_ms;
-  ConvertedModel control = to_control_model(model, signals, options);
+  ConvertedModel control = to_control_model(carried, signals, options);
   if (!words.as_it_is) control.model.adapts = average_hand();
   cancellation::require_sound(
       control.model,

@@ -210,7 +210,7 @@ double input_delay_s(const diagnosis::Model& model) {
   for (const Effect& effect : model.effects) {
     const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
     if (std::holds_alternative<diagnosis::control::InputDelay>(kind.body_role(effect))) {
-      delay_s += kind.input_delay_s(effect, 0.0);
+      delay_s += diagnosis::delay_in_part(effect, 0.0);
     }
   }
   return delay_s;

@@ -66,11 +66,11 @@ struct Verdict {
   [[nodiscard]] std::string kind() const {
     return strongest() == nullptr ? std::string("none") : strongest()->kind;
   }
-  /// Of the body, with its effects if one of them counts: what the canceller is given, and what
-  /// predicts.
+  /// Of the body, with its effects if one of them counts.
   [[nodiscard]] const diagnosis::Model& model() const {
     return body.has_effect_that_counts() ? body.model : body.baseline.model;
   }
+  /// The part of it that predicts other recordings and that the canceller is given.
   [[nodiscard]] diagnosis::CarriedModel carried() const {
     return body.effects.empty() || body.has_effect_that_counts()
                ? body.carried

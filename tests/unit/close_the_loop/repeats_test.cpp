@@ -18,7 +18,7 @@ session::ProtocolOptions short_protocol() {
 }
 
 // About what the body feeds through at rest, not followed and followed.
-LoopResult made(bool augmented) {
+LoopResult looped(bool augmented) {
   LoopResult result;
   result.paper_model.control = {1000.0, {-3.2, 0.0}, {1.0, 0.0}};
   result.followed_model = cancellation::control_model(result.paper_model.control);
@@ -35,7 +35,7 @@ Conditions run(const LoopResult& result, std::int64_t repeats, unsigned threads)
 }
 
 TEST(RepeatsTest, TheResultsDoNotDependOnTheThreads) {
-  const LoopResult result = made(true);
+  const LoopResult result = looped(true);
   const Conditions one = run(result, 3, 1);
   const Conditions four = run(result, 3, 4);
   for (const char* label : kConditions) {
@@ -51,7 +51,7 @@ TEST(RepeatsTest, TheResultsDoNotDependOnTheThreads) {
 }
 
 TEST(RepeatsTest, EachRepeatHasDrawsOfItsOwn) {
-  const Conditions sut = run(made(true), 3, 2);
+  const Conditions sut = run(looped(true), 3, 2);
   for (const char* label : kConditions) {
     const auto& runs = sut.at(label);
     ASSERT_EQ(runs.size(), 3u);
@@ -60,12 +60,12 @@ TEST(RepeatsTest, EachRepeatHasDrawsOfItsOwn) {
     EXPECT_EQ(runs[0].label, label);
   }
   // More repeats leave the first ones as they are.
-  EXPECT_EQ(run(made(true), 1, 1).at("C")[0].metrics.rms_error_mm,
+  EXPECT_EQ(run(looped(true), 1, 1).at("C")[0].metrics.rms_error_mm,
             sut.at("C")[0].metrics.rms_error_mm);
 }
 
 TEST(RepeatsTest, TheMotorActsInTheCancellingConditionsAlone) {
-  const Conditions sut = run(made(true), 1, 1);
+  const Conditions sut = run(looped(true), 1, 1);
   EXPECT_EQ(sut.at("A")[0].forces.motor_n, 0.0);
   EXPECT_EQ(sut.at("B")[0].forces.motor_n, 0.0);
   for (const char* label : kCancelling) {
@@ -77,7 +77,7 @@ TEST(RepeatsTest, TheMotorActsInTheCancellingConditionsAlone) {
 
 // With one model for all, everything that a repeat draws is shared: the trials agree to the bit.
 TEST(RepeatsTest, TheSameModelGivesTheSameTrial) {
-  LoopResult result = made(true);
+  LoopResult result = looped(true);
   result.followed_model.adapts.reset();
   result.rounds[0].model = result.followed_model;
   const Conditions sut = run(result, 2, 2);
@@ -91,7 +91,7 @@ TEST(RepeatsTest, TheSameModelGivesTheSameTrial) {
 }
 
 TEST(RepeatsTest, WithoutAnAugmentedModelCPlusIsCPrime) {
-  const Conditions sut = run(made(false), 2, 1);
+  const Conditions sut = run(looped(false), 2, 1);
   for (std::size_t r = 0; r < 2; ++r) {
     EXPECT_EQ(sut.at("C+")[r].label, "C+");
     EXPECT_EQ(sut.at("C+")[r].metrics.rms_error_mm, sut.at("C'")[r].metrics.rms_error_mm);
@@ -100,7 +100,7 @@ TEST(RepeatsTest, WithoutAnAugmentedModelCPlusIsCPrime) {
 
 TEST(RepeatsTest, AnInterruptEndsThem) {
   RepeatOptions options{50, 1, [](double) { return false; }};
-  EXPECT_THROW(run_repeats(made(true), short_protocol(), {}, options), diagnosis::Interrupted);
+  EXPECT_THROW(run_repeats(looped(true), short_protocol(), {}, options), diagnosis::Interrupted);
 }
 
 }  // namespace
