@@ -58,8 +58,8 @@ std::string summary_of(const ConvertedModel& control) {
 int run(const ControlModelWords& words) {
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.model, words.recording});
-  const diagnosis::CarriedModel carried =
-      diagnosis::parse_carried_model(recording::read_file(words.model.string()), words.model.string());
+  const diagnosis::CarriedModel carried = diagnosis::parse_carried_model(
+      recording::read_file(words.model.string()), words.model.string());
   const diagnosis::Model& model = carried.in_session;
   const diagnosis::Measurement whole = measurement::read_measurement(words.recording, words.read);
   const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);

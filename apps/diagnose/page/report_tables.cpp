@@ -152,8 +152,9 @@ Table effect_table(const Diagnosis& found) {
       "equally "
       "well; the simplest was taken. Carried: what the saved model, and so `predict` and the "
       "motor, has of it.";
-  table.header = {"effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",
-                  "p",      "ties", "carried"};
+  table.header = {
+      "effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",
+      "p",      "ties", "carried"};
   table.align = {Align::kLeft,  Align::kLeft, Align::kLeft, Align::kRight,
                  Align::kRight, Align::kLeft, Align::kLeft};
   for (const FoundEffect& effect : found.effects) {

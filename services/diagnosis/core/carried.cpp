@@ -95,17 +95,20 @@ class Carrying {
  public:
   // @param signals  bursts weigh nothing
   // @param noise    [samples] what the model of the verdict leaves, weighted
-  Carrying(const Signals& signals, const Blocks& blocks, const Eigen::VectorXd& noise)
+  // @param rms      [unit of the output] of the noise
+  Carrying(const Model& found, const Signals& signals, const Blocks& blocks,
+           const Eigen::VectorXd& noise, double rms)
       : signals_(signals),
         blocks_(blocks),
+        paths_(found, signals, rms),
         parts_(by_part(blocks, signals)),
         apart_(signals.restarted(borders_of(parts_)).whitened(whitening_taps(noise, signals))),
         with_pasts_(apart_.with_pasts()),
-        weight_(std::max(sum_of(apart_.weight()), 1.0)) {}
+        weight_(std::max(sum_of(signals_.weight()), 1.0)) {}
 
   // Each part by a fit to the others, from the past that `predict` assumes.
   [[nodiscard]] OutOfParts out_of_parts(const Model& model) const {
-    OutOfParts out{true, Eigen::VectorXd::Zero(std::ssize(apart_.weight()))};
+    OutOfParts out{true, Eigen::VectorXd::Zero(std::ssize(signals_.weight()))};
     for (std::size_t part = 0; part < parts_.folds; ++part) {
       const FreeRun run = free_run(fitted_without(part, model), with_pasts_);
       if (!run.finite) return {};
@@ -113,7 +116,7 @@ class Carrying {
       for (std::size_t n = 0; n < prediction.size(); ++n) {
         if (parts_.fold_of(n / parts_.length) != part) continue;
         out.residual[static_cast<Eigen::Index>(n)] =
-            apart_.weight()[n] * (apart_.output().values[n] - prediction[n]);
+            signals_.weight()[n] * (apart_.output().values[n] - prediction[n]);
       }
     }
     return out;
@@ -129,7 +132,7 @@ class Carrying {
     Eigen::MatrixXd columns(without.residual.size(), 2);
     columns << without.residual, without.residual - with.residual;
     const Share plain = share_of(columns.col(0), columns.col(1), parts_);
-    apart_.whiten(columns, apart_.weight());
+    apart_.whiten(columns, signals_.weight());
     const Share behind = share_of(columns.col(0), columns.col(1), parts_);
     return behind.std_error < plain.std_error ? behind : plain;
   }
@@ -179,8 +182,16 @@ class Carrying {
     return false;
   }
 
-  // From terms that weigh nothing, or from the model's own numbers where that ends clearly lower:
-  // from nothing a fit may stop short.
+  [[nodiscard]] Signals without_part(std::size_t part) const {
+    std::vector<double> weight = signals_.weight();
+    for (std::size_t n = 0; n < weight.size(); ++n) {
+      if (parts_.fold_of(n / parts_.length) == part) weight[n] = 0.0;
+    }
+    return signals_.weighed(std::move(weight));
+  }
+
+  // With its ranges, from terms that weigh nothing, or from the model's own numbers where that ends
+  // clearly lower: from nothing a fit may stop short.
   [[nodiscard]] Model fitted_without(std::size_t part, const Model& model) const {
     FitOptions options;
     options.max_iterations = kCarryIterations;
@@ -190,16 +201,20 @@ class Carrying {
     Model own = model;
     const double from_nothing = fit(bare, signals_, parts_, options).rmse;
     const double from_own = fit(own, signals_, parts_, options).rmse;
-    return from_own < kClearlyLower * from_nothing ? own : bare;
+    Model& best = from_own < kClearlyLower * from_nothing ? own : bare;
+    note_seen(best, without_part(part));
+    return best;
   }
 
   [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
+    if (passes_through_body(model)) return &paths_;
     return prior_ != nullptr && has_body_of_baseline(model, signals_) ? prior_ : nullptr;
   }
 
   const Signals& signals_;
   const Blocks& blocks_;
   const ResponsePrior* prior_ = nullptr;
+  const ResponsePrior paths_;
   const Blocks parts_;
   const Signals apart_;  // every part starts as a recording does
   const Signals with_pasts_;
@@ -255,7 +270,8 @@ Model shared_part(const Model& found, const std::vector<double>& certainty,
 // @param priors  from narrow to wide; they stay as long as `carrying`
 Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying& carrying,
                 const std::vector<ResponsePrior>& priors) {
-  Model plain = fitted ? shared : carrying.refitted(shared, baseline);
+  const bool as_found = fitted && !passes_through_body(shared);
+  Model plain = as_found ? shared : carrying.refitted(shared, baseline);
   if (priors.empty()) return plain;
   const double error = carrying.rmse(plain);
   for (const ResponsePrior& prior : priors) {
@@ -385,10 +401,10 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     const Signals masked = bursts_masked(found, signals);
     FreeRun run;
     const Eigen::VectorXd noise = residual_of(found, masked, run);
-    Carrying carrying(masked, blocks, noise);
     const std::vector<double> certainty = certainty_of(found, signals, blocks);
     const Model shared = shared_part(found, certainty, carried.left_out);
     const double rms = noise.norm() / std::sqrt(std::max(sum_of(masked.weight()), 1.0));
+    Carrying carrying(found, masked, blocks, noise, rms);
     const std::vector<ResponsePrior> priors =
         priors_of(shared, baseline, rms, carried.bands, signals);
     carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);

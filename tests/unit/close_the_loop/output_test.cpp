@@ -33,7 +33,7 @@ Finding finding(const char* kind, const char* channel) {
   return {kind, channel, "body", 0.5, 2.0, 1.0, "it is there"};
 }
 
-LoopRecord made() {
+LoopRecord loop_record() {
   LoopRecord record;
   LoopResult& result = record.result;
   result.paper_model.fit = {50.0, {1.0, 2.0}, {1.0, -0.5}};
@@ -59,7 +59,7 @@ LoopRecord made() {
 json summary_of(const LoopRecord& record) { return json::parse(summary_json(record)); }
 
 TEST(OutputTest, AVerdictIsItsStrongestFinding) {
-  LoopRecord record = made();
+  LoopRecord record = loop_record();
   const json sut = json::parse(verdict_json(record.result.verdict()));
   EXPECT_EQ(sut["kind"], "coulomb_friction");
   EXPECT_EQ(sut["channel"], "omega");
@@ -80,7 +80,7 @@ TEST(OutputTest, AVerdictIsItsStrongestFinding) {
 }
 
 TEST(OutputTest, TheSummaryHasEveryConditionAndItsRestoration) {
-  const json sut = summary_of(made());
+  const json sut = summary_of(loop_record());
   ASSERT_EQ(sut["conditions"].size(), 5u);
   EXPECT_EQ(sut["conditions"]["B"]["rms_error_mm"]["mean"], 10.0);
   EXPECT_EQ(sut["conditions"]["C+"]["rms_error_mm"]["per_subject"], json({5.5}));
@@ -96,14 +96,14 @@ TEST(OutputTest, TheSummaryHasEveryConditionAndItsRestoration) {
   EXPECT_EQ(sut["restoration_c_plus"]["crossover"], 1.0);
   EXPECT_EQ(sut["paired"]["C-C'"]["rms_error_mm"]["mean_difference"], -0.75);
   EXPECT_EQ(sut["paired"]["C'-C+"]["rms_error_mm"]["mean_difference"], -0.75);
-  EXPECT_EQ(sut["verdict"], json::parse(verdict_json(made().result.verdict())));
+  EXPECT_EQ(sut["verdict"], json::parse(verdict_json(loop_record().result.verdict())));
   EXPECT_EQ(sut["force_prediction"]["after_over_noise"], 2.0);
   EXPECT_EQ(sut["identification"]["order"], 1);
 }
 
 // A and B run with the motor off.
 TEST(OutputTest, OnlyTrialsThatCancelHaveAShareAndADelay) {
-  const json sut = summary_of(made())["conditions"];
+  const json sut = summary_of(loop_record())["conditions"];
   for (const char* label : {"A", "B"}) {
     EXPECT_TRUE(sut[label]["cancelled_share"].is_null()) << label;
     EXPECT_FALSE(sut[label].contains("counterforce_delay_ms")) << label;
@@ -115,7 +115,7 @@ TEST(OutputTest, OnlyTrialsThatCancelHaveAShareAndADelay) {
 }
 
 TEST(OutputTest, WhatCouldNotBeComputedIsNull) {
-  LoopRecord record = made();
+  LoopRecord record = loop_record();
   record.result.trials[2].metrics.crossover_hz = std::numeric_limits<double>::quiet_NaN();
   // Where the motion costs nothing, there is nothing to restore.
   record.result.trials[1].metrics.rms_error_mm = 10.0;
@@ -128,7 +128,7 @@ TEST(OutputTest, WhatCouldNotBeComputedIsNull) {
 }
 
 TEST(OutputTest, ARoundShowsItsLastWeightsAndWhatItDid) {
-  LoopRecord record = made();
+  LoopRecord record = loop_record();
   const json sut = summary_of(record)["rounds"][0];
   EXPECT_EQ(sut["weights"], json({0.9, -0.1}));
   EXPECT_EQ(sut["treatments"][0]["cancelled"], true);
@@ -148,7 +148,7 @@ TEST(OutputTest, ARoundShowsItsLastWeightsAndWhatItDid) {
 }
 
 TEST(OutputTest, TheBestRoundSpeaksForTheLoop) {
-  LoopRecord record = made();
+  LoopRecord record = loop_record();
   record.result.rounds.push_back(record.result.rounds[0]);
   record.result.rounds[1].trial.metrics.rms_error_mm = 4.75;
   record.result.rounds[1].verdict.findings = {finding("delay", "")};
@@ -161,7 +161,7 @@ TEST(OutputTest, TheBestRoundSpeaksForTheLoop) {
 }
 
 TEST(OutputTest, AVerdictIsRightWhenItNamesKindChannelAndPlace) {
-  LoopRecord sut = made();
+  LoopRecord sut = loop_record();
   EXPECT_FALSE(sut.right()) << "nothing was sealed";
   EXPECT_TRUE(summary_of(sut)["truth"].is_null());
   Finding& strongest = sut.result.rounds[0].verdict.findings[0];
@@ -184,7 +184,7 @@ TEST(OutputTest, AVerdictIsRightWhenItNamesKindChannelAndPlace) {
 }
 
 TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
-  LoopRecord sut = made();
+  LoopRecord sut = loop_record();
   sut.result.rounds[0].verdict.body.detection_limit = 0.375;
   sut.truth = Truth{"delayed_reflex", "", "shoulder", "", 1.0, {}};
   EXPECT_FALSE(sut.right()) << "a kind of the catalogue is named";
@@ -211,7 +211,7 @@ TEST(OutputTest, AnEffectOutsideOfTheKindsIsBestLeftUnexplained) {
 }
 
 TEST(OutputTest, WithoutAnEffectEveryFindingIsAFalseAlarm) {
-  LoopRecord sut = made();
+  LoopRecord sut = loop_record();
   sut.truth = Truth{"none", "", "", "", 0.0, {}};
   EXPECT_FALSE(sut.right());
   sut.result.rounds[0].verdict.findings.clear();
@@ -220,7 +220,7 @@ TEST(OutputTest, WithoutAnEffectEveryFindingIsAFalseAlarm) {
 
 // 1.5 N of force left in each condition of `made`: C+ leaves no less.
 TEST(OutputTest, WhetherCPlusIsKeptIsDecidedOnceForTheWholeSummary) {
-  LoopRecord sut = made();
+  LoopRecord sut = loop_record();
   json summary = summary_of(sut);
   EXPECT_EQ(summary["kept"], false);
   EXPECT_EQ(summary["decided_on"], "motor");
@@ -240,7 +240,7 @@ TEST(OutputTest, WhetherCPlusIsKeptIsDecidedOnceForTheWholeSummary) {
 }
 
 TEST(OutputTest, AFindingThatDoesNotCountIsNotTheVerdict) {
-  LoopRecord record = made();
+  LoopRecord record = loop_record();
   auto& findings = record.result.rounds[0].verdict.findings;
   findings = {finding("tone", "")};
   findings[0].counts = false;

@@ -38,7 +38,7 @@ class Compressed {
       : model_(model), signals_(signals), blocks_(blocks), options_(options) {
     start_ = packed(model);
     Eigen::MatrixXd gram =
-        options.at_start != nullptr ? total(*options.at_start, model.body) : gram_at(start_);
+        options.at_start != nullptr ? total(*options.at_start, model) : gram_at(start_);
     const bool finite = options.at_start != nullptr || accepted_->finite();
     before_ = finite ? squared_error(gram) : kNotFinite;
     if (const double step = offset_step(gram); step != 0.0) {
@@ -126,9 +126,9 @@ class Compressed {
     return most ? product / gram(0, 0) : 0.0;
   }
 
-  [[nodiscard]] Eigen::MatrixXd total(const Grams& grams, const Body& body) const {
+  [[nodiscard]] Eigen::MatrixXd total(const Grams& grams, const Model& model) const {
     Eigen::MatrixXd gram = grams.total(blocks_, options_.without_fold);
-    if (options_.prior != nullptr) options_.prior->add(body, gram);
+    if (options_.prior != nullptr) options_.prior->add(model, gram);
     return gram;
   }
 
@@ -147,7 +147,7 @@ class Compressed {
       }
       tried_->error += residual.segment(n, std::min(length, residual.size() - n)).squaredNorm();
     }
-    if (options_.prior != nullptr) tried_->error += options_.prior->error(model_.body);
+    if (options_.prior != nullptr) tried_->error += options_.prior->error(model_);
     return *tried_;
   }
 
@@ -167,7 +167,7 @@ class Compressed {
     const Point& point = with_columns(numbers);
     if (point.grams) {
       unpack(numbers, model_);
-      return total(*point.grams, model_.body);
+      return total(*point.grams, model_);
     }
     const Eigen::Index size = numbers.size() + 1;
     return Eigen::MatrixXd::Identity(size, size);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/diagnosis/core/fitting/response_prior.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+
+#include "services/diagnosis/core/model/effect_kind.hpp"
 
 namespace stillhand::diagnosis {
 namespace {
@@ -36,6 +40,12 @@ Complex step_of(double frequency_hz, double rate_hz) {
 // Evenly over the band.
 double line_in(const ExcitedBand& band, std::size_t line) {
   return band.low_hz + static_cast<double>(line) / (kLines - 1) * (band.high_hz - band.low_hz);
+}
+
+// A path of one channel through the body's poles.
+bool is_path(const Effect& effect, const Body& body) {
+  return effect_kind(effect.kind).through_body(effect) && effect.channels.size() == 1 &&
+         effect.coefficients.size() == body.order() + 1;
 }
 
 // Root mean square over lines within the band.
@@ -84,15 +94,86 @@ ResponsePrior::ResponsePrior(const Body& body, const std::vector<ExcitedBand>& b
   }
 }
 
-double ResponsePrior::error(const Body& body) const {
+ResponsePrior::ResponsePrior(const Model& model, const Signals& signals, double noise) {
+  for (const Effect& effect : model.effects) {
+    if (!is_path(effect, model.body)) continue;
+    const std::string& channel = effect.channels.front();
+    const Signal& signal = signals.at(channel);
+    const ExcitedBand band = excited_band(channel, signal.values, signal.mean, signals.rate_hz());
+    if (!(band.low_hz < band.high_hz)) continue;
+    const Body path{{difference_basis(effect.coefficients)}, model.body.denominator};
+    const double likely = gain_in_band(path, 0, band, signals.rate_hz());
+    if (!(likely > 0.0)) continue;
+    for (std::size_t i = 0; i < kLines; ++i) {
+      const double at_hz = frequency_of(i, band, signals.rate_hz());
+      if (at_hz <= band.high_hz) continue;
+      paths_.push_back({channel, step_of(at_hz, signals.rate_hz()), noise / likely});
+    }
+  }
+}
+
+template <class Visit>
+void ResponsePrior::visit_paths(const Model& model, const Visit& line) const {
+  Eigen::Index at = 1 + static_cast<Eigen::Index>(model.body.order());
+  for (const auto& numerator : model.body.numerators) at += std::ssize(numerator);
+  for (const Effect& effect : model.effects) {
+    if (!effect.is_whole()) continue;
+    if (is_path(effect, model.body)) {
+      for (const PathLine& each : paths_) {
+        if (each.channel == effect.channels.front()) line(effect.coefficients, at, each);
+      }
+    }
+    at += std::ssize(effect.coefficients);
+    at += std::ranges::count(effect.parameters, true, &Parameter::fitted);
+  }
+}
+
+double ResponsePrior::error(const Model& model) const {
   double sum = 0.0;
   for (const Line& line : lines_) {
-    sum += std::norm(line.weight * (line.response - response_at(body, line.input, line.step)));
+    sum +=
+        std::norm(line.weight * (line.response - response_at(model.body, line.input, line.step)));
   }
+  visit_paths(model, [&](const auto& coefficients, Eigen::Index, const PathLine& line) {
+    sum += std::norm(line.weight * polynomial(coefficients, 1.0 - line.step) /
+                     polynomial(model.body.denominator, line.step));
+  });
   return sum;
 }
 
-void ResponsePrior::add(const Body& body, Eigen::MatrixXd& gram) const {
+void ResponsePrior::add(const Model& model, Eigen::MatrixXd& gram) const {
+  add_lines_of_body(model.body, gram);
+  add_lines_of_paths(model, gram);
+}
+
+// The response of a path is C / A with C = sum_i c_i D^i; 0 is assumed of it.
+void ResponsePrior::add_lines_of_paths(const Model& model, Eigen::MatrixXd& gram) const {
+  Eigen::VectorXcd row(gram.cols());
+  const Eigen::Index denominators =
+      1 + std::accumulate(
+              model.body.numerators.begin(), model.body.numerators.end(), Eigen::Index{0},
+              [](Eigen::Index sum, const auto& numerator) { return sum + std::ssize(numerator); });
+  visit_paths(model, [&](const auto& coefficients, Eigen::Index at, const PathLine& line) {
+    row.setZero();
+    const Complex difference = 1.0 - line.step;
+    const Complex denominator = polynomial(model.body.denominator, line.step);
+    const Complex response = polynomial(coefficients, difference) / denominator;
+    Complex power = line.weight / denominator;
+    for (std::size_t i = 0; i < coefficients.size(); ++i) {
+      row[at + static_cast<Eigen::Index>(i)] = power;
+      power *= difference;
+    }
+    power = -line.weight * line.step * response / denominator;
+    for (std::size_t j = 0; j < model.body.order(); ++j) {
+      row[denominators + static_cast<Eigen::Index>(j)] = power;
+      power *= difference;
+    }
+    row[gram.cols() - 1] = -line.weight * response;
+    gram += (row.conjugate() * row.transpose()).real();
+  });
+}
+
+void ResponsePrior::add_lines_of_body(const Body& body, Eigen::MatrixXd& gram) const {
   const Eigen::Index last = gram.cols() - 1;
   Eigen::VectorXcd row(gram.cols());
   for (const Line& line : lines_) {

@@ -4,10 +4,12 @@
 #include <Eigen/Dense>
 #include <complex>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "services/diagnosis/core/excited_band.hpp"
 #include "services/diagnosis/core/model/model.hpp"
+#include "services/diagnosis/core/signals.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -28,13 +30,18 @@ class ResponsePrior {
   ResponsePrior(const Body& body, const std::vector<ExcitedBand>& bands, double rate_hz,
                 double noise, double spread);
 
+  /// What is assumed of paths from other channels through the body, Eq. DG-67: outside of the band
+  /// of its channel the response is 0, with the standard deviation of its RMS within the band.
+  /// @param model  fitted, with the paths
+  ResponsePrior(const Model& model, const Signals& signals, double noise);
+
   /// True where the input excites every frequency: no terms.
-  [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
-  /// Sum of squares [(unit of the output)^2] of a body with as many inputs.
-  [[nodiscard]] double error(const Body& body) const;
-  /// Adds products of the terms' columns [jacobian | residual], as in Grams, of the body's numbers
+  [[nodiscard]] bool empty() const noexcept { return lines_.empty() && paths_.empty(); }
+  /// Sum of squares [(unit of the output)^2] of a model with as many inputs.
+  [[nodiscard]] double error(const Model& model) const;
+  /// Adds products of the terms' columns [jacobian | residual], as in Grams, of the model's numbers
   /// in the order of packed().
-  void add(const Body& body, Eigen::MatrixXd& gram) const;
+  void add(const Model& model, Eigen::MatrixXd& gram) const;
 
  private:
   struct Line {
@@ -43,7 +50,19 @@ class ResponsePrior {
     std::complex<double> response;  ///< of the body that is assumed
     double weight;                  ///< [unit of the output / unit of the response]
   };
+  struct PathLine {
+    std::string channel;
+    std::complex<double> step;
+    double weight;
+  };
+  // Calls line(coefficients of the path, place of the first among the numbers, line).
+  template <class Visit>
+  void visit_paths(const Model& model, const Visit& line) const;
+  void add_lines_of_body(const Body& body, Eigen::MatrixXd& gram) const;
+  void add_lines_of_paths(const Model& model, Eigen::MatrixXd& gram) const;
+
   std::vector<Line> lines_;
+  std::vector<PathLine> paths_;
 };
 
 }  // namespace stillhand::diagnosis
