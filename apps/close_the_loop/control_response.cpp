@@ -26,12 +26,11 @@ using cancellation::ControlModelFilter;
 
 constexpr Eigen::Index kPoints = 241;  // of a response, each with a real and an imaginary part
 constexpr double kOuterWeight = 0.2;
-// At 1 kHz, 36 Hz: a body without poles cannot lead; one without this pole would amplify noise.
+// At 1 kHz, 36 Hz: a body without poles cannot lead.
 constexpr double kPoleOfStatic = 0.8;
 
 // Eq. CL-1: z' = z^(rate/1000 Hz).
 std::vector<double> carried_poles(const std::vector<double>& denominator, double rate_hz) {
-  if (denominator.size() < 2) return {1.0, -kPoleOfStatic};
   const double share = rate_hz / kControlRateHz;
   const std::vector<double> reversed(denominator.rbegin(), denominator.rend());
   std::vector<Complex> poles = identification::roots(reversed);
@@ -176,6 +175,7 @@ std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& m
   };
   std::vector<std::vector<double>> all{
       with_modes(carried_poles(model.body.denominator, model.rate_hz))};
+  if (model.body.order() == 0) all.push_back(with_modes({1.0, -kPoleOfStatic}));
   const auto add_fitted = [&](const identification::DifferenceModel& to_fit, const auto& extended) {
     try {
       all.push_back(extended(identification::to_control_rate(to_fit).model.denominator));
