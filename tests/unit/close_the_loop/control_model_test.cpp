@@ -107,21 +107,26 @@ TEST(ControlModelTest, WithALeadItComesSooner) {
   EXPECT_GT(difference(model, control.model, motion), 0.1);
 }
 
+// z: the response of two_modes() in units of its threshold; phi takes some of the force off again.
+Effect play_inside() {
+  constexpr std::size_t kOrder = 4;
+  Effect spring{
+      "dead_zone", "play inside the body", {}, {}, std::vector<double>(3 * kOrder + 2, 0.0)};
+  const std::vector<double> n = diagnosis::difference_basis({-0.02, -0.01, 0.01, 0.015, -0.02});
+  const std::vector<double> e = diagnosis::difference_basis({0.0, -0.05, 0.02, 0.01, 0.0});
+  for (std::size_t i = 0; i <= kOrder; ++i) {
+    spring.coefficients[i] = e[i];
+    spring.coefficients[kOrder + 1 + i] = n[i];
+  }
+  spring.coefficients[2 * kOrder + 2] = -0.02;
+  return spring;
+}
+
 TEST(ControlModelTest, ASpringInsideTheBodyGivesTheSameForce) {
   const Motion motion;
   diagnosis::Model model = two_modes();
-  const std::size_t p = model.body.order();
-  Effect spring{"dead_zone", "play inside the body", {}, {}, std::vector<double>(3 * p + 2, 0.0)};
-  // z: the body's response in units of its threshold; phi takes some of the force off again.
-  const std::vector<double> n = diagnosis::difference_basis({-0.02, -0.01, 0.01, 0.015, -0.02});
-  const std::vector<double> e = diagnosis::difference_basis({0.0, -0.05, 0.02, 0.01, 0.0});
-  for (std::size_t i = 0; i <= p; ++i) {
-    spring.coefficients[i] = e[i];
-    spring.coefficients[p + 1 + i] = n[i];
-  }
-  spring.coefficients[2 * p + 2] = -0.02;
   const diagnosis::Model linear = model;
-  model.effects.push_back(spring);
+  model.effects.push_back(play_inside());
   const ConvertedModel control = to_control_model(model, motion.signals());
   ASSERT_TRUE(control.model.loop);
   EXPECT_LT(difference(model, control.model, motion), 0.02);
@@ -203,17 +208,12 @@ TEST(ControlModelTest, APathThroughTheBodyBecomesAnInputOfItsOwn) {
 TEST(ControlModelTest, AModelWhoseSpringCantBeCarriedIsRefused) {
   const Motion motion;
   diagnosis::Model model = two_modes();
-  const Effect spring{"dead_zone",
-                      "play of the output",
-                      {},
-                      {{"threshold", "N", 0.2, 0.0, 9.0}},
-                      {-1e-4, 0.0, 0.0, 0.0}};
-  model.effects = {spring};
+  model.effects = {play_inside()};
   EXPECT_TRUE(to_control_model(model, motion.signals()).treatments.front().cancelled);
   ControlOptions strict;
   strict.max_difference = 1e-9;
   EXPECT_THROW(to_control_model(model, motion.signals(), strict), ConfigError);
-  model.effects.push_back(spring);
+  model.effects.push_back(play_inside());
   EXPECT_THROW(to_control_model(model, motion.signals()), ConfigError) << "it holds one";
 }
 
