@@ -164,8 +164,11 @@ class Chain:
         return row
 
 
-def matches(right, effect):
-    return any(kind == effect["kind"] and channel in (None, effect["channel"]) for kind, channel in right)
+def matches(effect, named):
+    """A free form of the right channel is right too: of a shape without a name nothing more can be said."""
+    if named["kind"] == "free_form":
+        return named["channel"] in (effect.get("channel") or "").split("*")
+    return any(kind == named["kind"] and channel in (None, named["channel"]) for kind, channel in effect["right"])
 
 
 def judged(truth, named, too_small):
@@ -175,8 +178,8 @@ def judged(truth, named, too_small):
         return "false alarm" if named else "quiet"
     if not named:
         return "quiet" if too_small else "missed"
-    hit = [any(matches(effect["right"], each) for each in named) for effect in truth]
-    others = [each for each in named if not any(matches(effect["right"], each) for effect in truth)]
+    hit = [any(matches(effect, each) for each in named) for effect in truth]
+    others = [each for each in named if not any(matches(effect, each) for effect in truth)]
     return "all" if all(hit) and not others else "part" if any(hit) else "wrong"
 
 
