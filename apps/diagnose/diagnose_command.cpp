@@ -13,6 +13,7 @@
 #include "apps/measurement/read_options.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
+#include "apps/report/provenance.hpp"
 #include "apps/report/result_files.hpp"
 #include "apps/report/staged_folder.hpp"
 #include "services/contract/config_error.hpp"
@@ -77,9 +78,16 @@ int run(const Words& words) {
   };
   const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
   progress.finish();
-  if (files.wants("--save"))
-    files.set("--save", diagnosis::model_json(result.model, result.carried));
-  if (files.wants("--json")) files.set("--json", diagnosis_json(result));
+  const report::Provenance origin =
+      report::provenance_of_this_call({words.recordings.begin(), words.recordings.end()});
+  if (files.wants("--save")) {
+    const std::string text =
+        diagnosis::model_json(result.model, result.carried, result.baseline.model);
+    files.set("--save", report::with_provenance(text, origin));
+  }
+  if (files.wants("--json")) {
+    files.set("--json", report::with_provenance(diagnosis_json(result), origin));
+  }
   if (folder) write_report(result, measurement, words.recordings, *folder);
   files.publish();
   std::fputs(diagnosis_table(result).c_str(), stdout);

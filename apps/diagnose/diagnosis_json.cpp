@@ -3,6 +3,7 @@
 
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -23,28 +24,31 @@ std::string inputs_of(const Diagnosis& diagnosis) {
   return fmt::format("{}", fmt::join(diagnosis.options.inputs, ","));
 }
 
-ordered_json with_unit(double value, const std::string& unit) {
-  return {{"value", or_null(value)}, {"unit", unit}};
-}
-
-// Nonlinear parameters by name; linear ones of effects next to the body, where each multiplies a
-// term.
-ordered_json parameters_json(const Diagnosis& diagnosis, const FoundEffect& found) {
+ordered_json parameters_json(const FoundEffect& found) {
   ordered_json json = ordered_json::object();
-  for (const diagnosis::Parameter& parameter : found.effect.parameters) {
-    json[parameter.name] = with_unit(parameter.value, parameter.unit);
-  }
-  const auto& effect = found.effect;
-  const auto& kind = diagnosis::effect_kind(effect.kind);
-  if (kind.stage(effect) == diagnosis::Stage::kTerm && !kind.through_body(effect)) {
-    for (std::size_t i = 0; i < effect.coefficients.size(); ++i) {
-      const std::string name =
-          effect.coefficients.size() == 1 ? "coefficient" : "coefficient_" + std::to_string(i + 1);
-      json[name] =
-          with_unit(effect.coefficients[i], diagnosis.output_unit + " per unit of the term");
-    }
+  for (const diagnosis::Size& size : found.sizes) {
+    ordered_json& each = json[size.name];
+    each = {{"value", or_null(size.value)},
+            {"std_error", or_null(size.std_error)},
+            {"unit", size.unit}};
+    if (size.at_hz) each["at_hz"] = *size.at_hz;
+    if (!size.meaning.empty()) each["meaning"] = size.meaning;
   }
   return json;
+}
+
+// Those that the kind derives; "friction_force 1.52 +- 0.03 N".
+std::string sizes_in_words(const FoundEffect& found) {
+  std::vector<std::string> words;
+  for (const diagnosis::Size& size : found.sizes) {
+    if (size.origin == "given") continue;
+    std::string each = fmt::format("{} {:.4g}", size.name, size.value);
+    if (std::isfinite(size.std_error)) each += fmt::format(" +- {:.2g}", size.std_error);
+    if (!diagnosis::is_plain_unit(size.unit)) each += " " + size.unit;
+    if (size.at_hz) each += fmt::format(" at {:.3g} Hz", *size.at_hz);
+    words.push_back(std::move(each));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 // The evidence, and the kinds that explain the data as well.
@@ -78,7 +82,7 @@ std::string force_text(const Diagnosis& diagnosis, const FoundEffect& found) {
 ordered_json effect_json(const Diagnosis& diagnosis, const FoundEffect& found) {
   return {{"kind", found.effect.kind},
           {"channel", or_null(found.channel)},
-          {"parameters", parameters_json(diagnosis, found)},
+          {"parameters", parameters_json(found)},
           {"heldout_rmse_before", found.before.rmse},
           {"heldout_rmse_after", found.after.rmse},
           {"ci95", {found.after.low, found.after.high}},
@@ -132,7 +136,7 @@ ordered_json body_json(const diagnosis::Model& model) {
 std::string diagnosis_json(const Diagnosis& diagnosis) {
   ordered_json effects = ordered_json::array();
   for (const FoundEffect& found : diagnosis.effects) {
-    effects.push_back(effect_json(diagnosis, found));
+    effects.push_back(effect_json(found));
   }
   ordered_json unexplained = nullptr;
   if (diagnosis.unexplained) {
@@ -205,6 +209,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
         found.effect.kind, of, found.before.rmse, found.after.rmse, unit, found.after.low,
         found.after.high);
     add("              {}\n", with_ties(found));
+    if (!found.sizes.empty()) add("              {}\n", sizes_in_words(found));
     add("              {}\n", force_text(diagnosis, found));
     add("              {}\n", carried_in_words(found));
   }

@@ -12,6 +12,7 @@
 #include "apps/identify/identify_output.hpp"
 #include "apps/measurement/read_options.hpp"
 #include "apps/report/plot/draw.hpp"
+#include "apps/report/provenance.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/identification/model_file.hpp"
@@ -66,14 +67,17 @@ int run(const Words& words) {
                             {words.recording, words.read.map_file});
   const IdentifyResult result =
       identify(measurement::read_measurement(words.recording, words.read), words.identify);
+  const report::Provenance origin = report::provenance_of_this_call({words.recording});
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
                         "no --save, or another --order");
     }
-    files.set("--save", identification::model_json(result.model));
+    files.set("--save", report::with_provenance(identification::model_json(result.model), origin));
   }
-  if (files.wants("--json")) files.set("--json", result_json(result));
+  if (files.wants("--json")) {
+    files.set("--json", report::with_provenance(result_json(result), origin));
+  }
   files.publish();
   std::fputs(result_table(result).c_str(), stdout);
   return 0;

@@ -148,6 +148,7 @@ Prediction predict(const diagnosis::CarriedModel& carried, const Measurement& me
                       "inputs like those that the model was fitted to");
   }
   Prediction prediction;
+  prediction.output = model.output;
   prediction.notes = measurement.notes;
   add_notes(carried, prediction);
   add_ranges(diagnosis::left_ranges(model, carried.inputs, signals, run), prediction);

@@ -13,6 +13,7 @@ namespace stillhand::predict {
 /// A free run over a recording that need not hold the output.
 struct Prediction {
   recording::Recording table;      ///< `t [s]`, `<output>_model [unit]`, a row a measured sample
+  std::string output;              ///< the channel that is predicted
   std::vector<std::string> notes;  ///< effects left out, ranges left: one clause each
 };
 

@@ -5,10 +5,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "apps/measurement/read_options.hpp"
+#include "apps/predict/judgement.hpp"
 #include "apps/predict/predict.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/provenance.hpp"
 #include "apps/report/result_files.hpp"
+#include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/core/csv.hpp"
 #include "services/recording/file_io.hpp"
@@ -22,22 +27,77 @@ struct Words {
   std::string recording;
   measurement::ReadOptions read;
   std::filesystem::path out;
+  std::filesystem::path json;
+  std::filesystem::path picture;
 };
 
+// The model file, and what predicts from it.
+struct Models {
+  diagnosis::CarriedModel carried;
+  std::optional<diagnosis::Model> linear;
+  std::optional<report::Provenance> origin;
+};
+
+Models read_models(const std::filesystem::path& path) {
+  const std::string text = recording::read_file(path.string());
+  return {diagnosis::parse_carried_model(text, path.string()),
+          diagnosis::parse_linear_model(text, path.string()), report::provenance_in(text)};
+}
+
+// --picture: the format by the name's ending.
+bool is_svg(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  if (!path.empty() && ending != ".svg" && ending != ".png") {
+    throw ConfigError("--picture", path.string(), "a name that ends in .png or .svg");
+  }
+  return ending == ".svg";
+}
+
+void print(const Words& words, const Models& models, const Prediction& prediction,
+           const std::optional<Judgement>& judgement, std::FILE* stream) {
+  std::fprintf(stream, "%zu samples of %s from", prediction.table.row_count(),
+               prediction.output.c_str());
+  for (const std::string& input : models.carried.model.inputs) {
+    std::fprintf(stream, " %s", input.c_str());
+  }
+  std::fprintf(stream, " in %s\n", words.out.string().c_str());
+  if (models.origin)
+    std::fprintf(stream, "model    %s\n", report::in_words(*models.origin).c_str());
+  if (judgement) std::fputs(judgement_table(*judgement).c_str(), stream);
+  for (const std::string& note : prediction.notes) {
+    std::fprintf(stream, "note: %s\n", note.c_str());
+  }
+}
+
 int run(const Words& words) {
-  report::ResultFiles files({{"--out", words.out}},
+  const bool to_stdout = words.json == "-";
+  report::ResultFiles files({{"--out", words.out},
+                             {"--json", to_stdout ? "/dev/stdout" : words.json},
+                             {"--picture", words.picture}},
                             {words.model, words.recording, words.read.map_file});
-  const diagnosis::CarriedModel carried = diagnosis::parse_carried_model(
-      recording::read_file(words.model.string()), words.model.string());
-  const diagnosis::Model& model = carried.model;
-  const Prediction prediction =
-      predict(carried, measurement::read_measurement(words.recording, words.read));
+  const bool svg = is_svg(words.picture);
+  if (files.wants("--picture")) report::require_gnuplot();
+  const Models models = read_models(words.model);
+  const diagnosis::Measurement measured =
+      measurement::read_measurement(words.recording, words.read);
+  Prediction prediction = predict(models.carried, measured);
+  const std::optional<Judgement> judgement = judged(prediction, models.linear, measured);
+  if (files.wants("--json")) {
+    files.set("--json", judgement_json(prediction, judgement, models.origin));
+  }
+  if (files.wants("--picture")) {
+    if (!judgement) {
+      throw ConfigError("--picture", words.recording + " without '" + prediction.output + "'",
+                        "a recording that holds the output");
+    }
+    const std::vector<report::Figure> figures{judgement_figure(*judgement)};
+    report::Drawing drawing = std::move(report::draw(figures).front());
+    files.set("--picture", std::move(svg ? drawing.svg : drawing.png));
+  }
+  if (judgement) prediction.table.columns.push_back(judgement->measured);
   files.set("--out", recording::to_csv(prediction.table));
   files.publish();
-  std::printf("%zu samples of %s from", prediction.table.row_count(), model.output.c_str());
-  for (const std::string& input : model.inputs) std::printf(" %s", input.c_str());
-  std::printf(" in %s\n", words.out.string().c_str());
-  for (const std::string& note : prediction.notes) std::printf("note: %s\n", note.c_str());
+  print(words, models, prediction, judgement, to_stdout ? stderr : stdout);
   return 0;
 }
 
@@ -48,7 +108,9 @@ void add_predict_command(CLI::App& cli, int& status) {
   CLI::App* verb = cli.add_subcommand(
       "predict",
       "Runs a model that `stillhand diagnose --save` wrote over a recording's inputs alone.\n"
-      "The recording need not hold the output. Effects that another recording does not share (a\n"
+      "The recording need not hold the output; where it does, RMSE, VAF and fit are printed, of "
+      "the\n"
+      "linear model and of the carried one. Effects that another recording does not share (a\n"
       "tone, a drift, a burst, a changing gain) are left out; beyond the range in which it was\n"
       "seen, an effect is held at its edge. A note reports each.\n"
       "Example: stillhand predict model.json ride.csv --out prediction.csv");
@@ -58,8 +120,16 @@ void add_predict_command(CLI::App& cli, int& status) {
   verb->add_option("--trial", words->read.trial,
                    "trial of a session's recording: its number, or the letter of its condition");
   measurement::add_read_options(*verb, words->read);
-  verb->add_option("--out", words->out, "CSV file of the prediction")
+  verb->add_option("--out", words->out,
+                   "CSV file of the prediction; next to it the measured output, where REC has it")
       ->required()
+      ->check(settings::check_name);
+  verb->add_option("--json", words->json,
+                   "file for RMSE, VAF and fit of the linear and the carried model; -: standard\n"
+                   "output, and the words go to standard error")
+      ->check(settings::check_name);
+  verb->add_option("--picture", words->picture,
+                   "PNG or SVG file: measured, linear and carried over an excerpt, and residuals")
       ->check(settings::check_name);
   verb->callback([words, &status] { status = run(*words); });
 }

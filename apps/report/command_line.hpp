@@ -5,7 +5,11 @@
 
 namespace stillhand::report {
 
-/// Command line of this program, such as "stillhand study --seed 1", for the facts of a report.
+/// Command line of this program, such as "stillhand study --seed 1", for the facts of a report: it
+/// can be pasted into a shell.
 std::string command_line();
+
+/// A word as a POSIX shell reads it back: in single quotes if it needs them.
+std::string quoted_for_shell(const std::string& word);
 
 }  // namespace stillhand::report

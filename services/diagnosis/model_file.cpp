@@ -263,6 +263,14 @@ std::string model_json(const Model& found, const CarriedModel& carried) {
   return text;
 }
 
+std::string model_json(const Model& found, const CarriedModel& carried, const Model& linear) {
+  Json json = Json::parse(model_json(found, carried));
+  json["linear"] = {{"body", json_of(linear.body)}};
+  std::string text = json.dump(2) + "\n";
+  static_cast<void>(parse_linear_model(text, "model"));
+  return text;
+}
+
 Model parse_model(std::string_view json, const std::string& origin) {
   const Json whole = settings::parsed_json(
       json, origin, "JSON of a diagnosed model, as `stillhand diagnose --save` writes");
@@ -317,6 +325,19 @@ CarriedModel parse_carried_model(std::string_view json, const std::string& origi
   }
   if (stability == name_of(Stability::kTested)) carried.stability = Stability::kTested;
   return carried;
+}
+
+std::optional<Model> parse_linear_model(std::string_view json, const std::string& origin) {
+  Model linear = parse_model(json, origin);
+  const Json whole = settings::parsed_json(json, origin, "JSON of a diagnosed model");
+  const Entry top(whole, origin);
+  if (!top.has("linear")) return {};
+  linear.effects.clear();
+  linear.body = body_of(top.at("linear").at("body"));
+  if (linear.body.numerators.size() != linear.inputs.size()) {
+    top.at("linear").at("body").at("numerators").refuse("one an input");
+  }
+  return linear;
 }
 
 }  // namespace stillhand::diagnosis

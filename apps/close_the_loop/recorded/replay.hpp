@@ -63,7 +63,7 @@ double settled_after_s(const cancellation::ControlModel& model);
 Level pooled(const std::vector<Level>& levels, const std::vector<double>& seconds);
 
 /// RMS that the better of two models of one record explains beyond the other, over the blocks of
-/// both (diagnosis, Eq. DG-68); 0 if it leaves more.
+/// both (diagnosis, Eq. DG-76); 0 if it leaves more.
 Level explained_beyond(const Level& left_before, const Level& left_after);
 
 /// The last part of a record, and what comes before it.

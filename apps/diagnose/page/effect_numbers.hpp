@@ -12,17 +12,12 @@ namespace stillhand::diagnose {
 struct ModelNumber {
   std::string name;
   double value = 0.0;
-  double standard_error = 0.0;  ///< NaN: not fitted, or not determined by the record
+  double standard_error = 0.0;  ///< NaN: not fitted, or the record does not determine it
   std::string unit;
-  std::string origin;  ///< "fitted", "searched", "given"
+  std::string origin;  ///< "derived", "fitted", "searched", "given"
 };
 
-/// Place of an effect's first fitted number in packed().
-std::size_t first_number(const diagnosis::Model& model, std::size_t which);
-
-/// Coefficients of the terms, then the parameters.  Coefficients of a path through the body or of a
-/// loop are left out: a single one has no meaning.
-/// @param which  index in found.model.effects
+/// The sizes of an effect of the verdict.  @param which  index in found.effects
 std::vector<ModelNumber> effect_numbers(const Evidence& evidence, std::size_t which);
 
 /// Of the linear part of the final model: static: offset and a factor for each input; otherwise

@@ -2,9 +2,6 @@
 #include "apps/diagnose/page/evidence.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "services/diagnosis/core/detection/detection_limit.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
@@ -26,27 +23,6 @@ ModelRun run_of(const Model& model, const diagnosis::Signals& signals) {
   return result;
 }
 
-std::vector<double> errors_of(const diagnosis::Linearisation& line, double correlation) {
-  const Eigen::Index count = line.jacobian.cols();
-  std::vector<double> errors(static_cast<std::size_t>(count),
-                             std::numeric_limits<double>::quiet_NaN());
-  double weight = 0.0;
-  for (const double each : line.run.weight) weight += each;
-  const double left = weight - static_cast<double>(count);
-  if (!line.finite || left < 1.0) return errors;
-  const Eigen::VectorXd scale = line.jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::MatrixXd unit = line.jacobian * scale.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(unit.transpose() * unit);
-  constexpr double kDegenerate = 1e-10;  // of the largest pivot: not determined by the record
-  if (ldlt.vectorD().minCoeff() < kDegenerate * ldlt.vectorD().maxCoeff()) return errors;
-  const Eigen::MatrixXd inverse = ldlt.solve(Eigen::MatrixXd::Identity(count, count));
-  const double variance = line.residual.squaredNorm() / left * correlation;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    errors[static_cast<std::size_t>(i)] = scale[i] * std::sqrt(variance * inverse(i, i));
-  }
-  return errors;
-}
-
 bool in_loop(const Effect& effect) {
   return diagnosis::effect_kind(effect.kind).stage(effect) == Stage::kFeedback;
 }
@@ -57,13 +33,11 @@ Evidence::Evidence(const Diagnosis& verdict, const diagnosis::Measurement& measu
     : found(verdict),
       working(diagnosis::working_set(measurement, found.options.inputs)),
       signals(working, found.options.inputs, found.options.output),
-      before(run_of(found.baseline.model, signals)) {
-  diagnosis::Linearisation line = diagnosis::linearised(found.model, signals);
-  after.residual = plain(line.residual);
-  correlation_samples = diagnosis::correlation_samples(line.residual, signals.rate_hz());
-  standard_errors = errors_of(line, correlation_samples);
-  after.run = std::move(line.run);
-}
+      before(run_of(found.baseline.model, signals)),
+      line(diagnosis::linearised(found.model, signals)),
+      after{line.run, plain(line.residual)},
+      errors(found.model, line, signals),
+      correlation_samples(diagnosis::correlation_samples(line.residual, signals.rate_hz())) {}
 
 EffectTrace trace_of(const Evidence& evidence, std::size_t which) {
   Model model = evidence.found.model;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "services/diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/fitting/number_errors.hpp"
 #include "services/diagnosis/core/measurement.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/diagnosis/core/signals.hpp"
@@ -26,12 +27,11 @@ struct Evidence {
   const diagnosis::Diagnosis& found;
   diagnosis::Measurement working;
   diagnosis::Signals signals;
-  ModelRun before;  ///< of the baseline
-  ModelRun after;   ///< of the baseline with the effects
-  /// Of the latter's numbers, in the order of packed(); NaN where the record does not determine
-  /// them.  From the linearised fit, with samples counted once a correlation length.
-  std::vector<double> standard_errors;
-  double correlation_samples = 1.0;  ///< [samples] of the residual: 1 + 2 sum of its correlations
+  ModelRun before;                 ///< of the baseline
+  diagnosis::Linearisation line;   ///< of the baseline with the effects
+  ModelRun after;                  ///< likewise
+  diagnosis::NumberErrors errors;  ///< of its numbers
+  double correlation_samples;      ///< [samples] of the residual: 1 + 2 sum of its correlations
 };
 
 /// The part of the prediction that one effect of the final model makes.

@@ -4,11 +4,11 @@
 
 #include "apps/diagnose/page/binned_series.hpp"
 #include "apps/diagnose/page/binning.hpp"
-#include "apps/diagnose/page/effect_numbers.hpp"
 #include "apps/diagnose/page/explaining_variable.hpp"
 #include "apps/diagnose/page/explanation_over_time.hpp"
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
+#include "services/diagnosis/core/effect_sizes.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/signal/spectrum.hpp"
 
@@ -83,7 +83,7 @@ Explanation against_variable(const Evidence& evidence, const EffectTrace& trace,
 Explanation as_curve(const Evidence& evidence, std::size_t which, const diagnosis::Curve& curve,
                      const EffectTrace& trace) {
   const std::string& output = evidence.found.output_unit;
-  const std::size_t first = first_number(evidence.found.model, which);
+  const std::size_t first = diagnosis::first_number(evidence.found.model, which);
   Series band{.label = "95 %", .kind = Kind::kBand, .colour = report::Colour::kModel};
   Series line{.label = "the effect",
               .kind = Kind::kLineAndPoints,
@@ -92,7 +92,7 @@ Explanation as_curve(const Evidence& evidence, std::size_t which, const diagnosi
               .y = curve.heights};
   for (std::size_t k = 0; k < curve.knots.size(); ++k) {
     const double error =
-        curve.fitted[k] ? evidence.standard_errors.at(first + *curve.fitted[k]) : 0.0;
+        curve.fitted[k] ? evidence.errors.of_number(first + *curve.fitted[k]) : 0.0;
     band.x.push_back(curve.knots[k]);
     band.y_low.push_back(curve.heights[k] - kTwoSided95 * error);
     band.y_high.push_back(curve.heights[k] + kTwoSided95 * error);

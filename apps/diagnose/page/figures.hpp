@@ -12,8 +12,7 @@ namespace stillhand::diagnose {
 /// Most effects that get a figure of their own.
 inline constexpr std::size_t kMostEffectFigures = 3;
 
-/// Ten seconds, or forty cycles of the output's mean frequency where ten seconds hold fewer than
-/// four or more than a hundred of them: measured, baseline, with the effects; below, what both
+/// An excerpt (report::excerpt_length): measured, baseline, with the effects; below, what both
 /// leave.  Where the effects take most away; without effects the middle of the record.
 report::Figure figure_prediction(const Evidence& evidence);
 /// Root mean square of what is left, block by block.
@@ -44,6 +43,16 @@ struct Explanation {
   report::Panel panel;
   std::string text;
 };
+
+/// The law itself, with bands of 95 %; none where the left panel shows it already.
+struct Law {
+  std::vector<report::Panel> panels;
+  std::string text;  ///< a sentence; empty: no panel
+};
+
+/// By what the effect is: magnitude and phase of a path, the map, the force over a channel, or the
+/// loop of an element with memory.
+Law law_of(const Evidence& evidence, std::size_t which, const EffectTrace& trace);
 
 /// By where the effect acts: lag over time, gain, a frequency response, or the residual against the
 /// channel, product, phase or prediction of which the effect is most nearly a function.

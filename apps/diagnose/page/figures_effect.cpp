@@ -78,11 +78,20 @@ Panel against_prediction(const Evidence& evidence, const EffectTrace& trace) {
   return panel;
 }
 
+// One row of up to three, or two rows.
+void arrange(report::Figure& figure) {
+  const auto count = static_cast<int>(figure.panels.size());
+  figure.columns = count == 4 ? 2 : count;
+  if (count == 3) figure.width_px = 1280;
+  if (count == 4) figure.height_px *= 2;
+}
+
 }  // namespace
 
 report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
   const EffectTrace trace = trace_of(evidence, which);
   const Explanation explanation = explanation_of(evidence, which, trace);
+  const Law law = law_of(evidence, which, trace);
   report::Figure figure{.name = effect_figure_name(which),
                         .caption = "Effect " + std::to_string(which + 1) + ", " +
                                    effect_title(evidence.found.effects.at(which)) + ": " +
@@ -91,13 +100,14 @@ report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
                         .columns = 2,
                         .width_px = 980,
                         .height_px = 400};
-  if (!predicts(evidence, which, trace)) {
-    figure.columns = 1;
-    return figure;
-  }
-  figure.panels.push_back(against_prediction(evidence, trace));
+  for (const Panel& panel : law.panels) figure.panels.push_back(panel);
+  if (!law.text.empty()) figure.caption += " " + law.text;
+  const bool is_predicted = predicts(evidence, which, trace);
+  if (is_predicted) figure.panels.push_back(against_prediction(evidence, trace));
+  arrange(figure);
+  if (!is_predicted) return figure;
   figure.caption +=
-      std::string(" Right: the residual against the part that the effect predicts. ") +
+      std::string(" Last: the residual against the part that the effect predicts. ") +
       (trace.refitted ? "The model without the effect was fitted again."
                       : "The model without the effect keeps the other numbers of the joint fit.") +
       " Bars: one standard error, samples counted once a correlation length (" +

@@ -6,8 +6,8 @@
 
 #include "apps/diagnose/page/figures.hpp"
 #include "apps/diagnose/page/wording.hpp"
+#include "apps/report/excerpt.hpp"
 #include "apps/report/text.hpp"
-#include "services/signal/spectrum.hpp"
 
 namespace stillhand::diagnose {
 namespace {
@@ -17,46 +17,16 @@ using report::Panel;
 using report::Series;
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSection_s = 10.0;
-constexpr double kFewestCycles = 4.0;
-constexpr double kMostCycles = 100.0;
-constexpr double kCycles = 40.0;
 
 struct Section {
   std::size_t first;
   std::size_t end;
 };
 
-// [Hz] centre of the output's power.
-double mean_frequency_hz(const diagnosis::Signals& signals) {
-  std::size_t segment = 1024;
-  while (segment > signals.size()) segment /= 2;
-  const auto spectra = signal::cross_spectra(signals.output().values, signals.output().values,
-                                             signals.rate_hz(), segment);
-  double power = 0.0;
-  double moment = 0.0;
-  for (std::size_t k = 1; k < spectra.s_xx.size(); ++k) {
-    power += spectra.s_xx[k];
-    moment += spectra.s_xx[k] * spectra.frequency_hz[k];
-  }
-  return power > 0.0 ? moment / power : 0.0;
-}
-
-std::size_t section_length(const diagnosis::Signals& signals) {
-  const double frequency_hz = mean_frequency_hz(signals);
-  const double cycles = kSection_s * frequency_hz;
-  double length_s = kSection_s;
-  if (frequency_hz > 0.0 && (cycles < kFewestCycles || cycles > kMostCycles)) {
-    length_s = kCycles / frequency_hz;
-  }
-  const double samples =
-      std::min(length_s * signals.rate_hz(), static_cast<double>(signals.size()));
-  return std::max<std::size_t>(static_cast<std::size_t>(samples), 2);
-}
-
 // Samples that the figure shows: within one stretch, where the effects explain most.
 Section shown_section(const Evidence& evidence) {
-  const std::size_t wanted = section_length(evidence.signals);
+  const std::size_t wanted =
+      report::excerpt_length(evidence.signals.output().values, evidence.signals.rate_hz());
   const std::size_t middle = evidence.signals.size() / 2;
   Section best{0, 0};
   double most = -HUGE_VAL;

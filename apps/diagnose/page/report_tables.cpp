@@ -170,9 +170,11 @@ Table parameter_table(const Evidence& evidence) {
   Table table;
   table.caption =
       "Numbers of the final model; baseline and effects are fitted together to the whole record. "
-      "Standard errors are those of the linearised fit, with samples counted once a correlation "
-      "length; an en dash: the number was not fitted itself. A coefficient multiplies the effect's "
-      "term. The coefficients of a path through the body or of a loop are in the model file.";
+      "Standard errors are those of the linearised fit under noise of the residual's colour "
+      "(DG-70, "
+      "DG-71); an en dash: the number was not fitted, or the record does not determine it. A "
+      "coefficient multiplies the effect's term. The coefficients of a path through the body or of "
+      "a loop are in the model file.";
   table.header = {"part", "number", "value", "standard error", "unit", "origin"};
   table.align = {Align::kLeft,  Align::kLeft, Align::kRight,
                  Align::kRight, Align::kLeft, Align::kLeft};

@@ -23,10 +23,6 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
-bool is_plain(std::string_view unit) { return unit.empty() || unit == "-" || unit == "1"; }
-
-bool is_compound(std::string_view unit) { return unit.find_first_of("/* ") != std::string::npos; }
-
 std::string model_name(const Diagnosis& diagnosis) {
   const std::size_t order = diagnosis.baseline.model.body.order();
   if (order == 0) return "a static linear model";
@@ -73,6 +69,7 @@ std::string shown_unit(std::string_view unit) {
     return text == name || text.starts_with(name + "/") || text.starts_with(name + "^");
   };
   if (is_of("deg")) replace_all(text, "deg", "°");
+  if (text.ends_with("/deg")) replace_all(text, "/deg", "/°");
   if (is_of("us")) text.replace(0, 2, "µs");
   replace_all(text, "degC", "°C");
   replace_all(text, "^2", "²");
@@ -82,7 +79,7 @@ std::string shown_unit(std::string_view unit) {
 }
 
 std::string shown(double value, std::string_view unit) {
-  if (is_plain(unit)) return short_number(value);
+  if (diagnosis::is_plain_unit(unit)) return short_number(value);
   return short_number(value) + " " + shown_unit(unit);
 }
 
@@ -92,11 +89,7 @@ std::string axis_label(std::string_view name, std::string_view unit) {
 }
 
 std::string unit_ratio(std::string_view over, std::string_view under) {
-  if (over == under || (is_plain(over) && is_plain(under))) return "-";
-  if (is_plain(under)) return shown_unit(over);
-  std::string below = shown_unit(under);
-  if (is_compound(under)) below = "(" + below + ")";
-  return (is_plain(over) ? "1" : shown_unit(over)) + "/" + below;
+  return shown_unit(diagnosis::unit_over(over, under));
 }
 
 std::string shown_sentence(std::string_view sentence, std::string_view output_unit) {

@@ -10,6 +10,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/detection/detection_limit.hpp"
+#include "services/diagnosis/core/effect_sizes.hpp"
 #include "services/diagnosis/core/fitting/noise_model.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 
@@ -47,7 +48,7 @@ HeldOutError held_out_error(const HeldOut& held_out, double variance) {
   return error;
 }
 
-// Eq. DG-68.
+// Eq. DG-76.
 Explained explained_by(const HeldOut& before, const HeldOut& after) {
   std::vector<double> falls;
   for (std::size_t b = 0; b < before.squares.size(); ++b) {
@@ -306,6 +307,16 @@ void add_carried(Diagnosis& diagnosis, const Signals& signals, const Blocks& blo
   diagnosis.carried_error = held_out_error(held_out(carried.model, signals, blocks), variance);
 }
 
+void add_sizes(Diagnosis& diagnosis, const Signals& signals) {
+  if (diagnosis.effects.empty()) return;
+  const Linearisation line = linearised(diagnosis.model, signals);
+  const NumberErrors errors(diagnosis.model, line, signals);
+  for (std::size_t e = 0; e < diagnosis.effects.size(); ++e) {
+    diagnosis.effects[e].sizes =
+        effect_sizes(size_case(diagnosis.model, e, signals, line.run), errors);
+  }
+}
+
 // RMS behind the noise model over RMS before it, of what the model predicts about its mean: an
 // effect is taken to lie in the band of the response.
 double response_gain(const FreeRun& run, const Signals& whitened) {
@@ -389,6 +400,7 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   put_in_order(diagnosis, signals, blocks);
   const double variance = signals.output().deviation * signals.output().deviation;
   add_effects(diagnosis, signals, blocks, variance);
+  add_sizes(diagnosis, signals);
   note_refuted(diagnosis);
   diagnosis.carried = carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks);
   add_ties_with_time(diagnosis);

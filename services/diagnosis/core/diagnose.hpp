@@ -10,6 +10,7 @@
 #include "services/diagnosis/core/detection/detection.hpp"
 #include "services/diagnosis/core/detection/noise_floor.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/size.hpp"
 #include "services/diagnosis/core/search.hpp"
 #include "services/diagnosis/core/unexplained.hpp"
 
@@ -19,7 +20,7 @@ namespace stillhand::diagnosis {
 enum class ModelClass { kAuto, kArx, kLinear };
 
 /// [N] RMS force from which on an effect counts: 0.1 N move the cursor of the mean subject by 0.8
-/// mm RMS, a 26th of the error of a hand at rest; README Eq. DG-68.
+/// mm RMS, a 26th of the error of a hand at rest; README Eq. DG-76.
 inline constexpr double kLeastForce_n = 0.1;
 
 /// What to diagnose, and how.  As it is, it is what `stillhand diagnose` does without options.
@@ -29,7 +30,7 @@ struct DiagnoseOptions {
   ModelClass model = ModelClass::kAuto;
   int order = 4;  ///< of the difference model; paper III-A
   SearchOptions search;
-  double least_force_n = kLeastForce_n;  ///< [N] a smaller effect does not count, Eq. DG-68
+  double least_force_n = kLeastForce_n;  ///< [N] a smaller effect does not count, Eq. DG-76
   ForEach for_each = in_order;
   /// Called before each longer step with its name; false ends the diagnosis (Interrupted).
   std::function<bool(const std::string&)> progress = [](const std::string&) { return true; };
@@ -49,7 +50,7 @@ struct HeldOutError {
 };
 
 /// RMS of what an effect explains of samples that the fit has not seen, with its interval of 95 %
-/// over the blocks, README Eq. DG-68.
+/// over the blocks, README Eq. DG-76.
 struct Explained {
   double rms = 0.0;  ///< [unit of the output]
   double low = 0.0;
@@ -69,6 +70,7 @@ struct FoundEffect {
   std::string why_not_carried;    ///< a clause; empty where it is whole
   Explained explained;            ///< its own size
   bool counts = true;             ///< no output in newtons, or at least least_force_n
+  std::vector<Size> sizes;        ///< physical numbers with their standard errors
 };
 
 /// The verdict and everything that it is based on.

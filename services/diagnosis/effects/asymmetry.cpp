@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/core/model/loop_sizes.hpp"
 #include "services/diagnosis/effects/loop_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
@@ -50,6 +51,7 @@ class Asymmetry final : public EffectKind {
     const std::string& unit = signals.at(effect.channels.at(0)).unit;
     return quadratic(effect) ? unit_power(unit, 2) : unit;
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override;
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (!effect.channels.empty() && stage(effect) == Stage::kTerm) {
@@ -58,6 +60,30 @@ class Asymmetry final : public EffectKind {
     return "pushing and pulling differ: an even part, " + effect.form;
   }
 };
+
+std::vector<Size> Asymmetry::sizes(const SizeCase& at) const {
+  const Effect& effect = at.effect();
+  if (stage(effect) == Stage::kTerm) {
+    const Signal& signal = at.signals.at(effect.channels.at(0));
+    const double x = largest_deflection(signal.values, effect.value(0), at.signals);
+    const double factor =
+        through_body(effect) ? through_body_at(at, 0.0).real() : effect.coefficients.at(0);
+    return {{"even_force", at.model.output_unit, factor * (quadratic(effect) ? x * x : x),
+             "at " + with_unit(x, signal.unit) + " from the centre, the largest seen" +
+                 (through_body(effect) ? ", at 0 Hz behind the body" : "")}};
+  }
+  if (stage(effect) != Stage::kFeedback) {
+    const double kappa = effect.value(0);
+    return {{"slope_ratio", "-", (1.0 + kappa) / (1.0 - kappa),
+             "of positive values over that of negative ones"}};
+  }
+  const double slope = std::copysign(1.0, output_over_argument(at)) *
+                       (quadratic(effect) ? 2.0 * largest_argument(at) : 1.0);
+  return {stiffness_ratio(at, slope, -slope,
+                          std::string("where the output is positive, over that where it is "
+                                      "negative") +
+                              (quadratic(effect) ? ", at the largest motion seen" : ""))};
+}
 
 std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();

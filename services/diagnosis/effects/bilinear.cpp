@@ -2,6 +2,7 @@
 #include "services/diagnosis/effects/bilinear.hpp"
 
 #include <algorithm>
+#include <complex>
 
 #include "services/diagnosis/effects/parts.hpp"
 
@@ -35,6 +36,21 @@ class Bilinear final : public EffectKind {
   [[nodiscard]] std::string column_unit(const Effect& effect, const Signals& signals,
                                         std::size_t /*i*/) const override {
     return signals.at(effect.channels.at(0)).unit + "*" + signals.at(effect.channels.at(1)).unit;
+  }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const Effect& effect = at.effect();
+    const auto deviation = [&](std::size_t i) {
+      return at.signals.at(effect.channels.at(i)).deviation;
+    };
+    if (stage(effect) == Stage::kGain) {
+      return {{"gain_change", "-", effect.value(0) * deviation(0),
+               "over one standard deviation of " + effect.channels.at(0)}};
+    }
+    const double factor =
+        through_body(effect) ? through_body_at(at, 0.0).real() : effect.coefficients.at(0);
+    return {{"force", at.model.output_unit, factor * deviation(0) * deviation(1),
+             std::string("where both are one standard deviation above their means") +
+                 (through_body(effect) ? ", at 0 Hz behind the body" : "")}};
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {

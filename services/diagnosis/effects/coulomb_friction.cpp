@@ -51,6 +51,14 @@ class CoulombFriction final : public EffectKind {
   [[nodiscard]] ControlRole drive_role(const Effect& effect) const override {
     return control::Friction{effect.parameters.empty() ? 0.0 : effect.value(0)};
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const double force = through_body(at.effect()) ? through_body_at(at, 0.0).real()
+                                                   : at.effect().coefficients.at(0);
+    return {{"friction_force", at.model.output_unit, std::abs(force),
+             std::string(force < 0.0 ? "against" : "along") + " the sign of " +
+                 at.effect().channels.at(0) +
+                 (through_body(at.effect()) ? ", at 0 Hz behind the body" : "")}};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "a force of " + with_unit(std::abs(effect.coefficients.at(0)), "(output unit)") +

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/diagnosis/effects/parts.hpp"
@@ -70,6 +72,9 @@ class CoupledInput final : public EffectKind {
   [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
     return control::Path{through_body(effect), lagged(effect) ? effect.value(0) : 0.0};
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override;
+  [[nodiscard]] std::optional<std::complex<double>> path(const SizeCase& at,
+                                                         double frequency_hz) const override;
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     const std::string& channel = effect.channels.front();
@@ -80,6 +85,43 @@ class CoupledInput final : public EffectKind {
     return "the residual follows " + channel + ", path " + effect.form;
   }
 };
+
+// The lag as low_passed() has it.
+std::optional<std::complex<double>> CoupledInput::path(const SizeCase& at,
+                                                       double frequency_hz) const {
+  const Effect& effect = at.effect();
+  const double rate_hz = at.model.rate_hz;
+  if (through_body(effect)) return through_body_at(at, frequency_hz);
+  std::complex<double> response = effect.coefficients.at(0);
+  if (lagged(effect)) {
+    const double keep = std::exp(-1.0 / (effect.value(0) * rate_hz));
+    response *= (1.0 - keep) / polynomial_at({1.0, -keep}, frequency_hz, rate_hz);
+  }
+  if (effect.channels.size() > 1) {
+    response += std::complex<double>(0.0, 2.0 * std::numbers::pi * frequency_hz) *
+                effect.coefficients.at(1);
+  }
+  return response;
+}
+
+std::vector<Size> CoupledInput::sizes(const SizeCase& at) const {
+  const Effect& effect = at.effect();
+  const std::string& channel_unit = at.signals.at(effect.channels.at(0)).unit;
+  const std::string unit = unit_over(at.model.output_unit, channel_unit);
+  const double gain = path(at, 0.0)->real();
+  std::vector<Size> sizes{{"gain", unit, gain, "at 0 Hz"}};
+  if (channel_unit == "rad" || channel_unit == "rad/s") {
+    const double degree = std::numbers::pi / 180.0;
+    sizes.push_back({"gain_per_degree",
+                     unit_over(at.model.output_unit, "deg" + channel_unit.substr(3)), gain * degree,
+                     "at 0 Hz"});
+  }
+  if (effect.form != "static") {
+    sizes.push_back(
+        {"magnitude", unit, std::abs(*path(at, at.centre_hz)), "of the response", at.centre_hz});
+  }
+  return sizes;
+}
 
 std::vector<Proposal> CoupledInput::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/core/model/loop_sizes.hpp"
 #include "services/diagnosis/effects/loop_proposals.hpp"
 #include "services/diagnosis/effects/map_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
@@ -46,6 +47,7 @@ class DeadZone final : public EffectKind {
                                         std::size_t /*i*/) const override {
     return signals.at(effect.channels.at(0)).unit;
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override;
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (effect.parameters.empty()) return "nothing happens within a range: " + effect.form;
@@ -54,6 +56,16 @@ class DeadZone final : public EffectKind {
            (effect.channels.empty() ? std::string() : " (" + effect.channels.front() + ")");
   }
 };
+
+std::vector<Size> DeadZone::sizes(const SizeCase& at) const {
+  const Effect& effect = at.effect();
+  if (stage(effect) == Stage::kFeedback) {
+    return {force_at_threshold(at, "gap_width", 2.0,
+                               "swing of the output, from end to end, that stays inside the gap"),
+            stiffness_ratio(at, 1.0, 0.0, "inside the gap, over that outside")};
+  }
+  return {{"gap_width", effect.parameters.at(0).unit, 2.0 * effect.value(0), "from end to end"}};
+}
 
 std::vector<Proposal> DeadZone::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();

@@ -81,6 +81,21 @@ class Drift final : public EffectKind {
                                         std::size_t /*i*/) const override {
     return "-";
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    Columns columns;
+    terms(at.effect(), at.signals, {}, columns);
+    double low = HUGE_VAL;
+    double high = -HUGE_VAL;
+    for (std::size_t n = 0; n < at.signals.size(); ++n) {
+      double sum = 0.0;
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        sum += at.effect().coefficients.at(c) * columns[c][n];
+      }
+      low = std::min(low, sum);
+      high = std::max(high, sum);
+    }
+    return {{"change", at.model.output_unit, high - low, "from the lowest to the highest"}};
+  }
   [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
     return control::LeftOut{"the force's sensor has a slow offset, or the hand leans"};
   }

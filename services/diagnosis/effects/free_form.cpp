@@ -205,6 +205,16 @@ class FreeForm final : public EffectKind {
   [[nodiscard]] ControlRole body_role(const Effect& /*effect*/) const override {
     return control::LeftOut{"a curve without a named law"};
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const Curve shape = shape_of(at.effect());
+    const auto [low, high] = std::ranges::minmax(shape.heights);
+    std::string unit = shape.pure_number ? "-" : at.model.output_unit;
+    if (at.effect().form == kFactor) {
+      unit = unit_over(unit, at.signals.at(at.effect().channels.at(0)).unit);
+    }
+    return {{"range", unit, high - low,
+             "of the " + shape.of + ", from the lowest knot to the highest"}};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override;
   [[nodiscard]] std::optional<Curve> curve(const Effect& effect,

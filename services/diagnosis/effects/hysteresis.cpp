@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/diagnosis/effects/hysteresis.hpp"
 
+#include <cmath>
+
+#include "services/diagnosis/core/model/loop_sizes.hpp"
 #include "services/diagnosis/effects/loop_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
@@ -53,6 +56,7 @@ class Hysteresis final : public EffectKind {
     if (effect.channels.empty()) return control::Spring{operator_of(effect)};
     return control::Hysteresis{operator_of(effect), effect.value(0)};
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override;
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     const std::string element =
@@ -63,6 +67,25 @@ class Hysteresis final : public EffectKind {
            ", yielding after " + with_unit(effect.value(0), effect.parameters[0].unit);
   }
 };
+
+std::vector<Size> Hysteresis::sizes(const SizeCase& at) const {
+  const Effect& effect = at.effect();
+  const std::string yielding = "half the height of the loop";
+  if (stage(effect) == Stage::kFeedback) {
+    return {
+        {"yield_force", at.model.output_unit, std::abs(output_over_phi(at)),
+         yielding + " at the output, at 0 Hz"},
+        force_at_threshold(at, "slip_force", 1.0, "amplitude of the output from which it slips"),
+        stiffness_ratio(at, 0.0, 1.0, "where it slips, over that where it sticks")};
+  }
+  const Signal& position = at.signals.at(effect.channels.at(0));
+  const double force = effect.coefficients.at(0);
+  return {{"yield_force", at.model.output_unit, std::abs(force), yielding},
+          {"slip_distance", position.unit, effect.value(0),
+           "from rest until it slips; twice as far after a turn"},
+          {"sticking_stiffness", unit_over(at.model.output_unit, position.unit),
+           force / effect.value(0), "that slipping takes away"}};
+}
 
 std::vector<Proposal> Hysteresis::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();

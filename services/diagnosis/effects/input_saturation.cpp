@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "services/diagnosis/effects/map_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
@@ -26,6 +27,13 @@ class InputSaturation final : public EffectKind {
   [[nodiscard]] Stage stage(const Effect& /*effect*/) const override { return Stage::kInputValue; }
   [[nodiscard]] double mapped(const Effect& effect, double u) const override {
     return limited(u, effect.value(0), soft(effect));
+  }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const double rate_hz = at.model.rate_hz;
+    const auto gain = polynomial_at(at.model.body.numerators.front(), 0.0, rate_hz) /
+                      polynomial_at(at.model.body.denominator, 0.0, rate_hz);
+    return {{"limit_force", at.model.output_unit, std::abs(gain) * at.effect().value(0),
+             "of the body at the limit, at 0 Hz"}};
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/diagnosis/core/model/loop_sizes.hpp"
 #include "services/diagnosis/effects/loop_proposals.hpp"
 #include "services/diagnosis/effects/parts.hpp"
 
@@ -61,6 +62,7 @@ class NonlinearStiffness final : public EffectKind {
     const std::string& unit = signals.at(effect.channels.at(0)).unit;
     return i == 0 ? unit : unit_power(unit, 3);
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override;
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     if (!effect.channels.empty()) {
@@ -74,6 +76,43 @@ class NonlinearStiffness final : public EffectKind {
     return kappa < 0.0 ? 1.0 / std::sqrt(-3.0 * kappa) : HUGE_VAL;
   }
 };
+
+// d phi / d z
+double slope_of(const Effect& effect, double z) {
+  if (effect.form.starts_with("cubic")) return 3.0 * z * z;
+  if (effect.form.starts_with("levelled")) return std::pow(std::tanh(z), 2);
+  return z * z * (3.0 + z * z) / std::pow(1.0 + z * z, 2);
+}
+
+std::vector<Size> NonlinearStiffness::sizes(const SizeCase& at) const {
+  const Effect& effect = at.effect();
+  const std::string& force = at.model.output_unit;
+  if (stage(effect) == Stage::kTerm) {
+    const Signal& position = at.signals.at(effect.channels.at(0));
+    const double x = largest_deflection(position.values, effect.value(0), at.signals);
+    const std::string where = "at " + with_unit(x, position.unit) + ", the largest deflection seen";
+    const std::string unit = unit_over(force, position.unit);
+    const double c1 = effect.coefficients.at(0);
+    const double c3 = effect.coefficients.at(1);
+    return {{"stiffness", unit, c1, "at the centre"},
+            {"stiffness_at_largest", unit, c1 + 3.0 * c3 * x * x, where},
+            {"cubic_force", force, c3 * cube(x), where}};
+  }
+  if (stage(effect) == Stage::kOutputValue) {
+    const double y = largest_deflection(at.signals.output().values, 0.0, at.signals);
+    const std::string where = "at " + with_unit(y, force) + ", the largest output seen";
+    return {{"stiffness_ratio", "-", 1.0 + 3.0 * effect.value(0) * y * y,
+             where + ", over that at rest"},
+            {"cubic_force", force, effect.value(0) * cube(y), where}};
+  }
+  std::vector<Size> sizes{stiffness_ratio(at, slope_of(effect, largest_argument(at)), 0.0,
+                                          "at the largest motion seen, over that at rest")};
+  if (!effect.form.starts_with("cubic")) {
+    sizes.push_back(force_at_threshold(at, "threshold_force", 1.0,
+                                       "amplitude of the output from which the spring bends"));
+  }
+  return sizes;
+}
 
 std::vector<Proposal> NonlinearStiffness::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();

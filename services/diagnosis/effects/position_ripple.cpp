@@ -48,6 +48,18 @@ class PositionRipple final : public EffectKind {
   [[nodiscard]] ControlRole drive_role(const Effect& effect) const override {
     return control::Waves{effect.value(0)};
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const Effect& effect = at.effect();
+    std::vector<Size> sizes;
+    for (std::size_t h = 0; 2 * h + 1 < effect.coefficients.size(); ++h) {
+      sizes.push_back({h == 0 ? "amplitude" : "amplitude_" + std::to_string(h + 1),
+                       at.model.output_unit,
+                       std::hypot(effect.coefficients[2 * h], effect.coefficients[2 * h + 1]),
+                       "of harmonic " + std::to_string(h + 1)});
+    }
+    sizes.push_back({"period", period_unit(effect), 1.0 / effect.value(0)});
+    return sizes;
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "the residual repeats every " + with_unit(1.0 / effect.value(0), period_unit(effect)) +

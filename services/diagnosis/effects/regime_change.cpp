@@ -25,6 +25,10 @@ class RegimeChange final : public EffectKind {
       gain[n] *= 1.0 + (t_s < effect.value(0) ? -effect.value(1) : effect.value(1));
     }
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const double change = at.effect().value(1);
+    return {{"gain_ratio", "-", (1.0 + change) / (1.0 - change), "after the change over before"}};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
     return "the gain changes by a factor of " +

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "services/diagnosis/core/fitting/modes.hpp"
@@ -42,6 +43,21 @@ class Resonance final : public EffectKind {
   }
   [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
     return control::Mode{effect.value(0), effect.value(1)};
+  }
+  // Of the first input.
+  [[nodiscard]] std::optional<std::complex<double>> path(const SizeCase& at,
+                                                         double frequency_hz) const override {
+    const Effect& effect = at.effect();
+    const double rate_hz = at.model.rate_hz;
+    return difference_polynomial_at({effect.coefficients.at(1), effect.coefficients.at(0)},
+                                    frequency_hz, rate_hz) /
+           polynomial_at(mode_denominator(effect.value(0), effect.value(1), rate_hz), frequency_hz,
+                         rate_hz);
+  }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const double at_hz = at.effect().value(0);
+    return {{"magnitude", unit_over(at.model.output_unit, at.signals.inputs().front().unit),
+             std::abs(*path(at, at_hz)), "of the mode's own response, at its frequency", at_hz}};
   }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {

@@ -26,6 +26,24 @@ double shape(const Effect& effect, std::size_t i, double t) {
 
 bool is_weight(const Effect& effect, std::size_t i) { return effect.form != "sinusoidal" || i > 0; }
 
+// Gain over the record, over its mean.
+struct Swing {
+  double low = HUGE_VAL;
+  double high = -HUGE_VAL;
+};
+
+Swing swing_of(const Effect& effect) {
+  Swing swing;
+  for (int step = 0; step <= 200; ++step) {
+    double factor = 1.0;
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (is_weight(effect, i)) factor += effect.value(i) * shape(effect, i, step / 200.0);
+    }
+    swing = {std::min(swing.low, factor), std::max(swing.high, factor)};
+  }
+  return swing;
+}
+
 class TimeVaryingGain final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "time_varying_gain"; }
@@ -43,20 +61,16 @@ class TimeVaryingGain final : public EffectKind {
       gain[n] *= factor;
     }
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    const Swing swing = swing_of(at.effect());
+    return {{"lowest_gain", "-", swing.low, "over its mean"},
+            {"highest_gain", "-", swing.high, "over its mean"}};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override;
   [[nodiscard]] std::string evidence(const Effect& effect) const override {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-    for (int step = 0; step <= 200; ++step) {
-      double factor = 1.0;
-      for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-        if (is_weight(effect, i)) factor += effect.value(i) * shape(effect, i, step / 200.0);
-      }
-      low = std::min(low, factor);
-      high = std::max(high, factor);
-    }
-    return "the gain moves slowly between " + with_unit(low, "") + " and " + with_unit(high, "") +
-           " of its mean, " + effect.form;
+    const Swing swing = swing_of(effect);
+    return "the gain moves slowly between " + with_unit(swing.low, "") + " and " +
+           with_unit(swing.high, "") + " of its mean, " + effect.form;
   }
 };
 

@@ -41,6 +41,10 @@ class Tone final : public EffectKind {
   [[nodiscard]] ControlRole body_role(const Effect& effect) const override {
     return control::Waves{effect.value(0)};
   }
+  [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
+    return {{"amplitude", at.model.output_unit,
+             std::hypot(at.effect().coefficients.at(0), at.effect().coefficients.at(1))}};
+  }
   [[nodiscard]] std::vector<Proposal> proposed(const Screening& screening) const override {
     const Signals& signals = screening.signals();
     const Eigen::VectorXd& r = screening.residual();

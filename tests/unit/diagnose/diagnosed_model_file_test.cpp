@@ -148,5 +148,22 @@ TEST(DiagnosedModelFileTest, AWrongPartOfWhatIsCarriedIsNamed) {
   EXPECT_THAT(refused([](json& entry) { entry.erase("left_out"); }), HasSubstr("left_out"));
 }
 
+TEST(DiagnosedModelFileTest, TheLinearModelComesBackAndMayBeMissing) {
+  Model linear = model_with(path_from_roll());
+  linear.effects.clear();
+  linear.body.numerators = {{-2.0, 0.25, 1.0 / 3.0}};
+  const std::string text = model_json(model_with(path_from_roll()), carried_path(), linear);
+  const auto sut = parse_linear_model(text, "m.json");
+  ASSERT_TRUE(sut.has_value());
+  EXPECT_EQ(sut->body.numerators, linear.body.numerators);
+  EXPECT_EQ(sut->output, "f");
+  EXPECT_TRUE(sut->effects.empty());
+  EXPECT_EQ(parse_carried_model(text, "m.json").inputs.size(), 1u);
+  EXPECT_FALSE(parse_linear_model(model_json(model_with(path_from_roll())), "m.json").has_value());
+  json file = json::parse(text);
+  file["linear"]["body"]["numerators"] = json::array({{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}});
+  EXPECT_THROW(static_cast<void>(parse_linear_model(file.dump(), "m.json")), ConfigError);
+}
+
 }  // namespace
 }  // namespace stillhand::diagnosis

@@ -113,7 +113,7 @@ TEST(DiagnosisJsonTest, AnEffectHasItsForceInNewtonsAndWhetherItCounts) {
   EXPECT_EQ(sut["least_force_n"], 0.0);
 }
 
-TEST(DiagnosisJsonTest, EveryKindCanBeWrittenWithItsParametersAndUnits) {
+TEST(DiagnosisJsonTest, EveryKindCanBeWritten) {
   const auto effects = diagnosis::made::every_effect();
   const json sut = json_of(diagnosis_with(effects));
   ASSERT_EQ(sut["effects"].size(), effects.size());
@@ -122,29 +122,24 @@ TEST(DiagnosisJsonTest, EveryKindCanBeWrittenWithItsParametersAndUnits) {
     EXPECT_EQ(written["kind"], effects[i].kind);
     EXPECT_EQ(written["form"], effects[i].form);
     EXPECT_EQ(written["signals"], json(effects[i].channels));
-    for (const auto& parameter : effects[i].parameters) {
-      EXPECT_EQ(written["parameters"][parameter.name]["value"], parameter.value);
-      EXPECT_EQ(written["parameters"][parameter.name]["unit"], parameter.unit);
-    }
   }
 }
 
-// A single coefficient of a path through the body, or of a loop, has no meaning.
-TEST(DiagnosisJsonTest, CoefficientsAreWrittenWhereEachMultipliesATerm) {
-  const auto keys = [](const Effect& effect) {
-    return json_of(diagnosis_with({effect}))["effects"][0]["parameters"];
-  };
-  const json one = keys({"coupled_input", "static", {"a_x"}, {}, {0.5}});
-  EXPECT_EQ(one.size(), 1u);
-  EXPECT_EQ(one["coefficient"]["value"], 0.5);
-  const json two = keys({"coupled_input", "static with rate", {"theta", "omega"}, {}, {0.5, 2.0}});
-  EXPECT_EQ(two.size(), 2u);
-  EXPECT_EQ(two["coefficient_1"]["value"], 0.5);
-  EXPECT_EQ(two["coefficient_2"]["value"], 2.0);
-  EXPECT_TRUE(keys({"coupled_input", "through the body", {"a_x"}, {}, {0.5, 2.0}}).empty());
-  const json loop =
-      keys({"dead_zone", "play of the output", {}, {{"threshold", "N", 0.5}}, {1.0, 2.0}});
-  EXPECT_EQ(loop.size(), 1u);
+TEST(DiagnosisJsonTest, ASizeHasItsStandardErrorAndUnit) {
+  diagnosis::Diagnosis diagnosis =
+      diagnosis_with({{"coupled_input", "lagged", {"a_x"}, {{"lag", "s", 0.1, 0, 1}}, {0.5}}});
+  diagnosis::Size gain{"gain", "N/(m/s^2)", 0.5, "at 0 Hz"};
+  gain.std_error = 0.25;
+  diagnosis.effects[0].sizes = {gain, {"magnitude", "N/(m/s^2)", 0.375, "", 1.5}};
+  const json sut = json_of(diagnosis)["effects"][0]["parameters"];
+  ASSERT_EQ(sut.size(), 2u);
+  EXPECT_EQ(
+      sut["gain"],
+      json({{"value", 0.5}, {"std_error", 0.25}, {"unit", "N/(m/s^2)"}, {"meaning", "at 0 Hz"}}));
+  EXPECT_EQ(sut["magnitude"]["at_hz"], 1.5);
+  EXPECT_TRUE(sut["magnitude"]["std_error"].is_null()) << "it is not known";
+  EXPECT_THAT(diagnosis_table(diagnosis), AllOf(HasSubstr("gain 0.5 +- 0.25 N/(m/s^2)"),
+                                                HasSubstr("magnitude 0.375 N/(m/s^2) at 1.5 Hz")));
 }
 
 TEST(DiagnosisJsonTest, AnEffectHasAChannelOrNull) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/diagnosis/core/diagnose.hpp"
+#include "services/diagnosis/core/effect_sizes.hpp"
 #include "services/diagnosis/core/measurement.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/signal/butterworth.hpp"
@@ -63,6 +64,7 @@ inline MadeDiagnosis made_with(const diagnosis::Body& body, const diagnosis::Eff
   found.baseline.model.output = "f";
   found.baseline.model.body = body;
   found.model = found.baseline.model;
+  found.model.output_unit = "N";
   found.model.effects = {effect};
   diagnosis::FoundEffect one;
   one.effect = effect;
@@ -72,6 +74,11 @@ inline MadeDiagnosis made_with(const diagnosis::Body& body, const diagnosis::Eff
   force_n = diagnosis::free_run(found.model, signals).prediction;
   signal::Gaussian noise(1, 9);
   for (double& value : force_n) value += noise_n * noise();
+  const diagnosis::Signals heard(made.measurement, {"a_y"}, "f");
+  const diagnosis::Linearisation line = diagnosis::linearised(found.model, heard);
+  found.effects.front().sizes =
+      diagnosis::effect_sizes(diagnosis::size_case(found.model, 0, heard, line.run),
+                              diagnosis::NumberErrors(found.model, line, heard));
   return made;
 }
 

@@ -7,10 +7,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "apps/report/provenance.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/core/csv.hpp"
@@ -122,6 +124,60 @@ TEST_F(PredictCommandTest, AnOutputIsAskedForByName) {
   EXPECT_THROW(run({path("model.json"), path("ride.csv")}), CLI::RequiredError);
   EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", ""}), CLI::ValidationError);
   EXPECT_THROW(run({path("model.json"), "--out", path("out.csv")}), CLI::RequiredError);
+}
+
+// Where the recording holds the output, it is judged: y = 2 u + 0.5, the linear model says u.
+class PredictedOutputTest : public PredictCommandTest {
+ protected:
+  void SetUp() override {
+    PredictCommandTest::SetUp();
+    const diagnosis::Model found = made::model_of({{{2.0}}, {1.0}, 0.5});
+    const std::string model = diagnosis::model_json(found, diagnosis::carried_as_it_is(found),
+                                                    made::model_of({{{1.0}}, {1.0}, 0.5}));
+    write("model.json",
+          report::with_provenance(
+              model,
+              {"0.1.0", "2026-11-26T13:50:00Z", "stillhand diagnose a.csv", {{"a.csv", "00"}}}));
+    recording::Recording table = recording::parse_csv(csv_at(100.0), "made");
+    recording::Column y{"y", "N", table.columns[0].values};
+    for (double& value : y.values) value = 2.0 * value + 0.5;
+    table.columns.push_back(std::move(y));
+    write("ride.csv", recording::to_csv(table));
+  }
+};
+
+TEST_F(PredictedOutputTest, ItStandsNextToThePredictionAndItsErrorsArePrinted) {
+  const std::string printed = run({path("model.json"), path("ride.csv"), "--out", path("out.csv")});
+  EXPECT_THAT(text_of("out.csv"), testing::StartsWith("t [s],y_model [N],y [N]\n"));
+  EXPECT_THAT(printed, HasSubstr("linear   RMSE"));
+  EXPECT_THAT(printed, HasSubstr("VAF 75.00 %"));
+  EXPECT_THAT(printed, HasSubstr("fit 100.00 %"));
+  EXPECT_THAT(printed, HasSubstr("model    stillhand 0.1.0, 2026-11-26T13:50:00Z, from a.csv"));
+}
+
+TEST_F(PredictedOutputTest, ScriptsGetTheSameFigures) {
+  run({path("model.json"), path("ride.csv"), "--out", path("out.csv"), "--json", path("out.json")});
+  const auto sut = nlohmann::json::parse(text_of("out.json"));
+  EXPECT_NEAR(sut["linear"]["vaf_percent"], 75.0, 1e-9);
+  EXPECT_NEAR(sut["carried"]["fit_percent"], 100.0, 1e-9);
+  EXPECT_EQ(sut["provenance"]["date"], "2026-11-26T13:50:00Z");
+}
+
+TEST_F(PredictedOutputTest, ThePictureIsOfTheKindThatItsNameSays) {
+  run({path("model.json"), path("ride.csv"), "--out", path("out.csv"), "--picture", path("p.png")});
+  EXPECT_THAT(text_of("p.png"), testing::StartsWith("\x89PNG"));
+  run({path("model.json"), path("ride.csv"), "--out", path("out.csv"), "--picture", path("p.svg")});
+  EXPECT_THAT(text_of("p.svg"), HasSubstr("<svg"));
+  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", path("out.csv"), "--picture",
+                    path("p.gif")}),
+               ConfigError);
+}
+
+TEST_F(PredictCommandTest, WithoutTheOutputThereIsNoPicture) {
+  EXPECT_THROW(run({path("model.json"), path("ride.csv"), "--out", path("out.csv"), "--picture",
+                    path("p.png")}),
+               ConfigError);
+  EXPECT_FALSE(fs::exists(folder_ / "out.csv"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace stillhand::diagnosis {
 namespace {
@@ -34,9 +35,13 @@ std::vector<double> autocovariance(const Eigen::VectorXd& residual, const Signal
   return sums;
 }
 
-}  // namespace
+// Taps, first 1, and what they leave of the variance.
+struct NoiseModel {
+  std::vector<double> taps;  // empty: a residual of zeros
+  double share = 1.0;
+};
 
-std::vector<double> whitening_taps(const Eigen::VectorXd& residual, const Signals& signals) {
+NoiseModel noise_model(const Eigen::VectorXd& residual, const Signals& signals) {
   double samples = 0.0;
   for (const double weight : signals.weight()) samples += weight;
   const auto most = std::min(kLargestOrder, static_cast<std::size_t>(samples / kSamplesForNumber));
@@ -66,10 +71,24 @@ std::vector<double> whitening_taps(const Eigen::VectorXd& residual, const Signal
     taps = std::move(next);
     variance *= 1.0 - reflection * reflection;
   }
-  if (best_variance > kWhiteEnough * covariance[0]) return {};
-  const double scale = std::sqrt(covariance[0] / best_variance);
-  for (double& tap : best) tap *= scale;
-  return best;
+  return {std::move(best), best_variance / covariance[0]};
+}
+
+std::vector<double> scaled(NoiseModel model) {
+  for (double& tap : model.taps) tap /= std::sqrt(model.share);
+  return std::move(model.taps);
+}
+
+}  // namespace
+
+std::vector<double> whitening_taps(const Eigen::VectorXd& residual, const Signals& signals) {
+  NoiseModel model = noise_model(residual, signals);
+  if (model.share > kWhiteEnough) return {};
+  return scaled(std::move(model));
+}
+
+std::vector<double> noise_taps(const Eigen::VectorXd& residual, const Signals& signals) {
+  return scaled(noise_model(residual, signals));
 }
 
 }  // namespace stillhand::diagnosis

@@ -18,4 +18,8 @@ namespace stillhand::diagnosis {
 /// Source: Levinson, J. Math. Phys. 25, 1946; Akaike, IEEE Trans. Autom. Control 19, 1974.
 std::vector<double> whitening_taps(const Eigen::VectorXd& residual, const Signals& signals);
 
+/// The same taps however white the noise is; empty for a residual of zeros.  A fitted number that
+/// is slow feels a colour that hardly helps to predict one step, Eq. DG-70.
+std::vector<double> noise_taps(const Eigen::VectorXd& residual, const Signals& signals);
+
 }  // namespace stillhand::diagnosis

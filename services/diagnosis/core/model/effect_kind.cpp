@@ -30,6 +30,12 @@ ControlRole EffectKind::drive_role(const Effect& /*effect*/) const {
   return control::LeftOut{"the canceller has no law of this form for the drive"};
 }
 
+std::vector<Size> EffectKind::sizes(const SizeCase& /*at*/) const { return {}; }
+std::optional<std::complex<double>> EffectKind::path(const SizeCase& /*at*/,
+                                                     double /*frequency_hz*/) const {
+  return {};
+}
+
 // A function that a kind does not override leaves the signal as it is.
 double EffectKind::input_delay_s(const Effect& /*effect*/, double /*time_s*/) const { return 0.0; }
 double EffectKind::mapped(const Effect& /*effect*/, double value) const { return value; }

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "apps/diagnose/page/binned_series.hpp"
+#include "apps/diagnose/page/binning.hpp"
+#include "apps/diagnose/page/law_parts.hpp"
+#include "apps/diagnose/page/wording.hpp"
+#include "apps/report/excerpt.hpp"
+#include "services/diagnosis/core/effect_sizes.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/model/loop_sizes.hpp"
+
+namespace stillhand::diagnose {
+namespace {
+
+using diagnosis::Effect;
+using diagnosis::Model;
+using diagnosis::SizeCase;
+using diagnosis::Stage;
+using report::Kind;
+using report::Panel;
+
+constexpr std::size_t kNarrowBins = 200;  // for laws with many turns
+constexpr double kNoMemory = 0.98;        // of the force's variance that lies between narrow bins
+
+// Samples of the largest swing of x within one stretch.
+std::pair<std::size_t, std::size_t> largest_swing(const Evidence& evidence,
+                                                  const std::vector<double>& x) {
+  const std::size_t wanted = report::excerpt_length(x, evidence.signals.rate_hz());
+  std::pair<std::size_t, std::size_t> best{0, 0};
+  double most = -1.0;
+  for (const diagnosis::Stretch& stretch : evidence.signals.stretches()) {
+    const std::size_t length = std::min(wanted, stretch.end - stretch.first);
+    for (std::size_t first = stretch.first; first + length <= stretch.end;
+         first += std::max<std::size_t>(length / 4, 1)) {
+      const auto [low, high] =
+          std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(first),
+                              x.begin() + static_cast<std::ptrdiff_t>(first + length));
+      if (*high - *low <= most) continue;
+      most = *high - *low;
+      best = {first, first + length};
+    }
+  }
+  return best;
+}
+
+bool has_memory(const Evidence& evidence, const std::vector<double>& x,
+                const std::vector<double>& y) {
+  const std::vector<double>& weight = evidence.after.run.weight;
+  return share_between_bins(axis_over(x, weight, kNarrowBins), x, y, weight) < kNoMemory;
+}
+
+void add_loop(const Evidence& evidence, const std::vector<double>& x, const std::vector<double>& y,
+              Panel& panel) {
+  const auto [first, end] = largest_swing(evidence, x);
+  const auto cut = [first = first, end = end](const std::vector<double>& all) {
+    return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(first),
+                               all.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  panel.series.push_back({.label = "the effect",
+                          .kind = Kind::kLine,
+                          .colour = report::Colour::kModel,
+                          .x = cut(x),
+                          .y = cut(y),
+                          .line_width_px = 1.3});
+}
+
+// Samples whose x are the nearest to places that are evenly spread over what was seen, in order.
+std::vector<std::size_t> spread_over(const Evidence& evidence, const std::vector<double>& x) {
+  const BinAxis axis = axis_over(x, evidence.after.run.weight, kLawPoints);
+  std::vector<std::size_t> order(x.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t n) { return x[n]; });
+  std::vector<std::size_t> picked;
+  for (std::size_t b = 0; b < axis.count; ++b) {
+    const auto at =
+        std::ranges::lower_bound(order, axis.centre(b), {}, [&](std::size_t n) { return x[n]; });
+    if (at != order.end() && (picked.empty() || picked.back() != *at)) picked.push_back(*at);
+  }
+  return picked;
+}
+
+// The force over the channel that makes it.
+Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& trace) {
+  const Effect& effect = at.effect();
+  const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
+  const diagnosis::Signal& over = evidence.signals.at(effect.channels.front());
+  const auto force_of = [&](const Effect& each) {
+    diagnosis::Columns columns;
+    kind.terms(each, evidence.signals, evidence.after.run.body, columns);
+    std::vector<double> force(evidence.signals.size(), 0.0);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      for (std::size_t n = 0; n < force.size(); ++n) {
+        force[n] += each.coefficients[c] * columns[c][n];
+      }
+    }
+    return force;
+  };
+  const std::vector<double> force = force_of(effect);
+  Panel panel;
+  panel.x.label = axis_label(over.name, over.unit);
+  panel.y.label = axis_label("force of the effect", evidence.found.output_unit);
+  if (has_memory(evidence, over.values, force)) {
+    add_loop(evidence, over.values, force, panel);
+    return {{panel}, "The loop of the effect's force over the largest motion."};
+  }
+  const std::vector<std::size_t> samples = spread_over(evidence, over.values);
+  const auto values_at = [&](const std::vector<double>& all) {
+    std::vector<double> values;
+    for (const std::size_t n : samples) values.push_back(all[n]);
+    return values;
+  };
+  const std::vector<double>& weight = evidence.after.run.weight;
+  panel.series.push_back(
+      with_errors("record, without it", kBefore,
+                  binned_means(axis_over(over.values, weight, kLawBins), over.values, trace.without,
+                               weight, evidence.correlation_samples)));
+  add_with_band("the effect", values_at(over.values), values_at(force),
+                evidence.errors.of([&](const Model& model) {
+                  return values_at(force_of(model.effects[at.which]));
+                }),
+                panel);
+  return {{panel}, "The effect's force with 95 % of its numbers' errors."};
+}
+
+// phi over its argument, both as forces at the output, Eq. DG-74 and DG-75.
+Law loop_law(const Evidence& evidence, const SizeCase& at) {
+  const diagnosis::FreeRun& run = evidence.after.run;
+  const double threshold = diagnosis::effect_kind(at.effect().kind).feedback(at.effect()).threshold;
+  std::vector<double> x = run.argument;
+  std::vector<double> y = run.phi;
+  for (double& each : x) each *= diagnosis::output_over_argument(at) / threshold;
+  for (double& each : y) each *= diagnosis::output_over_phi(at);
+  const std::string& unit = evidence.found.output_unit;
+  Panel panel;
+  panel.x.label = axis_label("motion inside the body, as force at the output", unit);
+  panel.y.label = axis_label("force of the nonlinearity, at 0 Hz", unit);
+  if (has_memory(evidence, x, y)) {
+    add_loop(evidence, x, y, panel);
+    return {{panel}, "The loop of the nonlinearity over the largest motion (DG-74, DG-75)."};
+  }
+  const std::vector<std::size_t> samples = spread_over(evidence, x);
+  std::vector<double> over;
+  std::vector<double> shape;
+  for (const std::size_t n : samples) {
+    over.push_back(x[n]);
+    shape.push_back(y[n]);
+  }
+  // The shape is held; its size has the error of what phi = 1 adds.
+  const double relative =
+      evidence.errors
+          .of([&](const Model& model) {
+            return std::vector<double>{diagnosis::output_over_phi(
+                {model, at.which, at.signals, at.centre_hz, at.largest_argument})};
+          })
+          .front() /
+      std::abs(diagnosis::output_over_phi(at));
+  std::vector<double> error = shape;
+  for (double& each : error) each = std::abs(each) * relative;
+  add_with_band("the nonlinearity", over, shape, error, panel);
+  return {
+      {panel},
+      "The nonlinearity over its argument (DG-74, DG-75); band: 95 % of the error of its size."};
+}
+
+}  // namespace
+
+Law law_of(const Evidence& evidence, std::size_t which, const EffectTrace& trace) {
+  const SizeCase at =
+      diagnosis::size_case(evidence.found.model, which, evidence.signals, evidence.after.run);
+  const Effect& effect = at.effect();
+  const diagnosis::EffectKind& kind = diagnosis::effect_kind(effect.kind);
+  switch (kind.stage(effect)) {
+    case Stage::kInputValue:
+    case Stage::kOutputValue:
+      return map_law(evidence, at, trace);
+    case Stage::kFeedback:
+      return loop_law(evidence, at);
+    case Stage::kTerm:
+      break;
+    case Stage::kInputTime:
+    case Stage::kGain:
+    case Stage::kWeight:
+      return {};
+  }
+  if (kind.path(at, at.centre_hz)) return path_law(evidence, at, trace);
+  const bool over_one = effect.channels.size() == 1 && !kind.through_body(effect);
+  return over_one && !kind.any_shape() ? term_law(evidence, at, trace) : Law{};
+}
+
+}  // namespace stillhand::diagnose

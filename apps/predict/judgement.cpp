@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/predict/judgement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/or_null.hpp"
+
+namespace stillhand::predict {
+namespace {
+
+using nlohmann::ordered_json;
+using report::or_null;
+
+double mean_of(const std::vector<double>& x) {
+  double sum = 0.0;
+  for (const double value : x) sum += value;
+  return sum / static_cast<double>(x.size());
+}
+
+// About a level.
+double square_about(const std::vector<double>& x, double level) {
+  double sum = 0.0;
+  for (const double value : x) sum += (value - level) * (value - level);
+  return sum;
+}
+
+Judged judged_against(const std::vector<double>& measured, std::vector<double> predicted) {
+  std::vector<double> residual(measured.size());
+  for (std::size_t n = 0; n < residual.size(); ++n) residual[n] = measured[n] - predicted[n];
+  const double square = square_about(residual, 0.0);
+  const double whole = square_about(measured, mean_of(measured));
+  const double not_known = std::numeric_limits<double>::quiet_NaN();
+  Score score{std::sqrt(square / static_cast<double>(residual.size())), not_known, not_known};
+  if (whole > 0.0) {
+    score.vaf_percent = 100.0 * (1.0 - square_about(residual, mean_of(residual)) / whole);
+    score.fit_percent = 100.0 * (1.0 - std::sqrt(square / whole));
+  }
+  return {std::move(predicted), score};
+}
+
+// The measured output at the prediction's rows, which are samples of the measurement.
+std::vector<double> at_rows(const std::vector<double>& time_s, const diagnosis::Channel& channel,
+                            const diagnosis::Measurement& measurement) {
+  const std::vector<double> all_s = measurement.time_s();
+  std::vector<double> values;
+  std::size_t n = 0;
+  for (const double at_s : time_s) {
+    while (all_s[n] != at_s) ++n;
+    values.push_back(channel.values[n]);
+  }
+  return values;
+}
+
+ordered_json json_of(const Score& score) {
+  return {{"rmse", or_null(score.rmse)},
+          {"vaf_percent", or_null(score.vaf_percent)},
+          {"fit_percent", or_null(score.fit_percent)}};
+}
+
+std::string line_of(const char* name, const Score& score, const std::string& unit) {
+  return fmt::format("{:<9}RMSE {:.4g} {}, VAF {:.2f} %, fit {:.2f} %\n", name, score.rmse, unit,
+                     score.vaf_percent, score.fit_percent);
+}
+
+}  // namespace
+
+std::optional<Judgement> judged(Prediction& prediction,
+                                const std::optional<diagnosis::Model>& linear,
+                                const diagnosis::Measurement& measurement) {
+  const recording::Column& model = prediction.table.columns.front();
+  const diagnosis::Channel* output = measurement.find(prediction.output);
+  if (output == nullptr || prediction.table.time_s.empty()) return {};
+  if (output->unit != model.unit) {
+    prediction.notes.push_back("not judged: the model predicts " + output->name + " in " +
+                               model.unit + ", and the recording holds it in " + output->unit);
+    return {};
+  }
+  Judgement judgement;
+  judgement.time_s = prediction.table.time_s;
+  judgement.rate_hz = measurement.rate_hz;
+  judgement.measured = {output->name, output->unit,
+                        at_rows(judgement.time_s, *output, measurement)};
+  judgement.carried = judged_against(judgement.measured.values, model.values);
+  if (linear) {
+    Prediction without = predict(diagnosis::carried_as_it_is(*linear), measurement);
+    judgement.linear =
+        judged_against(judgement.measured.values, std::move(without.table.columns.front().values));
+  }
+  return judgement;
+}
+
+std::string judgement_table(const Judgement& judgement) {
+  const std::string& unit = judgement.measured.unit;
+  return (judgement.linear ? line_of("linear", judgement.linear->score, unit) : std::string()) +
+         line_of("carried", judgement.carried.score, unit);
+}
+
+std::string judgement_json(const Prediction& prediction, const std::optional<Judgement>& judgement,
+                           const std::optional<report::Provenance>& origin) {
+  const recording::Column& column = prediction.table.columns.front();
+  ordered_json json{{"output", prediction.output},
+                    {"output_unit", column.unit},
+                    {"samples", prediction.table.row_count()},
+                    {"linear", nullptr},
+                    {"carried", nullptr},
+                    {"notes", prediction.notes},
+                    {"provenance", nullptr}};
+  if (judgement) json["carried"] = json_of(judgement->carried.score);
+  if (judgement && judgement->linear) json["linear"] = json_of(judgement->linear->score);
+  if (origin) json["provenance"] = report::json_of(*origin);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace stillhand::predict
