@@ -37,11 +37,12 @@ ordered_json parameters_json(const FoundEffect& found) {
   return json;
 }
 
-// Those that the kind derives; "friction_force 1.52 +- 0.03 N".
+// Coefficients only where the kind derives nothing: "friction_force 1.52 +- 0.03 N".
 std::string sizes_in_words(const FoundEffect& found) {
   std::vector<std::string> words;
+  const bool derived = !found.sizes.empty() && found.sizes.front().origin == "derived";
   for (const diagnosis::Size& size : found.sizes) {
-    if (size.origin == "given") continue;
+    if (size.origin == "given" || (derived && size.name.starts_with("coefficient"))) continue;
     std::string each = fmt::format("{} {:.4g}", size.name, size.value);
     if (std::isfinite(size.std_error)) each += fmt::format(" +- {:.2g}", size.std_error);
     if (!diagnosis::is_plain_unit(size.unit)) each += " " + size.unit;

@@ -47,7 +47,8 @@ struct Explanation {
 /// The law itself, with bands of 95 %; none where the left panel shows it already.
 struct Law {
   std::vector<report::Panel> panels;
-  std::string text;  ///< a sentence; empty: no panel
+  std::string text;         ///< a sentence; empty: no panel
+  bool takes_left = false;  ///< it shows what the left panel would, and takes its place
 };
 
 /// By what the effect is: magnitude and phase of a path, the map, the force over a channel, or the

@@ -92,22 +92,26 @@ report::Figure figure_effect(const Evidence& evidence, std::size_t which) {
   const EffectTrace trace = trace_of(evidence, which);
   const Explanation explanation = explanation_of(evidence, which, trace);
   const Law law = law_of(evidence, which, trace);
+  const std::string text = law.takes_left ? "" : ": " + explanation.text;
   report::Figure figure{.name = effect_figure_name(which),
                         .caption = "Effect " + std::to_string(which + 1) + ", " +
-                                   effect_title(evidence.found.effects.at(which)) + ": " +
-                                   explanation.text + ".",
-                        .panels = {explanation.panel},
+                                   effect_title(evidence.found.effects.at(which)) + text + ".",
+                        .panels = {},
                         .columns = 2,
                         .width_px = 980,
                         .height_px = 400};
-  for (const Panel& panel : law.panels) figure.panels.push_back(panel);
+  if (!law.takes_left) figure.panels.push_back(explanation.panel);
   if (!law.text.empty()) figure.caption += " " + law.text;
   const bool is_predicted = predicts(evidence, which, trace);
   if (is_predicted) figure.panels.push_back(against_prediction(evidence, trace));
+  // Two stand side by side in the second row.
+  const auto place =
+      law.panels.size() == 2 ? figure.panels.end() : figure.panels.end() - (is_predicted ? 1 : 0);
+  figure.panels.insert(place, law.panels.begin(), law.panels.end());
   arrange(figure);
   if (!is_predicted) return figure;
   figure.caption +=
-      std::string(" Last: the residual against the part that the effect predicts. ") +
+      std::string(" Over what the effect predicts: the residual without it. ") +
       (trace.refitted ? "The model without the effect was fitted again."
                       : "The model without the effect keeps the other numbers of the joint fit.") +
       " Bars: one standard error, samples counted once a correlation length (" +

@@ -113,16 +113,26 @@ Law term_law(const Evidence& evidence, const SizeCase& at, const EffectTrace& tr
     return values;
   };
   const std::vector<double>& weight = evidence.after.run.weight;
-  panel.series.push_back(
-      with_errors("record, without it", kBefore,
-                  binned_means(axis_over(over.values, weight, kLawBins), over.values, trace.without,
-                               weight, evidence.correlation_samples)));
+  const auto means = [&](const std::vector<double>& y) {
+    return binned_means(axis_over(over.values, weight, kLawBins), over.values, y, weight,
+                        evidence.correlation_samples);
+  };
+  const BinnedMeans left = means(evidence.after.residual);
+  panel.series.push_back({.label = "left with it",
+                          .kind = Kind::kPoints,
+                          .colour = kAfter,
+                          .x = left.centre,
+                          .y = left.mean,
+                          .point_size = 0.7});
+  panel.series.push_back(with_errors("without it", kBefore, means(trace.without)));
   add_with_band("the effect", values_at(over.values), values_at(force),
                 evidence.errors.of([&](const Model& model) {
                   return values_at(force_of(model.effects[at.which]));
                 }),
                 panel);
-  return {{panel}, "The effect's force with 95 % of its numbers' errors."};
+  return {{panel},
+          "The effect's force with 95 % of its numbers' errors, and means of the residual by bins.",
+          true};
 }
 
 // phi over its argument, both as forces at the output, Eq. DG-74 and DG-75.

@@ -212,7 +212,7 @@ TEST_F(DiagnosisReportTest, NamesAreTextNotMarkup) {
 
 TEST_F(DiagnosisReportTest, AStandardErrorIsTheNoiseOverTheRootOfTheSamples) {
   const Evidence sut(with_friction_->found, with_friction_->measurement);
-  const ModelNumber friction = effect_numbers(sut, 0).front();
+  const ModelNumber friction = effect_numbers(sut, 0).back();  // the coefficient
   EXPECT_EQ(friction.unit, "N");
   // White noise on a column of +-1 whose mean and correlation with a_y are near zero; the estimate
   // of the noise and of its correlation length (their white values 0.5 and 1) is within a tenth.

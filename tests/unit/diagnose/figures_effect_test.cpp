@@ -211,7 +211,7 @@ TEST(FigureEffectTest, TheEffectsOwnPredictionHasSlopeOne) {
       made_with(kStatic, {"coupled_input", "static", {"omega"}, {}, {0.5}}, kNoise_n);
   const report::Figure sut = figure_effect(Evidence(made.found, made.measurement), 0);
   ASSERT_EQ(sut.panels.size(), 4U);
-  const auto& bars = series(sut.panels.back(), "without it");
+  const auto& bars = series(sut.panels[1], "without it");
   ASSERT_GE(bars.x.size(), 8U);
   EXPECT_GE(share_within(bars, 4.0, [](double x) { return x; }), 0.9);
 }

@@ -105,7 +105,6 @@ Scatter scatter_of(const planted::Draft& draft, const Effect& start, const std::
 void expect_honest(const Scatter& sut) {
   SCOPED_TRACE("truth " + std::to_string(sut.truth) + ", mean " + std::to_string(sut.mean) +
                ", standard error " + std::to_string(sut.mean_error));
-  std::printf("truth %g mean %g se %g ratio %g beyond2 %d beyond3 %d\n", sut.truth, sut.mean, sut.mean_error, sut.error_over_scatter, sut.beyond_two, sut.beyond_three);
   EXPECT_LE(sut.beyond_two, 6);
   EXPECT_LE(sut.beyond_three, 1);
   EXPECT_GT(sut.error_over_scatter, 0.6);
@@ -114,8 +113,7 @@ void expect_honest(const Scatter& sut) {
 
 TEST(PlantedSizesTest, TheFrictionForceIsThatOfTheStick) {
   const auto draft = draft_of(planted::Kind::kCoulombFriction, "sign of the stick's rate");
-  expect_honest(scatter_of(draft,
-                           {"coulomb_friction", "sign, beside the body", {"omega"}, {}, {}},
+  expect_honest(scatter_of(draft, {"coulomb_friction", "sign, beside the body", {"omega"}, {}, {}},
                            "friction_force", std::abs(truth_of(draft, "force"))));
 }
 
@@ -147,15 +145,15 @@ TEST(PlantedSizesTest, TheSlipDistanceIsThatOfThePlayInTheSpring) {
                      {}};
   expect_honest(scatter_of(draft, start, "slip_distance", half_rad));
   // Play is the deflection less a spring that slips at the play's ends.
-  expect_honest(scatter_of(draft, start, "yield_force",
-                           half_rad * std::abs(truth_of(draft, "stiffness"))));
+  expect_honest(
+      scatter_of(draft, start, "yield_force", half_rad * std::abs(truth_of(draft, "stiffness"))));
 }
 
 TEST(PlantedSizesTest, TheLagIsThatOfThePath) {
   const auto draft = draft_of(planted::Kind::kCoupledInput, "roll, lagged");
-  expect_honest(scatter_of(
-      draft, {"coupled_input", "lagged", {"roll"}, {{"lag", "s", 0.2, 0.005, 5.0}}, {}}, "lag",
-      truth_of(draft, "lag")));
+  expect_honest(
+      scatter_of(draft, {"coupled_input", "lagged", {"roll"}, {{"lag", "s", 0.2, 0.005, 5.0}}, {}},
+                 "lag", truth_of(draft, "lag")));
 }
 
 }  // namespace
