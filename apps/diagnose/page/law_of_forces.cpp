@@ -151,28 +151,26 @@ Law loop_law(const Evidence& evidence, const SizeCase& at) {
     add_loop(evidence, x, y, panel);
     return {{panel}, "The loop of the nonlinearity over the largest motion (DG-74, DG-75)."};
   }
-  const std::vector<std::size_t> samples = spread_over(evidence, x);
+  const BinAxis axis = axis_over(x, evidence.after.run.weight, kLawPoints);
   std::vector<double> over;
-  std::vector<double> shape;
-  for (const std::size_t n : samples) {
-    over.push_back(x[n]);
-    shape.push_back(y[n]);
-  }
-  // The shape is held; its size has the error of what phi = 1 adds.
-  const double relative =
-      evidence.errors
-          .of([&](const Model& model) {
-            return std::vector<double>{diagnosis::output_over_phi(
-                {model, at.which, at.signals, at.centre_hz, at.largest_argument})};
-          })
-          .front() /
-      std::abs(diagnosis::output_over_phi(at));
-  std::vector<double> error = shape;
-  for (double& each : error) each = std::abs(each) * relative;
-  add_with_band("the nonlinearity", over, shape, error, panel);
-  return {
-      {panel},
-      "The nonlinearity over its argument (DG-74, DG-75); band: 95 % of the error of its size."};
+  for (std::size_t b = 0; b < axis.count; ++b) over.push_back(axis.centre(b));
+  // Threshold and size of a spring that hardly bends vary together: the curve varies less.
+  const auto curve_of = [&](const Model& model) {
+    const SizeCase moved{model, at.which, at.signals, at.centre_hz, at.largest_argument};
+    const diagnosis::Nonlinearity nonlinearity =
+        diagnosis::effect_kind(moved.effect().kind).feedback(moved.effect());
+    const double scale = diagnosis::output_over_argument(moved);
+    const double size = diagnosis::output_over_phi(moved);
+    std::vector<double> curve;
+    for (const double each : over) {
+      diagnosis::LoopMemory none;
+      curve.push_back(size * nonlinearity.phi(each / scale, none));
+    }
+    return curve;
+  };
+  add_with_band("the nonlinearity", over, curve_of(at.model), evidence.errors.of(curve_of), panel);
+  return {{panel},
+          "The nonlinearity over its argument (DG-74, DG-75) with 95 % of its numbers' errors."};
 }
 
 }  // namespace
