@@ -37,7 +37,7 @@ class MotionGenerator {
   /// nothing is copied or freed here.
   /// @throws stillhand::ConfigError when their lengths differ or the trial is not sound().
   void arm(MotionTrajectory&& trajectory, const Trial& trial);
-  /// Drops the trial: the platform returns to the middle.
+  /// Drops the trial: the commands return to the middle.
   void disarm() noexcept { trial_ = Trial{}; }
 
   /// @param tick  the tick the command is for, not negative

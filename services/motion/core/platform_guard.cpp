@@ -33,8 +33,15 @@ PlatformCommand clipped(const PlatformCommand& c, const PlatformLimits& limits) 
 
 }  // namespace
 
-PlatformGuard::PlatformGuard(const PlatformLimits& limits) : limits_(limits) {
+PlatformGuard::PlatformGuard(const PlatformLimits& limits, double most_jerk_m_s3)
+    : limits_(limits), most_jerk_m_s3_(most_jerk_m_s3) {
   validate(limits, "motion.limits");
+}
+
+void PlatformGuard::stand_at(double position_m) noexcept {
+  if (!(std::abs(position_m) <= limits_.max_position_m)) return;
+  state_ = {.position_m = position_m};
+  asked_before_ = false;
 }
 
 PlatformCommand PlatformGuard::step(const GuardInput& input) noexcept {
@@ -50,7 +57,7 @@ PlatformCommand PlatformGuard::step(const GuardInput& input) noexcept {
     state_ = asked_ = input.command;
   } else {
     const PlatformCommand next = clipped(input.command, limits_);
-    move(approach_velocity(next));
+    move(smoothed(approach_velocity(next)));
     state_.flags = input.command.flags | kWorkspaceLimit;
     asked_ = next;
   }
@@ -64,6 +71,9 @@ bool PlatformGuard::reachable(const PlatformCommand& next) const noexcept {
   const double full_m_s = limits_.max_acceleration_m_s2 * kDt_s;
   const double change_m_s = next.velocity_m_s - state_.velocity_m_s;
   if (std::abs(change_m_s) > full_m_s) return false;
+  if (std::abs(next.acceleration_m_s2 - state_.acceleration_m_s2) > most_jerk_m_s3_ * kDt_s) {
+    return false;
+  }
   const double trapezoid_m = 0.5 * (state_.velocity_m_s + next.velocity_m_s) * kDt_s;
   const double deviation_m = next.position_m - state_.position_m - trapezoid_m;
   return std::abs(deviation_m) * (4.0 * limits_.max_acceleration_m_s2) <=
@@ -96,18 +106,33 @@ double PlatformGuard::approach_velocity(const PlatformCommand& next) const noexc
          std::clamp(gain * (wanted_m_s - error_m_s), -most_m_s, most_m_s);
 }
 
+// Eq. MO-16: the acceleration comes from the one before, and braking ends as softly as it began.
+double PlatformGuard::smoothed(double velocity_m_s) const noexcept {
+  const double most_m_s2 = most_jerk_m_s3_ * kDt_s;
+  return std::clamp(velocity_m_s,
+                    state_.velocity_m_s + (state_.acceleration_m_s2 - most_m_s2) * kDt_s,
+                    state_.velocity_m_s + (state_.acceleration_m_s2 + most_m_s2) * kDt_s);
+}
+
+double PlatformGuard::least_braking_m_s2() const noexcept {
+  const double least_m_s2 = std::min(limits_.stop_acceleration_m_s2, limits_.max_acceleration_m_s2);
+  if (most_jerk_m_s3_ == kAnyJerk_m_s3) return least_m_s2;
+  return std::min(least_m_s2, std::sqrt(2.0 * most_jerk_m_s3_ * std::abs(state_.velocity_m_s)));
+}
+
 // Eq. MO-4.
 double PlatformGuard::braking_velocity() const noexcept {
   const double speed_m_s = std::abs(state_.velocity_m_s);
-  if (speed_m_s == 0.0) return 0.0;
+  if (speed_m_s == 0.0) return smoothed(0.0);
   const double gap_m =
       limits_.max_position_m - std::copysign(1.0, state_.velocity_m_s) * state_.position_m;
   const double needed_m_s2 =
       gap_m > 0.0 ? speed_m_s * speed_m_s / (2.0 * gap_m) : limits_.max_acceleration_m_s2;
-  const double least_m_s2 = std::min(limits_.stop_acceleration_m_s2, limits_.max_acceleration_m_s2);
   const double deceleration_m_s2 =
-      std::clamp(needed_m_s2, least_m_s2, limits_.max_acceleration_m_s2);
-  return std::copysign(std::max(speed_m_s - deceleration_m_s2 * kDt_s, 0.0), state_.velocity_m_s);
+      std::clamp(needed_m_s2, least_braking_m_s2(), limits_.max_acceleration_m_s2);
+  const double slower_m_s =
+      std::copysign(std::max(speed_m_s - deceleration_m_s2 * kDt_s, 0.0), state_.velocity_m_s);
+  return needed_m_s2 > limits_.stop_acceleration_m_s2 ? slower_m_s : smoothed(slower_m_s);
 }
 
 // Eq. MO-5, towards a wall that is gap_m away; the second form of the root avoids cancellation.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "services/contract/config_field.hpp"
 #include "services/contract/tick.hpp"
 #include "services/motion/core/platform_command.hpp"
@@ -49,12 +51,18 @@ struct GuardInput {
 ///
 /// Otherwise the guard moves with one constant acceleration a tick, towards the command (Eq. MO-3)
 /// or, with no valid command, to rest (Eq. MO-4), the end velocity clipped to the set from which
-/// MO-1 holds again, Eq. MO-5.  Derivations: services/motion/README.md.
+/// MO-1 holds again, Eq. MO-5.  With a jerk J the acceleration changes by at most J dt a tick, as
+/// far as MO-1 allows it, Eq. MO-16.  Derivations: services/motion/README.md.
 /// Pure; step() never allocates or throws; one thread.
 class PlatformGuard {
  public:
+  static constexpr double kAnyJerk_m_s3 = std::numeric_limits<double>::infinity();
+
   /// Starts at rest in the middle.  @throws stillhand::ConfigError when a limit is out of range.
-  explicit PlatformGuard(const PlatformLimits& limits);
+  explicit PlatformGuard(const PlatformLimits& limits, double most_jerk_m_s3 = kAnyJerk_m_s3);
+
+  /// Goes on from there, at rest.  @param position_m  within the travel, or nothing is done
+  void stand_at(double position_m) noexcept;
 
   /// One tick.  Flags: kWorkspaceLimit when a command was shaped, kInputStale when the command is
   /// missing, kInputInvalid when it is NaN or infinite.
@@ -69,9 +77,12 @@ class PlatformGuard {
   [[nodiscard]] double approach_velocity(const PlatformCommand& clipped) const noexcept;
   [[nodiscard]] double braking_velocity() const noexcept;
   [[nodiscard]] double highest_velocity(double gap_m, double velocity_m_s) const noexcept;
+  [[nodiscard]] double least_braking_m_s2() const noexcept;
+  [[nodiscard]] double smoothed(double velocity_m_s) const noexcept;
   void move(double velocity_m_s) noexcept;
 
   PlatformLimits limits_;
+  double most_jerk_m_s3_;
   PlatformCommand state_;
   PlatformCommand asked_;  // the previous command, clipped to the limits
   bool asked_before_ = false;

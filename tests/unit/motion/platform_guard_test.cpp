@@ -142,8 +142,9 @@ class HostileSource {
   double time_s_ = 0.0;
 };
 
-void expect_promise_kept(const PlatformLimits& limits, std::uint64_t seed, int steps) {
-  PlatformGuard sut(limits);
+void expect_promise_kept(const PlatformLimits& limits, std::uint64_t seed, int steps,
+                         double most_jerk_m_s3 = PlatformGuard::kAnyJerk_m_s3) {
+  PlatformGuard sut(limits, most_jerk_m_s3);
   HostileSource source(seed, limits);
   double reached_m = 0.0;
   double fastest_m_s = 0.0;
@@ -196,6 +197,65 @@ TEST(PlatformGuardTest, AMissingCommandBrakesToRestInTime) {
     sut.step({});
     ASSERT_EQ(sut.state().position_m, rest_m);
     ASSERT_EQ(sut.state().acceleration_m_s2, 0.0);
+  }
+}
+
+TEST(PlatformGuardTest, WithAJerkNoInputBreaksTheLimitsEither) {
+  for (const double most_jerk_m_s3 : {100.0, 1000.0, 20'000.0}) {
+    expect_promise_kept(PlatformLimits{}, 31, 100'000, most_jerk_m_s3);
+  }
+}
+
+// Eq. MO-16, far from a wall: 0.5 m/s in the middle needs 0.5^2/(2 * 3) = 42 mm.
+TEST(PlatformGuardTest, WithAJerkBrakingBeginsAndEndsSoftly) {
+  constexpr double kJerk_m_s3 = 1000.0;
+  for (const double before_m_s2 : {-2.0, 0.0, 2.0}) {
+    PlatformGuard sut(PlatformLimits{}, kJerk_m_s3);
+    // Up to 0.5 m/s within the limits, then on with the acceleration of before.
+    PlatformCommand at;
+    const auto go = [&](double acceleration_m_s2) {
+      const double end_m_s = at.velocity_m_s + acceleration_m_s2 * kDt_s;
+      at.position_m += 0.5 * (at.velocity_m_s + end_m_s) * kDt_s;
+      at.velocity_m_s = end_m_s;
+      at.acceleration_m_s2 = acceleration_m_s2;
+      ASSERT_EQ(sut.step({true, at}).flags, kGood);
+    };
+    while (at.velocity_m_s < 0.4) go(std::min(at.acceleration_m_s2 + 0.9, 3.0));
+    while (at.acceleration_m_s2 != before_m_s2) {
+      go(at.acceleration_m_s2 + std::clamp(before_m_s2 - at.acceleration_m_s2, -0.9, 0.9));
+    }
+    double last_m_s2 = before_m_s2;
+    int ticks = 0;
+    for (; ticks < 400; ++ticks) {
+      const PlatformCommand out = sut.step({});
+      // The acceleration is a difference of speeds of 0.4 m/s, 5.6e-17 each, over a tick: 1e-13.
+      ASSERT_LE(std::abs(out.acceleration_m_s2 - last_m_s2), kJerk_m_s3 * kDt_s + 1e-12) << ticks;
+      ASSERT_LE(std::abs(out.acceleration_m_s2), 3.0 + 1e-12);
+      last_m_s2 = out.acceleration_m_s2;
+    }
+    EXPECT_EQ(sut.state().velocity_m_s, 0.0);
+    EXPECT_EQ(sut.state().acceleration_m_s2, 0.0);
+  }
+}
+
+// A source that is lost where the wall is near: it takes more than the stopping deceleration.
+TEST(PlatformGuardTest, ACommandThatIsLostNearTheWallStopsBeforeIt) {
+  PlatformLimits limits;
+  limits.max_velocity_m_s = 1.5;
+  limits.max_acceleration_m_s2 = 15.0;
+  limits.stop_acceleration_m_s2 = 5.0;
+  for (const double jerk_m_s3 : {PlatformGuard::kAnyJerk_m_s3, 1000.0}) {
+    PlatformGuard sut(limits, jerk_m_s3);
+    sut.stand_at(-0.1);
+    EXPECT_EQ(sut.state().position_m, -0.1);
+    // Away to the right as fast as it lets, until 1.2 m/s at some 0.07 m.
+    while (sut.state().position_m < 0.071) sut.step(asking(0.15, 1.5, 0.0));
+    ASSERT_GT(sut.state().velocity_m_s, 1.2);
+    for (int n = 0; n < 400; ++n) {
+      const PlatformCommand before = sut.state();
+      ASSERT_EQ(broken_promise(before, sut.step({}), limits), "") << n;
+    }
+    EXPECT_EQ(sut.state().velocity_m_s, 0.0);
   }
 }
 
