@@ -8,7 +8,8 @@ namespace stillhand::rig {
 
 /// The messages that a step used. With RigTruth, a recording holds all inputs of the step.
 struct UsedTicks {
-  Tick command = -1;   ///< tick of the platform command, -1 none
+  static constexpr Tick kHeld = -2;
+  Tick command = -1;   ///< tick of the platform command, -1 none, kHeld: the platform was held
   Tick motor = -1;     ///< tick answered by the motor command, -1 none
   Tick volition = -1;  ///< tick answered by the operator's force, -1 none
 };

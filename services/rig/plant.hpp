@@ -29,6 +29,8 @@ class Plant {
   virtual void drive(const RigInput& input, RigOutput& output) noexcept = 0;
   /// A trial may begin.
   [[nodiscard]] virtual bool prepared() const noexcept { return true; }
+  /// Something that a person has to know, once; nullptr: nothing.  As unsound().
+  [[nodiscard]] virtual const char* notice() noexcept { return nullptr; }
   /// Which parts are devices, for the recording; nullptr: none.
   [[nodiscard]] virtual const char* parts() const noexcept { return nullptr; }
   /// Why no force is permitted; nullptr: every part works.  The text lives as long as the plant.

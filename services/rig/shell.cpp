@@ -109,16 +109,19 @@ bool Shell::goes_on(Tick tick) {
 }
 
 void Shell::tick_once(Tick tick, std::int64_t due_ns) {
-  const Trial trial = announced_.load().trial;
+  const Announced& announced = announced_.load();
+  const Trial trial = announced.trial;
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
   plant_.begin(trial, tick);
   const auto* command = command_for(tick);
-  // Without a command the platform brakes and holds.
-  if (interlock_.stopped() || stop_tick_ >= 0) command = nullptr;
+  const MotionLeave leave = leave_for(announced, tick, command != nullptr);
+  // Without leave the platform brakes and holds.
+  if (leave == MotionLeave::kHold) command = nullptr;
   const auto& newest_force = volition_.load();
   const auto* volition = newest_force.tick() >= 0 ? &newest_force : nullptr;
   const bool pegged = trial.phase == TrialPhase::kPegged && trial.covers(tick);
   RigInput input = make_input(tick, command, nullptr, volition, pegged, false);
+  input.leave = leave;
 
   // The sample goes out before the motor is driven, so that its answer can drive it.
   const bool waits = motor_config_.answers_in_tick();
@@ -137,10 +140,14 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
 
   UsedTicks used;
   if (command != nullptr) used.command = command->tick();
+  if (leave == MotionLeave::kHold) used.command = UsedTicks::kHeld;
   if (motor != nullptr) used.motor = motor->tick();
   if (volition != nullptr) used.volition = volition->tick();
   auto truth = to_idl(output, tick, input, used);
   truth_.write(truth);
+  if (const char* notice = plant_.notice()) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE, notice);
+  }
   if (plant_.prepared()) service_.note_armed(trial.number);
   service_.note_tick(tick);
 }
@@ -158,25 +165,35 @@ const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick t
                                                       RigInput& input) {
   // A stop that came during the wait counts.
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
-  const bool closed = interlock_.step(
-      trial, tick,
-      service_.bus().peers_alive() && plant_.unsound() == nullptr && !drive_ended(trial));
+  const bool closed = interlock_.step(trial, tick, sound(trial) && !permission_.latched(trial));
   const bool permitted = closed && stop_tick_ < 0;
   const auto* motor = motor_now();
   put_motor(input, tick, motor, permitted);
   return motor;
 }
 
+const char* Shell::why_opened(const Trial& trial) const noexcept {
+  if (interlock_.stopped()) return topics::kEmergencyStop.data();
+  if (const char* unsound = plant_.unsound()) return unsound;
+  if (drive_ended(trial)) return "growing oscillation of the stick";
+  if (permission_.motion_lost(trial)) return "no commands of motion";
+  return service_.bus().why_not_alive();
+}
+
+MotionLeave Shell::leave_for(const Announced& announced, Tick tick, bool command) {
+  if (interlock_.stopped()) permission_.stop();
+  const bool runs = announced.session == stillhand_msgs::SESSION_RUNNING && stop_tick_ < 0;
+  return permission_.step(announced.trial, tick,
+                          {.runs = runs, .sound = sound(announced.trial), .command = command});
+}
+
 void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n) {
+  // What latches the platform before the trial begins is reported then, too.
   const auto notice =
-      interlock_report_.step(interlock_.latched(trial), interlock_.stopped(), tick, motor_force_n);
+      interlock_report_.step(interlock_.latched(trial) || permission_.latched(trial),
+                             interlock_.stopped(), tick, motor_force_n);
   if (notice.opened) {
-    const char* unsound = plant_.unsound();
-    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED,
-                        interlock_.stopped() ? topics::kEmergencyStop.data()
-                        : unsound != nullptr ? unsound
-                        : drive_ended(trial) ? "growing oscillation of the stick"
-                                             : service_.bus().why_not_alive());
+    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, why_opened(trial));
   }
   if (notice.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",

@@ -11,6 +11,7 @@
 #include "services/rig/plant.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/process/latest_value.hpp"
+#include "services/runtime/process/platform_permission.hpp"
 #include "services/runtime/process/wake_up.hpp"
 #include "services/runtime/service.hpp"
 
@@ -41,6 +42,13 @@ class Shell {
   void tick_once(Tick tick, std::int64_t due_ns);
   /// Waits, with the limit of the settings, for the motor command that answers this tick.
   void await_answer(Tick tick, std::int64_t due_ns);
+  /// What the platform may do in this tick.
+  MotionLeave leave_for(const Announced& announced, Tick tick, bool command);
+  /// Nothing is wrong with the session, its processes and devices.
+  [[nodiscard]] bool sound(const Trial& trial) const noexcept {
+    return service_.bus().peers_alive() && plant_.unsound() == nullptr && !drive_ended(trial);
+  }
+  [[nodiscard]] const char* why_opened(const Trial& trial) const noexcept;
   /// The motor's part of the input, as it is now: newest command and interlock.
   const stillhand_msgs::MotorCommand* take_motor(const Trial& trial, Tick tick, RigInput& input);
   /// A vehicle ended this trial's drive.
@@ -55,6 +63,7 @@ class Shell {
   Plant& plant_;
   MotorConfig motor_config_;
   runtime::Interlock interlock_;
+  runtime::PlatformPermission permission_;
   InterlockReport interlock_report_;
 
   runtime::Publisher<stillhand_msgs::RawSample> raw_;

@@ -237,9 +237,10 @@ Replay replay_rig(const SessionRecording& session, const SessionSettings& settin
   std::vector<msgs::RawSample> raws;
   const auto step = [&](Tick tick, const msgs::RigTruth& like) {
     if (raws.empty() && tick != 0) throw NotRecorded("the rig's first ticks are not recorded");
-    const auto input =
+    auto input =
         rig::make_input(tick, commands.used(like.command_tick()), motors.used(like.motor_tick()),
                         forces.used(like.operator_tick()), like.pegged(), like.motor_permitted());
+    if (like.command_tick() == rig::UsedTicks::kHeld) input.leave = MotionLeave::kHold;
     const bool same_tick = config.motor.answers_in_tick();
     auto output = same_tick ? core.sample(input) : core.step(input);
     raws.push_back(rig::to_idl(output, tick));

@@ -35,6 +35,7 @@ constexpr double kTravel_m = 0.1;
 constexpr double kOmega_rad_s = std::numbers::pi;
 constexpr double kMoves_m_s = 0.2;
 constexpr double kRest_m_s = 0.001;  // services/rig/shell.cpp
+constexpr Tick kHeld = -2;           // idl/control_loop.idl, command_tick
 
 /// A rig, and a test that drives it with one command for each sample.
 class RigProcessTest : public testing::Test {
@@ -44,14 +45,12 @@ class RigProcessTest : public testing::Test {
         topics::kRawSample, [this](const auto& raw, const auto&) { answer(raw.tick()); });
     recorder_.subscribe<stillhand_msgs::RigTruth>(
         topics::kRigTruth, [this](const auto& truth, const auto&) { note(truth); });
-    for (runtime::Bus* bus : {&experiment_, &motion_, &cancellation_, &sensing_, &recorder_}) {
-      bus->start();
+    for (const auto& [service, bus] : own_) {
+      life_.push_back(bus->publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus));
     }
+    for (const auto& [service, bus] : own_) bus->start();
     name_sources();
-    stillhand_msgs::TrialControl running;
-    running.session(stillhand_msgs::SESSION_RUNNING);
-    running.trial(-1);
-    control_.write(running);
+    announce(-1);
   }
   ~RigProcessTest() override {
     rig_.finish();
@@ -59,18 +58,41 @@ class RigProcessTest : public testing::Test {
     recorder_.stop_receiving();
   }
 
+  /// Trial `number` covers every tick; -1: none is announced.
+  void announce(std::int32_t number) {
+    stillhand_msgs::TrialControl control;
+    control.session(stillhand_msgs::SESSION_RUNNING);
+    control.trial(number);
+    control.phase(number < 0 ? stillhand_msgs::PHASE_IDLE : stillhand_msgs::PHASE_TRACKING);
+    control.duration_ticks(number < 0 ? 0 : 3'600'000);
+    control_.write(control);
+  }
+  /// Every process shows its life sign but those that died.
+  void live() {
+    std::size_t i = 0;
+    for (const auto& [service, bus] : own_) {
+      stillhand_msgs::ServiceStatus status;
+      status.service(std::string(service));
+      status.state(stillhand_msgs::SERVICE_RUNNING);
+      if (service != dead_) life_[i].write(status);
+      ++i;
+    }
+  }
+  template <typename Condition>
+  bool eventually_alive(Condition condition) {
+    return eventually([&] {
+      live();
+      return condition();
+    });
+  }
+
   /// The rig takes commands from the participants that its experiment names.
   void name_sources() {
     std::vector<runtime::Source> sources;
-    const std::map<std::string_view, const runtime::Bus*> own{{"experiment", &experiment_},
-                                                              {"motion", &motion_},
-                                                              {"cancellation", &cancellation_},
-                                                              {"sensing", &sensing_},
-                                                              {"recorder", &recorder_}};
     for (const std::string_view service : topics::kServices) {
       sources.push_back({std::string(service), {}});
-      const auto found = own.find(service);
-      if (found != own.end()) sources.back().participant = found->second->participant();
+      const auto found = own_.find(service);
+      if (found != own_.end()) sources.back().participant = found->second->participant();
     }
     auto message = runtime::to_idl(sources);
     sources_.write(message);
@@ -96,7 +118,10 @@ class RigProcessTest : public testing::Test {
   }
   void expect_motion() {
     commands_motion_ = true;
-    ASSERT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
+    ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld && tick_ > 500; }));
+    EXPECT_LT(speed_m_s_, kRest_m_s) << "moves before a trial was announced";
+    announce(1);
+    ASSERT_TRUE(eventually_alive([this] { return speed_m_s_ > kMoves_m_s; }));
   }
 
   std::atomic<bool> commands_force_{false}, commands_motion_{false};
@@ -109,6 +134,16 @@ class RigProcessTest : public testing::Test {
   runtime::Bus cancellation_{support::bus_options("cancellation")},
       sensing_{support::bus_options("sensing")};
   runtime::Bus recorder_{support::bus_options("recorder")};
+  runtime::Bus display_{support::bus_options("display")};
+  runtime::Bus operator_{support::bus_options("human_operator")};
+  runtime::Bus identification_{support::bus_options("identification")};
+  const std::map<std::string_view, runtime::Bus*> own_{
+      {"experiment", &experiment_},     {"motion", &motion_},
+      {"cancellation", &cancellation_}, {"sensing", &sensing_},
+      {"recorder", &recorder_},         {"display", &display_},
+      {"human_operator", &operator_},   {"identification", &identification_}};
+  std::vector<runtime::Publisher<stillhand_msgs::ServiceStatus>> life_;
+  std::string dead_;  ///< shows no life sign any more
   runtime::Publisher<stillhand_msgs::TrialControl> control_ =
       experiment_.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
   runtime::Publisher<stillhand_msgs::SessionSources> sources_ =
@@ -144,12 +179,51 @@ TEST_F(RigProcessTest, AfterAnEmergencyStopThePlatformBrakesWhateverMotionComman
   stop.request(1);
   stop.asker("test");
   request_.write(stop);
-  ASSERT_TRUE(eventually([this] { return command_tick_ == -1; }));
+  ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
   // From any speed in 300 ticks (services/rig/shell.cpp); commands go on to ask for motion.
   const Tick stopped_tick = tick_;
   ASSERT_TRUE(eventually([this, stopped_tick] { return tick_ > stopped_tick + 400; }));
   EXPECT_LT(speed_m_s_, kRest_m_s);
-  EXPECT_EQ(command_tick_, -1);
+  EXPECT_EQ(command_tick_, kHeld);
+}
+
+// The network's or the lab's end: nobody announces that the trial is over, and motion goes on.
+TEST_F(RigProcessTest, WithoutTheLabsLifeSignThePlatformBrakesWhateverMotionCommands) {
+  expect_motion();
+  dead_ = "experiment";
+  ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld; }));
+  const Tick held_tick = tick_;
+  ASSERT_TRUE(eventually_alive([this, held_tick] { return tick_ > held_tick + 400; }));
+  EXPECT_LT(speed_m_s_, kRest_m_s);
+  // Back again: not in this trial.
+  dead_.clear();
+  const Tick back_tick = tick_;
+  ASSERT_TRUE(eventually_alive([this, back_tick] { return tick_ > back_tick + 400; }));
+  EXPECT_EQ(command_tick_, kHeld);
+  EXPECT_LT(speed_m_s_, kRest_m_s);
+  announce(2);
+  EXPECT_TRUE(eventually_alive([this] { return speed_m_s_ > kMoves_m_s; }));
+}
+
+TEST_F(RigProcessTest, WithoutATrialThePlatformHoldsWhateverMotionCommands) {
+  expect_motion();
+  announce(-1);
+  ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld; }));
+  const Tick held_tick = tick_;
+  ASSERT_TRUE(eventually_alive([this, held_tick] { return tick_ > held_tick + 400; }));
+  EXPECT_LT(speed_m_s_, kRest_m_s);
+}
+
+TEST_F(RigProcessTest, MotionThatFallsSilentIsNotFollowedAgainInTheTrial) {
+  expect_motion();
+  commands_motion_ = false;
+  // A command that is missing, then the end of the permission.
+  ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld; }));
+  commands_motion_ = true;
+  const Tick held_tick = tick_;
+  ASSERT_TRUE(eventually_alive([this, held_tick] { return tick_ > held_tick + 400; }));
+  EXPECT_EQ(command_tick_, kHeld);
+  EXPECT_LT(speed_m_s_, kRest_m_s);
 }
 
 TEST_F(RigProcessTest, ARigThatIsAskedToEndBrakesThePlatformFirst) {

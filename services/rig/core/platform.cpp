@@ -43,9 +43,9 @@ Platform::Platform(const PlatformConfig& config) : config_(config) {
 }
 
 double Platform::wanted_acceleration(const PlatformDemand& demand, Flags& flags) const noexcept {
-  const bool usable = demand.valid && finite(demand);
+  const bool usable = demand.valid && !demand.held && finite(demand);
   if (!usable) {
-    flags |= demand.valid ? kInputInvalid : kInputStale;
+    flags |= demand.held ? kInhibited : demand.valid ? kInputInvalid : kInputStale;
     return std::clamp(-rate_gain_s_ * state_.velocity_m_s, -config_.stop_deceleration_m_s2,
                       config_.stop_deceleration_m_s2);
   }
@@ -74,9 +74,21 @@ double Platform::brakeable(double room_m, double closing_m_s) const noexcept {
   return std::max(-most_m_s2, (next_m_s - closing_m_s) * kControlRateHz);
 }
 
+PlatformDemand Platform::from_hold(const PlatformDemand& demand) noexcept {
+  if (demand.held) held_ = true;
+  if (demand.held || !demand.valid || !finite(demand)) return demand;
+  const double command_m = std::clamp(demand.position_m, -config_.workspace_m, config_.workspace_m);
+  if (held_) way_.begin(state_.position_m - command_m);
+  held_ = false;
+  if (way_.over()) return demand;
+  const auto offset = way_.step();
+  return {true, command_m + offset.position_m, demand.velocity_m_s + offset.velocity_m_s,
+          demand.acceleration_m_s2 + offset.acceleration_m_s2};
+}
+
 Platform::Output Platform::step(const PlatformDemand& demand) noexcept {
   Flags flags = kGood;
-  const double wanted_m_s2 = wanted_acceleration(demand, flags);
+  const double wanted_m_s2 = wanted_acceleration(from_hold(demand), flags);
   double a_m_s2 = state_.acceleration_m_s2 + lag_blend_ * (wanted_m_s2 - state_.acceleration_m_s2);
 
   a_m_s2 = limited(a_m_s2, config_.max_acceleration_m_s2, kSaturated, flags);

@@ -4,6 +4,7 @@
 #include "services/contract/config_field.hpp"
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
+#include "services/signal/slow_way.hpp"
 
 namespace stillhand::rig {
 
@@ -55,6 +56,7 @@ struct PlatformDemand {
   double position_m;
   double velocity_m_s;
   double acceleration_m_s2;
+  bool held = false;  ///< no permission to move: the command does not count
 };
 
 /// Ideal motion source for the body:
@@ -63,7 +65,8 @@ struct PlatformDemand {
 ///   tau da/dt = a_d - a
 ///
 /// Eq. RG-2 then limits the acceleration so that the platform can still stop inside its workspace.
-/// Without a command it brakes to rest and holds.  Acceleration is constant within a tick;
+/// Without a command it brakes to rest and holds; so it does while it is held, and comes from there
+/// to the next command on the slow way of Eq. SG-21.  Acceleration is constant within a tick;
 /// position_m and velocity_m_s are the values at its end.
 /// Source: README Eq. RG-1 and RG-2; paper II-A (the vehicle is much heavier than the body).
 /// Pure; never allocates or throws.
@@ -71,7 +74,8 @@ class Platform {
  public:
   struct Output {
     PlatformState state;
-    Flags flags;  ///< kInputStale (no command), kInputInvalid, kSaturated, kWorkspaceLimit
+    Flags flags;  ///< kInhibited (held), kInputStale (no command), kInputInvalid, kSaturated,
+                  ///< kWorkspaceLimit
   };
 
   /// @throws stillhand::ConfigError if a field is outside its range or the loop is unstable.
@@ -81,6 +85,8 @@ class Platform {
   Output step(const PlatformDemand& demand) noexcept;
 
  private:
+  /// Puts the slow way from where it was held into a command.
+  [[nodiscard]] PlatformDemand from_hold(const PlatformDemand& demand) noexcept;
   [[nodiscard]] double wanted_acceleration(const PlatformDemand& demand,
                                            Flags& flags) const noexcept;
   /// Largest acceleration that still allows a stop before a wall at `room_m`, Eq. RG-2.
@@ -92,6 +98,8 @@ class Platform {
   double brake_s2_m_;       ///< 1 / (2 max_acceleration)
   double lag_blend_;        ///< 1 - exp(-dt / tau) [-]
   PlatformState state_;
+  bool held_ = false;
+  signal::SlowWay way_;  ///< from where it was held
 };
 
 }  // namespace stillhand::rig

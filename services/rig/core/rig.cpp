@@ -83,7 +83,7 @@ RigOutput Rig::sample(const RigInput& input) noexcept {
   STILLHAND_EXPECTS(!opened_);
   const auto platform =
       platform_.step({input.command_valid, input.command_position_m, input.command_velocity_m_s,
-                      input.command_acceleration_m_s2});
+                      input.command_acceleration_m_s2, input.leave == MotionLeave::kHold});
   const auto person = volitional(input);
   UndeclaredEffect* const effect = sealed_.effect_.get();
   UndeclaredEffect::Shaken shaken{};

@@ -5,6 +5,7 @@
 
 #include "services/contract/config_field.hpp"
 #include "services/contract/flag.hpp"
+#include "services/contract/motion_leave.hpp"
 #include "services/contract/tick.hpp"
 #include "services/rig/core/body.hpp"
 #include "services/rig/core/motor.hpp"
@@ -43,6 +44,8 @@ struct RigConfig {
 
 /// All inputs of the rig in one tick.
 struct RigInput {
+  /// Of the platform; in one process, where nobody sits, every command is followed.
+  MotionLeave leave = MotionLeave::kFollow;
   bool command_valid = false;  ///< a platform command for this tick arrived
   double command_position_m = 0.0;
   double command_velocity_m_s = 0.0;

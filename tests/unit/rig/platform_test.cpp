@@ -113,6 +113,42 @@ TEST(PlatformTest, ComesToRestInsideTheWorkspaceWhenTheCommandIsMissing) {
   EXPECT_LT(std::abs(out.state.velocity_m_s), 1e-6);
 }
 
+PlatformDemand held() { return {true, 0.1, 0.0, 0.0, true}; }
+
+TEST(PlatformTest, HeldItBrakesAndComesSlowlyToTheNextCommand) {
+  Platform sut{PlatformConfig{}};
+  for (int n = 0; n < 2070; ++n) sut.step(sinusoid(0.12, 0.8, n));
+  auto out = sut.step(held());
+  for (int n = 0; n < 500; ++n) out = sut.step(held());
+  EXPECT_EQ(out.flags, kInhibited);
+  EXPECT_LT(std::abs(out.state.velocity_m_s), 1e-6);
+  ASSERT_GT(std::abs(out.state.position_m), 0.03);
+  double fastest_m_s = 0.0, hardest_m_s2 = 0.0;
+  for (int n = 0; n < 3000; ++n) {
+    out = sut.step({true, 0.0, 0.0, 0.0});
+    fastest_m_s = std::max(fastest_m_s, std::abs(out.state.velocity_m_s));
+    hardest_m_s2 = std::max(hardest_m_s2, std::abs(out.state.acceleration_m_s2));
+  }
+  // Eq. SG-21, 0.12 m/s and 0.37 m/s^2, and what the loop of damping 0.8 adds: less than a tenth.
+  EXPECT_LT(fastest_m_s, 0.132);
+  EXPECT_LT(hardest_m_s2, 0.41);
+  EXPECT_NEAR(out.state.position_m, 0.0, 1e-9);
+}
+
+// In one process nobody is held: not a bit changes.
+TEST(PlatformTest, AfterTheSlowWayACommandCountsAsItIs) {
+  Platform held_before{PlatformConfig{}};
+  Platform never_held{PlatformConfig{}};
+  held_before.step(held());
+  for (int n = 0; n < 3000; ++n) {
+    const auto demand = n < 1500 ? PlatformDemand{true, 0.0, 0.0, 0.0} : sinusoid(0.05, 1.0, n);
+    const auto a = held_before.step(demand).state;
+    const auto b = never_held.step(demand).state;
+    ASSERT_EQ(a.position_m, b.position_m) << n;
+    ASSERT_EQ(a.acceleration_m_s2, b.acceleration_m_s2) << n;
+  }
+}
+
 TEST(PlatformTest, TreatsACommandThatIsNotFiniteAsMissing) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

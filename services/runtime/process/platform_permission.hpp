@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "services/contract/motion_leave.hpp"
+#include "services/contract/trial.hpp"
+
+namespace stillhand::runtime {
+
+/// Whether the platform may move at a tick: the interlock of who sits on it.  From the announcement
+/// of a trial in a session that runs, which is what a person's start leads to, the platform may
+/// engage; it may follow commands where the trial covers the tick.  Once something went wrong that
+/// was right in it, or in the trial, it holds for the rest of the trial: a motion must not come
+/// back by surprise.  So it does after kMostMissing_ticks without a command in the trial, and after
+/// a stop for good. Pure; one thread.
+class PlatformPermission {
+ public:
+  struct Input {
+    bool runs = false;     ///< the session runs: it began, is not paused, and does not end
+    bool sound = false;    ///< every process lives, each the one source, and every part works
+    bool command = false;  ///< a command for this tick came
+  };
+
+  /// A command that is missing brakes at once; for longer than this motion has to be looked at.
+  static constexpr Tick kMostMissing_ticks = 100;
+
+  MotionLeave step(const Trial& trial, Tick tick, const Input& input) noexcept {
+    const bool covers = trial.covers(tick);
+    const bool announced = trial.number >= 0 && trial.phase != TrialPhase::kIdle &&
+                           (covers || tick < trial.start_tick);
+    if (!announced || !input.runs) {
+      missing_ticks_ = 0;
+      return MotionLeave::kHold;
+    }
+    missing_ticks_ = covers && !input.command ? missing_ticks_ + 1 : 0;
+    const bool lost = missing_ticks_ > kMostMissing_ticks;
+    if (trial.number != sound_trial_ && input.sound) sound_trial_ = trial.number;
+    const bool unsound = !input.sound && (covers || trial.number == sound_trial_);
+    if ((unsound || lost) && latched_trial_ != trial.number) {
+      latched_trial_ = trial.number;
+      motion_lost_ = lost && input.sound;
+    }
+    if (stopped_ || !input.sound || trial.number == latched_trial_) return MotionLeave::kHold;
+    return covers ? MotionLeave::kFollow : MotionLeave::kEngage;
+  }
+  /// For good.
+  void stop() noexcept { stopped_ = true; }
+  /// True when the trial lost its permission for good.
+  [[nodiscard]] bool latched(const Trial& trial) const noexcept {
+    return stopped_ || (trial.number >= 0 && trial.number == latched_trial_);
+  }
+  /// It did, since motion's commands stayed away.
+  [[nodiscard]] bool motion_lost(const Trial& trial) const noexcept {
+    return motion_lost_ && trial.number >= 0 && trial.number == latched_trial_;
+  }
+
+ private:
+  std::int64_t latched_trial_ = -2;
+  std::int64_t sound_trial_ = -2;  ///< newest announcement in which everything was right
+  Tick missing_ticks_ = 0;
+  bool motion_lost_ = false;
+  bool stopped_ = false;
+};
+
+}  // namespace stillhand::runtime
