@@ -34,11 +34,11 @@ bool TrialRun::advance(Seen& seen, std::int64_t now_ns, Actions& actions) {
     case At::kPaused:
       return await_start(seen, now_ns, actions);
     case At::kArming:
-      return await_armed(seen, now_ns);
+      return await_armed(seen, now_ns, actions);
     case At::kRunning:
       return follow(seen, now_ns, actions);
     case At::kForceZero:
-      return await_force_zero(seen, now_ns);
+      return await_force_zero(seen, now_ns, actions);
     case At::kAfterwards:
       return await_afterwards(seen, now_ns);
     case At::kDeath:
@@ -96,11 +96,14 @@ bool TrialRun::armed(const Seen& seen, const Member& member) const {
   return !member.prepares || seen.process(member.name).armed_trial == result_.trial.number;
 }
 
-bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
+bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns, Actions& actions) {
   const bool all =
       std::ranges::all_of(roster_, [&](const Member& member) { return armed(seen, member); });
   // The rig names what is missing; who waits for that process is not the reason.
-  if (seen.has(EventKind::kInterlockOpened)) return look_for_death(seen, now_ns);
+  if (seen.has(EventKind::kInterlockOpened)) {
+    announce_idle(actions);
+    return look_for_death(seen, now_ns);
+  }
   // Who lost sight of the session in a pause needs the next ticks to come back.
   const std::string stands = standstill_.look(seen, roster_, now_ns);
   switch (trouble_.wait(all && stands.empty(), seen, limit_ns_, now_ns)) {
@@ -118,6 +121,7 @@ bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns) {
       result_.aborted = stands.empty() ? why_not_armed(seen) : stands;
       break;
   }
+  announce_idle(actions);
   return end(seen);
 }
 
@@ -176,16 +180,21 @@ bool TrialRun::end_motion(Seen& seen, std::int64_t now_ns, Actions& actions) {
   stopped_ = !result_.completed &&
              (!seen.requests.trial_stopped().empty() || (trouble_.silent() && !opened) ||
               (trouble_.why().empty() && (seen.interrupted || !opened)));
-  if (stopped_ || !seen.requests.emergency().empty()) {
-    actions.announce = {SessionState::kRunning, std::nullopt};
-  }
+  if (stopped_ || !seen.requests.emergency().empty()) announce_idle(actions);
   if (result_.completed && !opened) return look_for_death(seen, now_ns);
   return move_on(At::kForceZero, now_ns + kLimit_ns);
 }
 
-bool TrialRun::await_force_zero(const Seen& seen, std::int64_t now_ns) {
+// The sources of motion and force end with it; the rig does not wait for that.
+void TrialRun::announce_idle(Actions& actions) {
+  if (!announced_idle_) actions.announce = {SessionState::kRunning, std::nullopt};
+  announced_idle_ = true;
+}
+
+bool TrialRun::await_force_zero(const Seen& seen, std::int64_t now_ns, Actions& actions) {
   constexpr std::int64_t kAfterwards_ns = 300'000'000;
   if (!stopped_ && !seen.has(EventKind::kForceZero) && now_ns < limit_ns_) return false;
+  announce_idle(actions);
   afterwards_ = seen.newest_tick() + kAfterwards_ns / kNsPerTick;
   return move_on(At::kAfterwards, now_ns + kAfterwards_ns);
 }

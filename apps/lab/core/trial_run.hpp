@@ -40,13 +40,14 @@ class TrialRun final : public Stage {
   // Each returns true when it has moved on to another part or to the end.
   bool advance(Seen& seen, std::int64_t now_ns, Actions& actions);
   bool await_start(Seen& seen, std::int64_t now_ns, Actions& actions);
-  bool await_armed(Seen& seen, std::int64_t now_ns);
+  bool await_armed(Seen& seen, std::int64_t now_ns, Actions& actions);
   bool follow(Seen& seen, std::int64_t now_ns, Actions& actions);
-  bool await_force_zero(const Seen& seen, std::int64_t now_ns);
+  bool await_force_zero(const Seen& seen, std::int64_t now_ns, Actions& actions);
   bool await_afterwards(Seen& seen, std::int64_t now_ns);
   bool await_death(Seen& seen, std::int64_t now_ns);
 
   void begin(Seen& seen, std::int64_t now_ns, Actions& actions);
+  void announce_idle(Actions& actions);
   bool end_motion(Seen& seen, std::int64_t now_ns, Actions& actions);
   bool look_for_death(Seen& seen, std::int64_t now_ns);
   bool move_on(At at, std::int64_t limit_ns);
@@ -62,6 +63,7 @@ class TrialRun final : public Stage {
   At at_ = At::kPaused;
   std::int64_t limit_ns_;
   bool announced_pause_ = false;
+  bool announced_idle_ = false;  // of this trial: its motion ends
   Standstill standstill_;
   bool stopped_ = false;  // the force goes to zero by request: no event reports it
   Tick afterwards_ = 0;   // tick at which the recorder has seen the force's end

@@ -242,7 +242,10 @@ TEST_F(TrialRunTest, AnInterlockThatOpensWhileOthersPrepareIsTheReason) {
   step();
   seen_.processes["display"].armed_trial = -1;
   event(EventKind::kInterlockOpened, "rig", "a process is missing: sensing");
-  step();
+  // Whoever is prepared does not begin.
+  const Actions opened = step();
+  ASSERT_TRUE(opened.announce.has_value());
+  EXPECT_FALSE(opened.announce->trial.has_value());
   EXPECT_FALSE(sut_->over());  // its end may be seen later
   step(3 * kSecond + 1);
   ASSERT_TRUE(sut_->over());
@@ -258,7 +261,10 @@ TEST_F(TrialRunTest, AnOpenInterlockEndsTheTrialOnceTheForceIsZeroAndRecorded) {
   step(1 * kSecond);
   EXPECT_FALSE(sut_->over());
   event(EventKind::kForceZero, "rig");
-  step();
+  // The motion ends with the force, not with what is looked for afterwards.
+  const Actions zero = step();
+  ASSERT_TRUE(zero.announce.has_value());
+  EXPECT_FALSE(zero.announce->trial.has_value());
   EXPECT_FALSE(sut_->over());
   rig_at(5300);
   step();  // recorded; a process that ended may be the better reason
