@@ -149,7 +149,7 @@ class HandOff {
     device_rig::Push seen;
     for (Tick tick = 0; tick < kLongest_ticks; ++tick) {
       const double rise_n = kRise_n_s * kControlPeriod_s * static_cast<double>(tick - kArm_ticks);
-      rig::RigInput input;
+      rig::RigInput input{.leave = MotionLeave::kHold};
       input.motor_valid = input.motor_permitted = true;
       input.motor_force_n = std::copysign(std::clamp(rise_n, 0.0, std::abs(most_n)), most_n);
       const rig::RigOutput output = station_.tick(input, trial);
@@ -161,7 +161,9 @@ class HandOff {
       // An unknown place ends the push too.
       if (!(std::abs(seen.moved_m) < kMoved_m)) break;
     }
-    for (Tick tick = 0; tick < kEnd_ticks; ++tick) station_.tick({}, trial);
+    for (Tick tick = 0; tick < kEnd_ticks; ++tick) {
+      station_.tick({.leave = MotionLeave::kHold}, trial);
+    }
     check_devices();
     std::cout << fmt::format(
         "  asked for {:+.2f} N at most, measured by the drive {:+.2f} N; the stick moved by "
@@ -184,6 +186,7 @@ class HandOff {
     if (!(std::abs(at_m_) + options_.step_m <= rig_.platform.workspace_m)) {
       throw Wrong{fmt::format("the platform stands at {:+.3f} m, at its end", at_m_)};
     }
+    seat_trial_ = station_.engage(at_m_);
     device_rig::Stroke stroke{.asked_m = options_.step_m};
     for (int i = 0; i < kStrokes; ++i) {
       const double before_m = reached(0.0);
@@ -221,7 +224,7 @@ class HandOff {
       input.command_velocity_m_s = way_m * signal::smooth_step_speed(u) / kLength_s;
       input.command_acceleration_m_s2 =
           way_m * signal::smooth_step_bend(u) / (kLength_s * kLength_s);
-      output = station_.tick(input);
+      output = station_.tick(input, seat_trial_);
       check_devices();
       const double seat_m_s2 =
           in_units(CalibratedSignal::kAcceleration, output.raw.accel_y_v, sensing_);
@@ -240,6 +243,7 @@ class HandOff {
   bool drives_;
   int step_ = 0, of_ = 0;
   std::int64_t trial_ = 0;
+  Trial seat_trial_;  ///< of the strokes
   double at_m_ = 0.0, offset_m_ = 0.0;
   std::vector<double> asked_m_s2_, read_m_s2_;
   device_rig::HandOffRecord record_;

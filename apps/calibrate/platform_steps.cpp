@@ -47,6 +47,7 @@ std::optional<PlatformResponse> moved(const CalibrateOptions& options, Station& 
   const bool seat = !station.plant().device_of(CalibratedSignal::kAcceleration).empty();
   device_rig::PlatformTest test({.motion_m = options.motion_m}, options.periods);
   station.restart_clock();
+  const Trial trial = station.engage(place_m);
   for (Tick tick = 0; tick < test.ticks(); ++tick) {
     const auto set_point = test.at(tick);
     rig::RigInput input;
@@ -54,7 +55,7 @@ std::optional<PlatformResponse> moved(const CalibrateOptions& options, Station& 
     input.command_position_m = place_m + set_point.pos_m;
     input.command_velocity_m_s = set_point.vel_m_s;
     input.command_acceleration_m_s2 = set_point.accel_m_s2;
-    const rig::RigOutput output = station.tick(input);
+    const rig::RigOutput output = station.tick(input, trial);
     test.take(
         tick, output.truth.platform_position_m - place_m,
         seat ? in_units(CalibratedSignal::kAcceleration, output.raw.accel_y_v, sensing) : kUnknown);

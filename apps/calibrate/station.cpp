@@ -15,6 +15,7 @@ namespace {
 constexpr std::int64_t kTick_ns = 1'000'000;
 constexpr std::int64_t kMostCatchUp_ns = 5 * kTick_ns;
 constexpr Tick kFirst_ticks = 200;
+constexpr std::int64_t kEngaging = 1'000'000;  // apart from the trials of pushes
 
 /// Mean and sum of squares as they come (Welford 1962).
 class Sum {
@@ -77,6 +78,21 @@ rig::RigOutput Station::tick(const rig::RigInput& input, const Trial& trial) {
   plant_.drive(input, output);
   ++tick_;
   return output;
+}
+
+Trial Station::engage(double place_m) {
+  // The shortest way of Eq. SG-19, and the time to answer.
+  constexpr Tick kEngage_ticks = 1500;
+  constexpr Tick kLongest_ticks = 3'600'000;
+  const Trial trial{.number = kEngaging + engaged_++,
+                    .phase = TrialPhase::kPegged,
+                    .start_tick = tick_ + kEngage_ticks,
+                    .duration_ticks = kLongest_ticks};
+  rig::RigInput input{.leave = MotionLeave::kEngage};
+  input.command_valid = true;
+  input.command_position_m = place_m;
+  for (Tick i = 0; i < kEngage_ticks; ++i) tick(input, trial);
+  return trial;
 }
 
 void Station::restart_clock() {

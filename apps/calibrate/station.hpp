@@ -27,7 +27,7 @@ double in_units(device_rig::CalibratedSignal signal, double reading,
 using AllReadings = std::array<Readings, device_rig::kCalibratedSignals.size()>;
 
 /// The devices of a rig without a session.  They are read; without an input no motor is armed (no
-/// trial permits it), and a platform brakes and holds.
+/// trial permits it), and a platform holds.
 class Station {
  public:
   /// @throws ConfigError as DevicePlant
@@ -35,7 +35,13 @@ class Station {
       : plant_(in_real_time(rig), devices) {}
 
   /// One millisecond later: devices are read, and get what the input asks for.
-  rig::RigOutput tick(const rig::RigInput& input = {}, const Trial& trial = {});
+  rig::RigOutput tick(const rig::RigInput& input = {.leave = MotionLeave::kHold},
+                      const Trial& trial = {});
+  /// Engages the platform where it stands, as before a trial of a session: a person agreed to its
+  /// motion.  Whether it worked, plant().unsound() says from the next tick on.
+  /// @returns a trial that begins with the next tick; its stick is pegged, so that no motor is
+  /// armed
+  Trial engage(double place_m);
   /// The next tick() is a millisecond from now.
   void restart_clock();
   /// So many ticks without an input.
@@ -56,6 +62,7 @@ class Station {
 
   device_rig::DevicePlant plant_;
   Tick tick_ = 0;
+  std::int64_t engaged_ = 0;
   std::int64_t lost_ns_ = 0;
   std::int64_t due_ns_ = 0;
 };

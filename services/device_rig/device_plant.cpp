@@ -57,7 +57,7 @@ DevicePlant::DevicePlant(const rig::RigConfig& rig, const DevicesConfig& devices
       parts_(parts_of(devices)),
       simulated_(rig),
       motor_(barrier(rig.motor), rig.stick.lever_m),
-      guard_(set_point_limits(rig.platform)),
+      seat_drive_(platform_limits(rig.platform, devices.platform, parts_.platform)),
       asked_(lag_ticks(platform_lag_s)),
       words_(std::string(kPartsNote) + in_words(devices.signals)) {
   if (parts_.needs_drive()) {
@@ -259,7 +259,8 @@ void DevicePlant::wait() noexcept {
   take_platform();
   take_iio();
   if (drive_) drive_->demand(Order::kQuery, 0.0);
-  if (platform_) platform_->demand({.follow = false, .position_m = seat_.reply.position_m});
+  if (!platform_) return;
+  move_platform({.leave = MotionLeave::kHold}, true);
 }
 
 void DevicePlant::begin(const Trial& trial, Tick tick) noexcept {
@@ -290,7 +291,12 @@ rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   output.truth.hand_force_n = kUnknown;
   if (parts_.motor != Parts::Motor::kSimulated) output.truth.motor_force_n = force_n_;
   watch_numbers(input, output);
-  move_platform(input, output);
+  if (platform_) {
+    const bool turn = tick_ % devices_.platform.period_ticks == 0;
+    const auto asked = move_platform(input, turn);
+    output.flags |= asked.flags;
+    output.truth.platform_velocity_m_s = asked.set_point.velocity_m_s;
+  }
   return output;
 }
 
@@ -303,7 +309,7 @@ void DevicePlant::put_devices(rig::RigOutput& output) const noexcept {
 
 void DevicePlant::watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept {
   // A platform that is simulated, or does not follow, moves no sensor.
-  const bool follows = platform_ && seat_.reply.stage == PlatformStage::kFollowing;
+  const bool follows = platform_ && seat_drive_.stage() == SeatStage::kFollowing;
   if (!follows || !input.command_valid) return;
   const double motion = input.command_acceleration_m_s2;
   if (parts_.acceleration != Parts::Source::kSimulated) {
@@ -363,17 +369,38 @@ void DevicePlant::put_iio(rig::RigOutput& output) const noexcept {
   if (unknown_ticks_ > 0) output.flags |= kInputStale;
 }
 
-void DevicePlant::move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept {
-  if (!platform_) return;
-  // Until it follows, the set-point is where the platform stands: no jump when it begins.
-  if (seat_.reply.stage != PlatformStage::kFollowing) guard_.stand_at(seat_.reply.position_m);
-  const auto guarded = guard_.step({.follow = input.command_valid,
-                                    .position_m = input.command_position_m,
-                                    .velocity_m_s = input.command_velocity_m_s,
-                                    .acceleration_m_s2 = input.command_acceleration_m_s2});
-  output.flags |= guarded.flags;
-  output.truth.platform_velocity_m_s = guarded.set_point.velocity_m_s;
-  if (tick_ % devices_.platform.period_ticks == 0) platform_->demand(guarded.set_point);
+// What the shell permits, and never beyond what the trial does: without one nothing moves.
+MotionLeave DevicePlant::leave_of(const rig::RigInput& input) const noexcept {
+  if (trial_.covers(tick_) || input.leave == MotionLeave::kHold) return input.leave;
+  const bool comes =
+      trial_.number >= 0 && trial_.phase != TrialPhase::kIdle && tick_ < trial_.start_tick;
+  return comes ? MotionLeave::kEngage : MotionLeave::kHold;
+}
+
+PlatformDrive::Output DevicePlant::move_platform(const rig::RigInput& input, bool turn) noexcept {
+  const Tick age_ticks =
+      seat_.count > 0 ? (now_ns_ - seat_.at_ns) / 1'000'000 : PlatformDrive::kNever;
+  const auto asked = seat_drive_.step(
+      {.leave = leave_of(input),
+       .measured = trial_.measures(tick_),
+       .trial = trial_.number,
+       .age_ticks = age_ticks,
+       .reply = seat_.reply,
+       .stranger = seat_.reply.owner != 0 && seat_.reply.owner != platform_->token(),
+       .wanted = {.valid = input.command_valid,
+                  .command = {.position_m = input.command_position_m,
+                              .velocity_m_s = input.command_velocity_m_s,
+                              .acceleration_m_s2 = input.command_acceleration_m_s2}}});
+  if (asked.began) {
+    std::snprintf(notice_text_.data(), notice_text_.size(),
+                  "the platform engages: from %+.0f mm to the trial's place in %.1f s",
+                  1e3 * seat_.reply.position_m, seat_drive_.way().length_s());
+    notice_ = notice_text_.data();
+  }
+  // A release or a stop does not wait for the turn of an exchange.
+  if (turn || asked.set_point.order != asked_order_) platform_->demand(asked.set_point);
+  asked_order_ = asked.set_point.order;
+  return asked;
 }
 
 void DevicePlant::drive(const rig::RigInput& input, rig::RigOutput& output) noexcept {
@@ -413,7 +440,7 @@ void DevicePlant::drive_motor(const rig::RigInput& input, rig::RigOutput& output
 bool DevicePlant::prepared() const noexcept {
   const bool stick =
       !drive_ || arming_.stage() == Stage::kChecked || arming_.stage() == Stage::kArmed;
-  const bool seat = !platform_ || (platform_fresh() && seat_.reply.stage != PlatformStage::kFault);
+  const bool seat = !platform_ || seat_drive_.engaged();
   return stick && seat && unknown_ticks_ == 0;
 }
 
@@ -434,13 +461,26 @@ const char* DevicePlant::unknown_iio() noexcept {
              : "the accelerometer is silent, or at its end";
 }
 
+// A platform that lost its permission stays unsound for the trial: README Eq. DR-22.
+void DevicePlant::judge_platform() noexcept {
+  const bool lost = seat_drive_.stage() == SeatStage::kFaulted &&
+                    seat_drive_.trial() == trial_.number && trial_.number >= 0;
+  const std::uint32_t fault = lost ? seat_drive_.fault() : seat_.reply.fault;
+  const bool reports = platform_fresh() && seat_.reply.stage == PlatformStage::kFault;
+  if (lost ? seat_drive_.reason() == SeatReason::kFault : reports) {
+    std::snprintf(platform_text_.data(), platform_text_.size(), "the platform reports fault 0x%x",
+                  fault);
+    why_ = platform_text_.data();
+  } else if (lost) {
+    why_ = text_of(seat_drive_.reason());
+  } else if (!platform_fresh()) {
+    why_ = text_of(SeatReason::kSilent);
+  }
+}
+
 void DevicePlant::judge() noexcept {
   why_ = nullptr;
-  if (platform_ && !platform_fresh()) why_ = "the platform is silent";
-  if (platform_ && platform_fresh() && seat_.reply.stage == PlatformStage::kFault) {
-    std::snprintf(text_.data(), text_.size(), "the platform reports fault 0x%x", seat_.reply.fault);
-    why_ = text_.data();
-  }
+  if (platform_) judge_platform();
   constexpr Tick kRail_ticks = 20;
   if (unknown_ticks_ >= kRail_ticks) why_ = unknown_iio();
   if (acceleration_.repeats()) why_ = "the accelerometer repeats one number while the seat moves";

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/device_rig/calibration_file.hpp"
@@ -15,10 +16,10 @@
 #include "services/device_rig/core/parts.hpp"
 #include "services/device_rig/core/repeated_number.hpp"
 #include "services/device_rig/core/same_side.hpp"
-#include "services/device_rig/core/set_point_guard.hpp"
 #include "services/device_rig/drive_link.hpp"
 #include "services/device_rig/iio_link.hpp"
 #include "services/device_rig/indicator_link.hpp"
+#include "services/device_rig/platform_drive.hpp"
 #include "services/device_rig/platform_link.hpp"
 #include "services/rig/plant.hpp"
 #include "services/signal/delay_line.hpp"
@@ -35,7 +36,7 @@ const char* unserved(const Parts& parts, const rig::RawSample& raw) noexcept;
 
 /// The rig made of devices: settings say which part serves which signal; the simulated rig serves
 /// the rest.  Each tick takes the newest sample of each device and gives it one demand; the links
-/// do the talking.  README Eq. DR-3 to DR-11.
+/// do the talking.  README Eq. DR-3 to DR-11, DR-20 to DR-24.
 class DevicePlant final : public rig::Plant {
  public:
   /// Opens and checks every device, and that each signal of a device is published: the simulated
@@ -51,6 +52,7 @@ class DevicePlant final : public rig::Plant {
   void drive(const rig::RigInput& input, rig::RigOutput& output) noexcept override;
   [[nodiscard]] bool prepared() const noexcept override;
   [[nodiscard]] const char* unsound() const noexcept override { return why_; }
+  [[nodiscard]] const char* notice() noexcept override { return std::exchange(notice_, nullptr); }
   [[nodiscard]] const char* parts() const noexcept override { return words_.c_str(); }
   /// The device that measures a signal, with its serial number; empty: the signal is simulated.
   [[nodiscard]] std::string device_of(CalibratedSignal signal) const;
@@ -74,10 +76,13 @@ class DevicePlant final : public rig::Plant {
   void put_stick(rig::RigOutput& output) const noexcept;
   void put_platform(rig::RigOutput& output) const noexcept;
   void put_iio(rig::RigOutput& output) const noexcept;
-  void move_platform(const rig::RigInput& input, rig::RigOutput& output) noexcept;
+  [[nodiscard]] MotionLeave leave_of(const rig::RigInput& input) const noexcept;
+  /// @param turn  of an exchange
+  PlatformDrive::Output move_platform(const rig::RigInput& input, bool turn) noexcept;
   void drive_motor(const rig::RigInput& input, rig::RigOutput& output) noexcept;
   void watch_numbers(const rig::RigInput& input, const rig::RigOutput& output) noexcept;
   void judge() noexcept;
+  void judge_platform() noexcept;
   [[nodiscard]] const char* unknown_iio() noexcept;
   [[nodiscard]] bool at_rail() const noexcept;
   [[nodiscard]] bool drive_fresh() const noexcept;
@@ -94,7 +99,7 @@ class DevicePlant final : public rig::Plant {
   Parts parts_;
   rig::Rig simulated_;
   rig::Motor motor_;  ///< age, permission and envelope of the force: those of the simulated rig
-  SetPointGuard guard_;
+  PlatformDrive seat_drive_;
   Arming arming_;
   std::unique_ptr<DriveLink> drive_;  ///< null: no part is the drive's
   std::unique_ptr<PlatformLink> platform_;
@@ -108,9 +113,10 @@ class DevicePlant final : public rig::Plant {
   std::int64_t now_ns_ = 0;
   DriveSample stick_;
   PlatformSample seat_;
-  double accel_y_m_s2_ = kNothingYet;               ///< of the accelerometer; NaN: unknown
-  double accel_x_m_s2_ = 0.0, accel_z_m_s2_ = 0.0;  ///< 0 of an accelerometer of one axis
-  double load_cell_v_ = kNothingYet;                ///< NaN: unknown
+  PlatformOrder asked_order_ = PlatformOrder::kHold;  ///< of the newest set-point
+  double accel_y_m_s2_ = kNothingYet;                 ///< of the accelerometer; NaN: unknown
+  double accel_x_m_s2_ = 0.0, accel_z_m_s2_ = 0.0;    ///< 0 of an accelerometer of one axis
+  double load_cell_v_ = kNothingYet;                  ///< NaN: unknown
   RepeatedNumber acceleration_{0.5};  ///< a 12-bit converter over 3 g has steps of 0.014 m/s^2
   SameSide side_;                     ///< of the accelerometer, over a trial
   signal::DelayLine asked_;           ///< acceleration of the set-point, as late as the platform
@@ -121,7 +127,8 @@ class DevicePlant final : public rig::Plant {
   double force_n_ = 0.0;              ///< as the drive was ordered
   Order order_ = Order::kQuery;
   const char* why_ = nullptr;
-  std::array<char, 120> text_{};
+  const char* notice_ = nullptr;
+  std::array<char, 120> text_{}, platform_text_{}, notice_text_{};
   std::string words_;
 };
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <numbers>
+#include <string>
+#include <string_view>
 
+#include "services/contract/config_error.hpp"
 #include "services/device_rig/core/devices_config.hpp"
 #include "services/device_rig/core/drive_protocol.hpp"
-#include "services/device_rig/core/set_point_guard.hpp"
+#include "services/device_rig/core/parts.hpp"
+#include "services/device_rig/platform_drive.hpp"
 #include "services/rig/core/rig.hpp"
 
 namespace stillhand::device_rig {
@@ -28,13 +33,32 @@ inline SettingLimits setting_limits(const rig::RigConfig& rig, const DevicesConf
           .travel_rev = rig.stick.stop_angle_rad / (2.0 * std::numbers::pi)};
 }
 
-/// Those of the simulated platform.
-inline SetPointLimits set_point_limits(const rig::PlatformConfig& config) {
-  return {.workspace_m = config.workspace_m,
-          .max_velocity_m_s = config.max_velocity_m_s,
-          .max_acceleration_m_s2 = config.max_acceleration_m_s2,
-          .catch_velocity_m_s = config.catch_velocity_m_s,
-          .stop_deceleration_m_s2 = config.stop_deceleration_m_s2};
+/// Those of the simulated platform, as far as motion's guard knows them: no command of motion is
+/// beyond its ranges.  A plain platform that got no packet for `valid_ms` braked by itself, so its
+/// newest reply must be younger while it follows.
+/// @throws ConfigError where an exchange takes longer than the oldest reply that counts
+inline PlatformDrive::Limits platform_limits(const rig::PlatformConfig& config,
+                                             const PlatformLinkConfig& link,
+                                             Parts::Platform protocol) {
+  motion::PlatformLimits guard{.max_position_m = config.workspace_m,
+                               .max_velocity_m_s = config.max_velocity_m_s,
+                               .max_acceleration_m_s2 = config.max_acceleration_m_s2,
+                               .stop_acceleration_m_s2 = config.stop_deceleration_m_s2};
+  motion::PlatformLimits::fields(
+      [](std::string_view, double& value, Range range, std::string_view) {
+        value = std::clamp(value, range.min, range.max);
+      },
+      guard);
+  const bool plain = protocol == Parts::Platform::kPlain;
+  const Tick following = plain ? std::min(link.max_age_ticks, link.valid_ms) : link.max_age_ticks;
+  if (protocol != Parts::Platform::kSimulated && link.period_ticks >= following) {
+    throw ConfigError("devices.platform.period_ticks", std::to_string(link.period_ticks),
+                      "less than max_age_ticks and, of the plain protocol, valid_ms");
+  }
+  return {.guard = guard,
+          .most_jerk_m_s3 = link.max_jerk_m_s3,
+          .most_age_ticks = link.max_age_ticks,
+          .most_following_age_ticks = following};
 }
 
 }  // namespace stillhand::device_rig

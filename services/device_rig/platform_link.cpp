@@ -2,16 +2,30 @@
 #include "services/device_rig/platform_link.hpp"
 
 #include <array>
+#include <random>
+#include <string>
 
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::device_rig {
 
+namespace {
+
+// No two processes that command at one time have the same.
+std::uint32_t new_token() {
+  std::random_device device;
+  return device() | 1u;
+}
+
+}  // namespace
+
 PlatformLink::PlatformLink(const PlatformLinkConfig& config, Parts::Platform protocol)
-    : config_(config),
-      protocol_(protocol),
+    : lock_("platform-" + config.address + ":" + std::to_string(config.port),
+            "platform at " + config.address + ", port " + std::to_string(config.port)),
+      token_(new_token()),
       socket_(config.address, static_cast<std::uint16_t>(config.port),
               static_cast<std::uint16_t>(config.local_port)),
+      exchange_(protocol, token_, static_cast<std::uint32_t>(config.valid_ms), config.heave_m),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 PlatformLink::~PlatformLink() {
@@ -34,7 +48,9 @@ void PlatformLink::work(const std::stop_token& stop) noexcept {
     sent_number_ = demand.number;
     send(demand.set_point);
   }
-  send({.follow = false, .position_m = sample_.reply.position_m});
+  SetPoint last = demands_.load().set_point;
+  if (last.order == PlatformOrder::kFollow) last.order = PlatformOrder::kHold;
+  send(last);
 }
 
 void PlatformLink::receive() noexcept {
@@ -43,28 +59,12 @@ void PlatformLink::receive() noexcept {
   for (int turn = 0; turn < 16; ++turn) {
     const auto datagram = socket_.receive(bytes);
     if (datagram.empty()) return;
-    const PlatformReply reply = protocol_ == Parts::Platform::kMoog
-                                    ? moog::read_reply(datagram, machine_state_)
-                                    : plain::read_reply(datagram);
-    // A sequence that stands is a packet that comes again; Moog's packets have none.
-    const bool again = protocol_ == Parts::Platform::kPlain && sample_.count > 0 &&
-                       reply.sequence == sample_.reply.sequence;
-    if (!reply.whole || again) {
-      ++sample_.damaged;
-      continue;
-    }
-    ++sample_.count;
-    sample_.at_ns = runtime::monotonic_ns();
-    sample_.reply = reply;
-    samples_.store(sample_);
+    if (exchange_.take(datagram, runtime::monotonic_ns())) samples_.store(exchange_.sample());
   }
 }
 
 void PlatformLink::send(const SetPoint& set_point) noexcept {
-  const Packet packet = protocol_ == Parts::Platform::kMoog
-                            ? moog::command_packet(set_point, machine_state_, config_.heave_m)
-                            : plain::command_packet(set_point, ++sequence_,
-                                                    static_cast<std::uint32_t>(config_.valid_ms));
+  const Packet packet = exchange_.command(set_point, runtime::monotonic_ns());
   // What is not taken is lost, as any datagram may be; the platform brakes after `valid_ms`.
   socket_.send(packet.payload());
 }

@@ -37,10 +37,13 @@ class PlatformEmulator {
   [[nodiscard]] double most_step_m() const { return most_step_m_; }
 
  private:
+  void obey(bool follow, std::uint32_t token, std::int64_t now_ns, const PlatformWish& wish,
+            std::uint32_t valid_ms);
+
   SeatState seat_;
   PlatformWish wish_{};
   bool follow_ = false;
-  bool begun_ = false;
+  std::uint32_t owner_ = 0;
   std::int64_t command_ns_ = 0;
   std::int64_t valid_ns_ = 0;
   std::uint32_t sequence_ = 0, asked_ = 0, fault_ = 0;

@@ -29,6 +29,7 @@ namespace {
 using namespace stillhand;  // NOLINT(google-build-using-namespace): a program of one file
 
 constexpr std::int64_t kTick_ns = 1'000'000;
+constexpr Tick kEngaged_ticks = 1200;  // the shortest way of Eq. SG-19
 constexpr double kForce_n = 5.0;
 constexpr double kAmplitude_m = 0.02;
 constexpr double kMotion_rad_s = 2.0 * std::numbers::pi * 1.5;
@@ -54,9 +55,14 @@ rig::RigInput wanted(Tick tick) {
 }
 
 void push(device_rig::DevicePlant& plant) {
-  const Trial trial{.number = 1, .phase = TrialPhase::kTracking, .duration_ticks = Tick{1} << 40};
+  // Announced until the devices are prepared; then it begins.
+  Trial trial{.number = 1,
+              .phase = TrialPhase::kTracking,
+              .start_tick = Tick{1} << 40,
+              .duration_ticks = Tick{1} << 40};
   std::int64_t due_ns = runtime::monotonic_ns();
   bool prepared = false;
+  Tick prepared_ticks = 0;
   bool said = false;
   const char* why = nullptr;
   for (Tick tick = 0; !input_ended();) {
@@ -64,9 +70,14 @@ void push(device_rig::DevicePlant& plant) {
     runtime::sleep_until_ns(due_ns);
     // A process that stood still goes on from now, as the shell does.
     due_ns = std::max(due_ns, runtime::monotonic_ns() - 5 * kTick_ns);
-    prepared = prepared || plant.prepared();
-    plant.begin(prepared ? trial : Trial{}, tick);
-    rig::RigInput input = prepared ? wanted(tick) : rig::RigInput{};
+    prepared_ticks = plant.prepared() ? prepared_ticks + 1 : 0;
+    if (!prepared && prepared_ticks > kEngaged_ticks) {
+      prepared = true;
+      trial.start_tick = tick;
+    }
+    plant.begin(trial, tick);
+    rig::RigInput input{.leave = MotionLeave::kEngage, .command_valid = true};
+    if (prepared) input = wanted(tick - trial.start_tick);
     rig::RigOutput output = plant.sample(input);
     if (prepared && why == nullptr && plant.unsound() != nullptr) {
       why = plant.unsound();

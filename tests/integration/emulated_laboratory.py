@@ -61,7 +61,7 @@ def devices_yaml(link, port, uart=False, iio=None, max_age_days=0, odrive=False,
               f"  checksum: {'true' if uart else 'false'}"]
     # What 921600 baud carry: services/device_rig/README.md, "The drive's settings".
     lines += ["  kind: odrive", "  period_ticks: 3"] if odrive else []
-    lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}"]
+    lines += ["platform:", f"  port: {port}", f"  max_age_ticks: {MAX_AGE_MS}", f"  valid_ms: {MAX_AGE_MS}"]
     for group in ("accelerometer", "load_cell") if iio else ():
         lines += [f"{group}:", f"  uri: {iio}", f"  max_age_ticks: {MAX_AGE_MS}"]
     lines += ["indicator:", f"  port: {indicator}", f"  max_age_ticks: {MAX_AGE_MS}"] if indicator else []

@@ -108,6 +108,7 @@ struct PlatformLinkConfig {
   std::int64_t period_ticks = 1;
   std::int64_t valid_ms = 20;
   std::int64_t max_age_ticks = 50;
+  double max_jerk_m_s3 = 1000.0;
   double heave_m = 0.0;
 
   template <typename Visitor, typename Self>
@@ -122,6 +123,8 @@ struct PlatformLinkConfig {
           "[ms] the platform brakes when no set-point came for so long (plain_udp)");
     visit("max_age_ticks", self.max_age_ticks, Range{2.0, 1000.0},
           "[ticks] oldest state of the platform that counts");
+    visit("max_jerk_m_s3", self.max_jerk_m_s3, Range{10.0, 100000.0},
+          "[m/s^3] fastest change of the set-point's acceleration; the wall may demand more");
     visit("heave_m", self.heave_m, Range{-2.0, 2.0},
           "[m] height at which the platform works (moog_udp)");
   }

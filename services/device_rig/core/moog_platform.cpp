@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
+#include <cmath>
 
 #include "services/device_rig/core/platform_protocol.hpp"
 
@@ -33,9 +34,11 @@ double real(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
 }
 
 // A fault is never reset from here: a person does that, at the machine.
-std::uint32_t word_for(bool follow, std::uint32_t state) noexcept {
+std::uint32_t word_for(PlatformOrder order, std::uint32_t state) noexcept {
   if (state > kParking) return kDisable;
+  if (order == PlatformOrder::kRelease) return kPark;
   if (state == kEngaged) return kNewPosition;
+  const bool follow = order == PlatformOrder::kFollow;
   if (follow && (state == kIdle || state == kStandby)) return kEngage;
   return kPark;
 }
@@ -48,10 +51,11 @@ PlatformStage stage_of(std::uint32_t state) noexcept {
 
 }  // namespace
 
-Packet command_packet(const SetPoint& set_point, std::uint32_t machine_state,
+Packet command_packet(const SetPoint& wanted, std::uint32_t machine_state,
                       double heave_m) noexcept {
+  const SetPoint set_point = std::isfinite(wanted.position_m) ? wanted : SetPoint{};
   Packet packet;
-  put(packet, word_for(set_point.follow, machine_state));
+  put(packet, word_for(set_point.order, machine_state));
   put(packet, 0.0);  // roll
   put(packet, 0.0);  // pitch
   put(packet, heave_m);
@@ -66,11 +70,12 @@ PlatformReply read_reply(std::span<const std::uint8_t> payload,
                          std::uint32_t& machine_state) noexcept {
   PlatformReply reply;
   if (payload.size() != kReplySize) return reply;
+  reply.position_m = real(payload, 32);  // roll, pitch, heave, surge, yaw, lateral
+  if (!std::isfinite(reply.position_m)) return reply;
   reply.whole = true;
   reply.fault = number(payload, 0);
   machine_state = number(payload, 8) & 15u;
   reply.stage = reply.fault != 0 ? PlatformStage::kFault : stage_of(machine_state);
-  reply.position_m = real(payload, 32);  // roll, pitch, heave, surge, yaw, lateral
   return reply;
 }
 

@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <bit>
+#include <cmath>
 
 #include "services/device_rig/core/platform_protocol.hpp"
 
@@ -10,8 +11,8 @@ namespace {
 
 constexpr std::uint32_t kCommandMagic = 0x43504853;  // "SHPC"
 constexpr std::uint32_t kStateMagic = 0x53504853;    // "SHPS"
-constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kStateSize = 48;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::size_t kStateSize = 52;
 
 class Writer {
  public:
@@ -44,14 +45,18 @@ std::uint32_t checksum(std::span<const std::uint8_t> bytes) noexcept {
 
 }  // namespace
 
-Packet command_packet(const SetPoint& set_point, std::uint32_t sequence,
+Packet command_packet(const SetPoint& wanted, std::uint32_t sequence, std::uint32_t token,
                       std::uint32_t valid_ms) noexcept {
+  const bool finite = std::isfinite(wanted.position_m) && std::isfinite(wanted.velocity_m_s) &&
+                      std::isfinite(wanted.acceleration_m_s2);
+  const SetPoint set_point = finite ? wanted : SetPoint{};
   Packet packet;
   Writer writer(packet);
   writer.put(kCommandMagic, 4);
   writer.put(kVersion, 2);
-  writer.put(set_point.follow ? 1 : 0, 2);
+  writer.put(set_point.order == PlatformOrder::kFollow ? 1 : 0, 2);
   writer.put(sequence, 4);
+  writer.put(token, 4);
   writer.put(valid_ms, 4);
   writer.put(set_point.position_m);
   writer.put(set_point.velocity_m_s);
@@ -67,13 +72,17 @@ PlatformReply read_reply(std::span<const std::uint8_t> payload) noexcept {
       number(payload, kStateSize - 4, 4) != checksum(payload.first(kStateSize - 4))) {
     return reply;
   }
-  reply.whole = true;
   reply.stage = static_cast<PlatformStage>(number(payload, 6, 2));
   reply.sequence = static_cast<std::uint32_t>(number(payload, 8, 4));
-  reply.position_m = real(payload, 16);
-  reply.velocity_m_s = real(payload, 24);
-  reply.acceleration_m_s2 = real(payload, 32);
-  reply.fault = static_cast<std::uint32_t>(number(payload, 40, 4));
+  reply.answers = static_cast<std::uint32_t>(number(payload, 12, 4));
+  reply.owner = static_cast<std::uint32_t>(number(payload, 16, 4));
+  reply.position_m = real(payload, 20);
+  reply.velocity_m_s = real(payload, 28);
+  reply.acceleration_m_s2 = real(payload, 36);
+  reply.fault = static_cast<std::uint32_t>(number(payload, 44, 4));
+  // An acceleration may be NaN: not measured.
+  reply.whole = std::isfinite(reply.position_m) && std::isfinite(reply.velocity_m_s) &&
+                !std::isinf(reply.acceleration_m_s2);
   return reply;
 }
 

@@ -12,9 +12,16 @@ namespace stillhand::device_rig {
 /// What a platform does.
 enum class PlatformStage : std::uint8_t { kOff = 0, kHolding = 1, kFollowing = 2, kFault = 3 };
 
+/// What a platform is asked for.
+enum class PlatformOrder : std::uint8_t {
+  kRelease,  ///< brake by itself, and no set-point until another kFollow; a Moog parks
+  kHold,     ///< brake and hold; a platform that stays engaged holds the set-point
+  kFollow    ///< follow the set-point; engage first
+};
+
 /// One set-point of the platform, lateral, + to the subject's right.
 struct SetPoint {
-  bool follow = false;  ///< false: brake and hold
+  PlatformOrder order = PlatformOrder::kRelease;
   double position_m = 0.0;
   double velocity_m_s = 0.0;
   double acceleration_m_s2 = 0.0;
@@ -22,9 +29,11 @@ struct SetPoint {
 
 /// State of the platform, as one packet reports it.
 struct PlatformReply {
-  bool whole = false;  ///< the packet is one of this protocol, undamaged
+  bool whole = false;  ///< the packet is one of this protocol, undamaged, its numbers are numbers
   PlatformStage stage = PlatformStage::kOff;
   std::uint32_t sequence = 0;  ///< 0 where the protocol has none
+  std::uint32_t answers = 0;   ///< sequence of the newest command, same
+  std::uint32_t owner = 0;     ///< token of whom it follows; 0: nobody, or no token
   double position_m = kNone;
   double velocity_m_s = kNone;
   double acceleration_m_s2 = kNone;  ///< measured at the seat
@@ -44,8 +53,10 @@ struct Packet {
 
 /// The plain protocol, README "The plain platform protocol": little-endian, CRC-32 at the end.
 namespace plain {
-/// @param valid_ms  the platform brakes and holds if no newer packet comes for so long
-Packet command_packet(const SetPoint& set_point, std::uint32_t sequence,
+/// @param set_point  one that is not finite becomes kRelease
+/// @param token      of this process, not 0
+/// @param valid_ms   the platform brakes and holds if no newer packet comes for so long
+Packet command_packet(const SetPoint& set_point, std::uint32_t sequence, std::uint32_t token,
                       std::uint32_t valid_ms) noexcept;
 PlatformReply read_reply(std::span<const std::uint8_t> payload) noexcept;
 }  // namespace plain
@@ -57,6 +68,7 @@ inline constexpr std::uint32_t kNewPosition = 130;
 inline constexpr std::uint32_t kEngage = 180;
 inline constexpr std::uint32_t kPark = 210;
 inline constexpr std::uint32_t kDisable = 220;
+/// @param set_point      one that is not finite becomes kRelease
 /// @param machine_state  low nibble of the newest reply's state; chooses the command word
 /// @param heave_m        height at which the machine works, of its own frame
 Packet command_packet(const SetPoint& set_point, std::uint32_t machine_state,

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <string>
 
+#include "services/contract/config_error.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/device_rig/emulated_drive.hpp"
+#include "tests/unit/device_rig/emulated_platform.hpp"
 
 namespace stillhand::device_rig {
 namespace {
@@ -158,6 +160,66 @@ TEST_F(DevicePlantTest, ASilentDriveIsUnsoundAndItsSamplesHaveNoValue) {
   }));
   EXPECT_THAT(sut.unsound(), testing::StrEq("the drive is silent"));
   EXPECT_FALSE(sut.prepared());
+}
+
+// A seat that stands off the middle, and a motion that asks for the middle at each tick.
+class SeatTest : public testing::Test {
+ protected:
+  SeatTest() {
+    devices_.signals.platform = "plain_udp";
+    devices_.platform.port = platform_.port();
+    // A busy machine steps the test late.
+    devices_.platform.valid_ms = 1000;
+    devices_.platform.max_age_ticks = 1000;
+  }
+  template <typename Condition>
+  bool ticks_until(DevicePlant& sut, MotionLeave leave, Condition condition) {
+    return eventually([&] {
+      sut.begin(trial_, ++tick_);
+      rig::RigInput input{.leave = leave, .command_valid = true};
+      auto output = sut.sample(input);
+      sut.drive(input, output);
+      return condition();
+    });
+  }
+  /// The trial comes soon, as the lab announces it.
+  void announce() {
+    trial_ = {
+        .number = 1, .phase = TrialPhase::kPegged, .start_tick = kFar, .duration_ticks = kFar};
+  }
+
+  static constexpr double kPlace_m = 0.07;
+  EmulatedPlatform platform_{kPlace_m};
+  DevicesConfig devices_;
+  Trial trial_;
+  Tick tick_ = 0;
+};
+
+TEST_F(SeatTest, WithoutATrialItStaysWhateverIsCommandedAndIsNotPrepared) {
+  DevicePlant sut({}, devices_);
+  int ticks = 0;
+  EXPECT_TRUE(ticks_until(sut, MotionLeave::kFollow, [&] { return ++ticks > 1000; }));
+  EXPECT_FALSE(platform_.followed());
+  EXPECT_EQ(platform_.place_m(), kPlace_m);
+  EXPECT_FALSE(sut.prepared());
+  EXPECT_EQ(sut.unsound(), nullptr);
+}
+
+TEST_F(SeatTest, AnAnnouncedTrialEngagesItAndSaysSo) {
+  DevicePlant sut({}, devices_);
+  announce();
+  const char* notice = nullptr;
+  EXPECT_TRUE(ticks_until(sut, MotionLeave::kEngage, [&] {
+    if (const char* now = sut.notice()) notice = now;
+    return platform_.place_m() == 0.0;
+  }));
+  EXPECT_TRUE(sut.prepared());
+  EXPECT_STREQ(notice, "the platform engages: from +70 mm to the trial's place in 1.1 s");
+}
+
+TEST_F(SeatTest, AnotherProcessOrPlantDoesNotGetThePlatform) {
+  const DevicePlant first({}, devices_);
+  EXPECT_THROW(DevicePlant({}, devices_), ConfigError);
 }
 
 TEST_F(DevicePlantTest, AnAngleThatJumpsDisarmsForGood) {

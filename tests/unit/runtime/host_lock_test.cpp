@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/process/host_lock.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::runtime {
+namespace {
+
+TEST(HostLockTest, ANameHasOneOwnerUntilItEnds) {
+  const std::string name = "test-" + std::to_string(getpid());
+  {
+    const HostLock first(name, "a platform");
+    EXPECT_THROW(HostLock(name, "a platform"), ConfigError);
+    const HostLock other(name + "-other", "another platform");
+  }
+  EXPECT_NO_THROW(HostLock(name, "a platform"));
+}
+
+}  // namespace
+}  // namespace stillhand::runtime
