@@ -96,13 +96,11 @@ PlatformDrive::Output PlatformDrive::faulted(const Input& input) noexcept {
 }
 
 PlatformDrive::Output PlatformDrive::hold(const Input& input) noexcept {
-  if (!fresh_) {
-    held_ = false;
-    return {stage_, {.order = PlatformOrder::kRelease}, kInhibited};
-  }
-  // Taken once: a platform that stays engaged would creep after its own report.
-  if (!held_) hold_m_ = input.reply.position_m;
-  held_ = input.reply.stage == PlatformStage::kFollowing;
+  // Taken once: a platform that stays engaged would creep after its own report, and one that is
+  // silent for a while is still there.
+  if (fresh_ && !held_) hold_m_ = input.reply.position_m;
+  if (fresh_) held_ = input.reply.stage == PlatformStage::kFollowing;
+  if (!fresh_ && !held_) return {stage_, {.order = PlatformOrder::kRelease}, kInhibited};
   return {stage_, {.order = PlatformOrder::kHold, .position_m = hold_m_}, kInhibited};
 }
 

@@ -48,6 +48,7 @@ void PlatformLink::work(const std::stop_token& stop) noexcept {
     sent_number_ = demand.number;
     send(demand.set_point);
   }
+  if (sent_number_ == 0) return;
   SetPoint last = demands_.load().set_point;
   if (last.order == PlatformOrder::kFollow) last.order = PlatformOrder::kHold;
   send(last);

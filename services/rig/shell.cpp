@@ -114,7 +114,7 @@ void Shell::tick_once(Tick tick, std::int64_t due_ns) {
   if (emergency_stop_.load(std::memory_order_relaxed)) interlock_.stop();
   plant_.begin(trial, tick);
   const auto* command = command_for(tick);
-  const MotionLeave leave = leave_for(announced, tick, command != nullptr);
+  const MotionLeave leave = leave_for(announced, tick, command);
   // Without leave the platform brakes and holds.
   if (leave == MotionLeave::kHold) command = nullptr;
   const auto& newest_force = volition_.load();
@@ -180,11 +180,16 @@ const char* Shell::why_opened(const Trial& trial) const noexcept {
   return service_.bus().why_not_alive();
 }
 
-MotionLeave Shell::leave_for(const Announced& announced, Tick tick, bool command) {
+MotionLeave Shell::leave_for(const Announced& announced, Tick tick,
+                             const stillhand_msgs::PlatformCommand* command) {
+  // One that is no number counts as missing, as in the platform.
+  const bool usable = command != nullptr && std::isfinite(command->position_m()) &&
+                      std::isfinite(command->velocity_m_s()) &&
+                      std::isfinite(command->acceleration_m_s2());
   if (interlock_.stopped()) permission_.stop();
   const bool runs = announced.session == stillhand_msgs::SESSION_RUNNING && stop_tick_ < 0;
   return permission_.step(announced.trial, tick,
-                          {.runs = runs, .sound = sound(announced.trial), .command = command});
+                          {.runs = runs, .sound = sound(announced.trial), .command = usable});
 }
 
 void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n) {

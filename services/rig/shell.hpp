@@ -43,7 +43,8 @@ class Shell {
   /// Waits, with the limit of the settings, for the motor command that answers this tick.
   void await_answer(Tick tick, std::int64_t due_ns);
   /// What the platform may do in this tick.
-  MotionLeave leave_for(const Announced& announced, Tick tick, bool command);
+  MotionLeave leave_for(const Announced& announced, Tick tick,
+                        const stillhand_msgs::PlatformCommand* command);
   /// Nothing is wrong with the session, its processes and devices.
   [[nodiscard]] bool sound(const Trial& trial) const noexcept {
     return service_.bus().peers_alive() && plant_.unsound() == nullptr && !drive_ended(trial);

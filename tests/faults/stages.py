@@ -125,7 +125,7 @@ STAGES = [
     Stage("emergency stop: platform", "services/rig/shell.cpp",
           "if (interlock_.stopped()) permission_.stop();", "", *rig("AfterAnEmergencyStop*")),
     Stage("platform permission: a trial", "services/runtime/process/platform_permission.hpp",
-          "if (!announced || !input.runs) {", "if (!input.runs) {", *unit("runtime", "PlatformPermissionTest.*")),
+          "if (!announced || !input.runs || other) {", "if (!input.runs || other) {", *unit("runtime", "PlatformPermissionTest.*")),
     Stage("platform permission: lost for the trial", "services/runtime/process/platform_permission.hpp",
           "      latched_trial_ = trial.number;\n", "", *unit("runtime", "PlatformPermissionTest.*")),
     Stage("platform permission: the rig's shell", "services/rig/shell.cpp",

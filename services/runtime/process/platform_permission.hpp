@@ -27,7 +27,10 @@ class PlatformPermission {
     const bool covers = trial.covers(tick);
     const bool announced = trial.number >= 0 && trial.phase != TrialPhase::kIdle &&
                            (covers || tick < trial.start_tick);
-    if (!announced || !input.runs) {
+    // A trial in place of another one begins at rest, too.
+    const bool other = trial.number != trial_;
+    trial_ = trial.number;
+    if (!announced || !input.runs || other) {
       missing_ticks_ = 0;
       return MotionLeave::kHold;
     }
@@ -54,6 +57,7 @@ class PlatformPermission {
   }
 
  private:
+  std::int64_t trial_ = -1;  ///< newest
   std::int64_t latched_trial_ = -2;
   std::int64_t sound_trial_ = -2;  ///< newest announcement in which everything was right
   Tick missing_ticks_ = 0;

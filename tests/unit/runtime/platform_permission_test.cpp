@@ -9,6 +9,7 @@ namespace {
 // Covers 40 to 159; the measured part begins at 50.
 Trial trial_number(std::int64_t number) { return {number, TrialPhase::kTracking, 50, 100, 10}; }
 constexpr PlatformPermission::Input kGoodInput{.runs = true, .sound = true, .command = true};
+constexpr PlatformPermission::Input kWrongInput{.runs = true, .sound = false, .command = true};
 
 TEST(PlatformPermissionTest, WithoutATrialItHolds) {
   PlatformPermission sut;
@@ -20,16 +21,27 @@ TEST(PlatformPermissionTest, WithoutATrialItHolds) {
 
 TEST(PlatformPermissionTest, FromTheAnnouncementItEngagesAndFollowsWhereTheTrialCovers) {
   PlatformPermission sut;
-  EXPECT_EQ(sut.step(trial_number(0), 0, kGoodInput), MotionLeave::kEngage);
+  // At rest first: another trial may have moved until now.
+  EXPECT_EQ(sut.step(trial_number(0), 0, kGoodInput), MotionLeave::kHold);
+  EXPECT_EQ(sut.step(trial_number(0), 1, kGoodInput), MotionLeave::kEngage);
   EXPECT_EQ(sut.step(trial_number(0), 39, kGoodInput), MotionLeave::kEngage);
   EXPECT_EQ(sut.step(trial_number(0), 40, kGoodInput), MotionLeave::kFollow);
   EXPECT_EQ(sut.step(trial_number(0), 159, kGoodInput), MotionLeave::kFollow);
   EXPECT_EQ(sut.step(trial_number(0), 160, kGoodInput), MotionLeave::kHold);
 }
 
+TEST(PlatformPermissionTest, ATrialInPlaceOfAnotherOneBeginsAtRest) {
+  PlatformPermission sut;
+  sut.step(trial_number(0), 59, kGoodInput);
+  EXPECT_EQ(sut.step(trial_number(0), 60, kGoodInput), MotionLeave::kFollow);
+  EXPECT_EQ(sut.step(trial_number(1), 61, kGoodInput), MotionLeave::kHold);
+  EXPECT_EQ(sut.step(trial_number(1), 62, kGoodInput), MotionLeave::kFollow);
+}
+
 TEST(PlatformPermissionTest, ASessionThatIsPausedOrNotBegunHolds) {
   PlatformPermission sut;
   PlatformPermission::Input input = kGoodInput;
+  sut.step(trial_number(0), 59, input);
   input.runs = false;
   EXPECT_EQ(sut.step(trial_number(0), 60, input), MotionLeave::kHold);
   EXPECT_FALSE(sut.latched(trial_number(0)));
@@ -37,26 +49,26 @@ TEST(PlatformPermissionTest, ASessionThatIsPausedOrNotBegunHolds) {
 
 TEST(PlatformPermissionTest, WhatWentWrongWhileArmingIsWrongForTheTrial) {
   PlatformPermission sut;
-  PlatformPermission::Input wrong = kGoodInput;
-  wrong.sound = false;
   // Not right yet: it waits.
-  EXPECT_EQ(sut.step(trial_number(3), 0, wrong), MotionLeave::kHold);
+  for (Tick tick = -2; tick < 1; ++tick) {
+    EXPECT_EQ(sut.step(trial_number(3), tick, kWrongInput), MotionLeave::kHold);
+  }
   EXPECT_FALSE(sut.latched(trial_number(3)));
   EXPECT_EQ(sut.step(trial_number(3), 1, kGoodInput), MotionLeave::kEngage);
   // Right, then wrong, for one tick.
-  EXPECT_EQ(sut.step(trial_number(3), 2, wrong), MotionLeave::kHold);
+  EXPECT_EQ(sut.step(trial_number(3), 2, kWrongInput), MotionLeave::kHold);
   EXPECT_TRUE(sut.latched(trial_number(3)));
   for (Tick tick = 3; tick < 160; ++tick) {
     ASSERT_EQ(sut.step(trial_number(3), tick, kGoodInput), MotionLeave::kHold) << tick;
   }
+  sut.step(trial_number(4), 2, kGoodInput);
   EXPECT_EQ(sut.step(trial_number(4), 3, kGoodInput), MotionLeave::kEngage);
 }
 
 TEST(PlatformPermissionTest, ATrialThatBeginsWithSomethingWrongIsLost) {
   PlatformPermission sut;
-  PlatformPermission::Input wrong = kGoodInput;
-  wrong.sound = false;
-  EXPECT_EQ(sut.step(trial_number(3), 40, wrong), MotionLeave::kHold);
+  sut.step(trial_number(3), 39, kWrongInput);
+  EXPECT_EQ(sut.step(trial_number(3), 40, kWrongInput), MotionLeave::kHold);
   EXPECT_EQ(sut.step(trial_number(3), 41, kGoodInput), MotionLeave::kHold);
   EXPECT_FALSE(sut.motion_lost(trial_number(3)));
 }
@@ -67,7 +79,8 @@ TEST(PlatformPermissionTest, ACommandMayBeMissingForAWhileAndThenMotionIsLostFor
   missing.command = false;
   Trial trial = trial_number(5);
   trial.duration_ticks = 1000;
-  Tick tick = 40;
+  Tick tick = 39;
+  sut.step(trial, tick++, kGoodInput);
   for (Tick i = 0; i < PlatformPermission::kMostMissing_ticks; ++i) {
     ASSERT_EQ(sut.step(trial, tick++, missing), MotionLeave::kFollow);
   }
@@ -80,6 +93,7 @@ TEST(PlatformPermissionTest, ACommandMayBeMissingForAWhileAndThenMotionIsLostFor
 
 TEST(PlatformPermissionTest, AfterAStopItHoldsForGood) {
   PlatformPermission sut;
+  sut.step(trial_number(0), 59, kGoodInput);
   sut.stop();
   EXPECT_EQ(sut.step(trial_number(0), 60, kGoodInput), MotionLeave::kHold);
   EXPECT_EQ(sut.step(trial_number(1), 60, kGoodInput), MotionLeave::kHold);
