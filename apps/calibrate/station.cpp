@@ -81,7 +81,7 @@ rig::RigOutput Station::tick(const rig::RigInput& input, const Trial& trial) {
 }
 
 Trial Station::engage(double place_m) {
-  // The shortest way of Eq. SG-19, and the time to answer.
+  // The shortest way of Eq. SG-21, and the time to answer.
   constexpr Tick kEngage_ticks = 1500;
   constexpr Tick kLongest_ticks = 3'600'000;
   const Trial trial{.number = kEngaging + engaged_++,

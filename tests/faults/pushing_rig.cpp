@@ -29,7 +29,7 @@ namespace {
 using namespace stillhand;  // NOLINT(google-build-using-namespace): a program of one file
 
 constexpr std::int64_t kTick_ns = 1'000'000;
-constexpr Tick kEngaged_ticks = 1200;  // the shortest way of Eq. SG-19
+constexpr Tick kEngaged_ticks = 1200;  // the shortest way of Eq. SG-21
 constexpr double kForce_n = 5.0;
 constexpr double kAmplitude_m = 0.02;
 constexpr double kMotion_rad_s = 2.0 * std::numbers::pi * 1.5;

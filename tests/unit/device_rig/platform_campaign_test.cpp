@@ -263,7 +263,7 @@ TEST(SimulatedCampaignTest, WhatIsSilentStopsItForTheTrialAndItComesBackSlowly) 
           quiet_ms = leave == MotionLeave::kHold ? quiet_ms + 1 : 0;
           // As above; the loop's end takes some time constants, 1/(2 z w) = 8 ms.
           ASSERT_TRUE(quiet_ms < 300 || std::abs(state.velocity_m_s) < 0.002) << tick;
-          // Eq. SG-19, and what the loop adds.
+          // Eq. SG-21, and what the loop adds.
           ASSERT_TRUE(leave != MotionLeave::kEngage || std::abs(state.velocity_m_s) < 0.132)
               << tick;
           lost_first |= trial.number == 0 && permission.latched(trial);

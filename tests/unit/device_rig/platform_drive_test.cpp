@@ -86,7 +86,7 @@ TEST_F(PlatformDriveTest, ItEngagesFromWhereItStandsAndSlowly) {
   for (int i = 0; i < 3000; ++i) {
     out = step();
     began |= out.began;
-    ASSERT_LE(std::abs(out.set_point.velocity_m_s), 0.12 + 1e-9);  // Eq. SG-19
+    ASSERT_LE(std::abs(out.set_point.velocity_m_s), 0.12 + 1e-9);  // Eq. SG-21
     ASSERT_LE(std::abs(out.set_point.acceleration_m_s2), 0.37);
   }
   EXPECT_TRUE(began);
