@@ -102,7 +102,7 @@ ordered_json findings_json(const Verdict& verdict) {
   return list;
 }
 
-// Eq. CL-8.
+// Eq. CL-10.
 ordered_json decision_json(const LoopDecision& decision) {
   const auto step = [](const Estimate& change) {
     return ordered_json{{"mean_difference", or_null(change.mean)},

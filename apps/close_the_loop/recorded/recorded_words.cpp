@@ -23,7 +23,7 @@ std::string with_interval(double value, const Interval& interval) {
                      report::short_number(interval->second));
 }
 
-// What C+ leaves and what C leaves, on what the loop decides, Eq. CL-7.
+// What C+ leaves and what C leaves, on what the loop decides, Eq. CL-9.
 std::string step_text(const RecordedLoop& loop) {
   const Decision& decision = loop.decision;
   const Remaining& step = *decision.step;
