@@ -127,7 +127,7 @@ std::string carried_in_words(const FoundEffect& effect) {
 }
 
 bool none_carried(const Diagnosis& diagnosis) {
-  return !diagnosis.effects.empty() &&
+  return diagnosis.has_effect_that_counts() &&
          std::ranges::none_of(diagnosis.effects,
                               [](const FoundEffect& effect) { return effect.carried > 0.0; });
 }

@@ -37,17 +37,15 @@ class Delay final : public EffectKind {
   }
 };
 
-// A delay moves the poles: each trial starts from a body of its own.
-Proposal with_own_body(const Screening& screening, double delay_s, bool thoroughly) {
-  const Signals& signals = screening.signals();
+std::vector<std::vector<double>> delayed_inputs(const Signals& signals, double delay_s) {
   std::vector<std::vector<double>> inputs;
   for (const Signal& input : signals.inputs()) {
     inputs.push_back(delayed(input.values, signals, [&](double) { return delay_s; }));
   }
-  const std::vector<double>& output = signals.output().values;
-  Body body = started_body(inputs, output, screening.impulse_response(), signals,
-                           static_cast<int>(screening.model().body.order()));
-  if (thoroughly && body.order() == 4) body = with_other_mode(body, inputs, output, signals);
+  return inputs;
+}
+
+Proposal with_body(const Screening& screening, double delay_s, Body body) {
   Proposal proposal{
       {"delay", "of the input", {}, {{"delay", "s", delay_s, kEarliest_s, kLatest_s}}, {}},
       0.0,
@@ -56,10 +54,29 @@ Proposal with_own_body(const Screening& screening, double delay_s, bool thorough
   model.body = std::move(body);
   model.effects.push_back(proposal.effect);
   FreeRun run;
-  const double square = residual_of(model, signals, run).squaredNorm();
+  const double square = residual_of(model, screening.signals(), run).squaredNorm();
   proposal.gain = run.finite ? 1.0 - square / screening.residual().squaredNorm()
                              : -std::numeric_limits<double>::infinity();
   return proposal;
+}
+
+// A delay moves the poles: each trial starts from a body of its own.
+Proposal with_own_body(const Screening& screening, double delay_s) {
+  const Signals& signals = screening.signals();
+  const auto order = static_cast<int>(screening.model().body.order());
+  return with_body(screening, delay_s,
+                   started_body(delayed_inputs(signals, delay_s), signals.output().values,
+                                screening.impulse_response(), signals, order));
+}
+
+// Whose other mode is sought, too.
+Proposal with_best_modes(const Screening& screening, const Proposal& from) {
+  if (from.body->order() != 4) return from;
+  const Signals& signals = screening.signals();
+  const double delay_s = from.effect.value(0);
+  return with_body(screening, delay_s,
+                   with_other_mode(*from.body, delayed_inputs(signals, delay_s),
+                                   signals.output().values, signals));
 }
 
 std::vector<Proposal> Delay::proposed(const Screening& screening) const {
@@ -74,18 +91,18 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   }
   std::vector<Proposal> proposals;
   for (const double delay_s : kTried_s) {
-    proposals.push_back(with_own_body(screening, delay_s, false));
+    proposals.push_back(with_own_body(screening, delay_s));
   }
   // The order among the first few depends on bodies that may be in a local minimum.
   proposals = best_of(std::move(proposals), kThorough);
   if (proposals.front().gain < kHopeless) return {proposals.front()};
-  for (Proposal& each : proposals) each = with_own_body(screening, each.effect.value(0), true);
+  for (Proposal& each : proposals) each = with_best_modes(screening, each);
   proposals = best_of(std::move(proposals), kThorough);
   Proposal best = proposals.front();
   for (const double step_s : kFiner_s) {
     const double from_s = best.effect.value(0);
     for (const double delay_s : {from_s - step_s, from_s + step_s}) {
-      Proposal next = with_own_body(screening, delay_s, true);
+      Proposal next = with_best_modes(screening, with_own_body(screening, delay_s));
       if (next.gain > best.gain) best = std::move(next);
     }
   }

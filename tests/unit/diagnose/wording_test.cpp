@@ -155,6 +155,7 @@ TEST(WordingTest, WhatIsTooSmallIsNamedAndIsNotWhatTheModelLacks) {
   diagnosis::Diagnosis diagnosis = of_order(4);
   diagnosis.effects = {found("tone"), found("drift")};
   EXPECT_EQ(too_small_in_words(diagnosis), "");
+  diagnosis.effects[0].carried = 1.0;
   diagnosis.effects[1].counts = false;
   diagnosis.effects[1].explained.rms = 0.04;
   const std::string one = verdict_in_words(diagnosis);

@@ -49,6 +49,38 @@ std::vector<double> all_poles(const Model& model, const Signals& signals) {
   return denominator;
 }
 
+// D^j (1/A), j < the number of poles: the same for every stretch, as far as it lasts.
+class FreeResponses {
+ public:
+  FreeResponses(const std::vector<double>& denominator, std::size_t window)
+      : poles_(denominator.size() - 1) {
+    std::vector<double> pulse(window, 0.0);
+    pulse.front() = 1.0;
+    const std::vector<Stretch> alone{{0, window, 0.0}};
+    responses_.push_back(through_poles(pulse, denominator, alone));
+    while (responses_.size() < poles_) responses_.push_back(differenced(responses_.back(), alone));
+  }
+
+  // Until they have decayed within a window, [samples x poles].
+  [[nodiscard]] Eigen::MatrixXd within(std::size_t window) const {
+    const std::vector<double>& response = responses_.front();
+    double peak = 0.0;
+    std::size_t length = window;
+    for (std::size_t n = 0; n < window; ++n) peak = std::max(peak, std::abs(response[n]));
+    while (length > 1 && !(std::abs(response[length - 1]) > kDecayed * peak)) --length;
+    length = std::min(window, std::max(length, poles_ + 1));
+    Eigen::MatrixXd columns(static_cast<Eigen::Index>(length), static_cast<Eigen::Index>(poles_));
+    for (std::size_t j = 0; j < poles_; ++j) {
+      std::copy_n(responses_[j].begin(), length, columns.col(static_cast<Eigen::Index>(j)).data());
+    }
+    return columns;
+  }
+
+ private:
+  std::size_t poles_;
+  std::vector<std::vector<double>> responses_;
+};
+
 }  // namespace
 
 InitialStates::InitialStates(const Body& body, const Signals& signals,
@@ -62,37 +94,24 @@ InitialStates::InitialStates(const Model& model, const Signals& signals,
 InitialStates::InitialStates(const std::vector<double>& denominator, const Signals& signals,
                              const std::vector<double>& weight) {
   const std::size_t poles = denominator.size() - 1;
-  const auto order = static_cast<Eigen::Index>(poles);
   if (poles == 0) return;
   const double longest_s = std::max(kLongestStart_s, kLongestShare * signals.duration_s());
+  const auto longest = static_cast<std::size_t>(longest_s * signals.rate_hz());
+  const auto window_of = [&](const Stretch& stretch) {
+    return std::min(stretch.end - stretch.first, longest);
+  };
+  std::size_t widest = 0;
+  for (const Stretch& stretch : signals.stretches()) widest = std::max(widest, window_of(stretch));
+  const FreeResponses responses(denominator, widest);
   for (const Stretch& stretch : signals.stretches()) {
-    const auto longest = static_cast<std::size_t>(longest_s * signals.rate_hz());
-    const std::size_t window = std::min(stretch.end - stretch.first, longest);
-    if (window <= poles) continue;
-    std::vector<double> pulse(window, 0.0);
-    pulse[0] = 1.0;
-    const Stretch alone{0, window, 0.0};
-    const auto response = through_poles(pulse, denominator, {alone});
-    double peak = 0.0;
-    std::size_t length = 1;
-    for (std::size_t n = 0; n < window; ++n) peak = std::max(peak, std::abs(response[n]));
-    for (std::size_t n = 0; n < window; ++n) {
-      if (std::abs(response[n]) > kDecayed * peak) length = n + 1;
-    }
-    length = std::min(window, std::max(length, poles + 1));
-    Eigen::MatrixXd basis(static_cast<Eigen::Index>(length), order);
-    std::vector<double> column(response.begin(),
-                               response.begin() + static_cast<std::ptrdiff_t>(length));
-    for (Eigen::Index j = 0; j < order; ++j) {
-      if (j > 0) column = differenced(column, {{0, length, 0.0}});
-      for (std::size_t n = 0; n < length; ++n) {
-        basis(static_cast<Eigen::Index>(n), j) = column[n] * weight[stretch.first + n];
-      }
-    }
+    if (window_of(stretch) <= poles) continue;
+    Eigen::MatrixXd basis = responses.within(window_of(stretch));
+    const Eigen::Index length = basis.rows();
+    basis.array().colwise() *=
+        Eigen::Map<const Eigen::ArrayXd>(weight.data() + stretch.first, length);
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
     starts_.push_back(
-        {stretch.first,
-         qr.householderQ() * Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(length), order)});
+        {stretch.first, qr.householderQ() * Eigen::MatrixXd::Identity(length, basis.cols())});
   }
 }
 
