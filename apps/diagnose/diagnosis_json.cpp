@@ -137,7 +137,7 @@ ordered_json body_json(const diagnosis::Model& model) {
 std::string diagnosis_json(const Diagnosis& diagnosis) {
   ordered_json effects = ordered_json::array();
   for (const FoundEffect& found : diagnosis.effects) {
-    effects.push_back(effect_json(found));
+    effects.push_back(effect_json(diagnosis, found));
   }
   ordered_json unexplained = nullptr;
   if (diagnosis.unexplained) {

@@ -95,8 +95,9 @@ TEST(RigCodecTest, AnInputHoldsWhatTheMessagesSayAndTheirAge) {
   stillhand_msgs::OperatorForce volition;
   volition.tick(95);
   volition.force_n(4.5);
-  const auto [cv, cx, cs, ca, mv, mage, mf, ov, oage, of, pegged, permitted] =
+  const auto [leave, cv, cx, cs, ca, mv, mage, mf, ov, oage, of, pegged, permitted] =
       rig::make_input(100, &command, &motor, &volition, true, false);
+  EXPECT_EQ(leave, MotionLeave::kFollow) << "no message says it: the shell does";
   EXPECT_EQ(std::tuple(cv, cx, cs, ca), std::tuple(true, 0.5, 1.5, 2.5));
   EXPECT_EQ(std::tuple(mv, mage, mf), std::tuple(true, 2, 3.5));
   EXPECT_EQ(std::tuple(ov, oage, of), std::tuple(true, 5, 4.5));
