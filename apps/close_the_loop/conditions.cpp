@@ -71,10 +71,10 @@ Estimate restored(const Conditions& conditions, const std::string& label, const 
 }
 
 bool LoopDecision::certain() const {
-  const auto below_0 = [](const Estimate& change) {
+  const auto excludes_0 = [](const Estimate& change) {
     return change.interval95 && (change.interval95->second < 0.0 || change.interval95->first > 0.0);
   };
-  return below_0(over_c) && below_0(over_c_prime);
+  return excludes_0(over_c) && excludes_0(over_c_prime);
 }
 
 LoopDecision decide(const Conditions& conditions, const LoopResult& result) {

@@ -63,7 +63,7 @@ std::vector<ModeOf> modes_of(const diagnosis::Model& model) {
   return modes;
 }
 
-// Poles of Pade's approximation of order 4 to a delay, at the control rate: with zeros beside them
+// Poles of Pade's approximation of order 4 to a delay, at the control rate: with zeros of their own
 // a path is late by as much.  1: no delay.
 std::vector<double> delay_poles(double delay_s) {
   if (delay_s < kControlPeriod_s) return {1.0};

@@ -36,7 +36,8 @@ Judged judged_against(const std::vector<double>& measured, std::vector<double> p
   const double whole = square_about(measured, mean_of(measured));
   const double not_known = std::numeric_limits<double>::quiet_NaN();
   Score score{std::sqrt(square / static_cast<double>(residual.size())), not_known, not_known};
-  if (whole > 0.0) {
+  // A constant output leaves rounding about its mean.
+  if (whole > 1e-18 * square_about(measured, 0.0)) {
     score.vaf_percent = 100.0 * (1.0 - square_about(residual, mean_of(residual)) / whole);
     score.fit_percent = 100.0 * (1.0 - std::sqrt(square / whole));
   }

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kShownDigits = 12;  // of 64: enough to tell files apart
+constexpr std::size_t kShownDigits = 12;  // of 64: enough to distinguish files
 
 std::int64_t seconds_now() {
   if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {

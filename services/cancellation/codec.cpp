@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/cancellation/codec.hpp"
 
+#include <algorithm>
+#include <cstdint>
+
 namespace stillhand::cancellation {
 namespace {
 
-// Channels of core and bus have one order.  A number that is no channel stays one, and is refused.
-Channel from_idl(stillhand_msgs::ModelChannel channel) { return static_cast<Channel>(channel); }
+// Of 32 bits on the bus and 8 in the core: a number that is none stays one, and is refused.
+std::uint8_t in_8_bits(std::uint32_t number) {
+  return static_cast<std::uint8_t>(std::min<std::uint32_t>(number, 255));
+}
+
+// Channels of core and bus have one order.
+Channel from_idl(stillhand_msgs::ModelChannel channel) {
+  return static_cast<Channel>(in_8_bits(static_cast<std::uint32_t>(channel)));
+}
 stillhand_msgs::ModelChannel to_idl(Channel channel) {
   return static_cast<stillhand_msgs::ModelChannel>(channel);
 }
@@ -25,12 +35,12 @@ stillhand_msgs::ValueMap to_idl(const ValueMap& map) {
   return message;
 }
 
-// Operators of core and bus have one order; a number that is none stays one, and is refused, as is
-// a path that the model does not have.
+// Operators of core and bus have one order.  A path that the model does not have is refused.
 Hysteresis from_idl(const stillhand_msgs::ModelHysteresis& message) {
   Hysteresis out;
   if (message.path() != kOfSpring) out.path = static_cast<std::size_t>(message.path());
-  out.operation = static_cast<signal::HysteresisOperator>(message.operation());
+  out.operation = static_cast<signal::HysteresisOperator>(
+      in_8_bits(static_cast<std::uint32_t>(message.operation())));
   out.threshold = message.threshold();
   out.low = message.low();
   out.high = message.high();

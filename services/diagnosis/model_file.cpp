@@ -278,8 +278,9 @@ Model parse_model(std::string_view json, const std::string& origin) {
   if (top.at("format").text() != kFormat) {
     top.at("format").refuse("\"stillhand augmented model\", as `stillhand diagnose --save` writes");
   }
-  if (top.at("version").count() != kModelFormatVersion) {
-    top.at("version").refuse("1: a newer stillhand wrote this file");
+  const auto version = top.at("version").count();
+  if (version < 1 || version > kModelFormatVersion) {
+    top.at("version").refuse("1 or 2: a newer stillhand wrote this file");
   }
   Model model;
   model.rate_hz = top.at("rate_hz").number();

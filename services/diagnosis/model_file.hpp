@@ -11,7 +11,8 @@ namespace stillhand::diagnosis {
 
 /// Newest format of a diagnosed model ("stillhand augmented model" in the file) that this program
 /// writes and reads.
-inline constexpr int kModelFormatVersion = 1;
+/// 2: effects with a share, and the model of a session.  Version 1 is still read.
+inline constexpr int kModelFormatVersion = 2;
 
 /// JSON text of a model; README "Model file".  Numbers keep every bit.
 std::string model_json(const Model& model);

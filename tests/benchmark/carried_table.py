@@ -8,7 +8,7 @@ import numpy
 
 WORST = 1.05
 LEAST_GAIN = 0.02  # of the linear error: below, a share of what could go is a quotient of two accidents
-# Effects that only the time of a record tells: no rule can know them in another record.
+# Effects of the time of a record alone: no rule can know them in another record.
 TIME_ALONE = ("fatigue", "friction_in_first_half")
 
 

@@ -80,7 +80,7 @@ class CloseTheLoopTest(unittest.TestCase):
         edited["denominator"][1:3] = [-2.2, 1.3]
         for name, content, word in (("unstable", json.dumps(edited), "unit circle"),
                                     ("rig", text.replace('"rig": 1', '"rig": 2'), "rig"),
-                                    ("newer", text.replace('"version": 1', '"version": 9'), "version"),
+                                    ("newer", text.replace('"version": 2', '"version": 9'), "version"),
                                     ("forged", text.replace('"rig": 1', '"max_force_n": 90, "rig": 1'), "max_force_n"),
                                     ("cut", text[:200], "JSON"),
                                     ("diagnosed", (self.out / "model.json").read_text(), "control-model")):
@@ -259,8 +259,11 @@ class FromRecordingsTest(unittest.TestCase):
         self.assertEqual(ran.returncode, 0, ran.stderr)
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual(summary["decided_on"], "motor")
-        left = {name: summary["unseen"][0][name]["left"]["rms"] for name in ("motor_linear", "motor_augmented")}
-        self.assertEqual(summary["kept"], left["motor_augmented"] < left["motor_linear"])
+        # Three springs explain this ride equally well, and rounding decides which is named; the canceller refuses one.
+        linear, augmented = (summary["unseen"][0][name] for name in ("motor_linear", "motor_augmented"))
+        less = augmented is not None and augmented["left"]["rms"] < linear["left"]["rms"]
+        self.assertEqual(summary["kept"], less)
+        self.assertEqual(augmented is None, "did not run" in ran.stdout)
         self.assertIn("C+ is kept" if summary["kept"] else "C+ is not kept", ran.stdout)
         self.assertIn("C+ is kept" if summary["kept"] else "C+ is not kept", (self.out / "report.html").read_text())
 

@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "idl/control_loop.h"
@@ -34,8 +38,9 @@ constexpr Tick kLead = 20;  // of motion, services/motion/shell.cpp
 constexpr double kTravel_m = 0.1;
 constexpr double kOmega_rad_s = std::numbers::pi;
 constexpr double kMoves_m_s = 0.2;
-constexpr double kRest_m_s = 0.001;  // services/rig/shell.cpp
-constexpr Tick kHeld = -2;           // idl/control_loop.idl, command_tick
+constexpr double kRest_m_s = 0.001;                 // services/rig/shell.cpp
+constexpr Tick kHeld = -2;                          // idl/README.md, command_tick
+constexpr std::chrono::milliseconds kLifeSign{30};  // ten in the lease of 300 ms
 
 /// A rig, and a test that drives it with one command for each sample.
 class RigProcessTest : public testing::Test {
@@ -51,8 +56,10 @@ class RigProcessTest : public testing::Test {
     for (const auto& [service, bus] : own_) bus->start();
     name_sources();
     announce(-1);
+    living_ = std::jthread([this](const std::stop_token& stop) { live(stop); });
   }
   ~RigProcessTest() override {
+    living_ = {};
     rig_.finish();
     sensing_.stop_receiving();
     recorder_.stop_receiving();
@@ -67,23 +74,23 @@ class RigProcessTest : public testing::Test {
     control.duration_ticks(number < 0 ? 0 : 3'600'000);
     control_.write(control);
   }
-  /// Every process shows its life sign but those that died.
-  void live() {
-    std::size_t i = 0;
-    for (const auto& [service, bus] : own_) {
-      stillhand_msgs::ServiceStatus status;
-      status.service(std::string(service));
-      status.state(stillhand_msgs::SERVICE_RUNNING);
-      if (service != dead_) life_[i].write(status);
-      ++i;
-    }
-  }
-  template <typename Condition>
-  bool eventually_alive(Condition condition) {
-    return eventually([&] {
-      live();
-      return condition();
-    });
+  /// Every process shows its life sign but the lab's, once it died: in a thread of its own, as a
+  /// test that waits shows none.
+  void live(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any ended;
+    std::unique_lock lock(mutex);
+    do {
+      std::size_t i = 0;
+      for (const auto& [service, bus] : own_) {
+        stillhand_msgs::ServiceStatus status;
+        status.service(std::string(service));
+        status.state(stillhand_msgs::SERVICE_RUNNING);
+        if (service != "experiment" || !lab_is_dead_) life_[i].write(status);
+        ++i;
+      }
+    } while (!ended.wait_for(lock, stop, kLifeSign, [] { return false; }) &&
+             !stop.stop_requested());
   }
 
   /// The rig takes commands from the participants that its experiment names.
@@ -118,10 +125,10 @@ class RigProcessTest : public testing::Test {
   }
   void expect_motion() {
     commands_motion_ = true;
-    ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld && tick_ > 500; }));
+    ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld && tick_ > 500; }));
     EXPECT_LT(speed_m_s_, kRest_m_s) << "moves before a trial was announced";
     announce(1);
-    ASSERT_TRUE(eventually_alive([this] { return speed_m_s_ > kMoves_m_s; }));
+    ASSERT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
   }
 
   std::atomic<bool> commands_force_{false}, commands_motion_{false};
@@ -143,7 +150,7 @@ class RigProcessTest : public testing::Test {
       {"recorder", &recorder_},         {"display", &display_},
       {"human_operator", &operator_},   {"identification", &identification_}};
   std::vector<runtime::Publisher<stillhand_msgs::ServiceStatus>> life_;
-  std::string dead_;  ///< shows no life sign any more
+  std::atomic<bool> lab_is_dead_{false};
   runtime::Publisher<stillhand_msgs::TrialControl> control_ =
       experiment_.publisher<stillhand_msgs::TrialControl>(topics::kTrialControl);
   runtime::Publisher<stillhand_msgs::SessionSources> sources_ =
@@ -158,6 +165,7 @@ class RigProcessTest : public testing::Test {
       {STILLHAND_BUILD "/bin/stillhand-rig", "--domain", std::to_string(support::own_domain()),
        "--profiles", kProfiles, "--config", STILLHAND_SOURCE "/deploy/config"},
       std::filesystem::temp_directory_path() / ("stillhand-rig-" + std::to_string(getpid()))};
+  std::jthread living_;
 };
 
 // The age limit would hide it in the force: motor_tick is -1 as soon as the command counts as none,
@@ -190,27 +198,27 @@ TEST_F(RigProcessTest, AfterAnEmergencyStopThePlatformBrakesWhateverMotionComman
 // The network's or the lab's end: nobody announces that the trial is over, and motion goes on.
 TEST_F(RigProcessTest, WithoutTheLabsLifeSignThePlatformBrakesWhateverMotionCommands) {
   expect_motion();
-  dead_ = "experiment";
-  ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld; }));
+  lab_is_dead_ = true;
+  ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
   const Tick held_tick = tick_;
-  ASSERT_TRUE(eventually_alive([this, held_tick] { return tick_ > held_tick + 400; }));
+  ASSERT_TRUE(eventually([this, held_tick] { return tick_ > held_tick + 400; }));
   EXPECT_LT(speed_m_s_, kRest_m_s);
   // Back again: not in this trial.
-  dead_.clear();
+  lab_is_dead_ = false;
   const Tick back_tick = tick_;
-  ASSERT_TRUE(eventually_alive([this, back_tick] { return tick_ > back_tick + 400; }));
+  ASSERT_TRUE(eventually([this, back_tick] { return tick_ > back_tick + 400; }));
   EXPECT_EQ(command_tick_, kHeld);
   EXPECT_LT(speed_m_s_, kRest_m_s);
   announce(2);
-  EXPECT_TRUE(eventually_alive([this] { return speed_m_s_ > kMoves_m_s; }));
+  EXPECT_TRUE(eventually([this] { return speed_m_s_ > kMoves_m_s; }));
 }
 
 TEST_F(RigProcessTest, WithoutATrialThePlatformHoldsWhateverMotionCommands) {
   expect_motion();
   announce(-1);
-  ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld; }));
+  ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
   const Tick held_tick = tick_;
-  ASSERT_TRUE(eventually_alive([this, held_tick] { return tick_ > held_tick + 400; }));
+  ASSERT_TRUE(eventually([this, held_tick] { return tick_ > held_tick + 400; }));
   EXPECT_LT(speed_m_s_, kRest_m_s);
 }
 
@@ -218,10 +226,10 @@ TEST_F(RigProcessTest, MotionThatFallsSilentIsNotFollowedAgainInTheTrial) {
   expect_motion();
   commands_motion_ = false;
   // A command that is missing, then the end of the permission.
-  ASSERT_TRUE(eventually_alive([this] { return command_tick_ == kHeld; }));
+  ASSERT_TRUE(eventually([this] { return command_tick_ == kHeld; }));
   commands_motion_ = true;
   const Tick held_tick = tick_;
-  ASSERT_TRUE(eventually_alive([this, held_tick] { return tick_ > held_tick + 400; }));
+  ASSERT_TRUE(eventually([this, held_tick] { return tick_ > held_tick + 400; }));
   EXPECT_EQ(command_tick_, kHeld);
   EXPECT_LT(speed_m_s_, kRest_m_s);
 }

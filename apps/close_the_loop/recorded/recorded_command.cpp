@@ -119,9 +119,8 @@ void run_recorded(RecordedOptions options, const std::filesystem::path& out, std
   folder.write(kVerdictFile, verdict_json(loop.verdict));
   folder.write("summary.json", recorded_summary_json(loop, options));
   folder.write("model.json",
-               loop.decision.kept()
-                   ? diagnosis::model_json(loop.verdict.model(), loop.verdict.carried())
-                   : diagnosis::model_json(loop.verdict.body.baseline.model));
+               diagnosis::model_json(loop.verdict.body.model, loop.verdict.body.carried,
+                                     loop.verdict.body.baseline.model));
   if (auto model = control_model_of(loop)) {
     model->adapts = average_hand();
     folder.write(kControlModelFile, cancellation::control_model_json(*model, rig));

@@ -104,6 +104,12 @@ class RecordedLoopRun {
     if (out_.verdict.not_carried.empty()) {
       out_.verdict.not_carried = refused(out_.verdict.control.model);
     }
+    if (!out_.verdict.not_carried.empty()) {
+      for (Treatment& each : out_.verdict.control.treatments) {
+        each.cancelled = false;
+        each.how = "C+ does not run: " + out_.verdict.not_carried;
+      }
+    }
     for (const diagnosis::Measurement& record : unseen_) judge(record);
     const bool same =
         !out_.verdict.body.has_effect_that_counts() && out_.verdict.control.treatments.empty();

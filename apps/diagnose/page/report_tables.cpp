@@ -150,8 +150,8 @@ Table effect_table(const Diagnosis& found) {
       "Effects in the order in which they were added. p: probability of such an improvement by "
       "chance, by the signed ranks of the blocks. Ties: other kinds that explain the record "
       "equally "
-      "well; the simplest was taken. Carried: what the saved model, and so `predict` and the "
-      "motor, has of it.";
+      "well; the simplest was taken. Carried: what the saved model, and so `predict`, has "
+      "of it; `control-model` says what the motor does.";
   table.header = {
       "effect", "form", "evidence", "own size [" + shown_unit(found.output_unit) + "], 95 %",
       "p",      "ties", "carried"};

@@ -38,13 +38,16 @@ double full_scale(Channel channel) {
   return kChannelFacts[static_cast<std::size_t>(channel)].full_scale;
 }
 
-// Largest magnitude of a map on a range about 0.
+// Largest magnitude of a map on a range about 0: it is straight between its values, so that the
+// ends of the range and the values within it are enough.
 double largest_of(const ValueMap& map, double range) {
   const ValueTable table(map);
-  constexpr int kPoints = 1000;
-  double most = 0.0;
-  for (int i = -kPoints; i <= kPoints; ++i) {
-    most = std::max(most, std::abs(table(range * i / kPoints)));
+  double most = std::max(std::abs(table(-range)), std::abs(table(range)));
+  const auto count = map.values.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at =
+        map.low + (map.high - map.low) * static_cast<double>(i) / static_cast<double>(count - 1);
+    if (std::abs(at) <= range) most = std::max(most, std::abs(map.values[i]));
   }
   return most;
 }

@@ -23,6 +23,8 @@ constexpr double kSpreads[] = {0.03, 0.1, 0.3, 1.0,
                                3.0};  // of a prior, of the RMS gain in the band
 constexpr int kCarryIterations = 30;
 constexpr double kClearlyLower = 0.999;  // of the error of a fit that did not stop short
+constexpr const char* kLikeTime =
+    "this recording does not distinguish its slow channel from time alone";
 constexpr const char* kNotNeeded =
     "parts of the recording are predicted as well without it from the others";
 
@@ -127,18 +129,24 @@ class Carrying {
   // the one with the smaller standard error.
   [[nodiscard]] Share share(const OutOfParts& without, const OutOfParts& with) const {
     if (!with.finite) return {};
-    if (!without.finite) return {1.0, 0.0};
+    if (!without.finite) return {.estimate = 1.0};
     if (several() && !helps_one(without, with)) return {};
     Eigen::MatrixXd columns(without.residual.size(), 2);
     columns << without.residual, without.residual - with.residual;
     const Share plain = share_of(columns.col(0), columns.col(1), parts_);
     apart_.whiten(columns, signals_.weight());
-    const Share behind = share_of(columns.col(0), columns.col(1), parts_);
-    return behind.std_error < plain.std_error ? behind : plain;
+    Share share = share_of(columns.col(0), columns.col(1), parts_);
+    if (plain.std_error < share.std_error) share = plain;
+    share.harmless = plain.harmless;  // the error that counts in the end
+    return share;
   }
 
-  // Of the body, from now on.  The prior stays with the caller.
-  void assume(const ResponsePrior& prior) { prior_ = &prior; }
+  // Of the body of a model whose effects scale it, or do not, from now on.  The prior stays with
+  // the caller.
+  void assume(const ResponsePrior& prior, bool of_scaled_body) {
+    prior_ = &prior;
+    of_scaled_body_ = of_scaled_body;
+  }
 
   // Fitted from its own numbers, from another body's and from a body estimated again; the best end.
   [[nodiscard]] Model refitted(Model model, const Body& other) const {
@@ -208,12 +216,15 @@ class Carrying {
 
   [[nodiscard]] const ResponsePrior* prior_of(const Model& model) const {
     if (passes_through_body(model)) return &paths_;
-    return prior_ != nullptr && has_body_of_baseline(model, signals_) ? prior_ : nullptr;
+    const bool fits = has_body_of_baseline(model, signals_) &&
+                      std::ranges::any_of(model.effects, scales_body) == of_scaled_body_;
+    return fits ? prior_ : nullptr;
   }
 
   const Signals& signals_;
   const Blocks& blocks_;
   const ResponsePrior* prior_ = nullptr;
+  bool of_scaled_body_ = false;
   const ResponsePrior paths_;
   const Blocks parts_;
   const Signals apart_;  // every part starts as a recording does
@@ -254,8 +265,7 @@ Model shared_part(const Model& found, const std::vector<double>& certainty,
     } else if (kind.time_only(effect)) {
       out.push_back(left_out(effect, "the inputs do not determine it"));
     } else if (certainty[e] == 0.0) {
-      out.push_back(
-          left_out(effect, "this recording does not distinguish its slow channel from time alone"));
+      out.push_back(left_out(effect, kLikeTime));
       out.back().like_time = true;
     } else {
       shared.effects.push_back(effect);
@@ -275,7 +285,7 @@ Model first_fit(const Model& shared, bool fitted, const Body& baseline, Carrying
   if (priors.empty()) return plain;
   const double error = carrying.rmse(plain);
   for (const ResponsePrior& prior : priors) {
-    carrying.assume(prior);
+    carrying.assume(prior, std::ranges::any_of(shared.effects, scales_body));
     Model with = carrying.refitted(shared, baseline);
     if (&prior == &priors.back() || carrying.rmse(with) <= (1.0 + kAsWell) * error) return with;
   }
@@ -410,8 +420,10 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     carried.model = first_fit(shared, carried.left_out.empty(), baseline.body, carrying, priors);
     keep_stable(carried, signals, baseline.body, carrying);
     keep_shares(carried, baseline, carrying);
-    for (Effect& effect : carried.model.effects) {
-      effect.share *= certainty[index_of(effect, found)];
+    for (std::size_t e = carried.model.effects.size(); e-- > 0;) {
+      Effect& effect = carried.model.effects[e];
+      effect.share = rounded_share(effect.share * certainty[index_of(effect, found)]);
+      if (effect.share == 0.0) drop(carried, e, kLikeTime, baseline.body, carrying);
     }
     if (!std::ranges::all_of(carried.model.effects, &Effect::is_whole)) {
       carried.model = carrying.refitted(carried.model, baseline.body);

@@ -13,6 +13,7 @@ namespace stillhand::diagnosis {
 namespace {
 
 std::size_t fitted_count(const Effect& effect) {
+  if (!effect.is_whole()) return 0;
   return effect.coefficients.size() +
          static_cast<std::size_t>(std::ranges::count_if(effect.parameters, &Parameter::fitted));
 }

@@ -2,6 +2,7 @@
 #include "services/diagnosis/core/share.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace stillhand::diagnosis {
@@ -12,7 +13,17 @@ namespace {
 struct Products {
   double crossed = 0.0;
   double squared = 0.0;
+  double residual = 0.0;  // squared
 };
+
+// The share s with which |r - s d| is |r| and a twentieth.
+double harmless_in(const Products& part) {
+  constexpr double kMostHarm = 1.05;
+  if (!(part.squared > 0.0)) return HUGE_VAL;
+  const double more = (kMostHarm * kMostHarm - 1.0) * part.residual;
+  return (part.crossed + std::sqrt(part.crossed * part.crossed + more * part.squared)) /
+         part.squared;
+}
 
 // Of sum crossed / sum squared, by how much each group's own crossed product misses it.
 double variance_over(const std::vector<Products>& groups, const Products& all) {
@@ -40,7 +51,7 @@ double rounded_share(double share) {
 double Share::earned() const {
   if (!(estimate > std_error)) return 0.0;
   const double ratio = std_error / estimate;
-  return rounded_share(std::min(estimate, 1.0) * (1.0 - ratio * ratio));
+  return rounded_share(std::min({estimate * (1.0 - ratio * ratio), 1.0 - ratio * ratio, harmless}));
 }
 
 Share share_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& difference,
@@ -55,11 +66,16 @@ Share share_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& differenc
     for (Products* each : {&of_blocks[block], &of_parts[parts.fold_of(block)], &all}) {
       each->crossed += crossed;
       each->squared += squared;
+      each->residual += residual[n] * residual[n];
     }
   }
   if (!(all.squared > 0.0)) return {};
   const double variance = std::max(variance_over(of_blocks, all), variance_over(of_parts, all));
-  return {all.crossed / all.squared, std::sqrt(variance)};
+  Share share{.estimate = all.crossed / all.squared, .std_error = std::sqrt(variance)};
+  for (const Products& part : of_parts) {
+    share.harmless = std::min(share.harmless, harmless_in(part));
+  }
+  return share;
 }
 
 }  // namespace stillhand::diagnosis

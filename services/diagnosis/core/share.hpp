@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "services/diagnosis/core/fitting/blocks.hpp"
 
@@ -11,8 +12,11 @@ namespace stillhand::diagnosis {
 struct Share {
   double estimate = 0.0;   ///< [-] least squares on parts that no fit has seen
   double std_error = 0.0;  ///< [-] over the blocks or over the parts, the larger
+  /// [-] the largest with which no part's error grows by more than a twentieth
+  double harmless = HUGE_VAL;
 
-  /// [-] 0 to 1: the estimate times what its standard error leaves of it, Eq. DG-69, rounded.
+  /// [-] 0 to 1: the estimate times what its standard error leaves of it, at most what is harmless,
+  /// Eq. DG-68, rounded.
   [[nodiscard]] double earned() const;
 };
 

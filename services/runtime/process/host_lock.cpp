@@ -5,7 +5,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstddef>
+#include <system_error>
 
 #include "services/contract/config_error.hpp"
 
@@ -20,9 +22,13 @@ HostLock::HostLock(const std::string& name, const std::string& what)
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + copied);
   // sockaddr is how the socket calls name every kind of address.
   if (socket_ >= 0 && bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) == 0) return;
+  const int error = errno;
   if (socket_ >= 0) close(socket_);
-  throw ConfigError(what, "another process of this machine has it",
-                    "a platform for this process alone");
+  if (error == EADDRINUSE) {
+    throw ConfigError(what, "another process of this machine has it", "one process for it");
+  }
+  throw ConfigError(what, "no lock: " + std::generic_category().message(error),
+                    "a socket of this machine");
 }
 
 HostLock::~HostLock() { close(socket_); }

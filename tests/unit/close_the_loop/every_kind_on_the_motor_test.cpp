@@ -192,7 +192,11 @@ std::vector<Effect> drawn_list() {
   const double force_n = made::rms_of(diagnosis::free_run(model_of({}), signals).prediction);
   signal::Gaussian draw(5, 0);
   std::vector<Effect> all;
-  for (const Effect& effect : made::every_effect()) all.push_back(drawn(effect, force_n, draw));
+  // Every second one acts in part.
+  for (const Effect& effect : made::every_effect()) {
+    all.push_back(drawn(effect, force_n, draw));
+    if (all.size() % 2 == 0) all.back().share = 0.6;
+  }
   return all;
 }
 

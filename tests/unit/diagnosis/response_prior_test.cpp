@@ -114,7 +114,7 @@ TEST(ResponsePriorTest, TheColumnsAreTheDerivatives) {
 }
 
 // A path of a slow channel: its higher differences answer only what lies above the channel's band.
-TEST(ResponsePriorTest, APathKeepsItsResponseOutsideOfTheBandOfItsChannel) {
+TEST(ResponsePriorTest, APathHasNoResponseAboveTheBandOfItsChannel) {
   std::vector<double> slow(4000);
   for (std::size_t n = 0; n < slow.size(); ++n) {
     slow[n] = std::sin(2.0 * std::numbers::pi * 0.5 * static_cast<double>(n) / kRate_hz);

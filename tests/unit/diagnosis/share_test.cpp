@@ -46,17 +46,36 @@ TEST(ShareTest, WhatOnePartContradictsIsUncertain) {
   EXPECT_EQ(sut.earned(), 0.0);
 }
 
+// Two parts of three are ten times as large and want all of it; the third wants none, and its error
+// is 1 where the effect adds 1: |1 - s|^2 + .. = 1 + s^2 <= 1.05^2 for s = sqrt(0.1025) = 0.32.
+TEST(ShareTest, NoPartIsMadeWorseByMoreThanATwentieth) {
+  const Eigen::VectorXd d = vector_of(made::white(kCount, 1));
+  const Eigen::VectorXd noise = vector_of(made::white(kCount, 2));
+  constexpr Eigen::Index kThird = kCount / 3;
+  Eigen::VectorXd difference = 10.0 * d;
+  Eigen::VectorXd residual = difference + noise;
+  difference.tail(kThird) = d.tail(kThird);
+  residual.tail(kThird) = noise.tail(kThird);
+  const Share sut = share_of(residual, difference, thirds());
+  EXPECT_GT(sut.estimate, 0.95);
+  // Products of 2000 samples of noise: 0.022 of each, so that of the root 0.03.
+  EXPECT_NEAR(sut.harmless, std::sqrt(0.1025), 0.07);
+  EXPECT_EQ(sut.earned(), sut.harmless);
+}
+
 TEST(ShareTest, OfNoDifferenceNothingIsEarned) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(kCount);
   EXPECT_EQ(share_of(vector_of(made::white(kCount, 2)), none, thirds()).earned(), 0.0);
 }
 
 TEST(ShareTest, TheStandardErrorTakesItsSquareOfTheEstimate) {
-  EXPECT_DOUBLE_EQ((Share{0.5, 0.25}).earned(), 0.5 * (1.0 - 0.25));
-  EXPECT_EQ((Share{0.3, 0.3}).earned(), 0.0);
-  EXPECT_EQ((Share{-0.5, 0.1}).earned(), 0.0);
-  EXPECT_EQ((Share{1.4, 0.1}).earned(), 1.0) << "never more than the effect";
-  EXPECT_EQ((Share{0.95, 0.05}).earned(), 1.0) << "near enough to the whole";
+  EXPECT_DOUBLE_EQ((Share{.estimate = 0.5, .std_error = 0.25}).earned(), 0.5 * (1.0 - 0.25));
+  EXPECT_EQ((Share{.estimate = 0.3, .std_error = 0.3}).earned(), 0.0);
+  EXPECT_EQ((Share{.estimate = -0.5, .std_error = 0.1}).earned(), 0.0);
+  EXPECT_EQ((Share{.estimate = 1.4, .std_error = 0.1}).earned(), 1.0)
+      << "never more than the effect";
+  EXPECT_EQ((Share{.estimate = 0.95, .std_error = 0.05}).earned(), 1.0)
+      << "near enough to the whole";
 }
 
 // Every stage scales with the share: at a share of 0 the model is linear, and a term or a delay of

@@ -242,7 +242,7 @@ TEST_F(TrialRunTest, AnInterlockThatOpensWhileOthersPrepareIsTheReason) {
   step();
   seen_.processes["display"].armed_trial = -1;
   event(EventKind::kInterlockOpened, "rig", "a process is missing: sensing");
-  // Whoever is prepared does not begin.
+  // A process that is prepared does not begin.
   const Actions opened = step();
   ASSERT_TRUE(opened.announce.has_value());
   EXPECT_FALSE(opened.announce->trial.has_value());

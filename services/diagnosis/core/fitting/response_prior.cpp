@@ -42,9 +42,12 @@ double line_in(const ExcitedBand& band, std::size_t line) {
   return band.low_hz + static_cast<double>(line) / (kLines - 1) * (band.high_hz - band.low_hz);
 }
 
-// A path of one channel through the body's poles.
+// A linear path of one channel through the body's poles: a sign or a square of the channel has
+// power above the channel's band.
 bool is_path(const Effect& effect, const Body& body) {
-  return effect_kind(effect.kind).through_body(effect) && effect.channels.size() == 1 &&
+  const ControlRole role = effect_kind(effect.kind).body_role(effect);
+  const auto* path = std::get_if<control::Path>(&role);
+  return path != nullptr && path->through_body && effect.channels.size() == 1 &&
          effect.coefficients.size() == body.order() + 1;
 }
 

@@ -30,7 +30,7 @@ class ResponsePrior {
   ResponsePrior(const Body& body, const std::vector<ExcitedBand>& bands, double rate_hz,
                 double noise, double spread);
 
-  /// What is assumed of paths from other channels through the body, Eq. DG-67: outside of the band
+  /// What is assumed of paths from other channels through the body, Eq. DG-67: above the band
   /// of its channel the response is 0, with the standard deviation of its RMS within the band.
   /// @param model  fitted, with the paths
   ResponsePrior(const Model& model, const Signals& signals, double noise);
