@@ -73,12 +73,21 @@ class Export {
                           fmt::format("off by {:.2g} %", 100.0 * next.conversion_error),
                           fmt::format("at most {:.2g} % in the band", 100.0 * options_.max_error));
       }
+      name_shares();
       next.treatments = std::move(treatments_);
       return next;
     }
   }
 
  private:
+  void name_shares() {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (carried_.effects[i].is_whole()) continue;
+      treatments_[places_[i]].how +=
+          fmt::format(", at {:.0f} % of its size", 100.0 * carried_.effects[i].share);
+    }
+  }
+
   // Without its spring the body is not the one that was fitted, and may be worse than a linear one.
   void drop(std::size_t i) {
     if (has_role<diagnosis::control::Spring>(carried_.effects[i])) {

@@ -39,7 +39,7 @@ def effect_name(effect):
 def exported(row):
     """How many of the effects the motor cancels, and by how much the exported model differs at most from the diagnosed one."""
     treatments = row.get("export") or []
-    off = [each["difference_percent"] for each in treatments if each.get("difference_percent") is not None]
+    off = [max(each["difference_percent"].values()) for each in treatments if each.get("difference_percent")]
     if "export" in row.get("errors", {}):
         return "refused"
     return "-" if not treatments else (f"{sum(bool(each['cancelled']) for each in treatments)} of {len(treatments)}" +

@@ -8,6 +8,7 @@ import math
 import os
 import pathlib
 import random
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -271,8 +272,10 @@ class FromRecordingsTest(unittest.TestCase):
         first = self.stand("first.csv", 1)
         empty = self.folder / "empty.csv"
         empty.write_text("")
+        copy = pathlib.Path(shutil.copy(first, self.folder / "copy.csv"))
         for arguments, word in ((["--pegged", first, first], "--pegged"),
                                 (["--pegged", first, "--unseen", first], "--unseen"),
+                                (["--pegged", first, "--unseen", copy], "the same samples"),
                                 (["--pegged", self.folder / "none.csv"], "--pegged"),
                                 (["--pegged", empty], "empty.csv"),
                                 (["--pegged", first, "--moving", first], "1000 Hz"),

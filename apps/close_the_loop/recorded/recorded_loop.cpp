@@ -148,6 +148,7 @@ class RecordedLoopRun {
       parts.front() = std::move(seen);
       unseen_.push_back(std::move(unseen));
     }
+    refuse_copies(parts);
     pegged_ = parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
     const diagnosis::Channel* output = pegged_.find(options_.diagnose.output);
     if (output == nullptr) {
@@ -157,6 +158,19 @@ class RecordedLoopRun {
     out_.unit = output->unit;
     out_.notes = pegged_.notes;
     for (const diagnosis::Measurement& record : unseen_) check_unseen(record);
+  }
+
+  // Under another name, too.
+  void refuse_copies(const std::vector<diagnosis::Measurement>& seen) const {
+    for (const diagnosis::Measurement& record : unseen_) {
+      const diagnosis::Channel* own = record.find(options_.diagnose.output);
+      for (const diagnosis::Measurement& part : seen) {
+        const diagnosis::Channel* other = part.find(options_.diagnose.output);
+        if (own == nullptr || other == nullptr || own->values != other->values) continue;
+        throw ConfigError(record.source, "the same samples as " + part.source,
+                          "a record that no fit has seen");
+      }
+    }
   }
 
   void check_unseen(const diagnosis::Measurement& record) {

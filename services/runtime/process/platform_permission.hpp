@@ -6,12 +6,12 @@
 
 namespace stillhand::runtime {
 
-/// Whether the platform may move at a tick: the interlock of who sits on it.  From the announcement
-/// of a trial in a session that runs, which is what a person's start leads to, the platform may
-/// engage; it may follow commands where the trial covers the tick.  Once something went wrong that
-/// was right in it, or in the trial, it holds for the rest of the trial: a motion must not come
-/// back by surprise.  So it does after kMostMissing_ticks without a command in the trial, and after
-/// a stop for good. Pure; one thread.
+/// Whether the platform may move at a tick: the interlock of the person who sits on it.  The
+/// announcement of a trial in a running session, to which a person's start leads, lets the platform
+/// engage; it may follow commands where the trial covers the tick.  If a part fails after it was
+/// sound, or within the trial, the platform holds for the rest of the trial: motion must not come
+/// back by surprise.  It also holds after kMostMissing_ticks without a command in the trial, and
+/// for good after a stop.  Pure; one thread.
 class PlatformPermission {
  public:
   struct Input {
