@@ -210,6 +210,7 @@ std::vector<EffectDifference> effect_differences(const Model& model, const Signa
   const auto over = [&](const Signals& motion) {
     const auto got = forces_of(exported, motion);
     std::vector<std::vector<double>> wanted;
+    wanted.reserve(diagnosed.size());
     for (const Model& each : diagnosed) {
       wanted.push_back(diagnosis::free_run(each, motion).prediction);
     }
