@@ -121,9 +121,10 @@ TEST(DiagnosedModelRefusalsTest, TextThatIsNoJsonIsRefusedWithItsFile) {
 TEST(DiagnosedModelRefusalsTest, AnotherFormatOrAVersionToComeIsRefused) {
   EXPECT_THAT(refusal_after([](json& file) { file["format"] = "something else"; }),
               AllOf(HasSubstr("format"), HasSubstr("something else")));
-  EXPECT_THAT(refusal_after([](json& file) { file["version"] = 2; }),
-              AllOf(HasSubstr("version"), HasSubstr("2")));
+  EXPECT_THAT(refusal_after([](json& file) { file["version"] = 3; }),
+              AllOf(HasSubstr("version"), HasSubstr("3")));
   EXPECT_THAT(refusal_after([](json& file) { file["version"] = -1; }), HasSubstr("version"));
+  EXPECT_EQ(refusal_after([](json& file) { file["version"] = 1; }), "accepted");
 }
 
 TEST(DiagnosedModelRefusalsTest, EveryEntryIsNeeded) {
