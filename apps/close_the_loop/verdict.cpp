@@ -131,7 +131,9 @@ Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,
   ControlOptions control;
   control.lead_s = out.latency ? out.latency->motor_s : declared.motor_delay_s;
   try {
-    out.control = to_control_model(out.carried(), signals, control);
+    diagnosis::CarriedModel carried = out.carried();
+    if (!evidence.session_goes_on) carried.in_session = carried.model;
+    out.control = to_control_model(carried, signals, control);
   } catch (const ConfigError& error) {
     out.not_carried = error.what();
   }

@@ -33,6 +33,8 @@ struct Evidence {
   std::vector<const recording::Recording*> moving = {};
   /// C, or the newest C+, 1 kHz: the motor's too; none: no latency is measured.
   std::vector<const recording::Recording*> cancelled = {};
+  /// The motor acts in the same session, so that a tone's phase and a gain over time go on.
+  bool session_goes_on = true;
 };
 
 /// One effect that the paper's model lacks.

@@ -192,6 +192,7 @@ class RecordedLoopRun {
       return options_.progress("diagnosis: " + what);
     };
     Evidence evidence{&pegged_};
+    evidence.session_goes_on = false;  // the unseen records are of others
     for (const recording::Recording& record : moving_) evidence.moving.push_back(&record);
     for (const recording::Recording& record : cancelled_) evidence.cancelled.push_back(&record);
     out_.verdict = diagnose_all(evidence, options_.declared, diagnose);
