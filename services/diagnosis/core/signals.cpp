@@ -9,6 +9,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/excited_band.hpp"
 #include "services/diagnosis/core/model/steady_start.hpp"
+#include "services/diagnosis/core/wide_sums.hpp"
 #include "services/signal/butterworth.hpp"
 
 namespace stillhand::diagnosis {
@@ -313,30 +314,10 @@ std::vector<double> Signals::without_pasts(const std::vector<double>& run) const
 
 void Signals::whiten(Eigen::Ref<Eigen::MatrixXd> columns, const std::vector<double>& weight) const {
   if (whitening_.empty()) return;
-  constexpr std::size_t kAtOnce = 16;  // sums that the processor keeps in its registers
-  using Some = Eigen::Array<double, kAtOnce, 1>;
-  const std::size_t longest = whitening_.size() - 1;
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     double* const x = columns.col(c).data();
     for (const Stretch& stretch : stretches_) {
-      // From the end: what a sample needs is still unfiltered.
-      std::size_t end = stretch.end;
-      for (; end >= stretch.first + longest + kAtOnce; end -= kAtOnce) {
-        double* const newest = x + end - kAtOnce;
-        Some sum = Some::Zero();
-        for (std::size_t k = 0; k <= longest; ++k) {
-          sum += whitening_[k] * Eigen::Map<const Some>(newest - k);
-        }
-        Eigen::Map<Some> to(newest);
-        to = sum;
-      }
-      while (end-- > stretch.first) {
-        double sum = 0.0;
-        for (std::size_t k = 0; k <= std::min(longest, end - stretch.first); ++k) {
-          sum += whitening_[k] * x[end - k];
-        }
-        x[end] = sum;
-      }
+      filter_in_place(whitening_, {x + stretch.first, stretch.end - stretch.first});
     }
     for (std::size_t n = 0; n < weight.size(); ++n) {
       if (!(weight[n] > 0.0)) x[n] = 0.0;

@@ -79,6 +79,14 @@ Proposal with_best_modes(const Screening& screening, const Proposal& from) {
                                    signals.output().values, signals));
 }
 
+// A few milliseconds move the poles a little: from those of the next delay.
+Proposal with_moved_poles(const Screening& screening, const Proposal& from, double delay_s) {
+  const Signals& signals = screening.signals();
+  return with_body(
+      screening, delay_s,
+      refined_body(*from.body, delayed_inputs(signals, delay_s), signals.output().values, signals));
+}
+
 std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   const Body& body = screening.model().body;
   for (const Effect& effect : screening.model().effects) {
@@ -100,9 +108,10 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   proposals = best_of(std::move(proposals), kThorough);
   Proposal best = proposals.front();
   for (const double step_s : kFiner_s) {
-    const double from_s = best.effect.value(0);
-    for (const double delay_s : {from_s - step_s, from_s + step_s}) {
-      Proposal next = with_best_modes(screening, with_own_body(screening, delay_s));
+    const Proposal from = best;
+    for (const double direction : {-1.0, 1.0}) {
+      const double delay_s = from.effect.value(0) + direction * step_s;
+      Proposal next = with_moved_poles(screening, from, delay_s);
       if (next.gain > best.gain) best = std::move(next);
     }
   }

@@ -10,6 +10,7 @@
 #include "services/diagnosis/core/fitting/equation_error.hpp"
 #include "services/diagnosis/core/fitting/held_out.hpp"
 #include "services/diagnosis/core/fitting/modes.hpp"
+#include "services/diagnosis/core/wide_sums.hpp"
 #include "services/signal/decompositions.hpp"
 #include "services/signal/difference_model.hpp"
 
@@ -24,49 +25,75 @@ struct Rated {
   double rmse = std::numeric_limits<double>::infinity();
 };
 
+// x(n) - x(n-1), every stretch from rest.
+void difference_in_place(std::vector<double>& x, const std::vector<Stretch>& stretches) {
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t n = stretch.end; n-- > stretch.first + 1;) x[n] -= x[n - 1];
+  }
+}
+
+// Products of all the columns.
+Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns) {
+  constexpr Eigen::Index kRows = 512;  // at a time: they stay in the processor's first cache
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  Eigen::MatrixXd part = sum;
+  for (Eigen::Index first = 0; first < columns.rows(); first += kRows) {
+    ColumnPointers pointers;
+    append_columns(columns, first, pointers);
+    const Eigen::Index rows = std::min(kRows, columns.rows() - first);
+    write_products(pointers, static_cast<std::size_t>(rows), 0, part);
+    sum += part;
+  }
+  return sum;
+}
+
+// Columns of a body's linear numbers, then the output: weighted, without initial states, whitened.
+Eigen::MatrixXd linear_columns(const Body& body, const std::vector<std::vector<double>>& inputs,
+                               const std::vector<double>& output, const Signals& signals) {
+  const std::size_t taps = body.order() + 1;
+  const std::vector<double>& weight = signals.weight();
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(output.size()),
+                          static_cast<Eigen::Index>(2 + taps * inputs.size()));
+  Eigen::Index column = 0;
+  const auto write = [&](const std::vector<double>& x) {
+    double* const to = columns.col(column++).data();
+    for (std::size_t n = 0; n < x.size(); ++n) to[n] = x[n] * weight[n];
+  };
+  write(std::vector<double>(output.size(), 1.0));
+  for (const auto& input : inputs) {
+    std::vector<double> x = through_poles(input, body.denominator, signals.stretches());
+    for (std::size_t i = 0; i < taps; ++i) {
+      if (i > 0) difference_in_place(x, signals.stretches());
+      write(x);
+    }
+  }
+  write(output);
+  if (!columns.allFinite()) return {};
+  InitialStates(body, signals, weight).remove_from(columns);
+  signals.whiten(columns, weight);
+  return columns;
+}
+
 // Numerators and offset refitted for the given poles; its free-run error.
 Rated rated(const Body& start, const std::vector<std::vector<double>>& inputs,
             const std::vector<double>& output, const Signals& signals) {
   Rated result{start};
-  const std::size_t order = start.order();
-  const auto rows = static_cast<Eigen::Index>(output.size());
-  const std::size_t taps = order + 1;
-  Eigen::MatrixXd matrix(rows, static_cast<Eigen::Index>(1 + taps * inputs.size()));
-  Eigen::Index column = 0;
-  const auto write = [&](const std::vector<double>& x) {
-    for (std::size_t n = 0; n < x.size(); ++n) {
-      matrix(static_cast<Eigen::Index>(n), column) = x[n] * signals.weight()[n];
-    }
-    ++column;
-  };
-  write(std::vector<double>(output.size(), 1.0));
-  for (const auto& input : inputs) {
-    std::vector<double> x = through_poles(input, start.denominator, signals.stretches());
-    for (std::size_t i = 0; i < taps; ++i) {
-      if (i > 0) x = differenced(x, signals.stretches());
-      write(x);
-    }
-  }
-  Eigen::VectorXd right(rows);
-  for (Eigen::Index n = 0; n < rows; ++n) {
-    right[n] = output[static_cast<std::size_t>(n)] * signals.weight()[static_cast<std::size_t>(n)];
-  }
-  if (!matrix.allFinite()) return result;
-  const InitialStates initial(start, signals, signals.weight());
-  initial.remove_from(matrix);
-  Eigen::Ref<Eigen::MatrixXd> view(right);
-  initial.remove_from(view);
-  signals.whiten(matrix, signals.weight());
-  signals.whiten(view, signals.weight());
-  const Eigen::VectorXd scale = matrix.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd columns = linear_columns(start, inputs, output, signals);
+  if (columns.size() == 0) return result;
+  const Eigen::MatrixXd products = products_of(columns);
+  const Eigen::Index numbers = columns.cols() - 1;
+  const Eigen::VectorXd scale =
+      products.diagonal().head(numbers).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   Eigen::MatrixXd normal =
-      scale.asDiagonal() * (matrix.transpose() * matrix).eval() * scale.asDiagonal();
+      scale.asDiagonal() * products.topLeftCorner(numbers, numbers) * scale.asDiagonal();
   normal.diagonal().array() += 1e-13;
   const Eigen::VectorXd solution =
       scale.asDiagonal() *
-      signal::solve_symmetric(normal, scale.asDiagonal() * (matrix.transpose() * right));
-  result.rmse = std::sqrt((right - matrix * solution).squaredNorm() / static_cast<double>(rows));
+      signal::solve_symmetric(normal, scale.asDiagonal() * products.col(numbers).head(numbers));
+  const Eigen::VectorXd left = columns.col(numbers) - columns.leftCols(numbers) * solution;
+  result.rmse = std::sqrt(left.squaredNorm() / static_cast<double>(columns.rows()));
   result.body.offset = solution[0];
+  const std::size_t taps = start.order() + 1;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     const double* next = solution.data() + 1 + k * taps;
     result.body.numerators[k] = difference_basis({next, next + taps});
@@ -138,6 +165,11 @@ Body started_body(const std::vector<std::vector<double>>& inputs, const std::vec
     if (other.rmse < best.rmse) best = std::move(other);
   }
   return best.body;
+}
+
+Body refined_body(const Body& start, const std::vector<std::vector<double>>& inputs,
+                  const std::vector<double>& output, const Signals& signals) {
+  return steiglitz_mcbride(start, inputs, output, signals).body;
 }
 
 Body with_mode(const Body& like, const std::vector<double>& kept,

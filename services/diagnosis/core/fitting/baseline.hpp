@@ -35,6 +35,9 @@ Baseline fit_baseline(const Signals& signals, const Blocks& blocks, int order);
 /// The body of the best of the starts for these inputs and this output, unrefined.
 Body started_body(const std::vector<std::vector<double>>& inputs, const std::vector<double>& output,
                   const ImpulseResponse& impulse_response, const Signals& signals, int order);
+/// From a body near by: iterated after Steiglitz and McBride.
+Body refined_body(const Body& start, const std::vector<std::vector<double>>& inputs,
+                  const std::vector<double>& output, const Signals& signals);
 /// The poles `kept` and one mode more, the best of a grid of frequencies and dampings over the
 /// whole band; numerators and offset fitted, all else as in `like`.
 Body with_mode(const Body& like, const std::vector<double>& kept,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "services/diagnosis/core/wide_sums.hpp"
+
 namespace stillhand::diagnosis {
 
 Eigen::MatrixXd Grams::total(const Blocks& layout, int without_fold) const {
@@ -21,13 +23,11 @@ Grams grams_of(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
     const auto first = static_cast<Eigen::Index>(b * blocks.length);
     const Eigen::Index rows =
         std::min(static_cast<Eigen::Index>(blocks.length), residual.size() - first);
+    ColumnPointers pointers;
+    append_columns(jacobian, first, pointers);
+    pointers.push_back(residual.data() + first);
     Eigen::MatrixXd gram(columns + 1, columns + 1);
-    const auto j = jacobian.middleRows(first, rows);
-    const auto r = residual.segment(first, rows);
-    gram.topLeftCorner(columns, columns).noalias() = j.transpose() * j;
-    gram.col(columns).head(columns).noalias() = j.transpose() * r;
-    gram.row(columns).head(columns) = gram.col(columns).head(columns).transpose();
-    gram(columns, columns) = r.squaredNorm();
+    write_products(pointers, static_cast<std::size_t>(rows), 0, gram);
     grams.blocks.push_back(std::move(gram));
     double sum = 0.0;
     for (Eigen::Index n = first; n < first + rows; ++n) sum += weight[static_cast<std::size_t>(n)];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "services/diagnosis/core/model/steady_start.hpp"
+#include "services/diagnosis/core/wide_sums.hpp"
 #include "services/signal/decompositions.hpp"
 #include "services/statistics/signed_rank.hpp"
 
@@ -41,18 +42,13 @@ ScreenedGain Screening::gain(const Columns& columns) const {
     const auto first = static_cast<Eigen::Index>(b * blocks_.length);
     const Eigen::Index rows =
         std::min(static_cast<Eigen::Index>(blocks_.length), more.rows() - first);
-    const auto part = more.middleRows(first, rows);
+    ColumnPointers pointers;
+    append_columns(line_.jacobian, first, pointers);
+    append_columns(more, first, pointers);
+    pointers.push_back(line_.residual.data() + first);
     Eigen::MatrixXd gram(own + extra + 1, own + extra + 1);
     gram.topLeftCorner(own, own) = grams_.blocks[b].topLeftCorner(own, own);
-    gram.block(own, 0, extra, own).noalias() =
-        part.transpose() * line_.jacobian.middleRows(first, rows);
-    gram.block(0, own, own, extra) = gram.block(own, 0, extra, own).transpose();
-    gram.block(own, own, extra, extra).noalias() = part.transpose() * part;
-    gram.col(own + extra).head(own) = grams_.blocks[b].col(own).head(own);
-    gram.col(own + extra).segment(own, extra).noalias() =
-        part.transpose() * line_.residual.segment(first, rows);
-    gram.row(own + extra).head(own + extra) = gram.col(own + extra).head(own + extra).transpose();
-    gram(own + extra, own + extra) = grams_.blocks[b](own, own);
+    write_products(pointers, static_cast<std::size_t>(rows), own, gram);
     grams.blocks.push_back(std::move(gram));
   }
   ScreenedGain result;

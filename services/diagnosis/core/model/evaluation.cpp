@@ -71,9 +71,23 @@ void run_linear_body(const Model& model, const Signals& signals, ModelRun& run) 
   run.body_before = std::move(body.before);
 }
 
-void run_bodies(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs) {
+// Whose number changes what comes behind the body, not the body's output.
+bool is_behind_body(const Effect& effect) {
+  const Stage stage = effect_kind(effect.kind).stage(effect);
+  return stage == Stage::kTerm || stage == Stage::kGain || stage == Stage::kOutputValue;
+}
+
+// @param known  or nullptr
+void run_bodies(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs,
+                const KnownRun* known) {
   std::vector<LoopCase> cases;
+  std::vector<std::size_t> with_loop;
   for (std::size_t i = 0; i < models.size(); ++i) {
+    if (known != nullptr && known->owners[i] &&
+        is_behind_body(models[i].effects[*known->owners[i]])) {
+      runs[i].free.body = known->run.free.body;
+      continue;
+    }
     LoopCase each{&models[i].body, feedback_of(models[i]), &runs[i].inputs};
     if (each.feedback.empty()) {
       run_linear_body(models[i], signals, runs[i]);
@@ -83,16 +97,18 @@ void run_bodies(std::span<const Model> models, const Signals& signals, std::span
       runs[i].inputs.push_back(settled(shaped_input(models[i], signals, k), signals));
     }
     cases.push_back(std::move(each));
+    with_loop.push_back(i);
   }
   std::vector<LoopRun> loops(cases.size());
   run_loops(cases, signals, loops);
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    runs[i].free.finite = loops[i].finite;
-    runs[i].free.body = std::move(loops[i].output);
-    runs[i].free.argument = std::move(loops[i].argument);
-    runs[i].free.phi = std::move(loops[i].phi);
-    runs[i].body_before = std::move(loops[i].output_before);
-    runs[i].phi_before = std::move(loops[i].phi_before);
+    ModelRun& run = runs[with_loop[i]];
+    run.free.finite = loops[i].finite;
+    run.free.body = std::move(loops[i].output);
+    run.free.argument = std::move(loops[i].argument);
+    run.free.phi = std::move(loops[i].phi);
+    run.body_before = std::move(loops[i].output_before);
+    run.phi_before = std::move(loops[i].phi_before);
   }
 }
 
@@ -103,7 +119,7 @@ void weigh_columns(const Model& model, const Signals& signals, const Columns& co
   std::size_t next = 0;
   for (const auto& each : columns) {
     if (!effect_kind(effect.kind).through_body(effect)) {
-      add_scaled(each, effect.share * effect.coefficients.at(next++), run.free.prediction);
+      add_scaled(each, effect.share * effect.coefficients.at(next++), run.terms[e]);
       run.term_columns[e].push_back(each);
       continue;
     }
@@ -113,27 +129,37 @@ void weigh_columns(const Model& model, const Signals& signals, const Columns& co
     for (std::size_t i = 0; i <= model.body.order(); ++i) {
       if (i > 0) column = differenced(column, signals.stretches());
       const double weight = effect.share * effect.coefficients.at(next++);
-      add_scaled(column.values, weight, run.free.prediction);
+      add_scaled(column.values, weight, run.terms[e]);
       add_scaled(column, weight, run.through_body);
       run.term_columns[e].push_back(column.values);
     }
   }
 }
 
-void add_terms(const Model& model, const Signals& signals, ModelRun& run) {
+// @param known  or nullptr
+// @param owner  of the number that differs there
+void add_terms(const Model& model, const Signals& signals, const ModelRun* known,
+               std::optional<std::size_t> owner, ModelRun& run) {
   run.term_columns.resize(model.effects.size());
+  run.terms.resize(model.effects.size());
   run.through_body = nothing(signals);
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const Effect& effect = model.effects[e];
     const EffectKind& kind = effect_kind(effect.kind);
     if (kind.stage(effect) != Stage::kTerm) continue;
+    if (known != nullptr && (owner ? *owner != e : !kind.through_body(effect))) {
+      add_scaled(known->terms[e], 1.0, run.free.prediction);
+      continue;
+    }
     Columns columns;
     if (effect.seen.empty()) {
       kind.terms(effect, signals, run.free.body, columns);
     } else {
       kind.terms(effect, signals.within(effect.seen), run.free.body, columns);
     }
+    run.terms[e].assign(signals.size(), 0.0);
     weigh_columns(model, signals, columns, e, run);
+    add_scaled(run.terms[e], 1.0, run.free.prediction);
   }
 }
 
@@ -194,13 +220,18 @@ void run_all(const Model& model, const Signals& signals, ModelRun& run) {
   run_all(std::span(&model, 1), signals, std::span(&run, 1));
 }
 
-void run_all(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs) {
-  run_bodies(models, signals, runs);
+void run_all(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs,
+             const KnownRun* known) {
+  run_bodies(models, signals, runs, known);
   const double bound = runaway_bound(signals.output());
   for (std::size_t i = 0; i < models.size(); ++i) {
     ModelRun& run = runs[i];
     apply_gain(models[i], signals, run);
-    add_terms(models[i], signals, run);
+    if (known == nullptr) {
+      add_terms(models[i], signals, nullptr, {}, run);
+    } else {
+      add_terms(models[i], signals, &known->run, known->owners[i], run);
+    }
     apply_output_maps(models[i], signals, run);
     run.free.finite =
         run.free.finite && is_stable(models[i].body) &&

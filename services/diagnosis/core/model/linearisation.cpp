@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
@@ -24,22 +25,34 @@ Loop loop_of(const Model& model) {
   return loop;
 }
 
-// The numbers whose columns come from forward differences: those of nonlinear parameters, and with
-// feedback those that its argument depends on.
-std::vector<bool> by_differences(const Model& model, Loop loop) {
-  std::vector<bool> which{false};
-  std::size_t numerators = 0;
-  for (const auto& numerator : model.body.numerators) numerators += numerator.size();
-  which.insert(which.end(), numerators, loop == Loop::kOfOutput);
-  which.insert(which.end(), model.body.order(), loop != Loop::kNone);
-  for (const Effect& effect : model.effects) {
+// A number whose column comes from a forward difference.
+struct ByDifference {
+  Eigen::Index number = 0;
+  std::optional<std::size_t> owner;  // an effect; none: the body
+};
+
+// Those of nonlinear parameters, and with feedback those that its argument depends on.
+std::vector<ByDifference> by_differences(const Model& model, Loop loop) {
+  std::vector<ByDifference> which;
+  Eigen::Index next = 1;
+  const auto append = [&](std::size_t count, bool needed, std::optional<std::size_t> owner) {
+    for (std::size_t i = 0; i < count; ++i, ++next) {
+      if (needed) which.push_back({next, owner});
+    }
+  };
+  for (const auto& numerator : model.body.numerators) {
+    append(numerator.size(), loop == Loop::kOfOutput, {});
+  }
+  append(model.body.order(), loop != Loop::kNone, {});
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    const Effect& effect = model.effects[e];
     if (!effect.is_whole()) continue;
     const bool feedback = acts_at(effect, Stage::kFeedback);
     const std::size_t exact = feedback && loop == Loop::kInside ? model.body.order() + 1 : 0;
-    which.insert(which.end(), exact, false);
-    which.insert(which.end(), effect.coefficients.size() - exact, feedback);
+    append(exact, false, e);
+    append(effect.coefficients.size() - exact, feedback, e);
     for (const Parameter& parameter : effect.parameters) {
-      if (parameter.fitted) which.push_back(true);
+      if (parameter.fitted) append(1, true, e);
     }
   }
   return which;
@@ -140,59 +153,67 @@ void write_exact_columns(const Model& model, const Signals& signals, const Model
   }
 }
 
-// A model with one number moved, for a forward difference.
-struct Moved {
-  Eigen::Index column = 0;
-  double change = 0.0;
-};
-
-// The step is a millionth of the number, or of its neighbours' size.  Without a change: pinned.
-Moved with_one_moved(const Eigen::VectorXd& numbers, Eigen::Index i, Model& model) {
+// The step is a millionth of the number, or of its neighbours' size.  Returns the change; 0:
+// pinned.
+double move_one(const Eigen::VectorXd& numbers, const ByDifference& which, Model& model) {
+  const Eigen::Index i = which.number;
   double size = std::abs(numbers[i]);
   for (Eigen::Index j = std::max<Eigen::Index>(i - 1, 0); j <= std::min(i + 1, numbers.size() - 1);
        ++j) {
     size = std::max(size, 1e-3 * std::abs(numbers[j]));
   }
   const double step = 1e-6 * (size > 0.0 ? size : 1.0);
-  Moved moved{i, 0.0};
+  const Model start = model;
+  double change = 0.0;
   // A parameter at its upper bound can only go down.
   for (const double direction : {step, -step}) {
     Eigen::VectorXd changed = numbers;
     changed[i] += direction;
     unpack(changed, model);
-    moved.change = packed(model)[i] - numbers[i];
-    if (std::abs(moved.change) > 0.5 * step) break;
+    change = packed(model)[i] - numbers[i];
+    if (std::abs(change) > 0.5 * step) break;
   }
-  return moved;
+  if (which.owner) {
+    // The others exactly as they were.
+    Effect moved = std::move(model.effects[*which.owner]);
+    model = start;
+    model.effects[*which.owner] = std::move(moved);
+  }
+  return change;
 }
 
 // Forward differences, as many models at a time as run side by side.
 void write_difference_columns(const Model& model, const Signals& signals, const ModelRun& run,
-                              const std::vector<bool>& which, Eigen::MatrixXd& jacobian) {
+                              const std::vector<ByDifference>& which, Eigen::MatrixXd& jacobian) {
   const Eigen::VectorXd numbers = packed(model);
   std::vector<Model> models;
-  std::vector<Moved> columns;
+  std::vector<double> changes;
+  std::vector<Eigen::Index> columns;
+  KnownRun known{run, {}};
   const auto write = [&] {
     std::vector<ModelRun> others(models.size());
-    run_all(models, signals, others);
+    run_all(models, signals, others, &known);
     for (std::size_t each = 0; each < models.size(); ++each) {
       const std::vector<double>& prediction = others[each].free.prediction;
-      const double inverse = 1.0 / columns[each].change;
-      double* column = jacobian.col(columns[each].column).data();
+      const double inverse = 1.0 / changes[each];
+      double* column = jacobian.col(columns[each]).data();
       for (std::size_t n = 0; n < signals.size(); ++n) {
         column[n] = run.free.weight[n] * (prediction[n] - run.free.prediction[n]) * inverse;
       }
     }
     models.clear();
+    changes.clear();
     columns.clear();
+    known.owners.clear();
   };
-  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
-    if (!which[static_cast<std::size_t>(i)]) continue;
+  for (const ByDifference& each : which) {
     Model other = model;
-    const Moved moved = with_one_moved(numbers, i, other);
-    if (moved.change == 0.0) continue;  // pinned: the column stays 0
+    const double change = move_one(numbers, each, other);
+    if (change == 0.0) continue;  // pinned: the column stays 0
     models.push_back(std::move(other));
-    columns.push_back(moved);
+    changes.push_back(change);
+    columns.push_back(each.number);
+    known.owners.push_back(each.owner);
     if (models.size() == kLoopLanes) write();
   }
   write();
@@ -202,11 +223,10 @@ void write_difference_columns(const Model& model, const Signals& signals, const 
 
 Eigen::MatrixXd jacobian_of(const Model& model, const Signals& signals, const Evaluation& at) {
   const Loop loop = loop_of(model);
-  const std::vector<bool> which = by_differences(model, loop);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(signals.size()),
-                                                   static_cast<Eigen::Index>(which.size()));
+  Eigen::MatrixXd jacobian =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(signals.size()), packed(model).size());
   write_exact_columns(model, signals, at.run, loop, jacobian);
-  write_difference_columns(model, signals, at.run, which, jacobian);
+  write_difference_columns(model, signals, at.run, by_differences(model, loop), jacobian);
   at.initial->remove_from(jacobian);
   signals.whiten(jacobian, at.run.free.weight);
   return jacobian;
