@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/process/run_jobs.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -77,6 +79,15 @@ class Jobs {
   std::exception_ptr failure_;
 };
 
+// Jobs allocate columns of some megabytes a thousand times.  By default each goes back to the
+// kernel when it is freed, and the next one is filled with zeros, page by page.
+void keep_freed_memory() {
+  constexpr int kLargestKept_bytes = 32 << 20;  // more, glibc does not accept
+  static const bool kKept = mallopt(M_MMAP_THRESHOLD, kLargestKept_bytes) != 0 &&
+                            mallopt(M_TRIM_THRESHOLD, 8 * kLargestKept_bytes) != 0;
+  static_cast<void>(kKept);
+}
+
 }  // namespace
 
 unsigned core_count() noexcept { return std::max(1U, std::thread::hardware_concurrency()); }
@@ -85,6 +96,7 @@ bool run_jobs(std::size_t count, unsigned threads, const std::function<void(std:
               const std::function<bool(std::size_t)>& on_done) {
   const auto workers = static_cast<unsigned>(std::min<std::size_t>(std::max(1U, threads), count));
   if (workers == 0) return true;
+  keep_freed_memory();
   Jobs jobs(count, workers, job);
   bool wanted = true;
   {
