@@ -9,8 +9,11 @@
 #include "apps/close_the_loop/control_check.hpp"
 #include "apps/close_the_loop/control_conversion.hpp"
 #include "apps/close_the_loop/control_response.hpp"
+#include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/fitting/fit.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
+#include "services/diagnosis/core/trials.hpp"
 #include "services/population/population.hpp"
 
 namespace stillhand::close_the_loop {
@@ -48,25 +51,44 @@ ConvertedModel best_conversion(const Model& model, const diagnosis::Signals& sig
   return std::move(*best);
 }
 
+// The body that was fitted next to an effect is not that of a model without it.
+void fit_without(Model& model, std::size_t effect, const diagnosis::Signals& signals) {
+  const Effect left = model.effects[effect];
+  model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  // What the hand does not feel, or time alone explains, the body never stood in for.
+  if (has_role<diagnosis::control::NotFelt>(left) ||
+      diagnosis::effect_kind(left.kind).time_only(left)) {
+    return;
+  }
+  Model other = model;
+  for (Effect& each : other.effects) each.seen.clear();
+  diagnosis::start_afresh(other, signals, static_cast<int>(other.body.order()));
+  diagnosis::fit(other, signals, diagnosis::make_blocks(signals));
+  for (std::size_t e = 0; e < other.effects.size(); ++e) {
+    other.effects[e].seen = model.effects[e].seen;
+  }
+  model = std::move(other);
+}
+
 // Converts, compares, and converts again without what differs.
 class Export {
  public:
   Export(const Model& model, const diagnosis::Signals& signals, const ControlOptions& options)
-      : signals_(signals), options_(options), carried_(model) {
-    for (const Effect& effect : model.effects) {
+      : signals_(signals), options_(options), fitted_(model) {
+    for (std::size_t e = 0; e < model.effects.size(); ++e) {
+      const Effect& effect = model.effects[e];
       const std::string channel = effect.channels.empty() ? "" : effect.channels.front();
       treatments_.push_back({effect.kind, false, {}, channel});
-    }
-    for (std::size_t e = 0; e < model.effects.size(); ++e) {
-      carried_.effects[e] = continued(model.effects[e], signals);
       places_.push_back(e);
     }
   }
 
   ConvertedModel run() {
     for (;;) {
+      carried_ = fitted_;
+      for (Effect& effect : carried_.effects) effect = continued(effect, signals_);
       ConvertedModel next = best_conversion(carried_, signals_, options_);
-      if (drop_left_alone(next)) continue;
+      if (drop_left_alone(next) || drop_unsound_spring(next)) continue;
       if (!carried_.effects.empty() && drop_worst(next)) continue;
       if (!(next.conversion_error <= options_.max_error)) {
         throw ConfigError("the model's response at 1 kHz",
@@ -88,16 +110,15 @@ class Export {
     }
   }
 
-  // Without its spring the body is not the one that was fitted, and may be worse than a linear one.
   void drop(std::size_t i) {
-    if (has_role<diagnosis::control::Spring>(carried_.effects[i])) {
-      const Treatment& spring = treatments_[places_[i]];
-      throw ConfigError(spring.kind + " inside the body", spring.how,
-                        "an effect that the canceller's body can hold");
-    }
-    const auto at = static_cast<std::ptrdiff_t>(i);
-    carried_.effects.erase(carried_.effects.begin() + at);
-    places_.erase(places_.begin() + at);
+    fit_without(fitted_, i, signals_);
+    places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+
+  void leave_alone(std::size_t i, std::string why) {
+    treatments_[places_[i]].cancelled = false;
+    treatments_[places_[i]].how = std::move(why);
+    drop(i);
   }
 
   // What adds nothing to the canceller's model.
@@ -114,6 +135,24 @@ class Export {
     return any;
   }
 
+  // A spring that the canceller's body cannot hold.
+  bool drop_unsound_spring(const ConvertedModel& next) {
+    constexpr double kAny = 1e12;  // its size is the canceller's own question
+    const auto spring =
+        std::ranges::find_if(carried_.effects, has_role<diagnosis::control::Spring>);
+    if (spring == carried_.effects.end()) return false;
+    const auto refusal = cancellation::check_model(next.model, {kAny, kAny}).refusal;
+    const auto i = static_cast<std::size_t>(spring - carried_.effects.begin());
+    if (refusal != cancellation::Refusal::kNone) {
+      leave_alone(i, "the canceller does not run it: " + std::string(describe(refusal)));
+      return true;
+    }
+    if (next.conversion_error <= options_.max_error) return false;
+    leave_alone(i, fmt::format("with it the response at 1 kHz is off by {:.2g} %",
+                               100.0 * next.conversion_error));
+    return true;
+  }
+
   // One that differs changes what the others are compared with: the worst goes first.
   bool drop_worst(const ConvertedModel& next) {
     const std::vector<EffectDifference> differences =
@@ -123,21 +162,18 @@ class Export {
     }
     const auto worst = std::ranges::max_element(differences, {}, &EffectDifference::worst);
     if (worst->worst() <= options_.max_difference) return false;
-    const auto i = static_cast<std::size_t>(worst - differences.begin());
-    Treatment& to = treatments_[places_[i]];
-    to.cancelled = false;
-    to.how = fmt::format(
-        "in the canceller its force differs by {:.2g} % from that of the diagnosed model, and "
-        "{:.2g} "
-        "% are allowed",
-        100.0 * worst->worst(), 100.0 * options_.max_difference);
-    drop(i);
+    leave_alone(
+        static_cast<std::size_t>(worst - differences.begin()),
+        fmt::format("in the canceller its force differs by {:.2g} % from that of the diagnosed "
+                    "model, and {:.2g} % are allowed",
+                    100.0 * worst->worst(), 100.0 * options_.max_difference));
     return true;
   }
 
   const diagnosis::Signals& signals_;
   const ControlOptions& options_;
-  Model carried_;
+  Model fitted_;                     ///< to the recording
+  Model carried_;                    ///< as the session continues it
   std::vector<std::size_t> places_;  ///< of the carried effects among all
   std::vector<Treatment> treatments_;
 };

@@ -54,10 +54,11 @@ cancellation::HandCompliance average_hand();
 /// z' = z^(rate/1000 Hz), each numerator by least squares on its response, springs inside the body,
 /// paths next to it and waves unchanged.  What becomes of an effect is its body_role()
 /// (services/diagnosis/core/model/control_role.hpp).  Then each effect runs next to the diagnosed
-/// one, Eq. CL-7; the model is converted again without those that differ too much.
-/// @param signals  what the model was fitted to: ranges of its tables
-/// @throws stillhand::ConfigError when an error exceeds options.max_error, or a spring inside the
-/// body cannot be carried.
+/// one, Eq. CL-7.  Without those that differ too much, and a spring that the canceller refuses, the
+/// model is fitted and converted again: the body that was fitted next to an effect is not that of
+/// a model without it.
+/// @param signals  what the model was fitted to
+/// @throws stillhand::ConfigError when an error exceeds options.max_error.
 ConvertedModel to_control_model(const diagnosis::Model& model, const diagnosis::Signals& signals,
                                 const ControlOptions& options = {});
 /// What a session goes on with of a carried model, diagnosis DG-58; an effect that it does not
