@@ -162,7 +162,12 @@ void keep_shares(CarriedModel& carried, const Model& baseline, const PartsOut& p
       for (std::size_t e = 0; e < count; ++e) {
         carried.model.effects[e].share = std::min(shares[e], of_all);
       }
-      return;
+      if (std::ranges::all_of(carried.model.effects, &Effect::is_whole)) return;
+      // Two that make up for each other do so with equal shares alone.
+      const Model in_part = parts.refitted(carried.model, baseline.body);
+      const Share share = parts.share(bare, parts.left_by(in_part));
+      if (share.estimate > 0.0 && share.harmless >= 1.0) return;
+      for (Effect& effect : carried.model.effects) effect.share = 1.0;
     }
     drop(carried, static_cast<std::size_t>(shares.rend() - least) - 1, kNotNeeded, baseline.body,
          parts);

@@ -170,7 +170,7 @@ void keep_what_helps(Diagnosis& diagnosis, const Signals& signals, const Blocks&
   }
 }
 
-// The errors of the search are those of the verdict's models.
+// The verdict has the effects of the search, in its order.
 bool as_searched(const SearchResult& search) { return search.removed == 0 && !search.reordered; }
 
 // Errors of the models with the first effect, the first two, and so on.
@@ -179,7 +179,8 @@ std::vector<HeldOut> chain(const Diagnosis& diagnosis, const Signals& signals,
   const auto& additions = diagnosis.search.additions;
   std::vector<HeldOut> errors{held_out(diagnosis.baseline.model, signals, blocks)};
   for (std::size_t e = 0; e < additions.size(); ++e) {
-    if (as_searched(diagnosis.search)) {
+    // Behind the noise model the search fits other numbers than the verdict has.
+    if (as_searched(diagnosis.search) && !diagnosis.search.whitened) {
       errors.push_back(additions[e].after);
       continue;
     }
@@ -290,9 +291,10 @@ void add_ties_with_time(Diagnosis& diagnosis) {
 void add_carried(Diagnosis& diagnosis, const Signals& signals, const Blocks& blocks,
                  double variance) {
   const CarriedModel& carried = diagnosis.carried;
+  auto next = carried.model.effects.begin();  // in the order in which they were found
   for (FoundEffect& found : diagnosis.effects) {
-    for (const Effect& effect : carried.model.effects) {
-      if (is_same(effect, found.effect)) found.carried = effect.share;
+    if (next != carried.model.effects.end() && is_same(*next, found.effect)) {
+      found.carried = next++->share;
     }
     if (found.carried > 0.0) {
       if (found.carried < 1.0) {

@@ -16,6 +16,8 @@ constexpr double kMostPeriods = 4000.0;
 constexpr double kSamplesPerPeriod = 3.0;  // at the median speed
 constexpr std::size_t kLines = 4;
 
+int harmonics_of(const Effect& effect) { return effect.form == "two harmonics" ? 2 : 1; }
+
 class PositionRipple final : public EffectKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "position_ripple"; }
@@ -24,8 +26,7 @@ class PositionRipple final : public EffectKind {
   void terms(const Effect& effect, const Signals& signals,
              const std::vector<double>& /*body_output*/, Columns& columns) const override {
     const Signal& position = signals.at(effect.channels.at(0));
-    const int harmonics = effect.form == "two harmonics" ? 2 : 1;
-    for (int h = 1; h <= harmonics; ++h) {
+    for (int h = 1; h <= harmonics_of(effect); ++h) {
       std::vector<double> sine(signals.size());
       std::vector<double> cosine(signals.size());
       for (std::size_t n = 0; n < sine.size(); ++n) {
@@ -74,6 +75,16 @@ class PositionRipple final : public EffectKind {
   }
 };
 
+// Within the resolution of the range one would make up for the other.
+bool shares_a_harmonic(const Effect& one, const Effect& other, double range) {
+  for (int i = 1; i <= harmonics_of(one); ++i) {
+    for (int k = 1; k <= harmonics_of(other); ++k) {
+      if (std::abs(i * one.value(0) - k * other.value(0)) < 1.0 / range) return true;
+    }
+  }
+  return false;
+}
+
 std::vector<Proposal> PositionRipple::proposed(const Screening& screening) const {
   const Signals& signals = screening.signals();
   const Eigen::VectorXd& r = screening.residual();
@@ -94,13 +105,18 @@ std::vector<Proposal> PositionRipple::proposed(const Screening& screening) const
     for (const Line& line :
          strongest_lines(signal.values, residual, kFewestPeriods / range, highest, kLines)) {
       const auto propose = [&](const char* form, double frequency) {
-        auto [effect, gain] =
-            screening.with_coefficients({"position_ripple",
-                                         form,
-                                         {signal.name},
-                                         {{"spatial_frequency", "1/" + signal.unit, frequency,
-                                           frequency - 0.5 / range, frequency + 0.5 / range}},
-                                         {}});
+        const Effect ripple{"position_ripple",
+                            form,
+                            {signal.name},
+                            {{"spatial_frequency", "1/" + signal.unit, frequency,
+                              frequency - 0.5 / range, frequency + 0.5 / range}},
+                            {}};
+        const bool known = std::ranges::any_of(screening.model().effects, [&](const Effect& each) {
+          return each.kind == ripple.kind && each.channels == ripple.channels &&
+                 shares_a_harmonic(each, ripple, range);
+        });
+        if (known) return;
+        auto [effect, gain] = screening.with_coefficients(ripple);
         proposals.push_back({std::move(effect), gain, {}});
       };
       propose("one harmonic", line.frequency);

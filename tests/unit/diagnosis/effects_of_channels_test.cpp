@@ -145,6 +145,34 @@ TEST(EffectsOfChannelsTest, ARippleOverAPosition) {
   expect_proposed(two);
 }
 
+// The model has the first harmonic; the second is a ripple at 2 per_rad, of which the first would
+// be half, and one with two harmonics would share both.
+TEST(EffectsOfChannelsTest, ARippleThatSharesAHarmonicIsNotProposedAgain) {
+  const double per_rad = 30.0 / (2.0 * std::numbers::pi);
+  const auto ripple = [&](std::size_t n, int harmonic) {
+    return std::sin(2.0 * std::numbers::pi * harmonic * per_rad * kTheta[n]);
+  };
+  const made::Studied of(
+      planted("", "", answer_and([&](std::size_t n) { return ripple(n, 1) + ripple(n, 2); }),
+              {{"theta", "rad", kTheta}}, {})
+          .measurement,
+      2);
+  const EffectKind& sut = effect_kind("position_ripple");
+  ASSERT_FALSE(sut.proposed(of.screening).empty());
+  Model model = of.baseline.model;
+  model.effects.push_back({"position_ripple",
+                           "two harmonics",
+                           {"theta"},
+                           {{"spatial_frequency", "1/rad", per_rad, per_rad, per_rad}},
+                           {0.0, 0.0, 0.0, 0.0}});
+  const Screening again(model, of.signals, of.blocks, of.impulse_response);
+  for (const Proposal& proposal : sut.proposed(again)) {
+    const double frequency = proposal.effect.value(0);
+    EXPECT_GT(std::abs(frequency - per_rad), 0.1) << "1/rad";
+    EXPECT_GT(std::abs(frequency - 2.0 * per_rad), 0.1) << "1/rad";
+  }
+}
+
 TEST(EffectsOfChannelsTest, AProductOfTwoChannels) {
   const auto w = made::ride(kCount, 5);
   expect_proposed(planted("bilinear", "beside the body",
