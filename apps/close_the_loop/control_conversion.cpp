@@ -156,7 +156,7 @@ std::function<double(double)> Conversion::maps_of(const std::string& channel, bo
   any = !maps.empty();
   return [maps = std::move(maps)](double value) {
     for (const Effect* effect : maps) {
-      value = diagnosis::mapped_in_part(*effect, value);
+      value = diagnosis::mapped_in_part(diagnosis::effect_kind(effect->kind), *effect, value);
     }
     return value;
   };

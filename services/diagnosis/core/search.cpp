@@ -33,10 +33,13 @@ std::optional<std::size_t> confirmed(std::vector<Trial>& tried, const HeldOut& c
                                      const SearchOptions& options, SearchResult& result) {
   const std::size_t candidates = tried.size();
   std::vector<double> before;
+  const auto worth_adding = [&](const Trial& trial) {
+    return is_worth_adding(trial, current, least_fall, candidates, options);
+  };
   while (!tried.empty() && std::isfinite(tried.front().rmse)) {
-    const std::size_t chosen = chosen_of(tried, current.rmse(), options);
+    const std::size_t chosen = chosen_of(tried, current.rmse(), options, worth_adding);
     const Trial& trial = tried[chosen];
-    if (!is_worth_adding(trial, current, least_fall, candidates, options)) break;
+    if (!worth_adding(trial)) break;
     if (!recordings.several() || !asks_recordings(trial)) return chosen;
     if (before.empty()) before = recordings.errors(result.model);
     const std::vector<double> fall = falls(before, recordings.errors(trial.model));
@@ -84,9 +87,9 @@ class Forward {
         signals_(signals),
         blocks_(blocks),
         options_(options),
-        for_each_(for_each),
         progress_(progress),
-        impulse_response_(fit_impulse_response(signals)) {}
+        impulse_response_(fit_impulse_response(signals)),
+        settings_{blocks, impulse_response_, baseline.order, options, for_each} {}
 
   [[nodiscard]] SearchResult from_baseline() const {
     SearchResult result;
@@ -138,16 +141,18 @@ class Forward {
     if (result.whitened) fit(result.model, signals_, blocks_, refitting());
     const HeldOut current = held_out(result.model, signals_, blocks_);
     if (is_rounding(current.rmse(), signals_)) return false;
-    std::vector<Trial> tried = trials_of(result.model, current, signals_);
+    std::vector<Trial> tried = screened_trials(result.model, signals_, settings_, Shapes::kNamed);
     std::optional<SearchResult> behind;
     if (!tried.empty() && std::isfinite(tried.front().rmse)) {
+      fit_first(tried, current.rmse(), signals_, settings_);
       Signals whitened = judged_by(tried.front().model);
       if (whitened.is_whitened()) {
         behind = refitted_behind(whitened, result);
         judged = std::move(whitened);
       }
     }
-    if (behind && extended_as_judged(*behind, judged, result)) return true;
+    if (behind && extended_as_judged(*behind, judged, with_own_bodies(tried), result)) return true;
+    tried = finished_trials(std::move(tried), current.rmse(), signals_, settings_);
     if (extend_by_one(result, current, std::move(tried), signals_)) {
       judged = signals_;
       return true;
@@ -167,11 +172,14 @@ class Forward {
     return other;
   }
 
-  bool extended_as_judged(SearchResult& behind, const Signals& judged, SearchResult& result) const {
+  // @param known  of the round without the filter
+  bool extended_as_judged(SearchResult& behind, const Signals& judged, std::vector<Proposal> known,
+                          SearchResult& result) const {
     const HeldOut current = held_out(behind.model, judged, blocks_);
-    if (!extend_by_one(behind, current, trials_of(behind.model, current, judged), judged)) {
-      return false;
-    }
+    std::vector<Trial> tried =
+        screened_trials(behind.model, judged, settings_, Shapes::kNamed, std::move(known));
+    tried = finished_trials(std::move(tried), current.rmse(), judged, settings_);
+    if (!extend_by_one(behind, current, std::move(tried), judged)) return false;
     result = std::move(behind);
     return true;
   }
@@ -183,7 +191,7 @@ class Forward {
     // Next to a law it would take the law's numbers.
     if (options_.most_effects == 0 || !from.additions.empty()) return false;
     const HeldOut current = held_out(from.model, judged, blocks_);
-    std::vector<Trial> tried = trials_of(from.model, current, judged, Shapes::kAny);
+    std::vector<Trial> tried = free_forms(from.model, current, judged);
     if (!confirmed(tried, current, options_.least_fall, RecordingsOut(judged, blocks_), options_,
                    from)) {
       return false;
@@ -208,11 +216,10 @@ class Forward {
     return options;
   }
 
-  [[nodiscard]] std::vector<Trial> trials_of(const Model& model, const HeldOut& current,
-                                             const Signals& judged,
-                                             Shapes shapes = Shapes::kNamed) const {
-    return trials(model, current.rmse(), judged, blocks_, impulse_response_, baseline_.order,
-                  options_, for_each_, shapes);
+  [[nodiscard]] std::vector<Trial> free_forms(const Model& model, const HeldOut& current,
+                                              const Signals& judged) const {
+    return finished_trials(screened_trials(model, judged, settings_, Shapes::kAny), current.rmse(),
+                           judged, settings_);
   }
 
   [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current,
@@ -229,7 +236,7 @@ class Forward {
       const double clearly_less = passes_over_samples(named)
                                       ? (1.0 - options_.large_fall) * current.rmse()
                                       : (1.0 - options_.tie) * named.rmse;
-      std::vector<Trial> shapes = trials_of(result.model, current, judged, Shapes::kAny);
+      std::vector<Trial> shapes = free_forms(result.model, current, judged);
       if (!shapes.empty() && shapes.front().rmse < clearly_less) {
         const auto shape = confirmed(shapes, current, options_.least_fall,
                                      RecordingsOut(judged, blocks_), options_, result);
@@ -247,14 +254,20 @@ class Forward {
     return false;
   }
 
+  // Of the model as the verdict would have it.
+  [[nodiscard]] HeldOut held_out_unfiltered(Model model) const {
+    fit(model, signals_, blocks_, refitting());
+    return held_out(model, signals_, blocks_);
+  }
+
   // Behind a filter the error without it has to fall as well.
   bool add(SearchResult& result, const HeldOut& current, std::vector<Trial> tried,
            std::size_t chosen, const Signals& judged, double least_fall) const {
     HeldOut before = current;
     HeldOut after = tried[chosen].held_out;
     if (judged.is_whitened()) {
-      before = held_out(result.model, signals_, blocks_);
-      after = held_out(tried[chosen].model, signals_, blocks_);
+      before = held_out_unfiltered(result.model);
+      after = held_out_unfiltered(tried[chosen].model);
       const double fall = std::min(least_fall, options_.large_fall);
       if (!(after.rmse() < (1.0 - fall) * before.rmse())) return false;
     }
@@ -270,9 +283,9 @@ class Forward {
   const Signals& signals_;
   const Blocks& blocks_;
   const SearchOptions& options_;
-  const ForEach& for_each_;
   const std::function<bool(const std::string&)>& progress_;
   const ImpulseResponse impulse_response_;
+  const RoundSettings settings_;
 };
 
 }  // namespace

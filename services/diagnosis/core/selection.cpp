@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/statistics/signed_rank.hpp"
 
 namespace stillhand::diagnosis {
@@ -36,6 +38,11 @@ bool ties_with(const Trial& other, const Trial& best, double current_rmse,
   };
   return other.rmse <= (1.0 + options.tie) * best.rmse &&
          gain(other) >= options.tied_gain * gain(best);
+}
+
+// In the list of kinds.
+std::ptrdiff_t place_of(const std::string& kind) {
+  return std::ranges::find(effect_kinds(), kind, &EffectKind::name) - effect_kinds().begin();
 }
 
 // README Eq. DG-50: an error and what its numbers cost.
@@ -79,16 +86,29 @@ bool is_rounding(double rmse, const Signals& signals) {
 bool by_rmse(const Trial& a, const Trial& b) { return a.rmse < b.rmse; }
 
 std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
-                      const SearchOptions& options) {
+                      const SearchOptions& options,
+                      const std::function<bool(const Trial&)>& worth_adding) {
+  constexpr double kDistinguished = 2.0;  // [standard errors]
   const Trial& best = *std::ranges::min_element(tried, {}, schwarz);
-  auto chosen = static_cast<std::size_t>(&best - tried.data());
+  const auto own = static_cast<std::size_t>(&best - tried.data());
+  std::vector<std::size_t> ties{own};
   for (std::size_t i = 0; i < tried.size(); ++i) {
-    if (!std::isfinite(tried[i].rmse) || !ties_with(tried[i], best, current_rmse, options)) {
-      continue;
-    }
-    if (complexity(tried[i].model) < complexity(tried[chosen].model)) chosen = i;
+    if (i == own || !std::isfinite(tried[i].rmse)) continue;
+    if (ties_with(tried[i], best, current_rmse, options)) ties.push_back(i);
   }
-  return chosen;
+  const auto numbers = [&](std::size_t i) { return complexity(tried[i].model); };
+  const std::size_t fewest = numbers(*std::ranges::min_element(ties, {}, numbers));
+  std::erase_if(ties, [&](std::size_t i) { return numbers(i) != fewest; });
+  const std::size_t least =
+      *std::ranges::min_element(ties, {}, [&](std::size_t i) { return tried[i].rmse; });
+  // Rounding decides where their fits end: the blocks do not distinguish these, so the list does.
+  std::erase_if(ties, [&](std::size_t i) {
+    return i != least && (compared(tried[i].held_out, tried[least].held_out).t >= kDistinguished ||
+                          (worth_adding && !worth_adding(tried[i])));
+  });
+  return *std::ranges::min_element(ties, {}, [&](std::size_t i) {
+    return std::pair(place_of(tried[i].model.effects.back().kind), tried[i].rmse);
+  });
 }
 
 std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t chosen,

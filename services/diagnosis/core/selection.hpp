@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Trial {
   HeldOut held_out;
   double rmse = 0.0;      ///< held out
   std::size_t added = 0;  ///< index of the effect that it tried
+  bool own_body = false;  ///< it started from a body that was estimated for it
 };
 
 bool by_rmse(const Trial& a, const Trial& b);
@@ -49,8 +51,10 @@ bool is_rounding(double rmse, const Signals& signals);
 
 /// The best that earns its numbers, Eq. DG-50, or the simplest that ties with it, Eq. DG-17.
 /// @param current_rmse  held out, without any of them
+/// @param worth_adding  asked of one that is to be named in place of one with a smaller error
 std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
-                      const SearchOptions& options);
+                      const SearchOptions& options,
+                      const std::function<bool(const Trial&)>& worth_adding = {});
 /// Other kinds that tie with the chosen one.
 std::vector<std::string> tied_kinds(const std::vector<Trial>& tried, std::size_t chosen,
                                     double current_rmse, const SearchOptions& options);

@@ -2,6 +2,7 @@
 #include "services/diagnosis/core/trials.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -108,54 +109,108 @@ void start_afresh(Model& model, const Signals& signals, int order) {
   }
 }
 
-std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
-                          const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
-                          const SearchOptions& options, const ForEach& for_each, Shapes shapes) {
+namespace {
+
+constexpr std::size_t kFewest = 5;
+
+// A term or a gain that the columns next to the model do not show: its fit would hardly gain more.
+bool is_hopeless(const Proposal& proposal) {
+  constexpr double kLeastGain = 0.0025;  // of the squared error; DG-17 asks for four times as much
+  if (proposal.body) return false;
+  const Stage stage = effect_kind(proposal.effect.kind).stage(proposal.effect);
+  return (stage == Stage::kTerm || stage == Stage::kGain) && proposal.gain < kLeastGain;
+}
+
+Trial not_fitted(Model model) {
+  Trial trial;
+  trial.rmse = std::numeric_limits<double>::infinity();
+  trial.added = model.effects.size() - 1;
+  trial.model = std::move(model);
+  return trial;
+}
+
+// Where nothing gains, a few are carried to the end all the same: some begin slowly.
+std::size_t near_the_best(const std::vector<Trial>& all, double current_rmse) {
   constexpr double kGains = 0.985;
-  constexpr double kExplainsMuch = 0.85;
-  constexpr std::size_t kFewest = 5;
-  const Screening screening(current, signals, blocks, impulse_response);
-  std::vector<const EffectKind*> kinds;
-  std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
-    return kind->any_shape() == (shapes == Shapes::kAny);
-  });
-  std::vector<std::vector<Proposal>> proposals(kinds.size());
-  for_each(kinds.size(), [&](std::size_t k) { proposals[k] = kinds[k]->proposed(screening); });
-  std::vector<Model> models;
-  for (const auto& of_kind : proposals) {
-    for (const Proposal& proposal : of_kind) {
-      Model model = current;
-      if (proposal.body) model.body = *proposal.body;
-      model.effects.push_back(proposal.effect);
-      models.push_back(std::move(model));
-    }
-  }
-  if (models.empty()) return {};
-  std::vector<Trial> all(models.size());
-  for_each(models.size(), [&](std::size_t i) {
-    all[i] =
-        judged_trial(std::move(models[i]), signals, blocks, options.screening_iterations, false);
-  });
-  std::ranges::stable_sort(all, by_rmse);
-  // Where nothing gains, a few are carried to the end all the same: some begin slowly.
   std::size_t near = 0;
   while (near < all.size() && all[near].rmse < kNear * all.front().rmse &&
          (near < kFewest || all[near].rmse < kGains * current_rmse)) {
     ++near;
   }
-  for_each(std::min(near, kFewest),
-           [&](std::size_t i) { start_afresh(all[i].model, signals, order); });
-  for_each(near, [&](std::size_t i) {
-    all[i] = judged_trial(std::move(all[i].model), signals, blocks, options.fit_iterations, true);
+  return near;
+}
+
+}  // namespace
+
+std::vector<Trial> screened_trials(const Model& current, const Signals& signals,
+                                   const RoundSettings& settings, Shapes shapes,
+                                   std::vector<Proposal> known) {
+  const Screening screening(current, signals, settings.blocks, settings.impulse_response,
+                            std::move(known));
+  std::vector<const EffectKind*> kinds;
+  std::ranges::copy_if(effect_kinds(), std::back_inserter(kinds), [&](const EffectKind* kind) {
+    return kind->any_shape() == (shapes == Shapes::kAny);
+  });
+  std::vector<std::vector<Proposal>> of_kinds(kinds.size());
+  settings.for_each(kinds.size(),
+                    [&](std::size_t k) { of_kinds[k] = kinds[k]->proposed(screening); });
+  std::vector<Proposal> proposals;
+  for (auto& of_kind : of_kinds) std::ranges::move(of_kind, std::back_inserter(proposals));
+  std::vector<Trial> all(proposals.size());
+  settings.for_each(proposals.size(), [&](std::size_t i) {
+    Model model = current;
+    if (proposals[i].body) model.body = *proposals[i].body;
+    model.effects.push_back(proposals[i].effect);
+    all[i] = is_hopeless(proposals[i]) ? not_fitted(std::move(model))
+                                       : judged_trial(std::move(model), signals, settings.blocks,
+                                                      settings.options.screening_iterations, false);
+    all[i].own_body = proposals[i].body.has_value();
   });
   std::ranges::stable_sort(all, by_rmse);
-  exchange_shapes(all, current_rmse, signals, blocks, order, options, for_each);
+  return all;
+}
+
+void fit_first(std::vector<Trial>& screened, double current_rmse, const Signals& signals,
+               const RoundSettings& settings) {
+  settings.for_each(std::min(near_the_best(screened, current_rmse), kFewest), [&](std::size_t i) {
+    const bool own_body = screened[i].own_body;
+    start_afresh(screened[i].model, signals, settings.order);
+    screened[i] = judged_trial(std::move(screened[i].model), signals, settings.blocks,
+                               settings.options.fit_iterations, false);
+    screened[i].own_body = own_body;
+  });
+  std::ranges::stable_sort(screened, by_rmse);
+}
+
+std::vector<Trial> finished_trials(std::vector<Trial> all, double current_rmse,
+                                   const Signals& signals, const RoundSettings& settings) {
+  constexpr double kExplainsMuch = 0.85;
+  if (all.empty()) return all;
+  const std::size_t near = near_the_best(all, current_rmse);
+  settings.for_each(std::min(near, kFewest),
+                    [&](std::size_t i) { start_afresh(all[i].model, signals, settings.order); });
+  settings.for_each(near, [&](std::size_t i) {
+    all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
+                          settings.options.fit_iterations, true);
+  });
+  std::ranges::stable_sort(all, by_rmse);
+  exchange_shapes(all, current_rmse, signals, settings.blocks, settings.order, settings.options,
+                  settings.for_each);
   // To pass over samples explains nothing: only where no effect explains much.
   const auto explains = std::ranges::find_if_not(all, passes_over_samples);
   if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
     std::erase_if(all, passes_over_samples);
   }
   return all;
+}
+
+std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials) {
+  std::vector<Proposal> proposals;
+  for (const Trial& trial : trials) {
+    if (!trial.own_body || !std::isfinite(trial.rmse)) continue;
+    proposals.push_back({trial.model.effects.back(), 0.0, trial.model.body});
+  }
+  return proposals;
 }
 
 void in_order(std::size_t count, const std::function<void(std::size_t)>& task) {

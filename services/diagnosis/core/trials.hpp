@@ -7,6 +7,7 @@
 
 #include "services/diagnosis/core/fitting/blocks.hpp"
 #include "services/diagnosis/core/fitting/impulse_response.hpp"
+#include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/selection.hpp"
 
 /// One round of the search: every form that is proposed, fitted and judged.
@@ -34,13 +35,29 @@ bool passes_over_samples(const Trial& trial);
 /// tried too: an effect may have hidden poles of a body whose order was reduced.
 void start_afresh(Model& model, const Signals& signals, int order);
 
-/// Everything that is proposed, fitted jointly in two passes: a few steps for all, then to the end
-/// for those near the best.  Best first.
+/// What all rounds of a search have in common.
+struct RoundSettings {
+  const Blocks& blocks;
+  const ImpulseResponse& impulse_response;
+  int order;  ///< of the body, before it was reduced
+  const SearchOptions& options;
+  const ForEach& for_each;
+};
+
+/// Everything that is proposed, fitted jointly in a few steps; not fitted, with an infinite error,
+/// where the screening shows that nothing is to be gained.  Best first.
+/// @param known  by the same round without the noise model; see Screening
+std::vector<Trial> screened_trials(const Model& current, const Signals& signals,
+                                   const RoundSettings& settings, Shapes shapes,
+                                   std::vector<Proposal> known = {});
+/// The first few fitted to the end, not judged again: which of them is the best is not known.
+void fit_first(std::vector<Trial>& screened, double current_rmse, const Signals& signals,
+               const RoundSettings& settings);
+/// Those near the best fitted to the end and judged by refitting.  Best first.
 /// @param current_rmse  held out, of the model without any of them
-/// @param order  of the body, before it was reduced
-std::vector<Trial> trials(const Model& current, double current_rmse, const Signals& signals,
-                          const Blocks& blocks, const ImpulseResponse& impulse_response, int order,
-                          const SearchOptions& options, const ForEach& for_each,
-                          Shapes shapes = Shapes::kNamed);
+std::vector<Trial> finished_trials(std::vector<Trial> screened, double current_rmse,
+                                   const Signals& signals, const RoundSettings& settings);
+/// The proposals that came with bodies of their own, as they were fitted.
+std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials);
 
 }  // namespace stillhand::diagnosis

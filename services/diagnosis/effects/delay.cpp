@@ -97,15 +97,24 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
              0.0,
              {}}};
   }
-  std::vector<Proposal> proposals;
-  for (const double delay_s : kTried_s) {
-    proposals.push_back(with_own_body(screening, delay_s));
+  std::vector<Proposal> proposals = screening.known(name());
+  const bool known = !proposals.empty();
+  if (known) {
+    for (Proposal& each : proposals) {
+      each = with_moved_poles(screening, each, each.effect.value(0));
+    }
+  } else {
+    for (const double delay_s : kTried_s) {
+      proposals.push_back(with_own_body(screening, delay_s));
+    }
   }
   // The order among the first few depends on bodies that may be in a local minimum.
   proposals = best_of(std::move(proposals), kThorough);
   if (proposals.front().gain < kHopeless) return {proposals.front()};
-  for (Proposal& each : proposals) each = with_best_modes(screening, each);
-  proposals = best_of(std::move(proposals), kThorough);
+  if (!known) {
+    for (Proposal& each : proposals) each = with_best_modes(screening, each);
+    proposals = best_of(std::move(proposals), kThorough);
+  }
   Proposal best = proposals.front();
   for (const double step_s : kFiner_s) {
     const Proposal from = best;

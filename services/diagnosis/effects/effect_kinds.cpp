@@ -22,16 +22,16 @@
 
 namespace stillhand::diagnosis {
 
-// The one list: a new kind adds its line here.  Of two that explain exactly as
-// much with as many numbers, the earlier is named.
+// The one list: a new kind adds its line here.  Of those that explain as much, as far as the blocks
+// can say, with as many numbers, the earliest is named, README Eq. DG-17.
 const std::vector<const EffectKind*>& effect_kinds() {
   static const std::vector<const EffectKind*> kKinds{&delay_kind(),
                                                      &resonance_kind(),
                                                      &coupled_input_kind(),
                                                      &coulomb_friction_kind(),
+                                                     &hysteresis_kind(),
                                                      &nonlinear_stiffness_kind(),
                                                      &asymmetry_kind(),
-                                                     &hysteresis_kind(),
                                                      &dead_zone_kind(),
                                                      &output_saturation_kind(),
                                                      &input_saturation_kind(),

@@ -27,6 +27,9 @@ Proposal best_with_body(const Screening& screening, std::vector<Proposal> propos
                         const std::function<Body(const Effect&)>& body_for) {
   Proposal best;
   if (!screening.model().effects.empty() || screening.model().body.order() == 0) return best;
+  for (const Proposal& known : screening.known(proposals.front().effect.kind)) {
+    if (known.effect.form == proposals.front().effect.form) return known;
+  }
   for (Proposal& each : proposals) {
     each.body = body_for(each.effect);
     Model model = screening.model();

@@ -115,6 +115,7 @@ std::optional<Proposal> mode_of(const Model& larger, const Screening& screening,
 // body misses a mode that needs a different body.
 std::vector<Proposal> from_larger_bodies(const Screening& screening) {
   constexpr int kIterations = 15;
+  if (auto known = screening.known("resonance"); !known.empty()) return known;
   const Signals& signals = screening.signals();
   const Model& own = screening.model();
   const int order = static_cast<int>(own.body.order()) + 2;

@@ -77,6 +77,16 @@ TEST(SelectionTest, WhatTheBlocksDoNotDistinguishTies) {
   EXPECT_EQ(chosen_of(sut, std::sqrt(1.2), {}), 1u);
 }
 
+// As above, t = 0.44 < 2: rounding may have decided which of them has the smaller error.
+TEST(SelectionTest, OfAsManyNumbersTheKindThatStandsFirstInTheListIsNamed) {
+  std::vector<double> uneven(kBlocks, 1.0);
+  for (std::size_t b = 0; b < kBlocks; ++b) uneven[b] += b % 2 == 0 ? 0.7 : -0.5;
+  const std::vector<Trial> sut{even("dead_zone", 1.0, 2), tried("hysteresis", uneven, 2)};
+  EXPECT_EQ(chosen_of(sut, std::sqrt(1.2), {}), 1u);
+  EXPECT_EQ(chosen_of(sut, std::sqrt(1.2), {}, [](const Trial&) { return false; }), 0u)
+      << "only if it is worth adding itself";
+}
+
 TEST(SelectionTest, AModelThatRanAwayIsNeverChosen) {
   for (const double error :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {

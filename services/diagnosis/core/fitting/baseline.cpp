@@ -18,6 +18,7 @@ namespace stillhand::diagnosis {
 namespace {
 
 constexpr int kSteiglitzMcBrideSteps = 4;
+constexpr double kSettled = 1e-4;        // of the error: no further step
 constexpr double kClearlyAbove = 1.003;  // of what a long impulse response leaves
 
 struct Rated {
@@ -74,6 +75,18 @@ Eigen::MatrixXd linear_columns(const Body& body, const std::vector<std::vector<d
   return columns;
 }
 
+// |last column - others solution|^2 from the products; where these cancel, from the columns.
+double left_square(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& products,
+                   const Eigen::VectorXd& solution) {
+  constexpr double kCancels = 1e-8;
+  const Eigen::Index numbers = solution.size();
+  const double whole = products(numbers, numbers);
+  const double left = whole - 2.0 * solution.dot(products.col(numbers).head(numbers)) +
+                      solution.dot(products.topLeftCorner(numbers, numbers) * solution);
+  if (left > kCancels * whole) return left;
+  return (columns.col(numbers) - columns.leftCols(numbers) * solution).squaredNorm();
+}
+
 // Numerators and offset refitted for the given poles; its free-run error.
 Rated rated(const Body& start, const std::vector<std::vector<double>>& inputs,
             const std::vector<double>& output, const Signals& signals) {
@@ -90,8 +103,8 @@ Rated rated(const Body& start, const std::vector<std::vector<double>>& inputs,
   const Eigen::VectorXd solution =
       scale.asDiagonal() *
       signal::solve_symmetric(normal, scale.asDiagonal() * products.col(numbers).head(numbers));
-  const Eigen::VectorXd left = columns.col(numbers) - columns.leftCols(numbers) * solution;
-  result.rmse = std::sqrt(left.squaredNorm() / static_cast<double>(columns.rows()));
+  result.rmse =
+      std::sqrt(left_square(columns, products, solution) / static_cast<double>(columns.rows()));
   result.body.offset = solution[0];
   const std::size_t taps = start.order() + 1;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
@@ -118,7 +131,9 @@ Rated steiglitz_mcbride(Body body, const std::vector<std::vector<double>>& input
                            all, signals, body.order());
     Rated next = rated(body, inputs, output, signals);
     body = next.body;
+    const bool settled = std::abs(next.rmse - best.rmse) < kSettled * best.rmse;
     if (next.rmse < best.rmse) best = std::move(next);
+    if (settled) break;
   }
   return best;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "services/diagnosis/core/model/steady_start.hpp"
 #include "services/diagnosis/core/wide_sums.hpp"
@@ -11,16 +12,24 @@
 
 namespace stillhand::diagnosis {
 Screening::Screening(const Model& model, const Signals& signals, const Blocks& blocks,
-                     const ImpulseResponse& impulse_response)
+                     const ImpulseResponse& impulse_response, std::vector<Proposal> known)
     : model_(model),
       signals_(signals),
       blocks_(blocks),
       impulse_response_(impulse_response),
+      known_(std::move(known)),
       line_(linearised(model, signals)),
       grams_(grams_of(line_.jacobian, line_.residual, line_.run.weight, blocks)),
       initial_(model, signals, line_.run.weight) {
   held_out_ = held_out_linearised(grams_, blocks);
   rmse_ = std::sqrt(line_.residual.squaredNorm() / std::max(sum_of(line_.run.weight), 1.0));
+}
+
+std::vector<Proposal> Screening::known(std::string_view kind) const {
+  std::vector<Proposal> of_kind;
+  std::ranges::copy_if(known_, std::back_inserter(of_kind),
+                       [&](const Proposal& each) { return each.effect.kind == kind; });
+  return of_kind;
 }
 
 ScreenedGain Screening::gain(const Columns& columns) const {

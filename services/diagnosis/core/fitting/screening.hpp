@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <string_view>
 #include <vector>
 
 #include "services/diagnosis/core/fitting/baseline.hpp"
@@ -23,8 +24,10 @@ struct ScreenedGain {
 class Screening {
  public:
   /// @param model  fitted to the signals; must stay until the last use
+  /// @param known  proposals of this round with bodies of their own, as they were fitted without
+  /// the noise model; a kind takes them up instead of estimating these bodies again, Eq. DG-61
   Screening(const Model& model, const Signals& signals, const Blocks& blocks,
-            const ImpulseResponse& impulse_response);
+            const ImpulseResponse& impulse_response, std::vector<Proposal> known = {});
 
   [[nodiscard]] const Model& model() const noexcept { return model_; }
   [[nodiscard]] const Signals& signals() const noexcept { return signals_; }
@@ -32,6 +35,8 @@ class Screening {
   [[nodiscard]] const ImpulseResponse& impulse_response() const noexcept {
     return impulse_response_;
   }
+  /// Those of a kind.
+  [[nodiscard]] std::vector<Proposal> known(std::string_view kind) const;
   /// Output - prediction, weighted, initial states taken out.
   [[nodiscard]] const Eigen::VectorXd& residual() const noexcept { return line_.residual; }
   /// y_b, the body's output.
@@ -55,6 +60,7 @@ class Screening {
   const Signals& signals_;
   const Blocks& blocks_;
   const ImpulseResponse& impulse_response_;
+  std::vector<Proposal> known_;
   Linearisation line_;
   Grams grams_;
   InitialStates initial_;

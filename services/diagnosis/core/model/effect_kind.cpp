@@ -65,13 +65,13 @@ double delay_in_part(const Effect& effect, double time_s) {
   return effect.share * effect_kind(effect.kind).input_delay_s(effect, time_s);
 }
 
-double mapped_in_part(const Effect& effect, double value) {
-  const double whole = effect_kind(effect.kind).mapped(effect, value);
+double mapped_in_part(const EffectKind& kind, const Effect& effect, double value) {
+  const double whole = kind.mapped(effect, value);
   return effect.is_whole() ? whole : value + effect.share * (whole - value);
 }
 
-double slope_in_part(const Effect& effect, double value) {
-  const double whole = effect_kind(effect.kind).slope(effect, value);
+double slope_in_part(const EffectKind& kind, const Effect& effect, double value) {
+  const double whole = kind.slope(effect, value);
   return effect.is_whole() ? whole : 1.0 + effect.share * (whole - 1.0);
 }
 

@@ -31,7 +31,9 @@ struct Nonlinearity {
 /// An effect with values to start its fit from.
 struct Proposal {
   Effect effect;
-  double gain = 0.0;         ///< [-] of the squared error, as screened; only its order counts
+  /// [-] of the squared error, as screened.  Its order counts, and where it is nearly exact, of
+  /// terms and gains with the model's own body, whether there is any.
+  double gain = 0.0;
   std::optional<Body> body;  ///< to start from instead of the model's own
 };
 
@@ -103,8 +105,8 @@ class EffectKind {
 /// What an effect does when it acts with its share, Eq. DG-68: a delay and the factors of terms and
 /// of a feedback times the share s, a map u + s (m(u) - u), a gain 1 + s (g - 1).
 double delay_in_part(const Effect& effect, double time_s);
-double mapped_in_part(const Effect& effect, double value);
-double slope_in_part(const Effect& effect, double value);
+double mapped_in_part(const EffectKind& kind, const Effect& effect, double value);
+double slope_in_part(const EffectKind& kind, const Effect& effect, double value);
 /// Multiplies `gain`, one a sample.
 void gain_in_part(const Effect& effect, const Signals& signals, std::span<double> gain);
 

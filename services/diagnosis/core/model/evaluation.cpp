@@ -15,16 +15,16 @@ namespace stillhand::diagnosis {
 namespace {
 
 // A map goes on straight where it was not seen, Eq. DG-56.
-double mapped_within(const Effect& effect, double value) {
-  if (effect.seen.empty()) return mapped_in_part(effect, value);
+double mapped_within(const EffectKind& kind, const Effect& effect, double value) {
+  if (effect.seen.empty()) return mapped_in_part(kind, effect, value);
   constexpr double kStep = 1e-6;  // of the way from the middle to the edge
   const SeenRange& range = effect.seen.front();
   const double edge = range.held(value);
-  const double inside = mapped_in_part(effect, edge);
+  const double inside = mapped_in_part(kind, effect, edge);
   if (edge == value) return inside;
   const double step = kStep * (edge - 0.5 * (range.low + range.high));
   if (step == 0.0) return inside;
-  const double slope = (inside - mapped_in_part(effect, edge - step)) / step;
+  const double slope = (inside - mapped_in_part(kind, effect, edge - step)) / step;
   return inside + slope * (value - edge);
 }
 
@@ -36,7 +36,8 @@ std::vector<double> shaped_input(const Model& model, const Signals& signals, std
   }
   for (const Effect& effect : model.effects) {
     if (!acts_at(effect, Stage::kInputValue) || effect.channels.at(0) != model.inputs[k]) continue;
-    for (double& value : u) value = mapped_within(effect, value);
+    const EffectKind& kind = effect_kind(effect.kind);
+    for (double& value : u) value = mapped_within(kind, effect, value);
   }
   return u;
 }
@@ -189,8 +190,8 @@ void apply_output_maps(const Model& model, const Signals& signals, ModelRun& run
     if (stage != Stage::kOutputValue) continue;
     if (!effect.seen.empty()) run.free.unmapped.push_back(run.free.prediction);
     for (std::size_t n = 0; n < signals.size(); ++n) {
-      run.free.output_slope[n] *= slope_in_part(effect, run.free.prediction[n]);
-      run.free.prediction[n] = mapped_within(effect, run.free.prediction[n]);
+      run.free.output_slope[n] *= slope_in_part(kind, effect, run.free.prediction[n]);
+      run.free.prediction[n] = mapped_within(kind, effect, run.free.prediction[n]);
     }
   }
 }
