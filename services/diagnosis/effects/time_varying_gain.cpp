@@ -2,6 +2,7 @@
 #include "services/diagnosis/effects/time_varying_gain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,20 +12,41 @@ namespace stillhand::diagnosis {
 namespace {
 
 constexpr double kLargest = 3.0;
-constexpr int kCosines = 4;
+constexpr std::size_t kCosines = 4;
 constexpr double kPeriods[] = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0};  // [cycles a record]
 
-// Shapes, each between -1 and 1; t from 0 to 1 over the record.
-double shape(const Effect& effect, std::size_t i, double t) {
-  if (effect.form == "linear") return 2.0 * t - 1.0;
-  if (effect.form == "sinusoidal") {
-    const double turn = 2.0 * std::numbers::pi * effect.value(0) * t;
-    return i == 1 ? std::sin(turn) : std::cos(turn);
-  }
-  return std::cos(std::numbers::pi * static_cast<double>(i + 1) * t);
+enum class Form { kLinear, kSlowCosines, kSinusoidal };
+
+Form form_of(const Effect& effect) {
+  if (effect.form == "linear") return Form::kLinear;
+  return effect.form == "sinusoidal" ? Form::kSinusoidal : Form::kSlowCosines;
 }
 
 bool is_weight(const Effect& effect, std::size_t i) { return effect.form != "sinusoidal" || i > 0; }
+
+using Values = std::array<double, kCosines>;  // [parameters]
+
+// Each between -1 and 1; t from 0 to 1 over the record.  Every fit runs this for every sample.
+Values shapes(Form form, double cycles, double t) {
+  if (form == Form::kLinear) return {2.0 * t - 1.0};
+  if (form == Form::kSinusoidal) {
+    const double turn = 2.0 * std::numbers::pi * cycles * t;
+    return {0.0, std::sin(turn), std::cos(turn)};
+  }
+  const double first = std::cos(std::numbers::pi * t);
+  Values all{first, 2.0 * first * first - 1.0};
+  for (std::size_t k = 2; k < all.size(); ++k) all[k] = 2.0 * first * all[k - 1] - all[k - 2];
+  return all;
+}
+
+double factor_at(const Effect& effect, Form form, double t) {
+  const Values all = shapes(form, effect.value(0), t);
+  double factor = 1.0;
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+    factor += effect.parameters[i].value * all[i];  // the cycles' shape is 0
+  }
+  return factor;
+}
 
 // Gain over the record, over its mean.
 struct Swing {
@@ -35,10 +57,7 @@ struct Swing {
 Swing swing_of(const Effect& effect) {
   Swing swing;
   for (int step = 0; step <= 200; ++step) {
-    double factor = 1.0;
-    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (is_weight(effect, i)) factor += effect.value(i) * shape(effect, i, step / 200.0);
-    }
+    const double factor = factor_at(effect, form_of(effect), step / 200.0);
     swing = {std::min(swing.low, factor), std::max(swing.high, factor)};
   }
   return swing;
@@ -52,13 +71,10 @@ class TimeVaryingGain final : public EffectKind {
   // predict() takes it at its mean, 1.
   [[nodiscard]] bool time_only(const Effect& /*effect*/) const override { return true; }
   void gain(const Effect& effect, const Signals& signals, std::span<double> gain) const override {
+    const Form form = form_of(effect);
     for (std::size_t n = 0; n < gain.size(); ++n) {
       const double t = (signals.time_s()[n] - signals.time_s().front()) / signals.duration_s();
-      double factor = 1.0;
-      for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-        if (is_weight(effect, i)) factor += effect.value(i) * shape(effect, i, t);
-      }
-      gain[n] *= factor;
+      gain[n] *= factor_at(effect, form, t);
     }
   }
   [[nodiscard]] std::vector<Size> sizes(const SizeCase& at) const override {
@@ -81,7 +97,7 @@ std::vector<Proposal> TimeVaryingGain::proposed(const Screening& screening) cons
   };
   std::vector<Effect> forms{{"time_varying_gain", "linear", {}, {weight("change")}, {}},
                             {"time_varying_gain", "slow cosines", {}, {}, {}}};
-  for (int k = 1; k <= kCosines; ++k) {
+  for (std::size_t k = 1; k <= kCosines; ++k) {
     forms.back().parameters.push_back(weight("half_cosine_" + std::to_string(k)));
   }
   for (const double cycles : kPeriods) {
@@ -100,7 +116,7 @@ std::vector<Proposal> TimeVaryingGain::proposed(const Screening& screening) cons
       std::vector<double> column = screening.body_output();
       for (std::size_t n = 0; n < column.size(); ++n) {
         const double t = (signals.time_s()[n] - signals.time_s().front()) / signals.duration_s();
-        column[n] *= shape(form, i, t);
+        column[n] *= shapes(form_of(form), form.value(0), t)[i];
       }
       columns.push_back(std::move(column));
     }
