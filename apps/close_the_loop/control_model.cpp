@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "apps/close_the_loop/control_check.hpp"
@@ -11,9 +12,9 @@
 #include "apps/close_the_loop/control_response.hpp"
 #include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/diagnosis/core/fitting/baseline.hpp"
 #include "services/diagnosis/core/fitting/fit.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
-#include "services/diagnosis/core/trials.hpp"
 #include "services/population/population.hpp"
 
 namespace stillhand::close_the_loop {
@@ -60,14 +61,29 @@ void fit_without(Model& model, std::size_t effect, const diagnosis::Signals& sig
       diagnosis::effect_kind(left.kind).time_only(left)) {
     return;
   }
-  Model other = model;
-  for (Effect& each : other.effects) each.seen.clear();
-  diagnosis::start_afresh(other, signals, static_cast<int>(other.body.order()));
-  diagnosis::fit(other, signals, diagnosis::make_blocks(signals));
-  for (std::size_t e = 0; e < other.effects.size(); ++e) {
-    other.effects[e].seen = model.effects[e].seen;
+  const diagnosis::Blocks blocks = diagnosis::make_blocks(signals);
+  const auto order = static_cast<int>(model.body.order());
+  const diagnosis::Model linear = diagnosis::fit_baseline(signals, blocks, order).model;
+  if (model.effects.empty()) {
+    model.body = linear.body;
+    return;
   }
-  model = std::move(other);
+  Model best = model;
+  double least = std::numeric_limits<double>::infinity();
+  for (const diagnosis::Body& body : {model.body, linear.body}) {
+    if (body.order() != model.body.order()) continue;  // effects have as many numbers
+    Model other = model;
+    other.body = body;
+    for (Effect& each : other.effects) each.seen.clear();
+    const double rmse = diagnosis::fit(other, signals, blocks).rmse;
+    if (!(rmse < least)) continue;
+    least = rmse;
+    for (std::size_t e = 0; e < other.effects.size(); ++e) {
+      other.effects[e].seen = model.effects[e].seen;
+    }
+    best = std::move(other);
+  }
+  model = std::move(best);
 }
 
 // Converts, compares, and converts again without what differs.

@@ -59,16 +59,17 @@ struct Step {
   const diagnosis::HeldOut& before;
   const std::vector<diagnosis::Trial>& tried;
   std::size_t chosen;  // beyond the end: none
-  std::vector<std::string> ties;
+  const diagnosis::SearchOptions& options;
 };
 
 Cell outcome_of(const Step& step, std::size_t i) {
   if (i == step.chosen) return {"added", Emphasis::kGood};
-  const std::string& kind = step.tried[i].model.effects.back().kind;
-  if (std::ranges::find(step.ties, kind) != step.ties.end()) {
-    return {"as good (tie)", Emphasis::kStrong};
-  }
-  return {"rejected", Emphasis::kFaint};
+  const diagnosis::Trial& trial = step.tried[i];
+  if (!std::isfinite(trial.rmse)) return {"not fitted: nothing to gain", Emphasis::kFaint};
+  const bool tied =
+      step.chosen < step.tried.size() &&
+      diagnosis::ties_with(trial, step.tried[step.chosen], step.before.rmse(), step.options);
+  return tied ? Cell("as good (tie)", Emphasis::kStrong) : Cell("rejected", Emphasis::kFaint);
 }
 
 void add_trial(Table& table, const Step& step, std::size_t i) {
@@ -77,7 +78,7 @@ void add_trial(Table& table, const Step& step, std::size_t i) {
   const bool finite = std::isfinite(trial.rmse) && trial.held_out.finite;
   table.rows.push_back({spaced(effect.kind), effect.form, listed(effect.channels),
                         std::to_string(diagnosis::complexity(trial.model)),
-                        short_number(trial.rmse),
+                        finite ? short_number(trial.rmse) : "–",
                         finite ? percent(trial.rmse / step.before.rmse() - 1.0) : "–",
                         finite ? p_value(diagnosis::compared(step.before, trial.held_out).p) : "–",
                         outcome_of(step, i)});
@@ -199,7 +200,7 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
       caption += " As good as the added one: " + spaced(listed(addition.ties)) + ".";
     }
     tables.push_back(tried_table(
-        found, {addition.current, addition.tried, addition.chosen, addition.ties}, caption));
+        found, {addition.current, addition.tried, addition.chosen, found.options.search}, caption));
   }
   const auto& last = found.search.last_tried;
   if (!last.empty()) {
@@ -213,8 +214,8 @@ std::vector<Table> tried_tables(const Evidence& evidence) {
         "than " +
         percent(found.options.search.large_fall, 0) + "; at most " +
         std::to_string(found.options.search.most_effects) + " effects are added.";
-    tables.push_back(
-        tried_table(found, {found.search.last_current, last, last.size(), {}}, caption));
+    tables.push_back(tried_table(
+        found, {found.search.last_current, last, last.size(), found.options.search}, caption));
   }
   return tables;
 }

@@ -28,18 +28,6 @@ BlockDifferences mean_squares(const HeldOut& before, const HeldOut& after) {
   return result;
 }
 
-// True when `other` explains as much as the best: the blocks do not distinguish them (one standard
-// error), or its error is hardly larger and it has nearly all of the gain.
-bool ties_with(const Trial& other, const Trial& best, double current_rmse,
-               const SearchOptions& options) {
-  if (compared(other.held_out, best.held_out).t < 1.0) return true;
-  const auto gain = [&](const Trial& trial) {
-    return current_rmse * current_rmse - trial.rmse * trial.rmse;
-  };
-  return other.rmse <= (1.0 + options.tie) * best.rmse &&
-         gain(other) >= options.tied_gain * gain(best);
-}
-
 // In the list of kinds.
 std::ptrdiff_t place_of(const std::string& kind) {
   return std::ranges::find(effect_kinds(), kind, &EffectKind::name) - effect_kinds().begin();
@@ -84,6 +72,16 @@ bool is_rounding(double rmse, const Signals& signals) {
 }
 
 bool by_rmse(const Trial& a, const Trial& b) { return a.rmse < b.rmse; }
+
+bool ties_with(const Trial& other, const Trial& best, double current_rmse,
+               const SearchOptions& options) {
+  if (compared(other.held_out, best.held_out).t < 1.0) return true;
+  const auto gain = [&](const Trial& trial) {
+    return current_rmse * current_rmse - trial.rmse * trial.rmse;
+  };
+  return other.rmse <= (1.0 + options.tie) * best.rmse &&
+         gain(other) >= options.tied_gain * gain(best);
+}
 
 std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
                       const SearchOptions& options,

@@ -49,6 +49,11 @@ bool by_rmse(const Trial& a, const Trial& b);
 /// True when the residual is no more than rounding of the output's own numbers.
 bool is_rounding(double rmse, const Signals& signals);
 
+/// True when it explains as much as the best: the blocks do not distinguish them (one standard
+/// error), or its error is hardly larger and it has nearly all of the gain, Eq. DG-17.
+/// @param current_rmse  held out, without any of them
+bool ties_with(const Trial& other, const Trial& best, double current_rmse,
+               const SearchOptions& options);
 /// The best that earns its numbers, Eq. DG-50, or the simplest that ties with it, Eq. DG-17.
 /// @param current_rmse  held out, without any of them
 /// @param worth_adding  asked of one that is to be named in place of one with a smaller error
