@@ -16,11 +16,14 @@
 #include "apps/close_the_loop/output.hpp"
 #include "apps/lab/lab_options.hpp"
 #include "apps/measurement/read_options.hpp"
+#include "apps/report/provenance.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/cancellation/control_model_file.hpp"
+#include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/working_set.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/rig/digest.hpp"
 #include "services/settings/check_name.hpp"
 #include "services/settings/check_number.hpp"
 #include "services/settings/load.hpp"
@@ -55,11 +58,29 @@ std::string summary_of(const ConvertedModel& control) {
   return summary.dump(2) + "\n";
 }
 
+// The ranges of the tables, and the body of a model without what is left alone, come from it.
+// @throws stillhand::ConfigError for a recording that the model does not name
+void require_diagnosed(const ControlModelWords& words, const std::string& model) {
+  const auto origin = report::provenance_in(model);
+  if (!origin || !std::filesystem::is_regular_file(words.recording)) return;
+  const std::string digest = rig::sha256_of_file(words.recording);
+  std::string names;
+  for (const report::SourceFile& source : origin->sources) {
+    if (source.sha256.empty() || source.sha256 == digest) return;
+    names += (names.empty() ? "'" : ", '") + source.name + "'";
+  }
+  if (names.empty()) return;
+  throw ConfigError(words.recording, "a recording that " + words.model.string() + " is not of",
+                    "the one that was diagnosed: " + names);
+}
+
 int run(const ControlModelWords& words) {
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.model, words.recording});
-  const diagnosis::CarriedModel carried = diagnosis::parse_carried_model(
-      recording::read_file(words.model.string()), words.model.string());
+  const std::string text = recording::read_file(words.model.string());
+  const diagnosis::CarriedModel carried =
+      diagnosis::parse_carried_model(text, words.model.string());
+  require_diagnosed(words, text);
   const diagnosis::Model& model = carried.in_session;
   const diagnosis::Measurement whole = measurement::read_measurement(words.recording, words.read);
   const std::size_t factor = diagnosis::rate_factor(whole, model.rate_hz);

@@ -184,6 +184,16 @@ class DiagnoseTest(unittest.TestCase):
                 self.refused("predict", self.folder / name, recording, "--out", self.folder / "p.csv")
                 self.assertFalse((self.folder / "p.csv").exists())
 
+    def test_a_control_model_is_made_with_the_recording_that_was_diagnosed_alone(self):
+        recording, other, model = self.planted("none"), self.folder / "other.csv", self.folder / "model.json"
+        run = stillhand("diagnose", recording, "--most-effects", "0", "--save", model)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        other.write_text("\n".join(recording.read_text().splitlines()[:-1]) + "\n")
+        line = self.refused("control-model", model, other, "--save", self.folder / "control.json")
+        self.assertIn(recording.name, line)
+        run = stillhand("control-model", model, recording, "--save", self.folder / "control.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+
 
 if __name__ == "__main__":
     lab_process.main(PLANTED)
