@@ -57,6 +57,19 @@ TEST(StabilityTest, ALoopThatSwingsByItselfIsRefused) {
   EXPECT_EQ(stability_of(sut, signals_of()), Stability::kRefused);
 }
 
+// (1 - b q^-1)^3: rounding of 1e-16 moves a triple root by its third root, 5e-6, beyond b.
+TEST(StabilityTest, PolesOnTheBoundOfTheFitAreStable) {
+  constexpr double kBound = 0.904837;
+  Model sut;
+  sut.inputs = {"u"};
+  sut.rate_hz = 100.0;
+  sut.body.numerators = {{0.0, 0.1, 0.0, 0.0}};
+  sut.body.denominator = {1.0, -3.0 * kBound, 3.0 * kBound * kBound, -kBound * kBound * kBound};
+  sut.body.largest_radius = sut.body.slowest_radius = kBound;
+  ASSERT_FALSE(is_stable(sut.body)) << "no pole is moved beyond the bound";
+  EXPECT_EQ(stability_of(sut, signals_of()), Stability::kProved);
+}
+
 // Held at its edges its force is bounded, so its output is.  Without a range a cube runs away on
 // what is ten times as large.
 TEST(StabilityTest, WhatWasRefusedOrNotIsBoundedOnAnyInput) {

@@ -17,9 +17,9 @@ enum class Stability {
 };
 
 /// Pure; the surrogates' phases come from a fixed seed.
-/// @param model  with the ranges of its effects
+/// @param fitted  with the ranges of its effects
 /// @param signals  that it was fitted to
-Stability stability_of(const Model& model, const Signals& signals);
+Stability stability_of(const Model& fitted, const Signals& signals);
 
 /// "proved", "tested" or "refused".
 std::string name_of(Stability stability);
