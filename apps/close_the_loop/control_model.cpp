@@ -52,25 +52,24 @@ ConvertedModel best_conversion(const Model& model, const diagnosis::Signals& sig
   return std::move(*best);
 }
 
-// The body that was fitted next to an effect is not that of a model without it.
-void fit_without(Model& model, std::size_t effect, const diagnosis::Signals& signals) {
-  const Effect left = model.effects[effect];
-  model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-  // What the hand does not feel, or time alone explains, the body never stood in for.
-  if (has_role<diagnosis::control::NotFelt>(left) ||
-      diagnosis::effect_kind(left.kind).time_only(left)) {
-    return;
-  }
+// What the hand does not feel, or time alone explains, the body never stood in for.
+bool has_a_part_in_the_body(const Effect& effect) {
+  return !has_role<diagnosis::control::NotFelt>(effect) &&
+         !diagnosis::effect_kind(effect.kind).time_only(effect);
+}
+
+// The body that was fitted next to other effects is not that of this model.  Bursts weigh here.
+Model fitted_again(Model model, const diagnosis::Signals& signals) {
   const diagnosis::Blocks blocks = diagnosis::make_blocks(signals);
   const auto order = static_cast<int>(model.body.order());
-  const diagnosis::Model linear = diagnosis::fit_baseline(signals, blocks, order).model;
+  const diagnosis::Body linear = diagnosis::fit_baseline(signals, blocks, order).model.body;
   if (model.effects.empty()) {
-    model.body = linear.body;
-    return;
+    model.body = linear;
+    return model;
   }
   Model best = model;
   double least = std::numeric_limits<double>::infinity();
-  for (const diagnosis::Body& body : {model.body, linear.body}) {
+  for (const diagnosis::Body& body : {model.body, linear}) {
     if (body.order() != model.body.order()) continue;  // effects have as many numbers
     Model other = model;
     other.body = body;
@@ -83,7 +82,7 @@ void fit_without(Model& model, std::size_t effect, const diagnosis::Signals& sig
     }
     best = std::move(other);
   }
-  model = std::move(best);
+  return best;
 }
 
 // Converts, compares, and converts again without what differs.
@@ -126,29 +125,35 @@ class Export {
     }
   }
 
-  void drop(std::size_t i) {
-    fit_without(fitted_, i, signals_);
-    places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(i));
+  // @param which  of the carried effects, the last first
+  void drop(const std::vector<std::size_t>& which) {
+    bool again = false;
+    for (const std::size_t i : which) {
+      again = again || has_a_part_in_the_body(fitted_.effects[i]);
+      fitted_.effects.erase(fitted_.effects.begin() + static_cast<std::ptrdiff_t>(i));
+      places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    if (again) fitted_ = fitted_again(std::move(fitted_), signals_);
   }
 
   void leave_alone(std::size_t i, std::string why) {
     treatments_[places_[i]].cancelled = false;
     treatments_[places_[i]].how = std::move(why);
-    drop(i);
+    drop({i});
   }
 
   // What adds nothing to the canceller's model.
   bool drop_left_alone(const ConvertedModel& next) {
-    bool any = false;
+    std::vector<std::size_t> left_alone;
     for (std::size_t i = carried_.effects.size(); i-- > 0;) {
       Treatment& to = treatments_[places_[i]];
       to.cancelled = next.treatments[i].cancelled;
       to.how = next.treatments[i].how;
       if (to.cancelled && !has_role<diagnosis::control::NotFelt>(carried_.effects[i])) continue;
-      drop(i);
-      any = true;
+      left_alone.push_back(i);
     }
-    return any;
+    drop(left_alone);
+    return !left_alone.empty();
   }
 
   // A spring that the canceller's body cannot hold.

@@ -70,7 +70,8 @@ void require_diagnosed(const ControlModelWords& words, const std::string& model)
     names += (names.empty() ? "'" : ", '") + source.name + "'";
   }
   if (names.empty()) return;
-  throw ConfigError(words.recording, "a recording that " + words.model.string() + " is not of",
+  throw ConfigError(words.recording,
+                    "another recording than " + words.model.string() + " was fitted to",
                     "the one that was diagnosed: " + names);
 }
 

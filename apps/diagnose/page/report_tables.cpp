@@ -65,9 +65,9 @@ struct Step {
 Cell outcome_of(const Step& step, std::size_t i) {
   if (i == step.chosen) return {"added", Emphasis::kGood};
   const diagnosis::Trial& trial = step.tried[i];
-  if (!std::isfinite(trial.rmse)) return {"not fitted: nothing to gain", Emphasis::kFaint};
+  if (!trial.fitted) return {"not fitted: nothing to gain", Emphasis::kFaint};
   const bool tied =
-      step.chosen < step.tried.size() &&
+      std::isfinite(trial.rmse) && step.chosen < step.tried.size() &&
       diagnosis::ties_with(trial, step.tried[step.chosen], step.before.rmse(), step.options);
   return tied ? Cell("as good (tie)", Emphasis::kStrong) : Cell("rejected", Emphasis::kFaint);
 }

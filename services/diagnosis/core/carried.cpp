@@ -162,34 +162,40 @@ void keep_shares(CarriedModel& carried, const Model& baseline, const PartsOut& p
       for (std::size_t e = 0; e < count; ++e) {
         carried.model.effects[e].share = std::min(shares[e], of_all);
       }
-      if (std::ranges::all_of(carried.model.effects, &Effect::is_whole)) return;
-      // Two that make up for each other do so with equal shares alone.
-      const Model in_part = parts.refitted(carried.model, baseline.body);
-      const Share share = parts.share(bare, parts.left_by(in_part));
-      if (share.estimate > 0.0 && share.harmless >= 1.0) return;
-      for (Effect& effect : carried.model.effects) effect.share = 1.0;
+      return;
     }
     drop(carried, static_cast<std::size_t>(shares.rend() - least) - 1, kNotNeeded, baseline.body,
          parts);
   }
 }
 
+void make_whole(CarriedModel& carried, const Body& baseline, const PartsOut& parts) {
+  auto& effects = carried.model.effects;
+  if (std::ranges::all_of(effects, &Effect::is_whole)) return;
+  for (Effect& effect : effects) effect.share = 1.0;
+  carried.model = parts.refitted(carried.model, baseline);
+}
+
 // Shares by the evidence of the parts and, Eq. DG-59, of slow channels; the body fitted to them.
+// Effects that make up for each other need equal shares, so the whole is judged once more.
 void keep_evident(CarriedModel& carried, const std::vector<double>& certainty, const Model& found,
                   const Model& baseline, const PartsOut& parts) {
   auto& effects = carried.model.effects;
-  const auto refit_partial = [&](bool was_partial) {
-    if (was_partial) carried.model = parts.refitted(carried.model, baseline.body);
-  };
-  const bool again = !std::ranges::all_of(effects, &Effect::is_whole);
-  for (Effect& effect : effects) effect.share = 1.0;
-  refit_partial(again);
-  keep_shares(carried, baseline, parts);
-  for (std::size_t e = effects.size(); e-- > 0;) {
-    effects[e].share = rounded_share(effects[e].share * certainty[index_of(effects[e], found)]);
-    if (effects[e].share == 0.0) drop(carried, e, kLikeTime, baseline.body, parts);
+  for (;;) {
+    make_whole(carried, baseline.body, parts);
+    keep_shares(carried, baseline, parts);
+    for (std::size_t e = effects.size(); e-- > 0;) {
+      effects[e].share = rounded_share(effects[e].share * certainty[index_of(effects[e], found)]);
+      if (effects[e].share == 0.0) drop(carried, e, kLikeTime, baseline.body, parts);
+    }
+    if (std::ranges::all_of(effects, &Effect::is_whole)) return;
+    carried.model = parts.refitted(carried.model, baseline.body);
+    const Share share = parts.share(parts.left_by(baseline), parts.left_by(carried.model));
+    if (share.estimate > 0.0 && share.harmless >= 1.0) return;
+    const auto least = std::ranges::min_element(effects, {}, &Effect::share);
+    drop(carried, static_cast<std::size_t>(least - effects.begin()), kNotNeeded, baseline.body,
+         parts);
   }
-  refit_partial(!std::ranges::all_of(effects, &Effect::is_whole));
 }
 
 // The carried model next to the effects of time alone that were found, fitted again together.

@@ -80,6 +80,8 @@ bool same_effects(const Model& a, const Model& b) {
 // The forward selection, from the baseline alone or with bursts left out from the start.
 class Forward {
  public:
+  Forward(const Forward&) = delete;
+  Forward& operator=(const Forward&) = delete;
   Forward(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
           const SearchOptions& options, const ForEach& for_each,
           const std::function<bool(const std::string&)>& progress)
@@ -141,19 +143,23 @@ class Forward {
     if (result.whitened) fit(result.model, signals_, blocks_, refitting());
     const HeldOut current = held_out(result.model, signals_, blocks_);
     if (is_rounding(current.rmse(), signals_)) return false;
-    std::vector<Trial> tried = screened_trials(result.model, signals_, settings_, Shapes::kNamed);
+    Screened screened =
+        screened_trials(result.model, current.rmse(), signals_, settings_, Shapes::kNamed);
     std::optional<SearchResult> behind;
-    if (!tried.empty() && std::isfinite(tried.front().rmse)) {
-      fit_first(tried, current.rmse(), signals_, settings_);
-      Signals whitened = judged_by(tried.front().model);
+    if (!screened.trials.empty() && std::isfinite(screened.trials.front().rmse)) {
+      fit_first(screened, current.rmse(), signals_, settings_);
+      Signals whitened = judged_by(screened.trials.front().model);
       if (whitened.is_whitened()) {
         behind = refitted_behind(whitened, result);
         judged = std::move(whitened);
       }
     }
-    if (behind && extended_as_judged(*behind, judged, with_own_bodies(tried), result)) return true;
-    tried = finished_trials(std::move(tried), current.rmse(), signals_, settings_);
-    if (extend_by_one(result, current, std::move(tried), signals_)) {
+    if (behind && extended_as_judged(*behind, judged, with_own_bodies(screened.trials), result)) {
+      return true;
+    }
+    if (extend_by_one(result, current,
+                      finished_trials(std::move(screened), current.rmse(), signals_, settings_),
+                      signals_)) {
       judged = signals_;
       return true;
     }
@@ -176,10 +182,13 @@ class Forward {
   bool extended_as_judged(SearchResult& behind, const Signals& judged, std::vector<Proposal> known,
                           SearchResult& result) const {
     const HeldOut current = held_out(behind.model, judged, blocks_);
-    std::vector<Trial> tried =
-        screened_trials(behind.model, judged, settings_, Shapes::kNamed, std::move(known));
-    tried = finished_trials(std::move(tried), current.rmse(), judged, settings_);
-    if (!extend_by_one(behind, current, std::move(tried), judged)) return false;
+    Screened screened = screened_trials(behind.model, current.rmse(), judged, settings_,
+                                        Shapes::kNamed, std::move(known));
+    if (!extend_by_one(behind, current,
+                       finished_trials(std::move(screened), current.rmse(), judged, settings_),
+                       judged)) {
+      return false;
+    }
     result = std::move(behind);
     return true;
   }
@@ -218,8 +227,8 @@ class Forward {
 
   [[nodiscard]] std::vector<Trial> free_forms(const Model& model, const HeldOut& current,
                                               const Signals& judged) const {
-    return finished_trials(screened_trials(model, judged, settings_, Shapes::kAny), current.rmse(),
-                           judged, settings_);
+    return finished_trials(screened_trials(model, current.rmse(), judged, settings_, Shapes::kAny),
+                           current.rmse(), judged, settings_);
   }
 
   [[nodiscard]] bool extend_by_one(SearchResult& result, const HeldOut& current,
@@ -247,6 +256,12 @@ class Forward {
       }
     }
     if (chosen && add(result, current, tried, *chosen, judged, least_fall)) return true;
+    // Where the list has named another, the one with the least error may pass without the filter.
+    if (chosen && *chosen != 0 &&
+        is_worth_adding(tried.front(), current, least_fall, tried.size(), options_) &&
+        add(result, current, tried, 0, judged, least_fall)) {
+      return true;
+    }
     if (!tried.empty() && std::isfinite(tried.front().rmse)) {
       result.last_tried = std::move(tried);
       result.last_current = current;
@@ -308,7 +323,10 @@ SearchResult search(const Baseline& baseline, const Signals& signals, const Bloc
     return trial;
   };
   const double without_any = other.additions.front().after.rmse();
-  return chosen_of({ended(result), ended(other)}, without_any, options) == 0 ? result : other;
+  // Which kind comes last says nothing of two searches: the error decides.
+  const auto by_error = [](const Trial&) { return false; };
+  const std::vector<Trial> both{ended(result), ended(other)};
+  return chosen_of(both, without_any, options, by_error) == 0 ? result : other;
 }
 
 }  // namespace stillhand::diagnosis

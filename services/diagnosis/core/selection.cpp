@@ -99,6 +99,7 @@ std::size_t chosen_of(const std::vector<Trial>& tried, double current_rmse,
   std::erase_if(ties, [&](std::size_t i) { return numbers(i) != fewest; });
   const std::size_t least =
       *std::ranges::min_element(ties, {}, [&](std::size_t i) { return tried[i].rmse; });
+  if (worth_adding && !worth_adding(tried[least])) return least;
   // Rounding decides where their fits end: the blocks do not distinguish these, so the list does.
   std::erase_if(ties, [&](std::size_t i) {
     return i != least && (compared(tried[i].held_out, tried[least].held_out).t >= kDistinguished ||

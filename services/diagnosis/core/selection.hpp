@@ -42,6 +42,7 @@ struct Trial {
   double rmse = 0.0;      ///< held out
   std::size_t added = 0;  ///< index of the effect that it tried
   bool own_body = false;  ///< it started from a body that was estimated for it
+  bool fitted = true;     ///< no: the screening shows that nothing is to be gained
 };
 
 bool by_rmse(const Trial& a, const Trial& b);

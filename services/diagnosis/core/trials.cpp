@@ -111,7 +111,7 @@ void start_afresh(Model& model, const Signals& signals, int order) {
 
 namespace {
 
-constexpr std::size_t kFewest = 5;
+constexpr std::size_t kFewest = 5;  // the order among them by a few steps is not that at the end
 
 // A term or a gain that the columns next to the model do not show: its fit would hardly gain more.
 bool is_hopeless(const Proposal& proposal) {
@@ -123,10 +123,20 @@ bool is_hopeless(const Proposal& proposal) {
 
 Trial not_fitted(Model model) {
   Trial trial;
+  trial.fitted = false;
   trial.rmse = std::numeric_limits<double>::infinity();
   trial.added = model.effects.size() - 1;
   trial.model = std::move(model);
   return trial;
+}
+
+// To pass over samples explains nothing: only where no effect explains much.
+void drop_bursts(std::vector<Trial>& all, double current_rmse) {
+  constexpr double kExplainsMuch = 0.85;
+  const auto explains = std::ranges::find_if_not(all, passes_over_samples);
+  if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
+    std::erase_if(all, passes_over_samples);
+  }
 }
 
 // Where nothing gains, a few are carried to the end all the same: some begin slowly.
@@ -142,9 +152,9 @@ std::size_t near_the_best(const std::vector<Trial>& all, double current_rmse) {
 
 }  // namespace
 
-std::vector<Trial> screened_trials(const Model& current, const Signals& signals,
-                                   const RoundSettings& settings, Shapes shapes,
-                                   std::vector<Proposal> known) {
+Screened screened_trials(const Model& current, double current_rmse, const Signals& signals,
+                         const RoundSettings& settings, Shapes shapes,
+                         std::vector<Proposal> known) {
   const Screening screening(current, signals, settings.blocks, settings.impulse_response,
                             std::move(known));
   std::vector<const EffectKind*> kinds;
@@ -167,41 +177,43 @@ std::vector<Trial> screened_trials(const Model& current, const Signals& signals,
     all[i].own_body = proposals[i].body.has_value();
   });
   std::ranges::stable_sort(all, by_rmse);
-  return all;
-}
-
-void fit_first(std::vector<Trial>& screened, double current_rmse, const Signals& signals,
-               const RoundSettings& settings) {
-  settings.for_each(std::min(near_the_best(screened, current_rmse), kFewest), [&](std::size_t i) {
-    const bool own_body = screened[i].own_body;
-    start_afresh(screened[i].model, signals, settings.order);
-    screened[i] = judged_trial(std::move(screened[i].model), signals, settings.blocks,
-                               settings.options.fit_iterations, false);
-    screened[i].own_body = own_body;
-  });
-  std::ranges::stable_sort(screened, by_rmse);
-}
-
-std::vector<Trial> finished_trials(std::vector<Trial> all, double current_rmse,
-                                   const Signals& signals, const RoundSettings& settings) {
-  constexpr double kExplainsMuch = 0.85;
-  if (all.empty()) return all;
   const std::size_t near = near_the_best(all, current_rmse);
-  settings.for_each(std::min(near, kFewest),
-                    [&](std::size_t i) { start_afresh(all[i].model, signals, settings.order); });
-  settings.for_each(near, [&](std::size_t i) {
+  return {std::move(all), near};
+}
+
+void fit_first(Screened& screened, double current_rmse, const Signals& signals,
+               const RoundSettings& settings) {
+  auto& all = screened.trials;
+  const std::size_t first = std::min(screened.near, kFewest);
+  settings.for_each(first, [&](std::size_t i) {
+    const bool own_body = all[i].own_body;
+    start_afresh(all[i].model, signals, settings.order);
+    all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
+                          settings.options.fit_iterations, false);
+    all[i].own_body = own_body;
+  });
+  std::ranges::stable_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(first), by_rmse);
+  drop_bursts(all, current_rmse);
+  screened.near = std::min(screened.near, all.size());
+  screened.first_fitted = true;
+}
+
+std::vector<Trial> finished_trials(Screened screened, double current_rmse, const Signals& signals,
+                                   const RoundSettings& settings) {
+  auto& all = screened.trials;
+  if (!screened.first_fitted) {
+    settings.for_each(std::min(screened.near, kFewest),
+                      [&](std::size_t i) { start_afresh(all[i].model, signals, settings.order); });
+  }
+  settings.for_each(screened.near, [&](std::size_t i) {
     all[i] = judged_trial(std::move(all[i].model), signals, settings.blocks,
                           settings.options.fit_iterations, true);
   });
   std::ranges::stable_sort(all, by_rmse);
   exchange_shapes(all, current_rmse, signals, settings.blocks, settings.order, settings.options,
                   settings.for_each);
-  // To pass over samples explains nothing: only where no effect explains much.
-  const auto explains = std::ranges::find_if_not(all, passes_over_samples);
-  if (explains != all.end() && explains->rmse < kExplainsMuch * current_rmse) {
-    std::erase_if(all, passes_over_samples);
-  }
-  return all;
+  drop_bursts(all, current_rmse);
+  return std::move(all);
 }
 
 std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials) {

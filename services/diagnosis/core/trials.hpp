@@ -44,19 +44,26 @@ struct RoundSettings {
   const ForEach& for_each;
 };
 
+/// A round after the screening.
+struct Screened {
+  std::vector<Trial> trials;  ///< best first
+  std::size_t near = 0;       ///< so many are near enough to the best to be fitted to the end
+  bool first_fitted = false;  ///< the first few are
+};
+
 /// Everything that is proposed, fitted jointly in a few steps; not fitted, with an infinite error,
-/// where the screening shows that nothing is to be gained.  Best first.
+/// where the screening shows that nothing is to be gained.
+/// @param current_rmse  held out, of the model without any of them
 /// @param known  by the same round without the noise model; see Screening
-std::vector<Trial> screened_trials(const Model& current, const Signals& signals,
-                                   const RoundSettings& settings, Shapes shapes,
-                                   std::vector<Proposal> known = {});
-/// The first few fitted to the end, not judged again: which of them is the best is not known.
-void fit_first(std::vector<Trial>& screened, double current_rmse, const Signals& signals,
+Screened screened_trials(const Model& current, double current_rmse, const Signals& signals,
+                         const RoundSettings& settings, Shapes shapes,
+                         std::vector<Proposal> known = {});
+/// The first few fitted to the end and judged by the linearisation alone.
+void fit_first(Screened& screened, double current_rmse, const Signals& signals,
                const RoundSettings& settings);
 /// Those near the best fitted to the end and judged by refitting.  Best first.
-/// @param current_rmse  held out, of the model without any of them
-std::vector<Trial> finished_trials(std::vector<Trial> screened, double current_rmse,
-                                   const Signals& signals, const RoundSettings& settings);
+std::vector<Trial> finished_trials(Screened screened, double current_rmse, const Signals& signals,
+                                   const RoundSettings& settings);
 /// The proposals that came with bodies of their own, as they were fitted.
 std::vector<Proposal> with_own_bodies(const std::vector<Trial>& trials);
 

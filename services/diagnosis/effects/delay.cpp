@@ -119,7 +119,8 @@ std::vector<Proposal> Delay::proposed(const Screening& screening) const {
   for (const double step_s : kFiner_s) {
     const Proposal from = best;
     for (const double direction : {-1.0, 1.0}) {
-      const double delay_s = from.effect.value(0) + direction * step_s;
+      const double delay_s =
+          std::clamp(from.effect.value(0) + direction * step_s, kEarliest_s, kLatest_s);
       Proposal next = with_moved_poles(screening, from, delay_s);
       if (next.gain > best.gain) best = std::move(next);
     }

@@ -125,13 +125,12 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
   const Body& own = screening.model().body;
   const bool first = screening.model().effects.empty();
   std::vector<Proposal> softened;
-  for (const Proposal& known : screening.known(name())) {
-    if (soft(known.effect)) {
-      softened.push_back(fitted_from(known.effect, *known.body, screening));
-    }
+  for (const Proposal& each : screening.known(name())) {
+    if (soft(each.effect)) softened.push_back(fitted_from(each.effect, *each.body, screening));
   }
+  const bool known = !softened.empty();
   for (const Effect& start : starts) {
-    if (!soft(start) || !screening.known(name()).empty()) continue;
+    if (known || !soft(start)) continue;
     // As if the linear body had been fitted to the output before the limit.
     softened.push_back(fitted_from(start, first ? body_before(start, screening) : own, screening));
   }

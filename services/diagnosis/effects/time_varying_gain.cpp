@@ -43,7 +43,7 @@ double factor_at(const Effect& effect, Form form, double t) {
   const Values all = shapes(form, effect.value(0), t);
   double factor = 1.0;
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-    factor += effect.parameters[i].value * all[i];  // the cycles' shape is 0
+    factor += effect.parameters[i].value * all.at(i);  // the cycles' shape is 0
   }
   return factor;
 }

@@ -10,7 +10,8 @@ namespace stillhand::runtime {
 unsigned core_count() noexcept;
 
 /// Runs job(0) to job(count - 1), each once, on several threads; returns when all threads have
-/// ended.  After a job throws no further one starts, and the exception of the lowest index that
+/// ended.  From the first call on, the process keeps memory that it frees, up to 256 MB.  After a
+/// job throws no further one starts, and the exception of the lowest index that
 /// failed is thrown here.
 /// @param threads   at least 1
 /// @param on_done   is given the number of finished jobs, in this thread, after each and at least

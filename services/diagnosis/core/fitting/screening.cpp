@@ -27,8 +27,9 @@ Screening::Screening(const Model& model, const Signals& signals, const Blocks& b
 
 std::vector<Proposal> Screening::known(std::string_view kind) const {
   std::vector<Proposal> of_kind;
-  std::ranges::copy_if(known_, std::back_inserter(of_kind),
-                       [&](const Proposal& each) { return each.effect.kind == kind; });
+  std::ranges::copy_if(known_, std::back_inserter(of_kind), [&](const Proposal& each) {
+    return each.effect.kind == kind && each.body->order() == model_.body.order();
+  });
   return of_kind;
 }
 

@@ -35,7 +35,7 @@ class Screening {
   [[nodiscard]] const ImpulseResponse& impulse_response() const noexcept {
     return impulse_response_;
   }
-  /// Those of a kind.
+  /// Those of a kind whose bodies have the model's order.
   [[nodiscard]] std::vector<Proposal> known(std::string_view kind) const;
   /// Output - prediction, weighted, initial states taken out.
   [[nodiscard]] const Eigen::VectorXd& residual() const noexcept { return line_.residual; }
