@@ -136,12 +136,14 @@ std::vector<Proposal> OutputSaturation::proposed(const Screening& screening) con
   }
   softened = best_of(std::move(softened), 1);
   // The clipped output may hold the linear body in a local minimum: start from the soft limit's
-  // too.
+  // too.  Next to other effects both come from the model's own.
   std::vector<Proposal> hard;
   for (const Effect& start : starts) {
     if (soft(start)) continue;
     hard.push_back(fitted_from(start, own, screening));
-    if (!softened.empty()) hard.push_back(fitted_from(start, *softened.front().body, screening));
+    if (first && !softened.empty()) {
+      hard.push_back(fitted_from(start, *softened.front().body, screening));
+    }
   }
   std::vector<Proposal> all = best_of(std::move(hard), 2);
   for (Proposal& each : softened) all.push_back(std::move(each));
