@@ -142,6 +142,13 @@ void Conductor::name_sources() {
   runtime::Bus& bus = service_.bus();
   const std::vector<runtime::Source> sources = bus.sources_found();
   if (!bus.take_sources(bus.participant(), sources)) return;
+  {
+    // What came before may be anybody's; each process says it again.
+    const std::lock_guard lock(mutex_);
+    seen_.processes.clear();
+    seen_.events.clear();
+    recording_.clear();
+  }
   named_sources_ = runtime::to_idl(sources);
   repeat_sources();
 }

@@ -147,9 +147,15 @@ void draw(const session::SessionResult& result, const std::filesystem::path& fol
 
 }  // namespace
 
-int report_session(const LabOptions& options, const std::vector<session::TrialOutcome>& outcomes,
+int report_session(const LabOptions& options, std::vector<session::TrialOutcome> outcomes,
                    bool interrupted) {
   session::SessionResult result = evaluate((options.out / "session.mcap").string(), outcomes);
+  for (session::TrialOutcome& outcome : outcomes) {
+    const auto why = result.unrecorded.find(outcome.planned.trial.number);
+    if (why == result.unrecorded.end()) continue;
+    outcome.completed = false;
+    outcome.aborted = why->second;
+  }
   // Under a vehicle the acceleration follows the stick: Eq. SN-7 would show the vehicle.
   if (!options.vehicle.empty()) {
     for (session::TrialResult& trial : result.trials) trial.sensed_share.reset();

@@ -10,7 +10,7 @@ namespace stillhand::lab {
 
 /// Evaluates, prints the table next to the paper's, writes summary.json and model.json.
 /// @return exit status of the lab.
-int report_session(const LabOptions& options, const std::vector<session::TrialOutcome>& outcomes,
+int report_session(const LabOptions& options, std::vector<session::TrialOutcome> outcomes,
                    bool interrupted);
 
 }  // namespace stillhand::lab

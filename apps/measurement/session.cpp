@@ -17,6 +17,7 @@
 #include "services/recording/core/mcap/mcap_loss.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/recording/named_writers.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -69,7 +70,7 @@ TrialStreams read_streams(recording::McapReader& reader, const SessionTrial& cho
   const bool tracking = chosen.trial.phase == TrialPhase::kTracking;
   if (tracking) filter.topics.emplace_back(topics::kTrackingSample.name);
   const recording::Status status =
-      reader.for_each_message(filter, [&](const recording::MessageView& view) {
+      recording::for_each_session_message(reader, filter, [&](const recording::MessageView& view) {
         if (view.channel.topic == topics::kSensed.name) {
           stillhand_msgs::Sensed m;
           if (from_cdr(view.bytes, m) && m.rig() == rig && chosen.holds(m.tick())) {

@@ -13,6 +13,7 @@
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/parts_note.hpp"
+#include "services/recording/named_writers.hpp"
 #include "services/recording/sample_clock.hpp"
 
 namespace stillhand::measurement {
@@ -174,7 +175,7 @@ SessionTrials find_trials(recording::McapReader& reader, const std::string& path
   filter.topics = {std::string(topics::kSensed.name), std::string(topics::kTrialControl.name),
                    std::string(topics::kTrialAssignment.name), std::string(topics::kEvent.name)};
   const recording::Status status =
-      reader.for_each_message(filter, [&](const recording::MessageView& view) {
+      recording::for_each_session_message(reader, filter, [&](const recording::MessageView& view) {
         if (view.channel.topic == topics::kSensed.name) {
           finder.take_sensed(recording::sample_head(view.bytes));
         } else if (view.channel.topic == topics::kTrialControl.name) {

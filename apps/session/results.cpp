@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/session/results.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -229,6 +231,30 @@ void judge_by_senses(const SessionRecording& session, const std::vector<TrialOut
   }
 }
 
+// The longest run of measured ticks without a sample.
+template <typename Message>
+Tick longest_gap(const std::vector<Message>& stream, const Trial& trial) {
+  Tick newest = trial.start_tick - 1;
+  Tick longest = 0;
+  for (const Message& message : stream) {
+    if (!trial.measures(message.tick())) continue;
+    longest = std::max(longest, message.tick() - newest - 1);
+    newest = std::max(newest, message.tick());
+  }
+  return std::max(longest, trial.start_tick + trial.duration_ticks - newest - 1);
+}
+
+// Empty: it was recorded.  A process that stands as long ends a trial, too (apps/lab, Standstill).
+std::string why_unrecorded(const SessionRecording& session, const Trial& trial) {
+  constexpr Tick kMost_ticks = 1000;
+  const bool tracks = trial.phase == TrialPhase::kTracking;
+  const Tick gap =
+      tracks ? longest_gap(session.tracking_samples, trial) : longest_gap(session.sensed, trial);
+  if (gap <= kMost_ticks) return {};
+  return fmt::format("the recording lacks {} of its {} ticks in one piece", gap,
+                     trial.duration_ticks);
+}
+
 }  // namespace
 
 SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes) {
@@ -245,7 +271,12 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
   }
   for (const TrialOutcome& outcome : outcomes) {
     const PlannedTrial& planned = outcome.planned;
-    if (!outcome.completed || planned.trial.phase != TrialPhase::kTracking) continue;
+    if (!outcome.completed) continue;
+    if (std::string why = why_unrecorded(session, planned.trial); !why.empty()) {
+      result.unrecorded[planned.trial.number] = std::move(why);
+      continue;
+    }
+    if (planned.trial.phase != TrialPhase::kTracking) continue;
     result.trials.push_back(evaluate_trial(session, planned));
     if (planned.moving && result.model && result.model->usable() && !result.conversion) {
       const RateConversionCost cost = conversion_cost(session, *result.model, planned.trial);

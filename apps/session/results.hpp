@@ -74,6 +74,7 @@ struct RateConversionCost {
 /// The part of a session's summary that is computed from the recording.
 struct SessionResult {
   std::vector<TrialResult> trials;
+  std::map<std::int64_t, std::string> unrecorded;  ///< by trial: why it does not count
   std::optional<stillhand_msgs::FeedthroughModel> model;
   std::optional<RateConversionCost> conversion;
   std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic
@@ -82,7 +83,8 @@ struct SessionResult {
   std::map<std::string, stillhand_msgs::ClockOffset> clocks;  ///< by process, the last that came
 };
 
-/// Computes the completed trials' results from a recording.
+/// Computes the completed trials' results from a recording.  One of which it lacks a second or more
+/// does not count, whatever was reported while it ran.
 /// @throws ConfigError when the recording cannot be read.
 SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes);
 

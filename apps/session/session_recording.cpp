@@ -11,6 +11,7 @@
 #include "services/device_rig/core/parts_note.hpp"
 #include "services/recording/core/mcap/mcap_reader.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/recording/named_writers.hpp"
 
 namespace stillhand::session {
 namespace {
@@ -78,7 +79,7 @@ SessionRecording read_session(const std::string& path) {
       {topics::kPrompt.name, counted<stillhand_msgs::Prompt>()},
       {topics::kAnswer.name, counted<stillhand_msgs::Answer>()}};
   const recording::Status status =
-      reader.for_each_message({}, [&](const recording::MessageView& message) {
+      recording::for_each_session_message(reader, {}, [&](const recording::MessageView& message) {
         const auto store = stores.find(message.channel.topic);
         if (store == stores.end()) return true;
         if (store->second(message.bytes)) {

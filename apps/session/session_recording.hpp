@@ -13,7 +13,8 @@
 
 namespace stillhand::session {
 
-/// Everything of a recorded session, decoded, each topic in the order of arrival.  Streams are in
+/// Everything of a recorded session, decoded, each topic in the order of arrival, without what
+/// strangers wrote (services/recording/named_writers.hpp).  Streams are in
 /// tick order as long as nothing was lost or swapped; `lost_ticks` counts the gaps.
 struct SessionRecording {
   std::vector<stillhand_msgs::PlatformCommand> platform_commands;

@@ -3,7 +3,9 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "idl/session_state.hpp"
 #include "services/recording/sample_clock.hpp"
 #include "services/recording/session_texts.hpp"
 
@@ -30,22 +32,41 @@ Shell::Shell(runtime::Service& service, const KeepOptions& keep, const OfExperim
     : service_(service) {
   for (const topics::Topic* topic : topics::kCatalogue) subscribe(*topic);
   recording_.emplace(options_of(service.options(), keep, place));
-  service.on_trial([&](const Trial& trial, const auto&) { service.note_armed(trial.number); });
+  service.on_trial([this](const Trial& trial, const auto& control) {
+    service_.note_armed(trial.number);
+    if (is_running(control.session())) tell_file();
+  });
+}
+
+// Once this session knows its sources: it believes nobody else.
+void Shell::tell_file() {
+  if (!service_.options().one_session || std::exchange(told_file_, true)) return;
+  const std::string file = std::filesystem::absolute(service_.options().out).string();
+  service_.note_event(stillhand_msgs::EVENT_NOTE,
+                      (std::string(topics::kRecordingNote) + file).c_str());
 }
 
 void Shell::subscribe(const topics::Topic& topic) {
   const bool stream = topic.pattern == topics::Pattern::kStream1khz;
+  // A recording is read by the names of its own session: those of another experiment are left out.
+  const std::string& wanted = service_.options().experiment;
+  std::optional<runtime::ParticipantId> naming;
+  if (&topic == &topics::kSessionSources && !wanted.empty()) {
+    naming = runtime::participant_of(wanted, "--experiment");
+  }
   service_.bus().subscribe_serialized(
       topic,
-      [this, stream](std::span<const std::byte> bytes,
-                     const runtime::Arrival& arrival) -> runtime::detail::SampleClock {
+      [this, stream, naming](std::span<const std::byte> bytes,
+                             const runtime::Arrival& arrival) -> runtime::detail::SampleClock {
+        if (naming && arrival.participant != *naming) return {true, -1, 0};
         if (arrival.writer != nullptr) {
           recording_->take(*arrival.writer, {arrival.writer_number, arrival.sequence,
                                              arrival.source_ns, arrival.logged_ns, bytes});
         } else {
           unattributed_.fetch_add(1, std::memory_order_relaxed);
         }
-        const SampleHead head = stream ? sample_head(bytes) : SampleHead{};
+        // What a stranger writes is recorded, too; the session's ticks are its sources'.
+        const SampleHead head = stream && !arrival.foreign ? sample_head(bytes) : SampleHead{};
         if (head.tick >= 0) service_.note_tick(head.tick);
         return {true, head.tick, head.stamp_ns};
       });
@@ -74,11 +95,6 @@ void Shell::see_others_out() {
 }
 
 void Shell::run() {
-  if (service_.options().one_session) {
-    const std::string file = std::filesystem::absolute(service_.options().out).string();
-    service_.note_event(stillhand_msgs::EVENT_NOTE,
-                        (std::string(topics::kRecordingNote) + file).c_str());
-  }
   Status closed;
   service_.run([&] {
     watch();

@@ -23,12 +23,14 @@ class Shell {
 
  private:
   void subscribe(const topics::Topic& topic);
+  void tell_file();
   void watch();
   void see_others_out();
 
   runtime::Service& service_;
   std::optional<BusRecording> recording_;  // constructed last, so a refusal leaves no file
   std::atomic<std::uint64_t> unattributed_{0};
+  bool told_file_ = false;  // receiving thread only
 };
 
 }  // namespace stillhand::recording

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program of no session commands 25 N, a thousand times a second, next to a trial that cancels: it moves nothing.
+"""A program of no session next to a trial that cancels: it moves nothing, and nobody believes it.
 
-The rig takes motor commands from the session's canceller alone. The second writer opens the interlock, and an event
-with its name is recorded.
+It commands 25 N, a thousand times a second: the rig takes motor commands from the session's canceller alone. The
+second writer opens the interlock, and an event with its name is recorded. Or it reports in the rig's name that the
+trial is over and the interlock open: the lab takes a process's word from its participant alone.
 """
+import json
 import signal
 import subprocess
 
 import lab_process
-from lab_process import BUILD, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
+from lab_process import BUILD, STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, quick_session
 
 STRANGER = BUILD / "tests" / "stranger"
 FORCE_LIMIT_TICKS = 50    # the motor force ramps to zero within 40 ticks, and the tick is at most 5 ms late, twice
@@ -31,7 +33,11 @@ class OneSourceTest(LabTestCase):
         # Rig and recorder did match it: the rig had its commands, and did not use them.
         self.assertGreaterEqual(heard, 2)
         recording = lab.recording(10**9)
-        self.assertGreater(recording["messages"]["stillhand/motor_command"], len(recording["rig"]["tick"]),
+        info = self.folder / "info.json"
+        subprocess.run([str(STILLHAND), "info", str(lab.out / "session.mcap"), "--json", str(info)], check=True,
+                       stdout=subprocess.DEVNULL)
+        written = {topic["topic"]: topic["messages"] for topic in json.loads(info.read_text())["topics"]}
+        self.assertGreater(written["stillhand/motor_command"], len(recording["rig"]["tick"]),
                            "the recording holds what the stranger wrote, too")
         return lab, recording
 
@@ -52,6 +58,24 @@ class OneSourceTest(LabTestCase):
         self.assertIn(named, lab.errors()[-1])
         trial = lab.summary()["trials"][-1]
         self.assertIn(named, trial["aborted"])
+
+    def test_a_program_that_reports_in_the_rigs_name_ends_no_trial(self):
+        lab = self.lab(*quick_session(self.folder / "config"), "--trial-seconds", 10)
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        stranger = subprocess.Popen([str(STRANGER), str(lab.domain), "forges", "a stranger"], stdout=subprocess.PIPE,
+                                    text=True)
+        self.addCleanup(stranger.kill)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())
+        stranger.send_signal(signal.SIGTERM)
+        heard = int(stranger.communicate(timeout=10)[0].split()[-1])
+        trial = lab.summary()["trials"][-1]
+        self.assertTrue(trial["completed"], trial)
+        self.assertGreaterEqual(lab.recording(1)["rig"]["tick"][-1], trial["start_tick"] + 10 * TICKS_PER_S,
+                                "the trial ended before its time")
+        # The five readers of the status matched it, the lab among them, and the two of the event.
+        self.assertGreaterEqual(heard, 7)
+        self.assertIn(("second writer", "stillhand/service_status", "a stranger"),
+                      [(mark["what"], mark["topic"], mark["peer"]) for mark in trial["marks"]])
 
 
 if __name__ == "__main__":

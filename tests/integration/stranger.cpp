@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// stranger DOMAIN reads|writes|pushes [NAME]
+// stranger DOMAIN reads|writes|pushes|forges|misleads|conducts [NAME]
 // A program that belongs to no lab, next to a session: plain Fast DDS, without a certificate.  It
-// reads every topic of the catalogue.  With "writes" it writes two of them instead: it asks the
-// motor for 40 N and announces the end of the session, a hundred times a second.  With "pushes" it
-// asks for 25 N, the motor's limit, a thousand times a second, each time in answer to the newest
-// sample.  NAME is that of its participant [stranger].  After SIGTERM it prints how many messages
-// it received, and how many readers its writers have had.
+// reads topics of the catalogue, every one with "reads".  With "writes" it writes two of them: it
+// asks the motor for 40 N and announces the end of the session, a hundred times a second.  With
+// "pushes" it asks for 25 N, the motor's limit, a thousand times a second, each time in answer to
+// the newest sample.  With "forges" it reports a hundred times a second, in the rig's name, a tick
+// far behind the end of every trial and an open interlock.  With "misleads" it says in the
+// recorder's name that another file is the recording.  With "conducts" it names the sources of
+// every process of a session, itself as the experiment.  NAME is that of its participant
+// [stranger].  After SIGTERM it prints how many messages it received, and how many readers its
+// writers have had.
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <deque>
@@ -18,16 +23,20 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
 #include "places.hpp"
 #include "services/runtime/bus/participant.hpp"
+#include "services/runtime/bus/source.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/stop.hpp"
+#include "services/runtime/sources_codec.hpp"
 #include "tests/support/wait.hpp"
 
 namespace {
@@ -123,6 +132,54 @@ void write_two_topics(Stranger& stranger, const runtime::Stop& stop) {
   }
 }
 
+void forge_the_rig(Stranger& stranger, const runtime::Stop& stop) {
+  edds::DataWriter* statuses = stranger.writer(topics::kServiceStatus);
+  edds::DataWriter* events = stranger.writer(topics::kEvent);
+  stillhand_msgs::ServiceStatus status;
+  status.rig(1);
+  status.service("rig");
+  status.state(stillhand_msgs::SERVICE_RUNNING);
+  status.tick(1'000'000'000);
+  stillhand_msgs::Event opened;
+  opened.rig(1);
+  opened.source("rig");
+  opened.kind(stillhand_msgs::EVENT_INTERLOCK_OPENED);
+  opened.text("a forged reason");
+  while (!stop.requested()) {
+    statuses->write(&status);
+    events->write(&opened);
+    stillhand::support::eventually([&] { return stop.requested(); }, std::chrono::milliseconds(10));
+  }
+}
+
+void mislead_about_the_recording(Stranger& stranger, const runtime::Stop& stop) {
+  edds::DataWriter* events = stranger.writer(topics::kEvent);
+  stillhand_msgs::Event note;
+  note.rig(1);
+  note.source("recorder");
+  note.kind(stillhand_msgs::EVENT_NOTE);
+  note.text(std::string(topics::kRecordingNote) + "/etc/hostname");
+  while (!stop.requested()) {
+    events->write(&note);
+    stillhand::support::eventually([&] { return stop.requested(); }, std::chrono::milliseconds(10));
+  }
+}
+
+void conduct(Stranger& stranger, const runtime::Stop& stop) {
+  edds::DataWriter* sources = stranger.writer(topics::kSessionSources);
+  std::vector<runtime::Source> named;
+  for (const std::string_view service : topics::kServices) {
+    named.push_back({std::string(service), {}});
+  }
+  runtime::Source& experiment = named.back();
+  std::copy_n(&stranger.participant->guid().guidPrefix.value[0], experiment.participant.size(),
+              experiment.participant.begin());
+  auto message = runtime::to_idl(named);
+  message.rig(1);
+  sources->write(&message);
+  stop.wait();
+}
+
 void push_the_motor(Stranger& stranger, const runtime::Stop& stop) {
   constexpr std::int64_t kPeriod_ns = 1'000'000;
   edds::DataWriter* motor = stranger.writer(topics::kMotorCommand);
@@ -147,14 +204,21 @@ int main(int argc, char** argv) {
     Stranger stranger(static_cast<std::uint32_t>(std::stoul(argv[1])),
                       argc > 3 ? argv[3] : "stranger");
     const bool writes = what == "writes";
+    const bool pushes = what == "pushes";
     for (const topics::Topic* row : topics::kCatalogue) {
-      const bool its_own =
-          row == &topics::kMotorCommand || (writes && row == &topics::kTrialControl);
-      if (what == "reads" || !its_own) stranger.read(*row);
+      const bool its_own = (row == &topics::kMotorCommand && (writes || pushes)) ||
+                           (row == &topics::kTrialControl && writes);
+      if (what == "reads" || ((writes || pushes) && !its_own)) stranger.read(*row);
     }
     if (writes) {
       write_two_topics(stranger, stop);
-    } else if (what == "pushes") {
+    } else if (what == "forges") {
+      forge_the_rig(stranger, stop);
+    } else if (what == "misleads") {
+      mislead_about_the_recording(stranger, stop);
+    } else if (what == "conducts") {
+      conduct(stranger, stop);
+    } else if (pushes) {
       push_the_motor(stranger, stop);
     } else {
       stop.wait();

@@ -125,6 +125,62 @@ TEST_F(OneSourceTest, ARigTakesCommandsOfItsSessionsCancellerAloneAndNamesTheOth
                "a second writer of stillhand/motor_command: stillhand/1/stranger");
 }
 
+/// Writes a status and an event of rig 1 in a process's name.
+struct Reporter {
+  explicit Reporter(const std::string& service) : bus(options_of(service)) {
+    statuses = bus.publisher<stillhand_msgs::ServiceStatus>(topics::kServiceStatus);
+    events = bus.publisher<stillhand_msgs::Event>(topics::kEvent);
+    bus.start();
+  }
+  void report(const std::string& service, Tick tick) {
+    stillhand_msgs::ServiceStatus status;
+    status.service(service);
+    status.tick(tick);
+    statuses.write(status);
+    stillhand_msgs::Event event;
+    event.source(service);
+    event.tick(tick);
+    events.write(event);
+  }
+  Bus bus;
+  Publisher<stillhand_msgs::ServiceStatus> statuses;
+  Publisher<stillhand_msgs::Event> events;
+};
+
+TEST_F(OneSourceTest, AProcesssWordIsTakenFromItsParticipantAlone) {
+  Commander canceller("cancellation");
+  Reporter stranger("stranger"), genuine("rig");
+  std::atomic<Tick> status{-1}, event{-1};
+  std::atomic<int> foreign{0};
+  constexpr Tick kForeign = 1'000'000'000;
+  const auto take = [&](std::atomic<Tick>& newest) {
+    return [&](const auto& message, const Arrival&) {
+      newest = message.tick();
+      if (message.tick() >= kForeign) ++foreign;
+    };
+  };
+  Bus reader(options_of("experiment"));
+  reader.subscribe<stillhand_msgs::ServiceStatus>(topics::kServiceStatus, take(status));
+  reader.subscribe<stillhand_msgs::Event>(topics::kEvent, take(event));
+  reader.start();
+  std::vector<Source> sources;
+  for (const std::string_view service : topics::kServices) {
+    sources.push_back({std::string(service), canceller.bus.participant()});
+    if (service == "rig") sources.back().participant = genuine.bus.participant();
+    if (service == "experiment") sources.back().participant = reader.participant();
+  }
+  ASSERT_TRUE(eventually([&] { return reader.report().front().matched == 2; }));
+  ASSERT_TRUE(reader.take_sources(reader.participant(), sources));
+  Tick tick = 0;
+  ASSERT_TRUE(eventually([&] {
+    for (int i = 0; i < 5; ++i) stranger.report("rig", kForeign);
+    genuine.report("motion", kForeign);  // one process for another
+    genuine.report("rig", ++tick);
+    return std::min(status.load(), event.load()) > 20;
+  }));
+  EXPECT_EQ(foreign, 0);
+}
+
 TEST_F(OneSourceTest, AProcessListensToTheExperimentThatStartedItAlone) {
   Commander canceller("cancellation");
   auto others = options_of("rig");

@@ -46,15 +46,20 @@ class SessionFile {
 
   template <typename Message>
   void add(const topics::Topic& topic, const Message& message) {
-    auto [channel, fresh] = channels_.try_emplace(std::string(topic.name), 0);
+    auto [channel, fresh] = channels_.try_emplace(std::string(topic.name) + writer_guid_, 0);
     if (fresh) {
       const std::string text(schemas_ ? schemas_(topic.type) : "struct S {};");
       const auto schema = writer_.add_schema(std::string(topic.type), "omgidl", text);
-      channel->second = writer_.add_channel(std::string(topic.name), schema, "cdr");
+      recording::TextMap texts;
+      if (!writer_guid_.empty()) texts["writer"] = writer_guid_;
+      channel->second = writer_.add_channel(std::string(topic.name), schema, "cdr", texts);
     }
     time_ns_ += 1'000'000;
     ok_ = ok_ && writer_.write(channel->second, 0, time_ns_, time_ns_, cdr_of(message)).ok();
   }
+
+  /// The DDS writer of what is added from now on, as the recorder notes it; empty: none.
+  void written_by(const std::string& guid) { writer_guid_ = guid; }
 
   /// A metadata record.
   void metadata(const std::string& name, const recording::TextMap& texts) {
@@ -119,6 +124,7 @@ class SessionFile {
   recording::McapWriter writer_;
   std::function<std::string_view(std::string_view)> schemas_;
   std::map<std::string, recording::ChannelId> channels_;
+  std::string writer_guid_;
   std::uint64_t time_ns_ = 0;
   bool ok_ = true;
 };

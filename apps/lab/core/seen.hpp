@@ -25,6 +25,8 @@ using Roster = std::vector<Member>;
 
 /// The process whose ticks are the sample clock.
 inline constexpr std::string_view kSampleClock = "rig";
+/// The process whose ticks are recorded.
+inline constexpr std::string_view kRecorder = "recorder";
 
 /// Misses since the session began [-].
 struct Misses {

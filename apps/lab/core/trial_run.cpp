@@ -157,7 +157,9 @@ bool TrialRun::follow(Seen& seen, std::int64_t now_ns, Actions& actions) {
     const Tick now = seen.newest_tick();
     actions.progress = progress(now);
     stopped = !seen.requests.trial_stopped().empty() && now < last_tick();
-    over = stopped || now >= last_tick() || seen.has(EventKind::kInterlockOpened);
+    // What is not recorded did not happen.
+    const bool ran = std::min(now, seen.process(kRecorder).tick) >= last_tick();
+    over = stopped || ran || seen.has(EventKind::kInterlockOpened);
     if (!over) result_.aborted = standstill_.look(seen, roster_, now_ns);
     over = over || !result_.aborted.empty();
     // A stop that is asked for from now on comes too late.

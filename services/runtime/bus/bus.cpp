@@ -252,6 +252,9 @@ ParticipantId Bus::participant() const {
 }
 
 std::vector<Source> Bus::sources_found() const { return impl_->peers.sources_found(participant()); }
+bool Bus::speaks_for(std::string_view service, const ParticipantId& from) const noexcept {
+  return !Impl::one_source(options_) || impl_->sources.speaks_for(service, from);
+}
 bool Bus::take_sources(const ParticipantId& from, const std::vector<Source>& sources) {
   return impl_->peers.take_sources(from, sources);
 }

@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "idl/topics.hpp"
@@ -126,8 +127,9 @@ class Bus {
     /// This process accepts samples of a replay and carries the replay's mark itself, so that no
     /// rig accepts its answers.  Other processes drop every sample of a marked writer.
     bool answers_replay = false;
-    /// Of a topic with one writer, samples come only from the participant that the experiment names
-    /// (take_sources()); peers_alive() needs the names, and that nobody else writes such a topic.
+    /// A process's samples come only from the participant that the experiment names for it
+    /// (take_sources()); peers_alive() needs the names, and that nobody else writes a topic that
+    /// has one writer.
     bool one_source = false;
     /// The experiment that started this process: nobody else names sources or announces a trial.
     std::optional<ParticipantId> experiment;
@@ -155,11 +157,13 @@ class Bus {
   void subscribe(const topics::Topic& topic,
                  std::function<void(const Message&, const Arrival&)> on_sample) {
     add_reader(topic, type_tag<Message>(), std::make_shared<Message>(),
-               [call = std::move(on_sample), rig = options_.rig](
+               [this, &topic, call = std::move(on_sample), rig = options_.rig](
                    const void* sample, const Arrival& arrival) -> detail::SampleClock {
                  const auto& message = *static_cast<const Message*>(sample);
                  if (message.rig() != rig) return {};
-                 if (arrival.foreign) return {.foreign = true};
+                 if (arrival.foreign || !is_of_its_process(topic, message, arrival)) {
+                   return {.foreign = true};
+                 }
                  call(message, arrival);
                  if constexpr (requires { message.tick(); }) {
                    return {true, message.tick(), message.stamp_ns()};
@@ -220,6 +224,19 @@ class Bus {
   [[nodiscard]] const Options& options() const noexcept { return options_; }
 
  private:
+  /// A topic of several processes: each message says which one wrote it, and only that one may.
+  template <typename Message>
+  [[nodiscard]] bool is_of_its_process(const topics::Topic& topic, const Message& message,
+                                       const Arrival& arrival) const {
+    if (topic.writers.size() == 1) return true;
+    if constexpr (requires { message.service(); }) {
+      return speaks_for(message.service().c_str(), arrival.participant);
+    } else if constexpr (requires { message.source(); }) {
+      return speaks_for(message.source().c_str(), arrival.participant);
+    }
+    return true;
+  }
+  [[nodiscard]] bool speaks_for(std::string_view service, const ParticipantId& from) const noexcept;
   detail::Endpoint* add_writer(const topics::Topic& topic, const TypeTag& type);
   void add_reader(const topics::Topic& topic, const TypeTag& type, std::shared_ptr<void> sample,
                   detail::Deliver deliver);

@@ -139,11 +139,21 @@ bool Sources::admits(std::size_t service, const Handle& writer) const noexcept {
   if (!named.known.load(std::memory_order_acquire)) {
     return topics::kServices[service] == "experiment";
   }
+  return is(named, static_cast<const rtps::octet*>(writer.value));
+}
+
+bool Sources::speaks_for(std::string_view service,
+                         const ParticipantId& participant) const noexcept {
+  const std::size_t place = place_of(service);
+  if (place == kAnybody || !sources_[place].known.load(std::memory_order_acquire)) return !named();
+  return is(sources_[place], participant.data());
+}
+
+bool Sources::is(const Named& named, const std::uint8_t* participant) noexcept {
   std::uint64_t front = 0;
   std::uint32_t back = 0;
-  const auto* bytes = static_cast<const rtps::octet*>(writer.value);
-  std::memcpy(&front, bytes, kFront);
-  std::memcpy(&back, bytes + kFront, sizeof(back));
+  std::memcpy(&front, participant, kFront);
+  std::memcpy(&back, participant + kFront, sizeof(back));
   return front == named.front.load(std::memory_order_acquire) &&
          back == named.back.load(std::memory_order_acquire);
 }
@@ -182,7 +192,7 @@ void Sources::note_replay(const Prefix& participant) {
 
 void Sources::note_writer(const Handle& writer, const std::string& topic) {
   const topics::Topic* row = topics::find(topic);
-  if (row == nullptr || writer_of(*row) == kAnybody) return;
+  if (row == nullptr) return;
   std::vector<Second> fresh;
   {
     const std::lock_guard lock(mutex_);
@@ -219,10 +229,11 @@ bool Sources::of_another_rig(const std::string& name, const topics::Topic& topic
 }
 
 bool Sources::is_second(const Handle& handle, const Writer& writer) const {
-  if (!named() || admits(writer_of(*writer.topic), handle)) return false;
+  const bool anybodys = writer_of(*writer.topic) == kAnybody;
+  if (!named() || (!anybodys && admits(writer_of(*writer.topic), handle))) return false;
   const Prefix prefix = rtps::iHandle2GUID(handle).guidPrefix;
   if (replays_.count(prefix) != 0) return false;
-  if (writer.refused) return true;
+  if (writer.refused || anybodys) return writer.refused;
   // DDS announces a writer before the name of its participant.
   const auto name = names_.find(prefix);
   return name != names_.end() && !of_another_rig(name->second, *writer.topic);
@@ -239,8 +250,11 @@ Sources::Second Sources::second_of(const Handle& handle, const Writer& writer) {
   const Prefix prefix = rtps::iHandle2GUID(handle).guidPrefix;
   const auto found = names_.find(prefix);
   const std::string name = printable(found == names_.end() ? "" : found->second);
-  newest_second_.store(kept("a second writer of " + std::string(writer.topic->name) + ": " + name),
-                       std::memory_order_release);
+  if (writer_of(*writer.topic) != kAnybody) {
+    newest_second_.store(
+        kept("a second writer of " + std::string(writer.topic->name) + ": " + name),
+        std::memory_order_release);
+  }
   return {writer.topic, name, kept("participant " + text_of(id_of(prefix)))};
 }
 
@@ -252,7 +266,8 @@ std::vector<Sources::Second> Sources::judge() {
       writer.second.reset();
       continue;
     }
-    present = true;
+    // A word in another's name is dropped, and drives nothing.
+    present = present || writer_of(*writer.topic) != kAnybody;
     if (writer.second) continue;
     writer.second = second_of(handle, writer);
     fresh.push_back(*writer.second);

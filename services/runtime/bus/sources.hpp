@@ -22,8 +22,8 @@
 namespace stillhand::runtime {
 
 /// Which participant writes for each process of this rig's session, as the experiment names them,
-/// and who else writes a topic that has one writer.  Called from DDS's threads and the owner's;
-/// admits(), named(), sound() and why_not() are wait-free, the rest locks.
+/// and who else writes in the name of one.  Called from DDS's threads and the owner's; admits(),
+/// speaks_for(), named(), sound() and why_not() are wait-free, the rest locks.
 class Sources {
  public:
   using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
@@ -63,12 +63,16 @@ class Sources {
   void note_replay(const Prefix& participant);
   void note_writer(const Handle& writer, const std::string& topic);
   void forget_writer(const Handle& writer);
-  /// A sample of this rig came from a writer that admits() refuses.
+  /// A sample of this rig came from a writer that admits() or speaks_for() refuses.
   void note_refused(const Handle& writer);
 
   /// The writer belongs to the participant that is named for a process.  Before the sources are
   /// named: it writes for the experiment.
   [[nodiscard]] bool admits(std::size_t service, const Handle& writer) const noexcept;
+  /// The participant is the one that is named for the process.  Before that: anybody, for a process
+  /// that starts says so.
+  [[nodiscard]] bool speaks_for(std::string_view service,
+                                const ParticipantId& participant) const noexcept;
   [[nodiscard]] bool named() const noexcept { return named_.load(std::memory_order_acquire); }
   /// The sources are named, and nobody else writes their topics.
   [[nodiscard]] bool sound() const noexcept {
@@ -86,13 +90,14 @@ class Sources {
   };
   struct Writer {
     const topics::Topic* topic;
-    bool refused = false;  ///< a sample of this rig came from it
+    bool refused = false;  ///< it wrote a sample of this rig in a process's name
     std::optional<Second> second;
   };
   [[nodiscard]] bool acceptable(const ParticipantId& from,
                                 const std::vector<Source>& sources) const;
   void adopt();
   void set(std::size_t service, const ParticipantId& participant);
+  [[nodiscard]] static bool is(const Named& named, const std::uint8_t* participant) noexcept;
   [[nodiscard]] bool is_second(const Handle& handle, const Writer& writer) const;
   [[nodiscard]] bool of_another_rig(const std::string& name, const topics::Topic& topic) const;
   Second second_of(const Handle& handle, const Writer& writer);
@@ -110,7 +115,7 @@ class Sources {
   std::mutex mutex_;                                                      // guards what follows
   std::vector<std::pair<ParticipantId, std::vector<Source>>> announced_;  // the first one counts
   std::map<Prefix, std::string> names_;
-  std::map<Handle, Writer> writers_;  // of topics with one writer
+  std::map<Handle, Writer> writers_;  // of topics of idl/
   std::set<Prefix> replays_;
   std::deque<std::string> lines_;  // their addresses stay
 };

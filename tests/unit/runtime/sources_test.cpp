@@ -88,6 +88,31 @@ TEST_F(SourcesTest, OnlyTheNamedParticipantIsTheSourceOfEachProcess) {
   EXPECT_TRUE(sut_.admits(Sources::kAnybody, handle_of(kStranger)));
 }
 
+// Of a topic that several processes write, each message says whose it is.
+TEST_F(SourcesTest, OnlyTheNamedParticipantSpeaksForAProcess) {
+  EXPECT_TRUE(sut_.speaks_for("rig", id_of(kStranger)));  // each process says that it starts
+  ASSERT_TRUE(sut_.take(experiment(), all_sources()));
+  for (const std::string_view service : topics::kServices) {
+    for (std::uint8_t other = 0; other < 20; ++other) {
+      EXPECT_EQ(sut_.speaks_for(service, id_of(other)), other == number_of(service)) << service;
+    }
+  }
+  EXPECT_FALSE(sut_.speaks_for("stranger", id_of(kStranger)));
+}
+
+// It moves nothing, so the interlock stays closed.
+TEST_F(SourcesTest, AWordInAProcesssNameIsToldOnceAndOpensNothing) {
+  const std::string status(topics::kServiceStatus.name);
+  sut_.note_participant(prefix_of(kStranger), "somebody");
+  sut_.note_writer(handle_of(kStranger), status);
+  ASSERT_TRUE(sut_.take(experiment(), all_sources()));
+  EXPECT_THAT(told_, IsEmpty());
+  sut_.note_refused(handle_of(kStranger));
+  sut_.note_refused(handle_of(kStranger));
+  EXPECT_THAT(told_, ElementsAre(status + " somebody"));
+  EXPECT_TRUE(sut_.sound());
+}
+
 // Every byte of the number counts.
 TEST_F(SourcesTest, AParticipantThatDiffersInOneByteIsNotTheSource) {
   ASSERT_TRUE(sut_.take(experiment(), all_sources()));

@@ -41,6 +41,25 @@ TEST(EvaluateTest, ACursorThatIsOffByTheSameEverywhereHasThatError) {
   }
 }
 
+// Whatever was reported while it ran.  A second in one piece is too much, wherever it is.
+TEST(EvaluateTest, ATrialThatTheRecordingLacksDoesNotCount) {
+  for (const Tick lost : {1000, 1001}) {
+    for (const Tick from : {kStart, kStart + 2000, kEnd - lost}) {
+      Tape tape;
+      for (Tick tick = kStart; tick < kEnd; ++tick) {
+        if (tick < from || tick >= from + lost) tape.tracking(tick, 0.0, 0.0);
+      }
+      const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+      EXPECT_EQ(sut.trials.size(), lost == 1000 ? 1u : 0u) << from;
+      EXPECT_EQ(sut.unrecorded.size(), lost == 1000 ? 0u : 1u) << from;
+    }
+  }
+  Tape nothing;
+  nothing.tracking(kEnd + 1'000'000, 0.0, 0.0);
+  const auto sut = evaluate(nothing.close(), {outcome_of(1, 'A', kStart)});
+  EXPECT_EQ(sut.unrecorded.at(1), "the recording lacks 5000 of its 5000 ticks in one piece");
+}
+
 // A sample before or after the trial would add an error of a metre.
 TEST(EvaluateTest, OnlyTheMeasuredTicksCount) {
   Tape tape;

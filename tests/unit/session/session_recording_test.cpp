@@ -43,6 +43,38 @@ TEST(SessionRecordingTest, EveryMessageIsInTheListOfItsTopicInOrder) {
   EXPECT_TRUE(sut.damage.empty());
 }
 
+// The recorder keeps what anybody writes.
+TEST(SessionRecordingTest, WhatAStrangerWroteIsNotTheSessions) {
+  const std::string own = "01.0f.01.02.03.04.05.06.00.00.00.0a";
+  const std::string stranger = "01.0f.01.02.03.04.05.06.00.00.00.0b";
+  Tape tape;
+  tape.file.written_by(own + "|0.0.1.3");
+  stillhand_msgs::SessionSources message;
+  for (const std::string_view service : topics::kServices) {
+    auto& source = message.sources().emplace_back();
+    source.service(std::string(service));
+    source.participant("010f0102030405060000000a");
+  }
+  tape.file.add(topics::kSessionSources, message);
+  for (Tick tick = 0; tick < 10; ++tick) {
+    tape.file.written_by(own + "|0.0.2.3");
+    tape.file.sensed(tick);
+    tape.file.written_by(stranger + "|0.0.2.3");
+    tape.file.sensed(1000 + tick);
+  }
+  // Nor is a list of sources of which its writer is not the experiment.
+  for (auto& source : message.sources()) source.participant("010f01020304050600000000");
+  tape.file.add(topics::kSessionSources, message);
+  tape.file.control(3, stillhand_msgs::PHASE_TRACKING, 10, 20);
+  tape.file.written_by(own + "|0.0.2.3");
+  tape.file.sensed(10);
+  const SessionRecording sut = read_session(tape.close());
+  ASSERT_EQ(sut.sensed.size(), 11u);
+  EXPECT_EQ(sut.sensed.back().tick(), 10);
+  EXPECT_EQ(sut.lost_ticks.at(name_of(topics::kSensed)), 0);
+  EXPECT_TRUE(sut.trial_controls.empty());
+}
+
 TEST(SessionRecordingTest, EveryTickThatIsMissingBetweenTwoSamplesIsLost) {
   Tape tape;
   for (const Tick tick : {100, 101, 104, 105, 115}) tape.file.sensed(tick);
