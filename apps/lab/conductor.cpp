@@ -75,7 +75,7 @@ void Conductor::subscribe() {
       topics::kServiceStatus, [this, stored](const auto& status, const auto&) {
         const std::string from = status.service().c_str();
         if (!topics::is_service(from)) return;
-        stored([&] { seen_.processes[from] = from_idl(status); });
+        stored([&] { seen_.take(from, from_idl(status)); });
       });
   bus.subscribe<stillhand_msgs::Event>(
       topics::kEvent, [this, stored](const auto& message, const auto&) {

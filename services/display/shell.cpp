@@ -14,6 +14,7 @@ Shell::Shell(runtime::Service& service)
       emergency_stop_(service.bus(), "Escape on the tracking screen") {
   service.on_trial([this](const Trial& trial, const stillhand_msgs::TrialControl& message) {
     paused_ = message.session() == stillhand_msgs::SESSION_PAUSED;
+    core_.postpone(trial);
     if (trial.number >= 0) prepare(trial, message.reference_seed());
   });
   // The catalogue gives the display the others' status; a stale picture shows by its tick.

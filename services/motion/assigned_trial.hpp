@@ -24,11 +24,13 @@ class AssignedTrial {
   using Make = typename runtime::Handover<Prepared>::Make;
   using Plan = std::function<Make(const stillhand_msgs::TrialAssignment&, const Trial&)>;
 
-  /// @param disarm is called when another trial comes, or none: what the platform follows is over.
-  AssignedTrial(runtime::Service& service, Plan plan, std::function<void()> disarm)
+  /// @param announce is called with each trial that is announced: what the platform follows is
+  /// over,
+  ///                 or begins later.
+  AssignedTrial(runtime::Service& service, Plan plan, std::function<void(const Trial&)> announce)
       : service_(service), plan_(std::move(plan)) {
-    service.on_trial([this, disarm = std::move(disarm)](const Trial& trial, const auto&) {
-      if (armed_ != trial.number) disarm();
+    service.on_trial([this, announce = std::move(announce)](const Trial& trial, const auto&) {
+      announce(trial);
       prepare_when_complete();
     });
     service.bus().template subscribe<stillhand_msgs::TrialAssignment>(
@@ -45,6 +47,7 @@ class AssignedTrial {
         newest->trial.number == armed_) {
       return nullptr;
     }
+    newest->trial = service_.trial();  // it may begin later than it was made for
     armed_ = newest->trial.number;
     service_.note_armed(armed_);
     return newest;

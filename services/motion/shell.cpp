@@ -19,7 +19,7 @@ Shell::Shell(runtime::Service& service, RideAndRoad way)
       trial_(
           service,
           [this](const auto& assignment, const auto& trial) { return plan(assignment, trial); },
-          [this] { core_.disarm(); }) {
+          [this](const Trial& trial) { core_.announce(trial); }) {
   service.bus().subscribe<stillhand_msgs::Sensed>(
       topics::kSensed, [this](const auto& message, const auto&) { on_sensed(message.tick()); });
 }

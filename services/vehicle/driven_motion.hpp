@@ -46,8 +46,12 @@ class DrivenMotion {
   /// @param driven  the stick drives; otherwise the trajectory moves the platform.  It is swapped
   ///                with the one before, so that nothing is freed here.
   void arm(motion::MotionTrajectory&& trajectory, const Trial& trial, bool driven) noexcept;
-  /// Drops the trial: the platform returns to the middle, after an ended drive it stands.
-  void disarm() noexcept { trial_ = Trial{}; }
+  /// The session announces a trial: the one that is armed begins at its start; in place of another
+  /// one, which is over, the platform returns to the middle, after an ended drive it stands.
+  void announce(const Trial& trial) noexcept {
+    if (trial.number != trial_.number) trial_ = Trial{};
+    trial_.start_tick = trial.start_tick;
+  }
 
   /// The command for `sample.tick + kLead_ticks`.  Call it for each tick in turn; a lost sample is
   /// one that is not sound.

@@ -11,12 +11,13 @@
 
 namespace stillhand::equivalence {
 
-/// The message of a trial, from TrialControl or TrialAssignment.  @throws NotRecorded
+/// The last message of a trial, from TrialControl or TrialAssignment: one that began later than it
+/// was announced first was announced again.  @throws NotRecorded
 template <typename Message>
 const Message& of_trial(const std::vector<Message>& messages, std::int64_t trial) {
-  const auto found = std::find_if(messages.begin(), messages.end(),
+  const auto found = std::find_if(messages.rbegin(), messages.rend(),
                                   [trial](const Message& each) { return each.trial() == trial; });
-  if (found == messages.end()) {
+  if (found == messages.rend()) {
     throw NotRecorded("trial " + std::to_string(trial) + " is not in the recording");
   }
   return *found;

@@ -2,6 +2,7 @@
 #include "apps/lab/core/seen.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace stillhand::lab {
 
@@ -9,6 +10,13 @@ const ProcessSeen& Seen::process(std::string_view name) const {
   static const ProcessSeen kNone;
   const auto found = processes.find(name);
   return found == processes.end() ? kNone : found->second;
+}
+
+void Seen::take(const std::string& name, ProcessSeen status) {
+  ProcessSeen& known = processes[name];
+  const bool said = known.armed_trial == status.armed_trial;
+  status.armed_tick = said ? known.armed_tick : status.tick;
+  known = std::move(status);
 }
 
 bool Seen::has(EventKind kind) const {

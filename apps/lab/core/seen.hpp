@@ -41,6 +41,7 @@ struct ProcessSeen {
   std::string missing;            ///< peers of its endpoints that have not matched
   Tick tick = -1;                 ///< newest tick it handled; -1: none
   std::int64_t armed_trial = -1;  ///< newest trial it is prepared for; -1: none
+  Tick armed_tick = -1;           ///< `tick` when it said so first
   Misses misses;                  ///< of the topics that it reads
 };
 
@@ -91,6 +92,8 @@ struct Seen {
   bool trial_runs = false;          ///< a request for a stop stops the trial
   bool interrupted = false;         ///< the user asked for the end
 
+  /// A process's newest status.
+  void take(const std::string& name, ProcessSeen status);
   [[nodiscard]] const ProcessSeen& process(std::string_view name) const;
   /// Newest tick of the sample clock; -1: none yet.
   [[nodiscard]] Tick newest_tick() const { return process(kSampleClock).tick; }

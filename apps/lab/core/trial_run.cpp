@@ -53,6 +53,8 @@ bool TrialRun::move_on(At at, std::int64_t limit_ns) {
   return true;
 }
 
+Tick TrialRun::first_tick() const { return result_.trial.start_tick - result_.trial.ramp_ticks; }
+
 Tick TrialRun::last_tick() const {
   const Trial& trial = result_.trial;
   return trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
@@ -96,7 +98,28 @@ bool TrialRun::armed(const Seen& seen, const Member& member) const {
   return !member.prepares || seen.process(member.name).armed_trial == result_.trial.number;
 }
 
+// The assignment stays.
+void TrialRun::postpone(const Seen& seen, Actions& actions) {
+  Trial& trial = result_.trial;
+  trial.start_tick = seen.newest_tick() + ticks_in(kTrialLead_s) + trial.ramp_ticks;
+  actions.announce = {SessionState::kRunning, trial};
+  // Not who: it may be the one that has more to prepare in some conditions.
+  actions.note = fmt::format("trial {} begins later: not everything is prepared yet", trial.number);
+}
+
+// Empty: nobody.  The conductor was held up, or the announcement.
+std::string TrialRun::why_late(const Seen& seen) const {
+  for (const Member& member : roster_) {
+    if (!member.prepares || seen.process(member.name).armed_tick < first_tick()) continue;
+    return fmt::format("{} was prepared at tick {}, after the trial began at {}", member.name,
+                       seen.process(member.name).armed_tick, first_tick());
+  }
+  return {};
+}
+
 bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns, Actions& actions) {
+  // A status is up to 100 ticks old when it comes, and the announcement has to arrive.
+  constexpr Tick kNotice_ticks = 300;
   const bool all =
       std::ranges::all_of(roster_, [&](const Member& member) { return armed(seen, member); });
   // The rig names what is missing; who waits for that process is not the reason.
@@ -108,8 +131,13 @@ bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns, Actions& actions) {
   const std::string stands = standstill_.look(seen, roster_, now_ns);
   switch (trouble_.wait(all && stands.empty(), seen, limit_ns_, now_ns)) {
     case Wait::kGoesOn:
+      if (!all && seen.newest_tick() + kNotice_ticks >= first_tick()) {
+        postpone(seen, actions);
+      }
       return false;
     case Wait::kOver:
+      result_.aborted = why_late(seen);
+      if (!result_.aborted.empty()) break;
       // Twice the time that is left, and 10 s.
       return move_on(At::kRunning,
                      now_ns + 2 * (last_tick() - seen.newest_tick()) * kNsPerTick + 10'000'000'000);

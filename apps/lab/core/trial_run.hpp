@@ -25,7 +25,8 @@ struct TrialResult {
 ///
 ///   await start -> announce -> await armed -> follow -> see the force out -> look for a death
 ///
-/// "Await armed" passes over the next two when a process is not prepared in time.
+/// A trial that would begin before every process is prepared is announced again, for later.  "Await
+/// armed" passes over the next two when a process is not prepared in time.
 class TrialRun final : public Stage {
  public:
   TrialRun(const Trial& planned, const Roster& roster, Trouble& trouble);
@@ -52,7 +53,10 @@ class TrialRun final : public Stage {
   bool look_for_death(Seen& seen, std::int64_t now_ns);
   bool move_on(At at, std::int64_t limit_ns);
   bool end(Seen& seen);
+  void postpone(const Seen& seen, Actions& actions);
   [[nodiscard]] bool armed(const Seen& seen, const Member& member) const;
+  [[nodiscard]] std::string why_late(const Seen& seen) const;
+  [[nodiscard]] Tick first_tick() const;
   [[nodiscard]] std::string why_not_armed(const Seen& seen) const;
   [[nodiscard]] Tick last_tick() const;
   [[nodiscard]] Progress progress(Tick now) const;

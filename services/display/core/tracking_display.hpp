@@ -74,6 +74,10 @@ class TrackingDisplay {
   void arm(const Trial& trial, std::uint64_t reference_seed);
   /// Drops the trial: the target stands in the centre.
   void disarm() noexcept { trial_ = Trial{}; }
+  /// The trial that is armed begins at another tick.
+  void postpone(const Trial& trial) noexcept {
+    if (trial.number == trial_.number) trial_.start_tick = trial.start_tick;
+  }
 
   TrackingSample step(const TrackingInput& input) noexcept;
 

@@ -37,8 +37,12 @@ class MotionGenerator {
   /// nothing is copied or freed here.
   /// @throws stillhand::ConfigError when their lengths differ or the trial is not sound().
   void arm(MotionTrajectory&& trajectory, const Trial& trial);
-  /// Drops the trial: the commands return to the middle.
-  void disarm() noexcept { trial_ = Trial{}; }
+  /// The session announces a trial: the one that is armed begins at its start; in place of another
+  /// one, which is over, the commands return to the middle.
+  void announce(const Trial& trial) noexcept {
+    if (trial.number != trial_.number) trial_ = Trial{};
+    trial_.start_tick = trial.start_tick;
+  }
 
   /// @param tick  the tick the command is for, not negative
   PlatformCommand step(Tick tick) noexcept;

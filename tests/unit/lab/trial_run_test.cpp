@@ -74,6 +74,71 @@ TEST_F(TrialRunTest, IsAssignedAndAnnouncedASecondAheadAndCompletedAtItsLastTick
   EXPECT_FALSE(seen_.trial_runs);
 }
 
+// A platform may take seconds until it is engaged.
+TEST_F(TrialRunTest, ATrialForWhichNotEverybodyIsPreparedBeginsLaterAndSaysSo) {
+  constexpr Tick kBegin = kStart - 2000, kNotice = 300;
+  step();
+  arm(2);
+  seen_.processes["rig"].armed_trial = -1;
+  rig_at(kBegin - kNotice - 1);
+  EXPECT_FALSE(step().announce);
+  rig_at(kBegin - kNotice);
+  const Actions later = step();
+  ASSERT_TRUE(later.announce && later.announce->trial);
+  EXPECT_FALSE(later.assign);
+  EXPECT_EQ(later.announce->trial->number, 2);
+  EXPECT_EQ(later.announce->trial->start_tick, kBegin - kNotice + 1000 + 2000);
+  EXPECT_EQ(later.note, "trial 2 begins later: not everything is prepared yet");
+  EXPECT_FALSE(step().announce);
+  rig_at(1200);
+  arm(2);
+  step();
+  rig_at(later.announce->trial->start_tick + 7000);
+  step();
+  ASSERT_TRUE(sut_->over());
+  EXPECT_TRUE(result().completed);
+  EXPECT_EQ(result().trial.start_tick, later.announce->trial->start_tick);
+}
+
+// The conductor stood still, and all of its messages came at once.
+TEST_F(TrialRunTest, ATrialThatBeganBeforeEverybodyWasPreparedIsNotCompleted) {
+  constexpr Tick kBegin = kStart - 2000;
+  for (const Tick prepared : {kBegin - 1, kBegin}) {
+    sut_ = std::make_unique<TrialRun>(planned_, roster_, trouble_);
+    rig_at(100);
+    arm(-1);
+    step();
+    arm(2);
+    seen_.processes["cancellation"].armed_trial = -1;
+    for (const Tick tick : {prepared, Tick{9500}}) {
+      ProcessSeen status;
+      status.armed_trial = 2;
+      status.tick = tick;
+      seen_.take("cancellation", status);
+    }
+    rig_at(9500);
+    step();
+    EXPECT_EQ(sut_->over(), prepared == kBegin);
+    if (!sut_->over()) continue;
+    EXPECT_FALSE(result().completed);
+    EXPECT_EQ(result().aborted,
+              "cancellation was prepared at tick 1100, after the trial began at 1100");
+  }
+}
+
+// What the recorder did not get is not in the recording.
+TEST_F(TrialRunTest, ATrialIsOverWhenItsEndIsRecorded) {
+  follow();
+  rig_at(kEnd);
+  seen_.processes["recorder"].tick = kEnd - 1;
+  step();
+  EXPECT_FALSE(sut_->over());
+  seen_.processes["recorder"].tick = kEnd;
+  step();
+  EXPECT_TRUE(sut_->over());
+  EXPECT_TRUE(result().completed);
+}
+
 // Its life sign comes from another thread than its work.
 TEST_F(TrialRunTest, AProcessThatStandsStillEndsTheTrialAndIsNamed) {
   follow();

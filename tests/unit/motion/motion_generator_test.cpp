@@ -72,7 +72,7 @@ TEST(MotionGeneratorTest, AnAbortedTrialReturnsToTheMiddleWithinTheLimits) {
   Tick tick = 0;
   while (tick < kStart + 3'000) sut.step(tick++);
   ASSERT_GT(std::abs(sut.step(tick++).position_m), 1e-3);
-  sut.disarm();
+  sut.announce(Trial{});
   PlatformCommand last = sut.step(tick++);
   EXPECT_TRUE((last.flags & kWorkspaceLimit) != 0u);
   for (int n = 0; n < 3'000; ++n) {

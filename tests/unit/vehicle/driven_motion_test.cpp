@@ -85,7 +85,7 @@ TEST(DrivenMotionTest, AGrowingOscillationBrakesThePlatformAndHoldsItUntilAnothe
   for (Tick k = 0; k < 3000; ++k) at = sut.step({n++, 0.3, true});
   EXPECT_EQ(at.position_m, rest);
   EXPECT_TRUE(at.flags & kFault);
-  sut.disarm();
+  sut.announce(Trial{});
   EXPECT_TRUE(sut.step({n++, 0.0, true}).flags & kFault);
   Trial next = driven_trial();
   next.start_tick = n + 1000;
