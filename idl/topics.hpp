@@ -11,7 +11,7 @@ namespace stillhand::topics {
 
 /// Communication pattern of a topic; selects its QoS profile in qos/profiles.xml.
 enum class Pattern {
-  kStream1khz,    ///< "stream_1khz": newest sample counts, deadline, lifespan, liveliness
+  kStream1khz,    ///< "stream_1khz": newest sample counts, deadline, liveliness
   kStreamSlow,    ///< "stream_slow": 10 to 60 Hz, newest sample counts, liveliness
   kStateLatched,  ///< "state_latched": reliable, a late joiner gets the last sample
   kEvent,         ///< "event": reliable, every sample counts

@@ -43,7 +43,7 @@ struct Config {
     visit("latency_warning_ms", self.latency_warning_ms, Range{0.01, 1000.0},
           "[ms] p99 of one second from a writer to here");
     visit("latency_critical_ms", self.latency_critical_ms, Range{0.01, 1000.0},
-          "[ms] the same; the lifespan of stream_1khz");
+          "[ms] the same; twice the age that the motor refuses");
     visit("chain_warning_ms", self.chain_warning_ms, Range{0.1, 1000.0},
           "[ms] longest time from acquisition to the motor in a tenth of a second");
     visit("chain_critical_ms", self.chain_critical_ms, Range{0.1, 1000.0},
