@@ -240,7 +240,9 @@ std::vector<std::string> Bus::missing_peers() const {
   }
   if (Impl::one_source(options_) && options_.service != "experiment" && missing.empty() &&
       !impl_->sources.named()) {
-    missing.emplace_back("experiment (to name the session's sources)");
+    missing.emplace_back(impl_->sources.contested()
+                             ? "a single experiment: two name the session's sources"
+                             : "experiment (to name the session's sources)");
   }
   return missing;
 }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kFront = 8;  // bytes of a participant in Named::front; the rest is in back
 constexpr std::size_t kMostLines = 200;
+constexpr const char* kContested = "two experiments name the session's sources";
 constexpr const char* kManyMore = "more second writers than are named";
 
 ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
@@ -121,10 +122,12 @@ void Sources::set(std::size_t service, const ParticipantId& participant) {
 }
 
 void Sources::adopt() {
-  if (announced_.empty()) {
+  contested_.store(announced_.size() > 1, std::memory_order_release);
+  if (announced_.size() != 1) {
     named_.store(false, std::memory_order_release);
     for (Named& named : sources_) named.known.store(false, std::memory_order_release);
     if (options_.experiment) set(place_of("experiment"), *options_.experiment);
+    if (contested()) set(place_of("experiment"), {});  // no participant's number
     return;
   }
   for (const Source& source : announced_.front().second) {
@@ -282,6 +285,7 @@ void Sources::report(const std::vector<Second>& fresh) const {
 }
 
 const char* Sources::why_not() const noexcept {
+  if (contested()) return kContested;
   if (!named()) return "the session has not named its sources";
   const char* second = newest_second_.load(std::memory_order_acquire);
   return second != nullptr ? second : "the sources of the session were not sound";

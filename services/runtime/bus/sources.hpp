@@ -51,8 +51,8 @@ class Sources {
 
   explicit Sources(Options options);
 
-  /// An experiment names its session's sources.  They are those of the first experiment until its
-  /// participant leaves.
+  /// An experiment names its session's sources.  While two do, nobody's count: without keys no
+  /// process can tell which one it belongs to, and who came first may be a stranger.
   /// @returns false if they are not accepted: not one source for each process, not the sender as
   ///          the experiment, a participant of another identity, or not the expected experiment
   bool take(const ParticipantId& from, const std::vector<Source>& sources);
@@ -74,7 +74,11 @@ class Sources {
   [[nodiscard]] bool speaks_for(std::string_view service,
                                 const ParticipantId& participant) const noexcept;
   [[nodiscard]] bool named() const noexcept { return named_.load(std::memory_order_acquire); }
-  /// The sources are named, and nobody else writes their topics.
+  /// More than one experiment names sources.
+  [[nodiscard]] bool contested() const noexcept {
+    return contested_.load(std::memory_order_acquire);
+  }
+  /// The sources are named, and nobody else writes the topics that have one writer.
   [[nodiscard]] bool sound() const noexcept {
     return named() && !second_present_.load(std::memory_order_acquire);
   }
@@ -109,11 +113,12 @@ class Sources {
   Options options_;
   std::array<Named, topics::kServices.size()> sources_;
   std::atomic<bool> named_{false};
+  std::atomic<bool> contested_{false};
   std::atomic<bool> second_present_{false};
   std::atomic<const char*> newest_second_{nullptr};  // a line of lines_
 
   std::mutex mutex_;                                                      // guards what follows
-  std::vector<std::pair<ParticipantId, std::vector<Source>>> announced_;  // the first one counts
+  std::vector<std::pair<ParticipantId, std::vector<Source>>> announced_;  // a single one counts
   std::map<Prefix, std::string> names_;
   std::map<Handle, Writer> writers_;  // of topics of idl/
   std::set<Prefix> replays_;

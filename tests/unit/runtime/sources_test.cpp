@@ -164,12 +164,18 @@ TEST_F(SourcesTest, AnExperimentThatComesBackNamesItsSourcesAgain) {
   }
 }
 
-// A lab that was killed leaves its participant behind for a while; the next one already speaks.
-TEST_F(SourcesTest, TheNextExperimentCountsOnceTheFirstOneLeft) {
+// A lab that was killed leaves its participant behind for a while; the next one already speaks.  Or
+// the first is a stranger, who waited for the lab.
+TEST_F(SourcesTest, OfTwoExperimentsNoneCountsUntilOneLeft) {
   ASSERT_TRUE(sut_.take(experiment(), all_sources()));
   ASSERT_TRUE(sut_.take(experiment(20), all_sources(20)));
-  EXPECT_TRUE(motor_from(sut_, number_of("cancellation")));
+  EXPECT_FALSE(sut_.sound());
+  EXPECT_STREQ(sut_.why_not(), "two experiments name the session's sources");
+  EXPECT_FALSE(motor_from(sut_, number_of("cancellation")));
   EXPECT_FALSE(motor_from(sut_, number_of("cancellation", 20)));
+  for (const std::uint8_t from : {std::uint8_t{1}, std::uint8_t{20}}) {
+    EXPECT_FALSE(sut_.admits(place_of("experiment"), handle_of(number_of("experiment", from))));
+  }
   sut_.forget_participant(prefix_of(number_of("experiment")));
   EXPECT_FALSE(motor_from(sut_, number_of("cancellation")));
   EXPECT_TRUE(motor_from(sut_, number_of("cancellation", 20)));
