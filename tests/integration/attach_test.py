@@ -98,6 +98,9 @@ class AttachTest(LabTestCase):
 
     def test_services_that_run_already_hold_a_whole_session_after_one_that_broke(self):
         self.broken_session()
+        # It says from before the session to its end, as the recorder, which file is the recording: whole_session()
+        # reads what the lab fetched.
+        self.stranger("misleads")
         self.whole_session("second")
 
     def test_services_that_run_already_obey_no_stranger_that_conducts_them_first(self):
