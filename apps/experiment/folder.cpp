@@ -95,8 +95,7 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
     throw ConfigError((path_ / kSealedFile).string(), "another content than at the beginning",
                       "the file of this experiment: its SHA-256 is in experiment.yaml");
   }
-  assignment_ = draw_assignment(design_.conditions.size(),
-                                order_seed_of(sealed, (path_ / kSealedFile).string()));
+  assignment_ = {order_seed_of(sealed, (path_ / kSealedFile).string())};
 }
 
 bool Folder::unblinded() const { return std::filesystem::exists(path_ / kOpenedFile); }

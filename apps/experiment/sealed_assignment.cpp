@@ -48,11 +48,12 @@ std::uint64_t order_seed_of(const std::string& sealed, const std::string& origin
 
 std::string opened_text(const Design& design, const Assignment& assignment) {
   nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < design.conditions.size(); ++i) {
-    json["labels"][assignment.labels[i]] = design.conditions[i];
-  }
   for (std::int64_t n = 0; n < design.participants; ++n) {
     const auto participant = static_cast<std::size_t>(n);
+    const auto labels = labels_of(design.conditions.size(), assignment, participant);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      json["labels"][participant_code(participant)][labels[i]] = design.conditions[i];
+    }
     nlohmann::ordered_json order = nlohmann::ordered_json::array();
     for (const Step& step : plan_of(design, assignment, participant)) {
       if (step.kind == StepKind::kTrial) order.push_back(design.conditions[step.condition]);

@@ -18,7 +18,7 @@ std::string sealed_text(std::uint64_t order_seed);
 /// @throws ConfigError for a text that sealed_text() did not make
 std::uint64_t order_seed_of(const std::string& sealed, const std::string& origin);
 
-/// Content of assignment.json: the condition of each label, and the order of each participant.
+/// Content of assignment.json: each participant's labels with their conditions, and order.
 std::string opened_text(const Design& design, const Assignment& assignment);
 
 }  // namespace stillhand::experiment

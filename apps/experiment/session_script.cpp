@@ -238,7 +238,8 @@ bool SessionScript::run_trial(lab::LiveTrials& trials, std::size_t step,
                               session::PlannedTrial planned) {
   const Step& planned_step = plan_[step];
   const bool practice = planned_step.kind == StepKind::kPractice;
-  const std::string label = practice ? "" : folder_.assignment().labels[planned_step.condition];
+  const auto labels = labels_of(folder_.design().conditions.size(), folder_.assignment(), index_);
+  const std::string label = practice ? "" : labels[planned_step.condition];
   for (;;) {
     const double rest_s = first_ ? 0.0 : folder_.design().rest_s;
     lab::Prompt prompt =

@@ -178,7 +178,8 @@ class SessionTest(ExperimentTestCase):
         self.assertIn("an experiment that is still blinded", study.stderr)
         self.assertIn("blinded", experiment("status", self.study)[0])
         opened = json.loads(experiment("unblind", self.study, "--reason", "the end")[0])
-        self.assertEqual(sorted(opened["labels"].values()), ["A", "B", "C"])
+        self.assertEqual([sorted(labels.values()) for labels in opened["labels"].values()],
+                         [["A", "B", "C"]] * len(opened["orders"]))
         trace = [json.loads(line) for line in (self.study / "journal.jsonl").read_text().splitlines()]
         self.assertEqual(trace[0]["text"], "unblinded: the end")
         self.judge_conditions(opened)
@@ -187,7 +188,7 @@ class SessionTest(ExperimentTestCase):
         """The opened assignment is what ran: B and C move, and the order is the one of the journal."""
         labels = [entry["label"] for entry in of_kind(journal(self.study, "P02"), "trial ended")
                   if entry["completed"] and entry.get("label")]
-        self.assertEqual([opened["labels"][label] for label in labels], opened["orders"]["P02"])
+        self.assertEqual([opened["labels"]["P02"][label] for label in labels], opened["orders"]["P02"])
         self.judge_data_set(opened)
 
     def judge_data_set(self, opened):

@@ -186,6 +186,7 @@ void MessageFeed::look_into(const Known& known, const Message& message) {
 void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at_ns) {
   events_.push_front({at_ns, event});
   if (events_.size() > kMostEvents) events_.pop_back();
+  if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && options_.blinded) hide_delay();
   if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED &&
       event.text() == topics::kEmergencyStop.data()) {
     emergency_ns_ = at_ns;
@@ -198,6 +199,19 @@ void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at
     qos_mismatches_.note(event.source().to_string(), event.topic().to_string(),
                          event.text().to_string(), at_ns);
   }
+}
+
+// How long a force takes to become zero tells whether there was one: the report appears as of the
+// instant at which the interlock opened.
+void MessageFeed::hide_delay() {
+  stillhand_msgs::Event& zero = events_.front().event;
+  zero.by_us(0.0);
+  zero.tick(-1);
+  const auto opened = std::ranges::find_if(events_, [&](const HeardEvent& heard) {
+    return heard.event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED &&
+           heard.event.source() == zero.source();
+  });
+  if (opened != events_.end()) events_.front().at_ns = opened->at_ns;
 }
 
 void MessageFeed::take_host(const stillhand_msgs::HostStatus& host, std::int64_t at_ns) {

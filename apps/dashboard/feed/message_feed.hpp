@@ -144,6 +144,7 @@ class MessageFeed {
   void take_host(const stillhand_msgs::HostStatus& host, std::int64_t at_ns);
   void take_recorder(const Message& message);
   void take_event(const stillhand_msgs::Event& event, std::int64_t at_ns);
+  void hide_delay();
   [[nodiscard]] bool motor_hidden() const noexcept;
   [[nodiscard]] std::int64_t system_ahead_ns(const std::string& service) const;
   [[nodiscard]] std::int64_t ahead_of_rig_ns(const std::string& service) const;

@@ -42,14 +42,15 @@ void add_bare(Plan& plan, StepKind kind, std::int64_t block) {
 
 }  // namespace
 
-Assignment draw_assignment(std::size_t conditions, std::uint64_t order_seed) {
+std::vector<std::string> labels_of(std::size_t conditions, const Assignment& assignment,
+                                   std::size_t participant) {
   // No letter of a condition, nor of the two identifications.
   constexpr const char* kLabels[]{"X", "Y", "Z", "W", "V", "U", "T", "S", "R", "Q", "O", "N", "M"};
   STILLHAND_EXPECTS(conditions <= std::size(kLabels));
-  Assignment assignment{order_seed, {kLabels, kLabels + conditions}};
-  std::mt19937_64 engine(derived_seed(order_seed, SeedUse::kLabels));
-  std::shuffle(assignment.labels.begin(), assignment.labels.end(), engine);
-  return assignment;
+  std::vector<std::string> labels{kLabels, kLabels + conditions};
+  std::mt19937_64 engine(derived_seed(assignment.order_seed, SeedUse::kLabels, participant + 1));
+  std::shuffle(labels.begin(), labels.end(), engine);
+  return labels;
 }
 
 Plan plan_of(const Design& design, const Assignment& assignment, std::size_t participant) {

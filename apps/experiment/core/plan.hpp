@@ -12,11 +12,12 @@ namespace stillhand::experiment {
 /// What links the shown labels to the conditions.  It comes from the sealed file.
 struct Assignment {
   std::uint64_t order_seed = 0;
-  std::vector<std::string> labels;  ///< of Design::conditions, in their order: "X", "Z", "Y"
 };
 
-/// Labels of n conditions, at most 13: X, Y, Z, W, ... in an order that the seed shuffles.
-Assignment draw_assignment(std::size_t conditions, std::uint64_t order_seed);
+/// A participant's labels of n conditions, at most 13, in the order of Design::conditions: X, Y, Z,
+/// W, ... shuffled for each participant, so that who recognises a trial knows nothing of others'.
+std::vector<std::string> labels_of(std::size_t conditions, const Assignment& assignment,
+                                   std::size_t participant);
 
 enum class StepKind : std::uint8_t { kPractice, kTrial, kQuestion, kBreak };
 

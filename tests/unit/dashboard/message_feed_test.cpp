@@ -159,6 +159,38 @@ TEST_F(MessageFeedTest, WhileAPersonTracksTheMotorsForceStaysHidden) {
   EXPECT_FALSE(sut_.wants(std::string(topics::kTrialAssignment.name)));
 }
 
+// A page that is opened in the middle of a trial hears of it later than of its samples.
+TEST_F(MessageFeedTest, BeforeATrialIsHeardOfTheMotorsForceStaysHidden) {
+  push(sut_);
+  EXPECT_FALSE(shows_force(sut_));
+  MessageFeed open{unblinded()};
+  push(open);
+  EXPECT_TRUE(shows_force(open));
+}
+
+// 0 without a force, up to 39 ms with one.
+TEST_F(MessageFeedTest, TheTimeToZeroForceIsToldToTheUnblindedAlone) {
+  MessageFeed open{unblinded()};
+  for (MessageFeed* feed : {&sut_, &open}) {
+    stillhand_msgs::Event event;
+    event.rig(1);
+    event.source("rig");
+    event.kind(stillhand_msgs::EVENT_INTERLOCK_OPENED);
+    const std::uint32_t source = add(topics::kEvent, *feed);
+    take(*feed, source, event, 0);
+    event.kind(stillhand_msgs::EVENT_FORCE_ZERO);
+    event.tick(39);
+    event.by_us(39'000.0);
+    take(*feed, source, event, 39);
+    ASSERT_EQ(feed->events().size(), 2u);
+    const HeardEvent& zero = feed->events().front();
+    const bool hidden = feed == &sut_;
+    EXPECT_EQ(zero.event.by_us(), hidden ? 0.0 : 39'000.0);
+    EXPECT_EQ(zero.event.tick(), hidden ? -1 : 39);
+    EXPECT_EQ(zero.at_ns, hidden ? kBegin : kBegin + 39 * kMs);
+  }
+}
+
 TEST_F(MessageFeedTest, OutsideOfATrialOfAPersonAndUnblindedItIsShown) {
   MessageFeed pegged{FeedOptions{}}, open{unblinded()};
   control(pegged, stillhand_msgs::PHASE_PEGGED, 100);

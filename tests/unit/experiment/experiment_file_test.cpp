@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/session/live_mitigation.hpp"
@@ -105,11 +108,24 @@ TEST(ExperimentFileTest, TheSealedFileGivesTheSeedBackAndDoesNotShowIt) {
 TEST(ExperimentFileTest, TheOpenedFileNamesTheConditionOfEveryLabelAndTrial) {
   Design design;
   design.participants = 2;
-  const Assignment assignment = draw_assignment(3, 5);
+  const Assignment assignment{5};
   const std::string text = opened_text(design, assignment);
   for (const char* word : {"\"X\"", "\"Y\"", "\"Z\"", "P01", "P02"}) {
     EXPECT_THAT(text, HasSubstr(word));
   }
+}
+
+// Who recognises a trial of one participant must not know the others'.
+TEST(ExperimentFileTest, EachParticipantHasLabelsOfItsOwn) {
+  std::set<std::vector<std::string>> all;
+  for (std::size_t participant = 0; participant < 24; ++participant) {
+    std::vector<std::string> labels = labels_of(3, Assignment{5}, participant);
+    EXPECT_EQ(labels, labels_of(3, Assignment{5}, participant));
+    all.insert(labels);
+    std::ranges::sort(labels);
+    EXPECT_THAT(labels, testing::ElementsAre("X", "Y", "Z"));
+  }
+  EXPECT_GT(all.size(), 1u);
 }
 
 // A mitigation's name may hold the dash that separates two conditions.

@@ -73,7 +73,7 @@ class ProgressTest : public testing::Test {
   }
 
   Design design_ = every_kind_of_step();
-  Assignment assignment_ = draw_assignment(design_.conditions.size(), 9);
+  Assignment assignment_{9};
   Plan plan_ = plan_of(design_, assignment_, 4);
 };
 
