@@ -3,11 +3,15 @@
 
 #include <array>
 #include <cstdio>
+#include <iostream>
 #include <utility>
 
 namespace stillhand::cancellation {
 namespace {
 
+// The condition is blinded, and events are not: the reason goes to the process's own log.
+constexpr const char* kNotPrepared =
+    "not prepared for what the trial assigns; the log of cancellation says why";
 // More at once than the threads that prepare them took in meanwhile.
 constexpr const char* kTooMany = "too many models or assignments at once";
 
@@ -20,7 +24,8 @@ Shell::Shell(runtime::Service& service, const Config& config,
       core_(config_),
       command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)),
       mitigation_(config_, [this](const char* why) {
-        service_.note_event(stillhand_msgs::EVENT_NOTE, why);
+        service_.note_event(stillhand_msgs::EVENT_NOTE, kNotPrepared);
+        log(why);
       }) {
   if (perturbation) perturbation_.emplace(*std::move(perturbation), config_);
   runtime::Bus& bus = service.bus();
@@ -60,24 +65,34 @@ void Shell::note_when_armed() {
                                                 schedule_.waits_for(), mitigation_.prepared());
   // Not armed: nor is it for a trial of the same number from before.
   service_.note_armed(readiness == Readiness::kArmed ? service_.trial().number : -1);
+  if (const char* why = why_not(readiness)) {
+    service_.note_event(stillhand_msgs::EVENT_NOTE, kNotPrepared);
+    // A preparation that this replaces is made here, too.
+    handover_.prepare([this, why] {
+      log(why);
+      return prepare_received();
+    });
+  }
+}
+
+const char* Shell::why_not(Readiness readiness) const noexcept {
   switch (readiness) {
     case Readiness::kUnassigned:
     case Readiness::kArmed:
-      return;
-    case Readiness::kNoModel:
-      service_.note_event(stillhand_msgs::EVENT_NOTE, why_no_model_.load());
-      return;
-    case Readiness::kModelTooLate:
-      service_.note_event(stillhand_msgs::EVENT_NOTE, "the model is for later than the trial");
-      return;
-    case Readiness::kMitigationTooLate:
-      service_.note_event(stillhand_msgs::EVENT_NOTE,
-                          "the mitigation cannot settle before the trial");
-      return;
     case Readiness::kNoMitigation:  // armed when it is prepared
-      return;
+      return nullptr;
+    case Readiness::kNoModel:
+      return why_no_model_.load();
+    case Readiness::kModelTooLate:
+      return "the model is for later than the trial";
+    case Readiness::kMitigationTooLate:
+      return "the mitigation cannot settle before the trial";
   }
+  return nullptr;
 }
+
+// Of the threads that prepare: a terminal or a full disk may delay it.
+void Shell::log(const char* why) { std::cerr << "stillhand-cancellation: " << why << '\n'; }
 
 void Shell::on_assignment(const stillhand_msgs::TrialAssignment& message) {
   arming_.assign(from_idl(message));

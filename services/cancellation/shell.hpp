@@ -57,6 +57,9 @@ class Shell {
   /// Offers a model that has become ready, and hands the canceller the one that is due.
   void follow_models(Tick tick);
   void note_when_armed();
+  /// nullptr: it is prepared, or will say so.
+  [[nodiscard]] const char* why_not(Readiness readiness) const noexcept;
+  static void log(const char* why);
   void note_interlock(const Trial& trial);
 
   runtime::Service& service_;
