@@ -269,9 +269,9 @@ void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::
 }
 
 // While a person tracks, a motor force reveals that this trial cancels.  A trial is announced
-// before it begins.
+// before it begins.  Before the first announcement came, one may run.
 bool MessageFeed::motor_hidden() const noexcept {
-  return options_.blinded && control_ && control_->phase() == stillhand_msgs::PHASE_TRACKING;
+  return options_.blinded && (!control_ || control_->phase() == stillhand_msgs::PHASE_TRACKING);
 }
 
 // Eq. DB-4: both relative to the experiment's clock.

@@ -129,7 +129,7 @@ export class Charts {
   // Adds new rows; `whole`: the rows before belong to another instant and are dropped.
   add({ traces, limits, session }, whole) {
     if (this.charts.length === 0) this.charts = FIGURES.map((figure) => new Chart(this.parent, figure, limits.motor_force_n));
-    this.hidden = session.blinded && session.phase === "tracking";
+    this.hidden = session.blinded && (session.phase ?? "tracking") === "tracking";
     if (whole) this.rows = [];
     const arrived = rowsOf(traces);
     if (arrived.length > 0) this.join(arrived);
