@@ -71,10 +71,8 @@ class PlatformDrive {
 
   Output step(const Input& input) noexcept;
   [[nodiscard]] SeatStage stage() const noexcept { return stage_; }
-  /// It follows set-points, as it says itself.
-  [[nodiscard]] bool engaged() const noexcept {
-    return confirmed_ && (stage_ == SeatStage::kEngaging || stage_ == SeatStage::kFollowing);
-  }
+  /// It follows set-points, as it says itself, and is where the trial begins.
+  [[nodiscard]] bool engaged() const noexcept { return stage_ == SeatStage::kFollowing; }
   [[nodiscard]] SeatReason reason() const noexcept { return reason_; }
   /// Trial in which it was faulted last.
   [[nodiscard]] std::int64_t trial() const noexcept { return blocked_trial_; }

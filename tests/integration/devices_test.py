@@ -2,20 +2,25 @@
 """`stillhand lab --rig devices` over an emulated servo drive and an emulated platform.
 
 By default: a session whose rig process is stopped while the motor pushes, so that the drive's own watchdog has to end
-the torque; a drive and a port that are refused before the session. `--campaign`: conditions A, B and C, admittance and
-feedthrough, each next to the simulated rig; a mixture. The faults are in tests/faults/device_faults.py.
+the torque; a platform that takes its time; a drive and a port that are refused before the session.
+`--campaign`: conditions A, B and C, admittance and feedthrough, each next to the simulated rig; a mixture. The faults
+are in tests/faults/device_faults.py.
 STILLHAND_WATCHDOG_MS and STILLHAND_MAX_AGE_MS set the two limits, for figures of an idle machine.
 """
 import json
 import os
 import signal
+import socket
 import statistics
+import struct
 import subprocess
+import threading
 import time
 
 import lab_process
 from emulated_laboratory import MAX_AGE_MS, PROGRAM, WATCHDOG_MS, EmulatedLaboratory
-from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, next_domain, quick_session, wait_for
+from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, loose_settings, \
+    next_domain, quick_session, wait_for
 
 # From a fault to the end of the torque. A host that lives notices by the age of the newest reply or by the drive's
 # counter (20 ms more), and stops the drive, or its force ramps down in 40 ticks. A host that does not live leaves it to
@@ -97,7 +102,55 @@ def marked_and_stopped(laboratory, pid):
     return 1e3 * (time.monotonic() - began)
 
 
+class SlowMoog(threading.Thread):
+    """The lateral axis of a Moog that rises for some time, as far as its packets say (emulators/moog_emulator.hpp).
+
+    It is where it was asked to be. Eight words come, ten go back, of four bytes each, big-endian.
+    """
+    ENGAGE, PARK, IDLE, STANDBY, ENGAGED = 180, 210, 1, 2, 3
+
+    def __init__(self, rises_s):
+        super().__init__(daemon=True)
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.port = self.socket.getsockname()[1]
+        self.rises_s = rises_s
+        self.rose = []  # when it was asked to engage, and when it was engaged
+
+    def run(self):
+        state, position_m = self.IDLE, 0.0
+        while True:
+            packet, client = self.socket.recvfrom(64)
+            words = struct.unpack(">I6fI", packet)
+            if words[0] == self.ENGAGE and state != self.ENGAGED:
+                self.rose = self.rose or [time.monotonic()]
+                if time.monotonic() - self.rose[0] > self.rises_s:
+                    state = self.ENGAGED
+                    self.rose.append(time.monotonic())
+            elif words[0] == self.PARK:
+                state = self.STANDBY
+            elif state == self.ENGAGED:
+                position_m = words[6]
+            self.socket.sendto(struct.pack(">4I6f", 0, 0, state, 0, 0, 0, 0, 0, position_m, 0), client)
+
+
 class DevicesTest(DevicesCase):
+    def test_a_platform_that_rises_for_three_seconds_delays_the_trial_and_ends_nothing(self):
+        config = loose_settings(self.folder / "config")
+        moog = SlowMoog(3.0)
+        moog.start()
+        parts = {name: "simulated" for name in ("acceleration", "force", "angle", "motor")} | {"platform": "moog_udp"}
+        (config / "devices.yaml").write_text("\n".join(
+            ["signals:"] + [f"  {name}: {part}" for name, part in parts.items()] +
+            ["platform:", f"  port: {moog.port}", "  period_ticks: 16", "  max_age_ticks: 200",
+             "calibration:", "  max_age_days: 0"]) + "\n")
+        lab = self.lab("--rig", "devices", "--conditions", "A", "--identify-seconds", 5, "--trial-seconds", 5,
+                       "--seed", 2, "--config", config)
+        self.assertEqual(lab.end_status(TRIAL_LIMIT_S), 0, lab.errors())
+        self.assertGreater(moog.rose[-1] - moog.rose[0], 3.0)
+        self.assertTrue(all(trial["completed"] for trial in lab.summary()["trials"]), lab.summary()["trials"])
+        self.assertIn(["experiment", "trial 0 begins later: not everything is prepared yet"], lab.recording(1)["notes"])
+
     def test_a_rig_process_that_stops_leaves_no_torque(self):
         lab, laboratory = self.pushing_session()
         pid = lab.pid_of("device_rig")

@@ -84,6 +84,8 @@ TEST_F(PlatformDriveTest, ItEngagesFromWhereItStandsAndSlowly) {
   EXPECT_EQ(out.set_point.position_m, 0.08);
   bool began = false;
   for (int i = 0; i < 3000; ++i) {
+    // The trial waits until it is where the trial begins.
+    ASSERT_EQ(sut_.engaged(), out.stage == SeatStage::kFollowing);
     out = step();
     began |= out.began;
     ASSERT_LE(std::abs(out.set_point.velocity_m_s), 0.12 + 1e-9);  // Eq. SG-21
