@@ -91,6 +91,9 @@ Json session_json(const MessageFeed& feed) {
   session["trial"] = control->trial();
   session["start_tick"] = control->start_tick();
   session["duration_ticks"] = control->duration_ticks();
+  const Trial trial = runtime::from_idl(*control);
+  session["engaging"] =
+      trial.phase != TrialPhase::kIdle && feed.newest_tick() < trial.start_tick - trial.ramp_ticks;
   session["protocol"] = protocol_json(feed);
   if (!feed.condition().empty()) session["condition"] = feed.condition();
   return session;

@@ -38,6 +38,12 @@ Page link_lost(const Prompt& prompt, const Moment& moment) {
   return page;
 }
 
+// From the announcement until the trial's motion begins.
+std::string seat(const Moment& moment) {
+  const bool comes = moment.tick < moment.trial.start_tick - moment.trial.ramp_ticks;
+  return comes ? "The seat moves slowly to its place" : "";
+}
+
 // Before, during and after the measured part of a tracking trial.
 Page tracking(const Prompt& prompt, const Moment& moment) {
   const Trial& trial = moment.trial;
@@ -49,6 +55,7 @@ Page tracking(const Prompt& prompt, const Moment& moment) {
     page.heading = page.corner_left;
     page.caption = "begins in";
     count_down(page, trial.start_tick - moment.tick);
+    page.below = seat(moment);
   } else if (moment.tick >= end_tick) {
     page.heading = "Over";
   }
@@ -84,6 +91,7 @@ Page pegged(const Prompt& prompt, const Moment& moment) {
   const Tick left_ticks = end_tick - std::max(moment.tick, trial.start_tick);
   page.caption = prompt.kind == PromptKind::kInstructions ? "The stick is held until then" : "";
   page.large = clock_text(seconds(left_ticks));
+  page.below = seat(moment);
   return page;
 }
 

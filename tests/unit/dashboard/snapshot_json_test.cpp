@@ -79,6 +79,14 @@ TEST_F(SnapshotJsonTest, TheSessionIsShownWithItsTrial) {
   EXPECT_FALSE(session.contains("condition")) << "blinded";
 }
 
+// Trial 3 is measured from tick 5000 on, and is announced before its motion begins.
+TEST_F(SnapshotJsonTest, ThePlatformEngagesFromTheAnnouncementToTheFirstRamp) {
+  control(stillhand_msgs::SESSION_RUNNING, stillhand_msgs::PHASE_TRACKING);
+  EXPECT_EQ(snapshot().at("session").at("engaging"), true);
+  control(stillhand_msgs::SESSION_RUNNING, stillhand_msgs::PHASE_IDLE);
+  EXPECT_EQ(snapshot().at("session").at("engaging"), false);
+}
+
 // Enumerations come from the bus and can hold any number.
 TEST_F(SnapshotJsonTest, NumbersThatTheIdlDoesNotDefineAreUnknown) {
   control(static_cast<stillhand_msgs::SessionState>(77), static_cast<stillhand_msgs::Phase>(99));

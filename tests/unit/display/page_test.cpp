@@ -51,6 +51,19 @@ TEST_F(PageTest, WhileTrackingOnlyPlaceAndTimeAreShownNextToTheTask) {
   EXPECT_EQ(rest, Page{});
 }
 
+// The platform engages from the announcement on, before the ramp of 2 s.
+TEST_F(PageTest, WhileTheSeatComesToItsPlaceThePageSaysSo) {
+  for (const TrialPhase phase : {TrialPhase::kPegged, TrialPhase::kTracking, TrialPhase::kFree}) {
+    const Moment later = at(20'000, phase);
+    const Tick begin = later.trial.start_tick - later.trial.ramp_ticks;
+    for (const Tick tick : {begin - 1, begin}) {
+      const bool comes = tick < begin;
+      EXPECT_EQ(page(prompt(PromptKind::kTrial), at(tick, phase)).below,
+                comes ? "The seat moves slowly to its place" : "");
+    }
+  }
+}
+
 // The stick is free and held still: the target stands in the centre.  Nothing waits before it, so
 // what to do is on the screen from its announcement to its end; it is no trial of the protocol.
 TEST_F(PageTest, AFreeStickIsHeldOverTheTaskWithItsInstructionsInView) {
