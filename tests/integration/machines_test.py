@@ -1,19 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stillhand lab --inventory` over three machines with nothing in common but a network (network.py).
 
-A cable pulled for two seconds takes the motor's force away and leaves a recording; a host that cannot be reached is named.
+A cable pulled for two seconds takes the motor's force away and leaves a recording; the rig's own cable pulled while the
+platform moves brakes it; a host that cannot be reached is named.
 With `--campaign`: a session gives the results of one machine; a machine that loses its power; a clock that drifts and
 jumps; services that run already.
 """
+import base64
+import json
 import os
 import subprocess
 
 import lab_process
 import network
-from lab_process import BUILD, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, hold, next_domain, quick_session
+from lab_process import BUILD, INSPECT, SOURCE, STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, hold, next_domain, \
+    quick_session
 
 SESSION_LIMIT_S = 150
 FORCE_LIMIT_TICKS = 50
+REST_M_S = 0.001
+# The lease of a life sign (300 ms), and twice as long for the brake from the platform's highest speed (260 ms): the
+# machine under test runs all three.
+BRAKED_NS = 900_000_000
 END_LIMIT_S = 90.0  # the lab waits for a host that is gone, once for each command
 
 
@@ -149,6 +157,57 @@ class MachinesTest(LabTestCase):
         self.assertGreater(greatest_n, 1.0)
         self.assertLessEqual(ticks, FORCE_LIMIT_TICKS)
         self.assertEqual(lab.recording(1)["damage"], [])
+
+    def record_on(self, machine, domain, inventory):
+        """Records the rig's truth on a machine itself, without its cable; returns a call that ends and reads it."""
+        subprocess.run([str(STILLHAND), "deploy", "generate", str(inventory), "--out", str(self.folder / "files")],
+                       check=True, capture_output=True)
+        machine.run("mkdir", "/tmp/kept")
+        self.addCleanup(machine.run, "rm", "-r", "/tmp/kept")
+        machine.run("sh", "-c", "cat > /tmp/kept/profiles.xml",
+                    text=(self.folder / "files" / machine.name / "profiles.xml").read_text())
+        recorder = subprocess.Popen(
+            [*machine.words(), "sh", "-c", "echo $$ > /tmp/kept/pid; exec " + " ".join(
+                [f"{network.BUILD_THERE}/bin/stillhand", "record", "--out", "/tmp/kept/rig.mcap", "--domain", str(domain),
+                 "--topics", "stillhand/rig_truth", "--profiles", "/tmp/kept/profiles.xml"])],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        self.addCleanup(recorder.kill)
+
+        def kept():
+            machine.run("sh", "-c", "kill -INT $(cat /tmp/kept/pid)")
+            recorder.wait(timeout=30)
+            file = self.folder / "rig.mcap"
+            file.write_bytes(base64.b64decode(machine.run("base64", "/tmp/kept/rig.mcap")))
+            inspected = subprocess.run([str(INSPECT), str(file), "1000000"], capture_output=True, text=True, check=True)
+            return json.loads(inspected.stdout)["rig"]
+        return kept
+
+    def test_the_rig_brakes_the_platform_when_its_own_cable_is_pulled(self):
+        domain = next_domain()
+        inventory = self.network.inventory(domain)
+        rig_pc = self.network["rig-pc"]
+        kept = self.record_on(rig_pc, domain, inventory)
+        lab = self.lab(*quick_session(self.folder / "config"), domain=domain, start=self.network[network.HERE].words(),
+                       inventory=inventory)
+        lab.wait_for_tick(1, 3, TRIAL_LIMIT_S)
+        cut_ns = rig_pc.clock_ns()
+        rig_pc.unplug()
+        self.addCleanup(rig_pc.plug_back)
+        hold(3.0)
+        rig_pc.plug_back()
+        self.assertEqual(lab.end_status(END_LIMIT_S), 1)
+        rig = kept()
+        # Motion went on: it is on the machine of the rig.
+        rows = list(zip(rig["stamp_ns"], rig["velocity_m_s"], rig["command_tick"]))
+        before = [abs(v) for at_ns, v, _ in rows if cut_ns - 1_000_000_000 <= at_ns < cut_ns]
+        after = [(at_ns - cut_ns, abs(v)) for at_ns, v, _ in rows if at_ns >= cut_ns]
+        self.assertGreater(max(before), 0.05, "the platform stood still")
+        self.assertGreater(after[-1][0], 2_000_000_000, "the recording ends before the cable is back")
+        rest_ns = max((at_ns for at_ns, v in after if v >= REST_M_S), default=0)
+        print(f"at rest {rest_ns / 1e6:.0f} ms after the cable was pulled at {before[-1]:.2f} m/s, and "
+              f"{(after[-1][0] - rest_ns) / 1e9:.1f} s from then on", flush=True)
+        self.assertLessEqual(rest_ns, BRAKED_NS)
+        self.assertGreater(after[-1][0] - rest_ns, 1_000_000_000)
 
     @campaign
     def test_a_machine_without_power_ends_the_session_and_leaves_a_recording(self):
