@@ -123,10 +123,12 @@ class SampleSession {
     given_ = model_for(condition);
     refuses_ = condition == "C+" && index_ + 1 == refused_;
     if (given_ && !refuses_) use(*given_);
+    const std::vector<std::string> labels = experiment::labels_of(
+        folder_.design().conditions.size(), folder_.assignment(), static_cast<std::size_t>(index_));
     Entry entry{.kind = EntryKind::kTrialBegan,
                 .step = static_cast<std::int64_t>(step),
                 .trial = trials_,
-                .label = folder_.assignment().labels[at.condition]};
+                .label = labels[at.condition]};
     add(entry);
     announce("experiment: trial " + std::to_string(trials_) + ", block " +
              std::to_string(at.block) + ", place " + std::to_string(at.place) + ", label " +

@@ -47,6 +47,16 @@ Decision decide(const std::vector<Judged>& judged, bool same, bool motor_may, bo
   out.step = by_motor.pooled_step();
   out.by_motor = motor_may && (out.step || !plus_runs);
   if (!out.by_motor) out.step = by_prediction.pooled_step();
+  Pairs kept;
+  for (const Judged& each : judged) {
+    const auto& motor =
+        out.kept() && each.motor_augmented ? each.motor_augmented : each.motor_linear;
+    const Remaining& prediction = out.kept() ? each.augmented : each.linear;
+    const Remaining& of = out.by_motor && motor ? *motor : prediction;
+    kept.add(of.without, of.left, each.seconds);
+  }
+  const auto whole = kept.pooled_step();
+  out.helps = !whole || whole->left.rms < whole->without.rms;
   return out;
 }
 

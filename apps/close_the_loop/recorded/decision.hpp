@@ -27,6 +27,7 @@ struct Decision {
   /// Over all unseen records: `without` is what C leaves, `left` what C+ leaves.  None where C+ did
   /// not run.
   std::optional<Remaining> step;
+  bool helps = true;  ///< what is kept leaves less than no motor, or no prediction, does
 
   [[nodiscard]] bool kept() const { return same || (step && step->left.rms < step->without.rms); }
   /// The 95 % interval of the difference does not contain 0.

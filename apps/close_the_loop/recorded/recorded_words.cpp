@@ -116,11 +116,18 @@ std::string cuts_text(const RecordedLoop& loop) {
 // What became of the augmented model on the unseen records.
 std::string kept_text(const RecordedLoop& loop) {
   const Decision& decision = loop.decision;
-  if (decision.same) return {};
-  if (!decision.step) return "C+ is not kept, because it did not run: the linear model (C) stays.";
-  return fmt::format("C+ is {}: on the unseen records {}.{}", decision.kept() ? "kept" : "not kept",
-                     step_text(loop),
-                     decision.kept() ? "" : " The linear model (C) stays, also for the canceller.");
+  const std::string warning =
+      decision.helps ? ""
+                     : " It leaves more than nothing at all does: check the signs, units and "
+                       "channels of the unseen records.";
+  if (decision.same) return decision.helps ? "" : "The linear model (C) is kept." + warning;
+  if (!decision.step) {
+    return "C+ is not kept, because it did not run: the linear model (C) stays." + warning;
+  }
+  return fmt::format("C+ is {}: on the unseen records {}.{}{}",
+                     decision.kept() ? "kept" : "not kept", step_text(loop),
+                     decision.kept() ? "" : " The linear model (C) stays, also for the canceller.",
+                     warning);
 }
 
 // Why no motor ran, or ran with one model alone; empty: both ran.

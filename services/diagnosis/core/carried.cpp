@@ -43,8 +43,9 @@ std::size_t index_of(const Effect& effect, const Model& found) {
 }
 
 // The part of a model that another recording can share; the rest goes to `out`.
+// @param counts  [effects]; empty: all do
 Model shared_part(const Model& found, const std::vector<double>& certainty,
-                  std::vector<LeftOut>& out) {
+                  const std::vector<bool>& counts, std::vector<LeftOut>& out) {
   Model shared = found;
   shared.effects.clear();
   for (std::size_t e = 0; e < found.effects.size(); ++e) {
@@ -57,6 +58,8 @@ Model shared_part(const Model& found, const std::vector<double>& certainty,
     } else if (certainty[e] == 0.0) {
       out.push_back(left_out(effect, kLikeTime));
       out.back().like_time = true;
+    } else if (!counts.empty() && !counts[e]) {
+      out.push_back(left_out(effect, "its force is less than what counts"));
     } else {
       shared.effects.push_back(effect);
     }
@@ -219,7 +222,7 @@ Model with_time(const Model& carried, const Model& found, const Signals& signals
 }  // namespace
 
 CarriedModel carried_model(const Model& found, const Model& baseline, const Signals& signals,
-                           const Blocks& blocks) {
+                           const Blocks& blocks, const std::vector<bool>& counts) {
   CarriedModel carried;
   carried.inputs = input_ranges(signals);
   for (const Signal& input : signals.inputs()) {
@@ -231,7 +234,7 @@ CarriedModel carried_model(const Model& found, const Model& baseline, const Sign
     FreeRun run;
     const Eigen::VectorXd noise = residual_of(found, masked, run);
     const std::vector<double> certainty = certainty_of(found, signals, blocks);
-    const Model shared = shared_part(found, certainty, carried.left_out);
+    const Model shared = shared_part(found, certainty, counts, carried.left_out);
     const double rms = noise.norm() / std::sqrt(std::max(sum_of(masked.weight()), 1.0));
     PartsOut parts(found, masked, blocks, noise, rms);
     const std::vector<ResponsePrior> priors =

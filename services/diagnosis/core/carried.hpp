@@ -35,9 +35,10 @@ struct CarriedModel {
 
 /// @param found     baseline and effects, fitted together
 /// @param baseline  without any effect
+/// @param counts    [effects] large enough to count, Eq. DG-76; empty: all are
 /// Pure.  @throws nothing of its own
 CarriedModel carried_model(const Model& found, const Model& baseline, const Signals& signals,
-                           const Blocks& blocks);
+                           const Blocks& blocks, const std::vector<bool>& counts = {});
 
 /// A model as it is, for a file that holds no other: nothing left out, no range known.
 CarriedModel carried_as_it_is(Model model);

@@ -179,15 +179,22 @@ std::vector<HeldOut> chain(const Diagnosis& diagnosis, const Signals& signals,
   const auto& additions = diagnosis.search.additions;
   std::vector<HeldOut> errors{held_out(diagnosis.baseline.model, signals, blocks)};
   for (std::size_t e = 0; e < additions.size(); ++e) {
-    // Behind the noise model the search fits other numbers than the verdict has.
-    if (as_searched(diagnosis.search) && !diagnosis.search.whitened) {
+    if (as_searched(diagnosis.search)) {
       errors.push_back(additions[e].after);
       continue;
     }
-    Model model = diagnosis.model;
-    model.effects.resize(e + 1);
-    fit(model, signals, blocks, {});
-    errors.push_back(held_out(model, signals, blocks));
+    // The body next to all effects may be in a local minimum for fewer.
+    HeldOut least;
+    for (const Body& body : {diagnosis.model.body, diagnosis.baseline.model.body}) {
+      if (body.order() != diagnosis.model.body.order()) continue;
+      Model model = diagnosis.model;
+      model.body = body;
+      model.effects.resize(e + 1);
+      fit(model, signals, blocks, {});
+      HeldOut error = held_out(model, signals, blocks);
+      if (least.squares.empty() || error.rmse() < least.rmse()) least = std::move(error);
+    }
+    errors.push_back(std::move(least));
   }
   return errors;
 }
@@ -404,7 +411,10 @@ Diagnosis diagnose(const Measurement& measurement, const DiagnoseOptions& option
   add_effects(diagnosis, signals, blocks, variance);
   add_sizes(diagnosis, signals);
   note_refuted(diagnosis);
-  diagnosis.carried = carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks);
+  std::vector<bool> counts;
+  for (const FoundEffect& found : diagnosis.effects) counts.push_back(found.counts);
+  diagnosis.carried =
+      carried_model(diagnosis.model, diagnosis.baseline.model, signals, blocks, counts);
   add_ties_with_time(diagnosis);
   add_carried(diagnosis, signals, blocks, variance);
   const Screening screening(diagnosis.model, signals, blocks, impulse_response);

@@ -14,7 +14,7 @@
 namespace stillhand::diagnosis {
 namespace {
 
-// A map goes on straight where it was not seen, Eq. DG-56.
+// A map goes on straight where it was not seen, at most as steep as no map at all, Eq. DG-56.
 double mapped_within(const EffectKind& kind, const Effect& effect, double value) {
   if (effect.seen.empty()) return mapped_in_part(kind, effect, value);
   constexpr double kStep = 1e-6;  // of the way from the middle to the edge
@@ -25,7 +25,7 @@ double mapped_within(const EffectKind& kind, const Effect& effect, double value)
   const double step = kStep * (edge - 0.5 * (range.low + range.high));
   if (step == 0.0) return inside;
   const double slope = (inside - mapped_in_part(kind, effect, edge - step)) / step;
-  return inside + slope * (value - edge);
+  return inside + std::clamp(slope, -1.0, 1.0) * (value - edge);
 }
 
 std::vector<double> shaped_input(const Model& model, const Signals& signals, std::size_t k) {
