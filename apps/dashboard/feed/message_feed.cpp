@@ -145,11 +145,12 @@ void MessageFeed::take_stream(const Known& known, const Message& message) {
       }
     }
     rig_writer_ = message.source;
-    decode<stillhand_msgs::RigTruth>(message, [this](const auto& truth) {
-      health_.chain().used(truth.motor_tick(), truth.stamp_ns());
-      if (motor_hidden()) return;
-      traces_.put(truth.tick(), Signal::kMotorForce, truth.motor_force_n());
-    });
+    decode<stillhand_msgs::RigTruth>(
+        message, [this, at_ns = message.arrived_ns](const auto& truth) {
+          health_.chain().used(truth.motor_tick(), truth.stamp_ns());
+          if (motor_hidden(at_ns)) return;
+          traces_.put(truth.tick(), Signal::kMotorForce, truth.motor_force_n());
+        });
   } else if (known.row == &topics::kTrackingSample) {
     decode<stillhand_msgs::TrackingSample>(message, [this](const auto& sample) {
       traces_.put(sample.tick(), Signal::kTarget, sample.target_m());
@@ -235,6 +236,7 @@ void MessageFeed::take_control(const stillhand_msgs::TrialControl& control, std:
   // What the last session's participant saw is not of the next one.
   const bool was_over = control_ && control_->session() == stillhand_msgs::SESSION_ENDING;
   if (was_over && control.session() != stillhand_msgs::SESSION_ENDING) prompt_.reset();
+  if (tracks()) tracked_ns_ = at_ns;
   control_ = control;
   health_.set_running(is_running(control.session()), at_ns);
 }
@@ -269,9 +271,12 @@ void MessageFeed::take_status(const stillhand_msgs::ServiceStatus& status, std::
 }
 
 // While a person tracks, a motor force reveals that this trial cancels.  A trial is announced
-// before it begins.  Before the first announcement came, one may run.
-bool MessageFeed::motor_hidden() const noexcept {
-  return options_.blinded && (!control_ || control_->phase() == stillhand_msgs::PHASE_TRACKING);
+// before it begins.  Before the first announcement came, one may run, and one that is stopped
+// leaves a force that goes to zero.
+bool MessageFeed::motor_hidden(std::int64_t at_ns) const noexcept {
+  constexpr std::int64_t kFades_ns = 1'000'000'000;
+  const bool faded = tracked_ns_ == 0 || difference_ns(at_ns, tracked_ns_) > kFades_ns;
+  return options_.blinded && (!control_ || !faded || tracks());
 }
 
 // Eq. DB-4: both relative to the experiment's clock.

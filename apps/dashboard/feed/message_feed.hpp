@@ -145,7 +145,10 @@ class MessageFeed {
   void take_recorder(const Message& message);
   void take_event(const stillhand_msgs::Event& event, std::int64_t at_ns);
   void hide_delay();
-  [[nodiscard]] bool motor_hidden() const noexcept;
+  [[nodiscard]] bool tracks() const noexcept {
+    return control_ && control_->phase() == stillhand_msgs::PHASE_TRACKING;
+  }
+  [[nodiscard]] bool motor_hidden(std::int64_t at_ns) const noexcept;
   [[nodiscard]] std::int64_t system_ahead_ns(const std::string& service) const;
   [[nodiscard]] std::int64_t ahead_of_rig_ns(const std::string& service) const;
 
@@ -153,6 +156,7 @@ class MessageFeed {
   BusHealth health_;
   std::vector<Known> sources_;
   std::optional<stillhand_msgs::TrialControl> control_;
+  std::int64_t tracked_ns_ = 0;  ///< when the newest tracking trial was over; 0: none was
   std::optional<stillhand_msgs::Prompt> prompt_;
   std::string condition_;
   std::array<ServiceView, topics::kServices.size()> services_;

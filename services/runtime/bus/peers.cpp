@@ -148,9 +148,7 @@ void Peers::refresh() {
       std::ranges::find_if(topics::kServices, [this](const std::string_view& service) {
         const auto place = static_cast<std::size_t>(&service - topics::kServices.data());
         return service != self_ && std::ranges::none_of(alive_writers_, [&](const auto& writer) {
-                 if (writer.second != service) return false;
-                 return sources_ == nullptr || !sources_->named() ||
-                        sources_->admits(place, writer.first);
+                 return writer.second == service && is_of(place, writer.first);
                });
       });
   const bool all = missing == topics::kServices.end();
@@ -159,6 +157,11 @@ void Peers::refresh() {
                           std::memory_order_release);
   }
   all_alive_.store(all, std::memory_order_release);
+}
+
+// A stranger's life sign, under whatever name, hides no loss.
+bool Peers::is_of(std::size_t service, const InstanceHandle_t& writer) const noexcept {
+  return sources_ == nullptr || !sources_->named() || sources_->admits(service, writer);
 }
 
 const char* Peers::why_not_alive() const noexcept {
@@ -192,7 +195,10 @@ bool Peers::take_sources(const ParticipantId& from, const std::vector<Source>& s
 std::vector<std::string> Peers::lost() const {
   const std::lock_guard lock(mutex_);
   std::set<std::string> gone = ever_alive_;
-  for (const auto& [writer, service] : alive_writers_) gone.erase(service);
+  for (const auto& [writer, service] : alive_writers_) {
+    const auto place = std::ranges::find(topics::kServices, service) - topics::kServices.begin();
+    if (is_of(static_cast<std::size_t>(place), writer)) gone.erase(service);
+  }
   return {gone.begin(), gone.end()};
 }
 

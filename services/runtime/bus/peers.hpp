@@ -89,6 +89,8 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
   // The next three need the lock.
   bool count_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
   void refresh();
+  [[nodiscard]] bool is_of(std::size_t service,
+                           const eprosima::fastrtps::rtps::InstanceHandle_t& writer) const noexcept;
   void refresh_replay();
   [[nodiscard]] bool counts(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;
   void mark(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);

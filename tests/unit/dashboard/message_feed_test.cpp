@@ -168,6 +168,17 @@ TEST_F(MessageFeedTest, BeforeATrialIsHeardOfTheMotorsForceStaysHidden) {
   EXPECT_TRUE(shows_force(open));
 }
 
+// A stop ends the announcement first, and then the force: 40 ms at most, and nobody counts them.
+TEST_F(MessageFeedTest, TheEndOfAForceStaysHiddenToo) {
+  MessageFeed open{unblinded()};
+  for (MessageFeed* feed : {&sut_, &open}) {
+    control(*feed, stillhand_msgs::PHASE_TRACKING, 100);
+    control(*feed, stillhand_msgs::PHASE_IDLE, 0);
+    push(*feed);  // a second of it
+    EXPECT_EQ(shows_force(*feed), feed == &open);
+  }
+}
+
 // 0 without a force, up to 39 ms with one.
 TEST_F(MessageFeedTest, TheTimeToZeroForceIsToldToTheUnblindedAlone) {
   MessageFeed open{unblinded()};

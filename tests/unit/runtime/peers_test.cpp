@@ -140,6 +140,16 @@ TEST_F(PeersTest, OnlyWithNamedSourcesAndWithoutASecondWriterEverybodyIsAlive) {
   }
   ASSERT_TRUE(sut.take_sources(id_of("experiment"), named));
   EXPECT_TRUE(sut.alive());
+  // A stranger under a process's name hides its loss from nobody.
+  constexpr std::uint8_t kNamesake = 60;
+  join(sut, kNamesake, Peers::participant_name(kRig, "motion"));
+  sut.set_alive(handle_of(kNamesake), true);
+  sut.set_alive(handle_of(number_of("motion")), false);
+  EXPECT_FALSE(sut.alive());
+  EXPECT_THAT(sut.lost(), ElementsAre("motion"));
+  sut.set_alive(handle_of(number_of("motion")), true);
+  EXPECT_TRUE(sut.alive());
+  EXPECT_THAT(sut.lost(), IsEmpty());
   constexpr std::uint8_t kStranger = 70;
   join(sut, kStranger, "a stranger");
   sources.note_writer(handle_of(kStranger), "stillhand/motor_command");
