@@ -59,9 +59,11 @@ void Clocks::take(const stillhand_msgs::ClockAnswer& answer, const runtime::Arri
   const std::lock_guard lock(mutex_);
   Other& other = others_[who];
   other.same_clock = identity_ == answer.clock().c_str();
+  // Of clocks of one kind: the two kinds are some fifty years apart, and a difference ends at
+  // thirty.
   const std::int64_t system_ahead_ns =
-      difference_ns(difference_ns(answer.system_ns(), answer.stamp_ns()),
-                    arrival.logged_ns - arrival.received_ns);
+      difference_ns(difference_ns(answer.system_ns(), arrival.logged_ns),
+                    difference_ns(answer.stamp_ns(), arrival.received_ns));
   const std::int64_t moved_ns = difference_ns(system_ahead_ns, other.system_ahead_ns);
   if (other.answered && std::abs(moved_ns) > kSystemStep_ns) {
     ++other.system_steps;

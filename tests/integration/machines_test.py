@@ -4,7 +4,7 @@
 A cable pulled for two seconds takes the motor's force away and leaves a recording; the rig's own cable pulled while the
 platform moves brakes it; a host that cannot be reached is named.
 With `--campaign`: a session gives the results of one machine; a machine that loses its power; a clock that drifts and
-jumps; services that run already.
+jumps, one that is set back; services that run already.
 """
 import base64
 import json
@@ -129,6 +129,21 @@ class MachinesTest(LabTestCase):
             self.assertEqual(clocks[service]["steps"], 1)
         for service in network.SERVICES["rig-pc"]:
             self.assertEqual([text for text in told if text.startswith(f"{service}: ")], [])
+
+    @campaign
+    def test_a_system_clock_that_is_set_back_by_an_hour_ends_nothing(self):
+        rig_pc = self.network["rig-pc"]
+        step_at_ns = rig_pc.clock_ns() + 25 * 10**9
+        skewed = ["env", f"LD_PRELOAD={network.BUILD_THERE}/tests/libskewed_clock.so", "SKEW_SYSTEM_STEP_MS=-3600000",
+                  f"SKEW_STEP_AT_NS={step_at_ns}"]
+        lab = self.across("--conditions", "A", "--identify-seconds", 5, "--trial-seconds", 30, "--seed", 2,
+                          before={"rig-pc": skewed})
+        self.assertEqual(lab.end_status(SESSION_LIMIT_S), 0, lab.errors())
+        self.assertTrue(all(trial["completed"] for trial in lab.summary()["trials"]))
+        told = lab.recording(1)["clock_events"]
+        print(told, flush=True)
+        for service in network.SERVICES["rig-pc"]:
+            self.assertTrue(any(text.startswith(f"{service}: its system clock jumped by -3600") for text in told), told)
 
     def force_after(self, lab, cut_tick):
         """Ticks from the interlock's opening to no force, in what was recorded behind a tick; the largest force."""
