@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <exception>
 #include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
-#include "apps/stop/running_sessions.hpp"
+#include "apps/stop/socket_owners.hpp"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/bus/bus.hpp"
@@ -26,7 +27,7 @@ namespace {
 std::vector<RunningSession> asked_sessions(const StopOptions& options) {
   std::ifstream sockets("/proc/net/unix");
   std::vector<RunningSession> sessions;
-  for (const RunningSession& session : running_sessions(sockets)) {
+  for (const RunningSession& session : running_sessions(sockets, socket_owners())) {
     if (options.domain && session.domain != *options.domain) continue;
     if (options.rig && session.rig != *options.rig) continue;
     sessions.push_back(session);
@@ -36,6 +37,10 @@ std::vector<RunningSession> asked_sessions(const StopOptions& options) {
     sessions.push_back({*options.domain, options.rig.value_or(1)});
   }
   return sessions;
+}
+
+std::string name_of(const RunningSession& session) {
+  return fmt::format("domain {} rig {}", session.domain, session.rig);
 }
 
 runtime::Bus::Options bus_options(const StopOptions& options, const RunningSession& session) {
@@ -53,7 +58,7 @@ runtime::Bus::Options bus_options(const StopOptions& options, const RunningSessi
 class Asked {
  public:
   Asked(const StopOptions& options, const RunningSession& session)
-      : name_(fmt::format("domain {} rig {}", session.domain, session.rig)),
+      : name_(name_of(session)),
         bus_(bus_options(options, session)),
         request_(bus_, "stillhand stop") {
     // Events are kept for those that come later, in their order.
@@ -98,33 +103,55 @@ class Asked {
 
 }  // namespace
 
-int run_stop(const StopOptions& options, const runtime::Stop& interrupted) {
+int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& options,
+                  const runtime::Stop& interrupted) {
   const std::int64_t began_ns = runtime::monotonic_ns();
-  const std::vector<RunningSession> sessions = asked_sessions(options);
-  if (sessions.empty()) {
-    std::cerr << "stillhand stop: no session runs on this machine; --domain N asks one whose lab "
-                 "runs elsewhere\n";
-    return 1;
-  }
   // On a busy machine a process without it may not even find the rig in time.  The threads of the
   // bus inherit it.
   runtime::become_real_time(!options.security.empty());
-  std::deque<Asked> all;
-  for (const RunningSession& session : sessions) all.emplace_back(options, session);
   const auto limit_ns = began_ns + static_cast<std::int64_t>(options.wait_s * 1e9);
+  const auto in_time = [&] {
+    return runtime::monotonic_ns() < limit_ns && !interrupted.requested();
+  };
+  std::deque<Asked> all;
+  std::exception_ptr why;
+  std::string failures;
+  const auto ask = [&] {
+    for (Asked& asked : all) asked.ask();
+  };
+  for (const RunningSession& session : sessions) {
+    if (!in_time()) break;
+    try {
+      all.emplace_back(options, session);
+    } catch (const std::exception& error) {
+      why = std::current_exception();
+      failures += fmt::format("stillhand stop: {}: {}\n", name_of(session), error.what());
+    }
+    ask();
+  }
+  if (all.empty() && why) std::rethrow_exception(why);
   const auto open = [&] {
     return std::ranges::any_of(all, [](const Asked& asked) { return !asked.confirmed(); });
   };
   constexpr std::int64_t kPeriod_ns = 10'000'000;
-  while (open() && runtime::monotonic_ns() < limit_ns && !interrupted.requested()) {
-    for (Asked& asked : all) asked.ask();
+  while (open() && in_time()) {
+    ask();
     runtime::sleep_until_ns(runtime::monotonic_ns() + kPeriod_ns);
   }
   for (const Asked& asked : all) std::cout << asked.line(began_ns) << '\n';
+  std::cerr << failures;
   if (open() && options.security.empty()) {
     std::cerr << "stillhand stop: a session with keys hears only a stop with --security DIR\n";
   }
-  return open() ? 1 : 0;
+  return open() || all.size() < sessions.size() ? 1 : 0;
+}
+
+int run_stop(const StopOptions& options, const runtime::Stop& interrupted) {
+  const std::vector<RunningSession> sessions = asked_sessions(options);
+  if (!sessions.empty()) return stop_sessions(sessions, options, interrupted);
+  std::cerr << "stillhand stop: no session runs on this machine; --domain N asks one whose lab "
+               "runs elsewhere\n";
+  return 1;
 }
 
 }  // namespace stillhand::stop

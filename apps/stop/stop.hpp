@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 
+#include "apps/stop/running_sessions.hpp"
 #include "services/runtime/process/stop.hpp"
 
 namespace stillhand::stop {
@@ -18,8 +20,14 @@ struct StopOptions {
   double wait_s = 10.0;                 ///< [s] for the rigs' answers
 };
 
-/// Asks the rigs for an emergency stop and prints a line for each.
+/// Asks the rig of each session for an emergency stop, as soon as it can be asked, and prints a
+/// line for each.  A session that cannot be asked keeps no other from it: anybody may claim one.
 /// @returns exit status: 0 when every rig reported that its force is zero, otherwise 1
+/// @throws what kept it from asking, when no session could be asked
+int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& options,
+                  const runtime::Stop& interrupted);
+
+/// stop_sessions() of those that are running.
 int run_stop(const StopOptions& options, const runtime::Stop& interrupted);
 
 }  // namespace stillhand::stop

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// `stillhand stop` and a rig that answers it, on the real bus.
+#include "apps/stop/stop.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "idl/session.h"
+#include "places.hpp"
+#include "services/contract/config_error.hpp"
+#include "services/runtime/bus/bus.hpp"
+#include "services/runtime/process/domain.hpp"
+#include "tests/support/bus_options.hpp"
+
+namespace stillhand::stop {
+namespace {
+
+/// Reports zero force for each request.
+struct Rig {
+  Rig()
+      : bus(support::bus_options("rig")),
+        events(bus.publisher<stillhand_msgs::Event>(topics::kEvent)) {
+    bus.subscribe<stillhand_msgs::SessionCommand>(
+        topics::kSessionCommand, [this](const stillhand_msgs::SessionCommand&, const auto&) {
+          report(stillhand_msgs::EVENT_INTERLOCK_OPENED, topics::kEmergencyStop.data());
+          report(stillhand_msgs::EVENT_FORCE_ZERO, "");
+        });
+    bus.start();
+  }
+  ~Rig() { bus.stop_receiving(); }
+  void report(stillhand_msgs::EventKind kind, const char* text) {
+    stillhand_msgs::Event event;
+    event.source("rig");
+    event.kind(kind);
+    event.text(text);
+    events.write(event);
+  }
+  runtime::Bus bus;
+  runtime::Publisher<stillhand_msgs::Event> events;
+};
+
+StopOptions options() {
+  StopOptions options;
+  options.profiles = support::bus_options("rig").profiles;
+  return options;
+}
+
+// Anybody on the machine may bind a socket that is named like a lab's.
+TEST(StopTest, ASessionThatCannotBeAskedKeepsNoOtherFromBeingAsked) {
+  const Rig rig;
+  const std::vector<RunningSession> sessions{{runtime::kMaxDomain + 1, 1},
+                                             {support::own_domain(), 1}};
+  const runtime::Stop never;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int status = stop_sessions(sessions, options(), never);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("rig 1: force zero after"));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("domain 233 rig 1: "));
+  EXPECT_EQ(status, 1);
+}
+
+TEST(StopTest, WhatTheUserCanMendIsReportedAsSuch) {
+  const std::vector<RunningSession> sessions{{support::own_domain(), 1}};
+  const runtime::Stop never;
+  StopOptions wrong = options();
+  wrong.profiles = "/nowhere";
+  EXPECT_THROW(stop_sessions(sessions, wrong, never), ConfigError);
+}
+
+}  // namespace
+}  // namespace stillhand::stop
