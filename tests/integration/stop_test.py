@@ -5,19 +5,62 @@ Each prints the time from the command or the key to the first tick at which the 
 verb stops a trial that cancels, and the two keys a pegged trial, which has no force; `--campaign` stops a trial that
 cancels with each key.
 """
+import http.client
+import multiprocessing
 import os
+import selectors
+import socket
 import struct
 import subprocess
 import time
 
 import lab_process
+from dashboard_test import TOKEN, Dashboard
 from lab_process import STILLHAND, TICKS_PER_S, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
 from virtual_display import VirtualDisplay, missing_tools
 
 FORCE_LIMIT_TICKS = 50  # the motor force ramps to zero within 40 ticks
 EV_KEY, KEY_ENTER, PRESSED = 1, 28, 1
 INPUT_EVENT = "llHHi"   # linux/input.h: seconds, microseconds, type, code, value
+HOSTILE = 1000
+CLICK_LIMIT_S, CLICK_AGAIN_S = 2.0, 0.25  # apps/dashboard/web/actions.js
 STOP_KEY, ESCAPE = "the stop key", "Escape on the tracking screen"
+
+
+def hostile_clients(port, ready):
+    """HOSTILE connections to a dashboard, for ever: the one half asks for what is refused and never reads, the other half
+    sends half a request. One that the dashboard closes comes back at once."""
+    said = (b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n" * 500, b"POST /emergency-stop HTTP/1.1\r\n")
+    everyone, came = selectors.DefaultSelector(), 0
+
+    def come(kind):
+        client = socket.socket()
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        client.setblocking(False)
+        client.connect_ex(("127.0.0.1", port))
+        everyone.register(client, selectors.EVENT_WRITE, kind)
+
+    for i in range(HOSTILE):
+        come(i % len(said))
+    while True:
+        for key, events in everyone.select():
+            try:
+                if events & selectors.EVENT_WRITE:
+                    key.fileobj.send(said[key.data])
+                    everyone.modify(key.fileobj, selectors.EVENT_READ, key.data)  # its end, or an answer that stays there
+                    came += 1
+                    if came == 20 * HOSTILE:
+                        ready.set()
+                elif key.data == 0 and key.fileobj.recv(1, socket.MSG_PEEK):
+                    key.fileobj.send(said[key.data])
+                else:
+                    raise ConnectionResetError
+            except BlockingIOError:
+                pass
+            except OSError:
+                everyone.unregister(key.fileobj)
+                key.fileobj.close()
+                come(key.data)
 
 
 class StopTest(LabTestCase):
@@ -51,6 +94,41 @@ class StopTest(LabTestCase):
                          rf"^domain {lab.domain} rig 1: force zero \(\d+ ms to reach the rig\)\n$")
         print(stopped.stdout, end="", flush=True)
         self.assert_stopped(lab, since_ns, "stillhand stop", forced=True)
+
+    @campaign
+    def test_a_click_stops_the_motor_whatever_a_thousand_other_connections_send(self):
+        token = self.folder / "token"
+        token.write_text(TOKEN + "\n")
+        token.chmod(0o600)
+        lab = self.lab(*quick_session(self.folder / "config"))
+        dashboard = Dashboard("--domain", lab.domain, "--token-file", token)
+        self.addCleanup(dashboard.process.kill)
+        lab.wait_for_tick(1, 1, TRIAL_LIMIT_S)
+        ready = multiprocessing.Event()
+        hostile = multiprocessing.Process(target=hostile_clients, args=(dashboard.port, ready), daemon=True)
+        hostile.start()
+        self.addCleanup(hostile.kill)
+        self.assertTrue(ready.wait(TRIAL_LIMIT_S))
+        since_ns, clicks = time.monotonic_ns(), 0
+        while not self.click(dashboard):
+            clicks += 1
+            self.assertLess(clicks, 40)
+            time.sleep(CLICK_AGAIN_S)
+        print(f"answer after {(time.monotonic_ns() - since_ns) / 1e6:.0f} ms and {clicks} clicks without one", flush=True)
+        hostile.kill()
+        dashboard.close()
+        self.assert_stopped(lab, since_ns, f"dashboard on {socket.gethostname()}", forced=True)
+
+    def click(self, dashboard):
+        """As the page asks: with a time limit. True if it was accepted."""
+        try:
+            connection = http.client.HTTPConnection("127.0.0.1", dashboard.port, timeout=CLICK_LIMIT_S)
+            connection.request("POST", "/emergency-stop", headers={"Authorization": "Bearer " + TOKEN})
+            return connection.getresponse().status == 204
+        except (OSError, http.client.HTTPException):
+            return False
+        finally:
+            connection.close()
 
     def test_without_a_session_the_verb_fails_with_one_line(self):
         stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab_process.next_domain()), "--wait", "0.5"],

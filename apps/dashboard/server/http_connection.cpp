@@ -44,6 +44,8 @@ std::string_view view(beast::string_view text) { return {text.data(), text.size(
 HttpConnection::HttpConnection(tcp::socket socket, HttpClients& clients)
     : stream_(std::move(socket)), clients_(clients) {
   ++clients_.connections;
+  error_code ignored;
+  stream_.socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
 }
 
 HttpConnection::~HttpConnection() {
@@ -53,7 +55,7 @@ HttpConnection::~HttpConnection() {
 }
 
 void HttpConnection::read() {
-  stand_in(clients_.asking);
+  stand_in(known_ ? clients_.known : clients_.asking);
   parser_.emplace();
   parser_->header_limit(kMostHeader);
   parser_->body_limit(kMostBody);
@@ -88,7 +90,6 @@ void HttpConnection::stand_nowhere() {
 }
 
 void HttpConnection::answer_read(error_code error) {
-  stand_nowhere();
   if (error == http::error::header_limit) return refuse(431, "a header of at most 8 KiB");
   if (error == http::error::body_limit) return refuse(413, "a body of at most 4 KiB");
   if (error && error.category() == http::make_error_code(http::error::bad_method).category() &&
@@ -103,8 +104,11 @@ void HttpConnection::answer_read(error_code error) {
                           view(request[http::field::origin]),
                           view(request[http::field::authorization]),
                           view(request[http::field::cookie])};
+  known_ = clients_.access.allows(
+      {question.host, question.origin, question.authorization, question.cookie, {}});
   const Answer found = answer(question, clients_.pages, clients_.access, clients_.served);
-  if (!found.streams) return respond(found, request.keep_alive());
+  // Who is refused asks nothing more.
+  if (!found.streams) return respond(found, request.keep_alive() && known_);
   if (clients_.streams < HttpServer::kMostListeners) return listen();
   Answer full;
   full.status = 503;
@@ -121,6 +125,7 @@ void HttpConnection::refuse(unsigned status, const char* want) {
 }
 
 void HttpConnection::respond(const Answer& found, bool keep_alive) {
+  stand_in(clients_.answering);
   response_ = {};
   response_.version(11);
   response_.result(found.status);
@@ -157,10 +162,9 @@ void HttpConnection::discard(std::size_t most) {
 }
 
 void HttpConnection::listen() {
+  stand_nowhere();
   streams_ = true;  // from now on, also while its header is under way
   ++clients_.streams;
-  error_code ignored;
-  stream_.socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
   header_.emplace();
   header_->version(11);
   set_headers(*header_);

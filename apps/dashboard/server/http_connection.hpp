@@ -26,9 +26,11 @@ struct HttpClients {
   Served served;
   std::size_t connections = 0;
   std::size_t streams = 0;  ///< connections of the event stream
-  /// Connections that can be closed when all are taken, in this order, the oldest first: those that
-  /// have their last answer and stay open, and those without a complete request.
-  std::list<HttpConnection*> leaving = {}, asking = {};
+  /// Every connection but those of the event stream is in one of these, from its first moment. When
+  /// all are taken, they are closed in this order, the oldest first: those that have their last
+  /// answer and stay open, those that do not take their answer, those without a complete request,
+  /// and those that wait for the next request of a client that may see the page.
+  std::list<HttpConnection*> leaving = {}, answering = {}, asking = {}, known = {};
   std::set<std::shared_ptr<HttpConnection>> listeners = {};
 };
 
@@ -68,6 +70,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   std::optional<std::pair<std::list<HttpConnection*>*, std::list<HttpConnection*>::iterator>>
       place_;
   bool streams_ = false;
+  bool known_ = false;  ///< its newest request may see the page
   boost::beast::flat_buffer buffer_{kMostHeader + kMostBody};
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
   boost::beast::http::response<boost::beast::http::string_body> response_;

@@ -30,7 +30,7 @@ struct HttpServer::Impl {
 
   void open(const Options& options);
   void accept();
-  [[nodiscard]] bool make_room();
+  void make_room();
 
   HttpClients clients;
   asio::io_context io{1};  // its end is that of every connection in it
@@ -62,21 +62,19 @@ void HttpServer::Impl::accept() {
       pause.async_wait([this](error_code) { accept(); });
       return;
     }
-    if (make_room()) std::make_shared<HttpConnection>(std::move(socket), clients)->read();
+    make_room();
+    std::make_shared<HttpConnection>(std::move(socket), clients)->read();
     accept();
   });
 }
 
-// First connections that have their last answer, then those without a request: a flood of such
-// connections displaces itself, and a client that sends its request at once is answered in time.
-bool HttpServer::Impl::make_room() {
-  if (clients.connections < kMostConnections) return true;
-  for (const std::list<HttpConnection*>* idle : {&clients.leaving, &clients.asking}) {
-    if (idle->empty()) continue;
-    idle->front()->close();
-    return true;
+// A flood displaces itself, and a client that sends its request at once is answered in time.
+void HttpServer::Impl::make_room() {
+  if (clients.connections < kMostConnections) return;
+  for (const std::list<HttpConnection*>* each :
+       {&clients.leaving, &clients.answering, &clients.asking, &clients.known}) {
+    if (!each->empty()) return each->front()->close();
   }
-  return false;
 }
 
 HttpServer::HttpServer(const Options& options, const Pages& pages, const Access& access,

@@ -13,8 +13,8 @@ namespace stillhand::dashboard {
 
 /// HTTP/1.1 in the thread that calls run_for(), and in no other.  Everything a client can make it
 /// hold has a bound: connections, header, body, time for a request, frames that wait for a client.
-/// A client that exceeds one gets an answer or is dropped.  When all connections are taken, those
-/// that have their last answer are closed, then those without a request, the oldest first.
+/// A client that exceeds one gets an answer or is dropped.  When all connections are taken, a new
+/// one displaces another: HttpClients says which.
 class HttpServer {
  public:
   struct Options {
