@@ -289,7 +289,7 @@ rig::RigOutput DevicePlant::sample(const rig::RigInput& input) noexcept {
   output.truth.feedthrough_force_n = kUnknown;
   output.truth.volitional_force_n = kUnknown;
   output.truth.hand_force_n = kUnknown;
-  if (parts_.motor != Parts::Motor::kSimulated) output.truth.motor_force_n = force_n_;
+  if (parts_.motor != Parts::Motor::kSimulated) put_motor(output);
   watch_numbers(input, output);
   if (platform_) {
     const bool turn = tick_ % devices_.platform.period_ticks == 0;
@@ -347,6 +347,11 @@ void DevicePlant::put_stick(rig::RigOutput& output) const noexcept {
   output.truth.omega_rad_s = known ? sign * kTurn_rad * reply.velocity_rev_s : kUnknown;
 }
 
+void DevicePlant::put_motor(rig::RigOutput& output) const noexcept {
+  output.truth.motor_force_n = force_n_;
+  output.motor_flags = motor_flags_;
+}
+
 void DevicePlant::put_iio(rig::RigOutput& output) const noexcept {
   if (accelerometer_) {
     output.raw.accel_x_v = accel_x_m_s2_;
@@ -378,8 +383,8 @@ void DevicePlant::drive_motor(const rig::RigInput& input, rig::RigOutput& output
     const auto driven = motor_.step({input.motor_valid, input.motor_age_ticks, input.motor_force_n,
                                      input.motor_permitted && armed.follows});
     force_n_ = armed.follows ? driven.force_n : 0.0;
-    output.truth.motor_force_n = force_n_;
-    output.flags |= driven.flags;
+    motor_flags_ = driven.flags;
+    put_motor(output);
   }
   // A stop does not wait for the turn of an exchange.
   const bool turn = tick_ % devices_.drive.period_ticks == 0;

@@ -76,6 +76,7 @@ class DevicePlant final : public rig::Plant {
   void put_stick(rig::RigOutput& output) const noexcept;
   void put_platform(rig::RigOutput& output) const noexcept;
   void put_iio(rig::RigOutput& output) const noexcept;
+  void put_motor(rig::RigOutput& output) const noexcept;
   [[nodiscard]] MotionLeave leave_of(const rig::RigInput& input) const noexcept;
   /// @param turn  of an exchange
   PlatformDrive::Output move_platform(const rig::RigInput& input, bool turn) noexcept;
@@ -125,6 +126,7 @@ class DevicePlant final : public rig::Plant {
   bool jumped_ = false;               ///< the angle jumped; until this process is started again
   Tick rail_ticks_ = 0;               ///< an analogue input stands at its end for so long
   double force_n_ = 0.0;              ///< as the drive was ordered
+  Flags motor_flags_ = kGood;         ///< of that force
   Order order_ = Order::kQuery;
   const char* why_ = nullptr;
   const char* notice_ = nullptr;

@@ -25,7 +25,7 @@ stillhand_msgs::RawSample to_idl(const RigOutput& output, Tick tick) {
   message.load_cell_v(output.raw.load_cell_v);
   message.encoder_counts(output.raw.encoder_counts);
   message.roll_rad(output.raw.roll_rad);
-  message.flags(output.flags);
+  message.flags(output.all_flags());
   return message;
 }
 
@@ -47,7 +47,7 @@ stillhand_msgs::RigTruth to_idl(const RigOutput& output, Tick tick, const RigInp
   message.operator_tick(used.volition);
   message.pegged(input.pegged);
   message.motor_permitted(input.motor_permitted);
-  message.flags(output.flags);
+  message.flags(output.all_flags());
   return message;
 }
 

@@ -39,7 +39,8 @@ stillhand_msgs::Sensed sensed_message() {
 TEST(RigCodecTest, EveryFieldOfARawSampleIsTheRigs) {
   rig::RigOutput output{};
   output.raw = {0.5, 1.5, 2.5, 3.5, -4, 5.5};
-  output.flags = 6;
+  output.flags = 2;
+  output.motor_flags = 4;
   EXPECT_EQ(fields_of(rig::to_idl(output, 7)), (Fields{{"rig", "0"},
                                                        {"tick", "7"},
                                                        {"stamp_ns", "0"},
@@ -55,7 +56,8 @@ TEST(RigCodecTest, EveryFieldOfARawSampleIsTheRigs) {
 TEST(RigCodecTest, EveryFieldOfTheTruthIsTheRigs) {
   rig::RigOutput output{};
   output.truth = {0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5};
-  output.flags = 9;
+  output.flags = 1;
+  output.motor_flags = 8;
   rig::RigInput input;
   input.pegged = true;
   const Fields wanted{{"rig", "0"},

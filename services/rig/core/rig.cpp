@@ -76,7 +76,7 @@ void Rig::drive(const RigInput& input, RigOutput& output) noexcept {
   STILLHAND_EXPECTS(!opened_);
   driven_ = motor(input);
   output.truth.motor_force_n = driven_.force_n;
-  output.flags = flags_of_sample_ | driven_.flags;
+  output.motor_flags = driven_.flags;
 }
 
 RigOutput Rig::sample(const RigInput& input) noexcept {
@@ -109,7 +109,6 @@ RigOutput Rig::sample(const RigInput& input) noexcept {
                                      .force_n = cell_n,
                                      .theta_rad = body.theta_rad,
                                      .roll_rad = shaken.roll_rad});
-  flags_of_sample_ = platform.flags | person.flags | body.flags | sensed.flags;
   return {.raw = sensed.raw,
           .truth = {.platform_position_m = platform.state.position_m,
                     .platform_velocity_m_s = platform.state.velocity_m_s,
@@ -120,7 +119,8 @@ RigOutput Rig::sample(const RigInput& input) noexcept {
                     .motor_force_n = driven_.force_n,
                     .volitional_force_n = person.force_n,
                     .hand_force_n = body.hand_force_n},
-          .flags = flags_of_sample_ | driven_.flags};
+          .flags = platform.flags | person.flags | body.flags | sensed.flags,
+          .motor_flags = driven_.flags};
 }
 
 }  // namespace stillhand::rig

@@ -73,7 +73,9 @@ struct RigTruth {
 struct RigOutput {
   RawSample raw;
   RigTruth truth;
-  Flags flags;  ///< flags of all parts, combined with bitwise OR
+  Flags flags;        ///< of all parts but the motor, combined with bitwise OR
+  Flags motor_flags;  ///< of the motor's newest drive(): of the force that `truth` states
+  [[nodiscard]] Flags all_flags() const noexcept { return flags | motor_flags; }
 };
 
 /// Simulated platform, subject, stick, motor and sensors; it replaces the hardware.
@@ -118,8 +120,7 @@ class Rig {
   std::int64_t max_operator_age_ticks_;
   Platform platform_;
   Motor motor_;
-  Motor::Output driven_{};     ///< of the last drive()
-  Flags flags_of_sample_ = 0;  ///< of the last sample(), without the motor's
+  Motor::Output driven_{};  ///< of the last drive()
   signal::ForceEnvelope operator_envelope_;
   Neuromuscular neuromuscular_;
   Body body_;

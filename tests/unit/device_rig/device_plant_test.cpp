@@ -162,6 +162,24 @@ TEST_F(DevicePlantTest, ASilentDriveIsUnsoundAndItsSamplesHaveNoValue) {
   EXPECT_FALSE(sut.prepared());
 }
 
+TEST_F(DevicePlantTest, TheFlagsOfADeviceStayWhenASimulatedMotorIsDriven) {
+  devices_.signals.motor = "simulated";
+  DevicePlant sut({}, devices_);
+  ASSERT_TRUE(ticks_until(sut, [&](const auto&) { return sut.prepared(); }));
+  emulated_.with([](auto&, auto& serial) { serial.mischief.silent = true; });
+  EXPECT_TRUE(ticks_until(
+      sut, [&](const auto& output) { return (output.all_flags() & kInputStale) != 0; }));
+}
+
+TEST_F(DevicePlantTest, TheFlagsOfTheDrivesMotorAreThereInBothOrders) {
+  DevicePlant sut({}, devices_);
+  announce(1, TrialPhase::kTracking);
+  ASSERT_TRUE(ticks_until(sut, [&](const auto&) { return sut.prepared(); }));
+  EXPECT_NE(tick(sut).all_flags() & kInhibited, 0U) << "after its sample: no permission";
+  sut.begin(trial_, ++tick_);
+  EXPECT_NE(sut.step({.motor_valid = true}).all_flags() & kInhibited, 0U) << "before its sample";
+}
+
 // A seat that stands off the middle, and a motion that asks for the middle at each tick.
 class SeatTest : public testing::Test {
  protected:
