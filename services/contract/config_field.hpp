@@ -41,17 +41,19 @@ class FieldValidator {
 
   template <typename T>
   void operator()(std::string_view name, const T& value, Range range, std::string_view /*doc*/) {
+    std::ostringstream got;
+    std::ostringstream want;
     double number = 0.0;
     if constexpr (std::is_same_v<T, std::string>) {
       number = static_cast<double>(value.size());
+      got << '"' << value << '"';
+      want << "text of " << range.min << " to " << range.max << " characters";
     } else {
       number = static_cast<double>(value);
-    }
-    if (!(number >= range.min && number <= range.max)) {
-      std::ostringstream got;
-      std::ostringstream want;
       got << number;
       want << "a value from " << range.min << " to " << range.max;
+    }
+    if (!(number >= range.min && number <= range.max)) {
       throw ConfigError(scope_ + "." + std::string(name), got.str(), want.str());
     }
   }

@@ -6,16 +6,10 @@
 #include <string>
 
 #include "services/contract/config_error.hpp"
+#include "services/statistics/descriptive.hpp"
 
 namespace stillhand::admittance {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 bool same_lines(const std::vector<LineResponse>& one, const std::vector<LineResponse>& other) {
   return std::ranges::equal(one, other, [](const LineResponse& a, const LineResponse& b) {
@@ -59,8 +53,9 @@ RelationTest test_relation(const std::vector<LineResponse>& feedthrough_to_posit
     out.lines.push_back(mismatch);
   }
   out.share_within /= static_cast<double>(std::max<std::size_t>(1, out.lines.size()));
-  out.median_mismatch = median(sizes);
-  out.median_radius = median(radii);
+  if (out.lines.empty()) return out;
+  out.median_mismatch = statistics::median(sizes);
+  out.median_radius = statistics::median(radii);
   return out;
 }
 

@@ -45,6 +45,18 @@ rig::RigConfig linear_hand() {
   return config;
 }
 
+TEST(RelationTest, TheMedianOfAnEvenNumberOfLinesIsBetweenTheTwoInTheMiddle) {
+  std::vector<LineResponse> moved(4);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    moved[k].frequency_hz = static_cast<double>(k);
+    moved[k].response = 1.0;
+  }
+  const std::vector<LineResponse> held = moved;
+  for (std::size_t k = 0; k < moved.size(); ++k) moved[k].response += 0.1 * static_cast<double>(k);
+  // Mismatches 0, 0.1, 0.2 and 0.3; a rounding error of the quotient.
+  EXPECT_NEAR(test_relation(moved, held, held, 8).median_mismatch, 0.15, 1e-12);
+}
+
 // A linear arm that does the same on the peg: 95 % of 12 circles, which are wider than needed (the
 // fewest neighbours); 9 of 12 would be below that by 3 standard deviations.
 TEST(RelationTest, HoldsForALinearArmThatDoesTheSameOnThePeg) {

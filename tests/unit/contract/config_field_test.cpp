@@ -92,9 +92,10 @@ TEST(ValidateTest, ATextIsMeasuredByItsLength) {
   config.name = std::string(8, 'x');
   EXPECT_EQ(message_of(config), "accepted");
   config.name += 'x';
-  EXPECT_THAT(message_of(config), StartsWith("rig.stick.name: got 9"));
+  EXPECT_THAT(message_of(config),
+              StartsWith("rig.stick.name: got \"xxxxxxxxx\", want text of 1 to 8"));
   config.name.clear();
-  EXPECT_THAT(message_of(config), StartsWith("rig.stick.name: got 0"));
+  EXPECT_THAT(message_of(config), StartsWith("rig.stick.name: got \"\""));
 }
 
 TEST(ValidateTest, AFieldOfAGroupIsNamedWithItsPath) {
