@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -107,10 +108,8 @@ Journal::Journal(const std::filesystem::path& file) : file_(file) {
     }
     const std::string text = recording::read_file(file.string());
     entries_ = entries_of(text, file.string());
-    const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-    if (whole < text.size() && ftruncate(descriptor_, static_cast<off_t>(whole)) != 0) {
-      refuse_write(file_);
-    }
+    whole_ = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+    if (whole_ < text.size()) cut();
   } catch (...) {
     close(descriptor_);
     throw;
@@ -119,13 +118,23 @@ Journal::Journal(const std::filesystem::path& file) : file_(file) {
 
 Journal::~Journal() { close(descriptor_); }
 
+void Journal::cut() {
+  if (ftruncate(descriptor_, static_cast<off_t>(whole_)) != 0) refuse_write(file_);
+}
+
 const Entry& Journal::append(Entry entry) {
   entry.time = utc_now();
   const std::string line = line_of(entry) + "\n";
-  if (write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) ||
-      fsync(descriptor_) != 0) {
-    refuse_write(file_);
+  cut();
+  std::uint64_t written = 0;
+  const recording::Status status =
+      recording::write_all(descriptor_, file_.string(), std::as_bytes(std::span(line)), written);
+  if (!status.ok()) {
+    cut();
+    throw std::runtime_error(status.text);
   }
+  if (fsync(descriptor_) != 0) refuse_write(file_);
+  whole_ += written;
   entries_.push_back(std::move(entry));
   return entries_.back();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -32,12 +33,17 @@ class Journal {
 
   /// What is in it so far, those of append() included.
   [[nodiscard]] const std::vector<Entry>& entries() const noexcept { return entries_; }
-  /// Adds the time and writes the entry.  @throws std::runtime_error when the disk refuses
+  /// Adds the time and writes the entry.
+  /// @throws std::runtime_error when the disk refuses; the file then holds whole lines, as before
   const Entry& append(Entry entry);
 
  private:
+  /// Removes what a write that failed left behind the whole lines.
+  void cut();
+
   std::filesystem::path file_;
   int descriptor_ = -1;
+  std::uint64_t whole_ = 0;  ///< [bytes] of whole lines
   std::vector<Entry> entries_;
 };
 

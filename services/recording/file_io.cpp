@@ -24,7 +24,8 @@ Status failure(const std::string& path, const std::string& step, int error) {
                          path + ": " + step + ": " + reason(error));
 }
 
-// Writes all bytes, also if the system accepts them in parts.
+}  // namespace
+
 Status write_all(int descriptor, const std::string& path, std::span<const std::byte> bytes,
                  std::uint64_t& written) {
   while (!bytes.empty()) {
@@ -38,8 +39,6 @@ Status write_all(int descriptor, const std::string& path, std::span<const std::b
   }
   return {};
 }
-
-}  // namespace
 
 FileSink::FileSink(const std::string& path, Existing existing, Durability durability)
     : path_(path),

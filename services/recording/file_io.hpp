@@ -64,6 +64,11 @@ class FileSource : public ByteSource {
   std::uint64_t size_ = 0;
 };
 
+/// Writes all bytes, also if the system accepts them in parts.  @param written  grows by what it
+/// took
+Status write_all(int descriptor, const std::string& path, std::span<const std::byte> bytes,
+                 std::uint64_t& written);
+
 /// Replaces a file atomically: a reader sees either the old file or the complete new file.  Writes
 /// a temporary file in the same folder, then calls fsync and rename.  After a failure the old file
 /// remains and the temporary file is removed.

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real files in a folder of the test's own.
+#include "apps/experiment/journal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <stdexcept>
+
+namespace stillhand::experiment {
+namespace {
+
+// A file size limit plays the full disk: the system then cuts a write short, as a disk does.
+TEST(JournalTest, AShortWriteLeavesWholeLinesAndIsReportedWithItsReason) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("stillhand-journal-" + std::to_string(getpid()));
+  std::filesystem::remove(file);
+  {
+    Journal sut(file);
+    sut.append({.kind = EntryKind::kSessionBegan, .session = 1});
+    const auto whole = std::filesystem::file_size(file);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{whole + 10, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    std::string why;
+    try {
+      sut.append({.kind = EntryKind::kTrialBegan, .session = 1, .step = 0, .trial = 1});
+    } catch (const std::runtime_error& error) {
+      why = error.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, old_handler);
+    EXPECT_THAT(why, testing::HasSubstr("cannot write: File too large"));
+    EXPECT_EQ(std::filesystem::file_size(file), whole);
+    sut.append({.kind = EntryKind::kNote, .session = 1, .text = "disk was full"});
+  }
+  const Journal again(file);
+  ASSERT_EQ(again.entries().size(), 2U);
+  EXPECT_EQ(again.entries().back().text, "disk was full");
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace stillhand::experiment
