@@ -7,11 +7,19 @@
 
 #include <iostream>
 
+#include "services/contract/config_error.hpp"
+
 namespace stillhand::calibrate {
 
+void want_terminal() {
+  if (isatty(STDIN_FILENO) == 1) return;
+  throw ConfigError("standard input", "no terminal",
+                    "a terminal: a person at the rig confirms each step");
+}
+
 bool done_by_person(const std::string& step, const runtime::Stop& interrupted) {
+  tcflush(STDIN_FILENO, TCIFLUSH);
   std::cout << step << " Then press Enter.\n" << std::flush;
-  if (isatty(STDIN_FILENO) == 1) tcflush(STDIN_FILENO, TCIFLUSH);
   constexpr int kLook_ms = 50;
   while (!interrupted.requested()) {
     pollfd input{STDIN_FILENO, POLLIN, 0};

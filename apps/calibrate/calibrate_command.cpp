@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/calibrate/ask.hpp"
 #include "apps/calibrate/calibrate.hpp"
 #include "apps/calibrate/hand_off_steps.hpp"
 #include "apps/calibrate/platform_steps.hpp"
@@ -103,6 +104,7 @@ void add_calibrate_command(CLI::App& cli, int& status) {
         {"force", device_rig::CalibratedSignal::kForce},
         {"acceleration", device_rig::CalibratedSignal::kAcceleration},
         {"angle", device_rig::CalibratedSignal::kAngle}};
+    want_terminal();
     const runtime::Stop interrupted;
     if (*signal == "platform") {
       status = run_calibrate_platform(*options, interrupted);

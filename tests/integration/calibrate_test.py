@@ -6,6 +6,7 @@ has to find again from numbers that are wrong by up to 20 %.
 """
 import cmath
 import math
+import os
 import shutil
 import subprocess
 import unittest
@@ -38,9 +39,11 @@ class CalibrateTest(LabTestCase):
 
         A quantity that is a tuple is an order of its own.
         """
+        person, terminal = os.openpty()
         process = subprocess.Popen(
             [str(STILLHAND), "calibrate", signal, "--config", str(self.config), "--person", "kl", "--seconds", "0.5",
-             *map(str, words)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+             *map(str, words)], stdin=terminal, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        os.close(terminal)
         said = []
         try:
             for line in process.stdout:
@@ -48,15 +51,15 @@ class CalibrateTest(LabTestCase):
                 if line.startswith("step ") and quantities:
                     wanted = quantities.pop(0)
                     self.laboratory.order(*(wanted if isinstance(wanted, tuple) else (order, wanted)))
-                    process.stdin.write("\n")
-                    process.stdin.flush()
+                    os.write(person, b"\n")
                 elif line.startswith("step "):
-                    process.stdin.close()
+                    os.write(person, b"\x04")  # the end of the input
         finally:
             status = process.wait(60)
             errors = process.stderr.read()
-            for stream in (process.stdin, process.stdout, process.stderr):
-                stream.close()
+            process.stdout.close()
+            process.stderr.close()
+            os.close(person)
         return status, "".join(said), errors
 
     def settings(self, name):
@@ -133,6 +136,14 @@ class CalibrateTest(LabTestCase):
                 self.assertEqual(errors.count("\n"), 1)
         self.assertEqual((self.config / "sensing.yaml").read_text(), before)
         self.assertFalse((self.config / "calibration.yaml").exists())
+
+    def test_nobody_but_a_person_at_a_terminal_confirms_a_step(self):
+        for signal in ("force", "platform", "check"):
+            refused = subprocess.run(
+                [str(STILLHAND), "calibrate", signal, "--config", str(self.config), "--person", "kl"], input="\n" * 100,
+                capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+            self.assertIn("standard input: got no terminal", refused.stderr)
 
     def test_a_simulated_sensor_is_refused(self):
         devices = self.config / "devices.yaml"
