@@ -8,9 +8,11 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/process/stop.hpp"
+#include "services/signal/newest_of_each.hpp"
 
 namespace stillhand::runtime {
 
@@ -37,11 +39,10 @@ class RemoteControl {
  public:
   RemoteControl(Bus::Options options, const topics::Topic& commands, const topics::Topic& statuses)
       : bus_(std::move(options)), statuses_(bus_.publisher<Status>(statuses)) {
-    bus_.subscribe<Command>(commands, [this](const Command& command, const Arrival&) {
+    bus_.subscribe<Command>(commands, [this](const Command& command, const Arrival& arrival) {
       const std::lock_guard lock(mutex_);
-      if (command.request() == newest_) return;  // ask() writes it again for others
-      newest_ = command.request();
-      waiting_.push_back(command);
+      // ask() writes it again for others.
+      if (newest_.take(arrival.participant, command.request())) waiting_.push_back(command);
     });
     bus_.start();
   }
@@ -59,18 +60,22 @@ class RemoteControl {
   }
   /// @param refusal  why the command was refused; empty: it was carried out
   void answer(const Command& command, const std::string& refusal) {
-    answered_ = command.request();
-    refusal_ = refusal;
+    constexpr std::size_t kMost = 8;  // that are still waited for
+    answers_.emplace_back(command.request(), refusal);
+    if (answers_.size() > kMost) answers_.pop_front();
   }
   /// At least one command was answered.
-  [[nodiscard]] bool asked() const noexcept { return answered_ != 0; }
-  /// Publishes a status with the newest answer.
+  [[nodiscard]] bool asked() const noexcept { return !answers_.empty(); }
+  /// Publishes a status with each of the newest answers.
   void tell(Status status) {
-    constexpr std::size_t kRoom = 99;  // string<100> in idl/recording.idl
-    status.answered(answered_);
-    status.accepted(refusal_.empty());
-    status.answer(refusal_.substr(0, kRoom));
-    statuses_.write(status);
+    if (answers_.empty()) statuses_.write(status);
+    for (const auto& [request, refusal] : answers_) {
+      constexpr std::size_t kRoom = 99;  // string<100> in idl/recording.idl
+      status.answered(request);
+      status.accepted(refusal.empty());
+      status.answer(refusal.substr(0, kRoom));
+      statuses_.write(status);
+    }
   }
   /// The last status, repeated for half a second: it is best effort, and the sender of a stop may
   /// not be matched with it yet.
@@ -89,9 +94,8 @@ class RemoteControl {
   Publisher<Status> statuses_;
   std::mutex mutex_;
   std::deque<Command> waiting_;
-  std::uint64_t newest_ = 0;  // request
-  std::uint64_t answered_ = 0;
-  std::string refusal_;
+  signal::NewestOfEach<ParticipantId> newest_;
+  std::deque<std::pair<std::uint64_t, std::string>> answers_;  // request, refusal
 };
 
 /// The side that sends commands: sends one to every listener that is found until one answers, and

@@ -16,7 +16,6 @@ std::string printable(std::string text) {
 
 std::string Requests::take(const Command& command, bool trial_runs) {
   constexpr std::size_t kMostNotes = 1000;  // between two looks of the script
-  constexpr std::size_t kMostAskers = 100;  // a stranger's names must not fill the memory
   const std::string asker = printable(command.asker);
   if (command.action == Action::kEmergencyStop) {
     // It counts whatever its number is.
@@ -24,10 +23,7 @@ std::string Requests::take(const Command& command, bool trial_runs) {
     emergency_ = "emergency stop, asked by " + asker;
     return emergency_;
   }
-  if (newest_.size() >= kMostAskers) newest_.clear();
-  std::uint64_t& newest = newest_[asker];
-  if (command.request <= newest) return "";
-  newest = command.request;
+  if (!newest_.take(asker, command.request)) return "";
   const std::string asked = ", asked by " + asker;
   const std::string reason = printable(command.text);
   switch (command.action) {

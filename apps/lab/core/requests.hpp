@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "services/signal/newest_of_each.hpp"
 
 namespace stillhand::lab {
 
@@ -66,7 +67,7 @@ class Requests {
   std::int64_t starts_ = 0;
   Asked asked_;
   std::string trial_stopped_, emergency_;
-  std::map<std::string, std::uint64_t> newest_;  // by asker; requests are written several times
+  signal::NewestOfEach<std::string> newest_;
 };
 
 }  // namespace stillhand::lab

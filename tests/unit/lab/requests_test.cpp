@@ -103,6 +103,16 @@ TEST(RequestsTest, ANoteChangesNothing) {
   EXPECT_FALSE(sut.paused());
 }
 
+TEST(RequestsTest, StrangersDoNotMakeARepeatedRequestCountAgain) {
+  Requests sut;
+  sut.take(command(Action::kStart, 1), false);
+  for (int i = 0; i < 1000; ++i) {
+    sut.take(command(Action::kUnknown, 1, ("stranger " + std::to_string(i)).c_str()), true);
+    EXPECT_EQ(sut.take(command(Action::kStart, 1), false), "");
+  }
+  EXPECT_EQ(sut.starts(), 1);
+}
+
 // They come from the network and go to terminals.
 TEST(RequestsTest, NamesAndActionsOfAnySortAreOneHarmlessLine) {
   Requests sut;
