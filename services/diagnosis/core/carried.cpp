@@ -2,6 +2,7 @@
 #include "services/diagnosis/core/carried.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,8 @@ constexpr double kSpreads[] = {0.03, 0.1, 0.3, 1.0,
 constexpr int kCarryIterations = 30;
 constexpr const char* kLikeTime =
     "this recording does not distinguish its slow channel from time alone";
+constexpr const char* kLikeSlowNoise =
+    "most of what it adds is slower than the motion, and slow noise looks like it";
 constexpr const char* kNotNeeded =
     "parts of the recording are predicted as well without it from the others";
 
@@ -142,6 +145,32 @@ Signals bursts_masked(const Model& found, const Signals& signals) {
   return signals.weighed(std::move(weight));
 }
 
+// A law whose force turns with its argument: it moves as the motion does.
+bool is_odd_feedback(const Effect& effect) {
+  if (!has_feedback(effect)) return false;
+  const Nonlinearity law = effect_kind(effect.kind).feedback(effect);
+  return std::ranges::all_of(std::array{0.3, 1.0, 3.0}, [&](double z) {
+    LoopMemory one;
+    LoopMemory other;
+    return std::abs(law.phi(z, one) + law.phi(-z, other)) < 1e-9;
+  });
+}
+
+// The share that an effect has earned, and why if that is nothing.
+struct Earned {
+  double share = 0.0;
+  const char* why = kNotNeeded;
+};
+
+Earned earned_by(const Effect& effect, const OutOfParts& without, const OutOfParts& with,
+                 const PartsOut& parts) {
+  constexpr double kMostSlow = 0.5;  // Eq. DG-77
+  const double earned = parts.share(without, with).earned();
+  const bool slow =
+      earned > 0.0 && is_odd_feedback(effect) && parts.slow_share(without, with) > kMostSlow;
+  return slow ? Earned{0.0, kLikeSlowNoise} : Earned{earned};
+}
+
 // What the evidence leaves of each effect next to the others and of all of them, Eq. DG-68.  One
 // that keeps nothing goes, the least of them first, and the others are asked again.
 void keep_shares(CarriedModel& carried, const Model& baseline, const PartsOut& parts) {
@@ -150,24 +179,22 @@ void keep_shares(CarriedModel& carried, const Model& baseline, const PartsOut& p
     const std::size_t count = carried.model.effects.size();
     const OutOfParts with = parts.left_by(carried.model);
     const double of_all = parts.share(bare, with).earned();
-    std::vector<double> shares(1, of_all);
-    if (count > 1) {
-      for (std::size_t e = 0; e < count; ++e) {
-        const Model other = parts.refitted(without(carried.model, e), baseline.body);
-        const double own = parts.share(parts.left_by(other), with).earned();
-        shares.resize(count);
-        shares[e] = own;
-      }
+    std::vector<Earned> earned;
+    for (std::size_t e = 0; e < count; ++e) {
+      const OutOfParts other =
+          count == 1 ? bare
+                     : parts.left_by(parts.refitted(without(carried.model, e), baseline.body));
+      earned.push_back(earned_by(carried.model.effects[e], other, with, parts));
     }
     // Of equals, the one that was added last.
-    const auto least = std::ranges::min_element(shares.rbegin(), shares.rend());
-    if (*least > 0.0 && of_all > 0.0) {
+    const auto least = std::ranges::min_element(earned.rbegin(), earned.rend(), {}, &Earned::share);
+    if (least->share > 0.0 && of_all > 0.0) {
       for (std::size_t e = 0; e < count; ++e) {
-        carried.model.effects[e].share = std::min(shares[e], of_all);
+        carried.model.effects[e].share = std::min(earned[e].share, of_all);
       }
       return;
     }
-    drop(carried, static_cast<std::size_t>(shares.rend() - least) - 1, kNotNeeded, baseline.body,
+    drop(carried, static_cast<std::size_t>(earned.rend() - least) - 1, least->why, baseline.body,
          parts);
   }
 }

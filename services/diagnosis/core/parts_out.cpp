@@ -102,6 +102,12 @@ double PartsOut::rmse(const Model& model) const {
   return out.residual.norm() / std::sqrt(std::max(sum_of(signals_.weight()), 1.0));
 }
 
+double PartsOut::slow_share(const OutOfParts& without, const OutOfParts& with) const {
+  const double period = apart_.rate_hz() / apart_.lowest_excited_hz();
+  return diagnosis::slow_share(without.residual - with.residual, apart_.stretches(),
+                               static_cast<std::size_t>(period));
+}
+
 Share PartsOut::share(const OutOfParts& without, const OutOfParts& with) const {
   if (!with.finite) return {};
   if (!without.finite) return {.estimate = 1.0};

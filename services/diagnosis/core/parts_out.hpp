@@ -43,6 +43,10 @@ class PartsOut {
   /// with the smaller standard error.
   [[nodiscard]] Share share(const OutOfParts& without, const OutOfParts& with) const;
 
+  /// [-] of the power of what one model predicts beyond the other that a mean over one period of
+  /// the lowest excited frequency keeps, README Eq. DG-77.
+  [[nodiscard]] double slow_share(const OutOfParts& without, const OutOfParts& with) const;
+
   /// Of the body of a model whose effects scale it, or do not, from now on.  The prior stays with
   /// the caller.
   void assume(const ResponsePrior& prior, bool of_scaled_body);

@@ -78,4 +78,21 @@ Share share_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& differenc
   return share;
 }
 
+double slow_share(Eigen::VectorXd signal, const std::vector<Stretch>& stretches,
+                  std::size_t period) {
+  signal.array() -= signal.mean();
+  const auto length = static_cast<Eigen::Index>(std::max<std::size_t>(period, 1));
+  double slow = 0.0;
+  for (const Stretch& stretch : stretches) {
+    const auto first = static_cast<Eigen::Index>(stretch.first);
+    const auto end = static_cast<Eigen::Index>(stretch.end);
+    for (Eigen::Index n = first; n < end; ++n) {
+      const Eigen::Index from = std::max(first, n - length / 2);
+      const Eigen::Index to = std::min(end, from + length);
+      slow += std::pow(signal.segment(from, to - from).mean(), 2);
+    }
+  }
+  return slow / std::max(signal.squaredNorm(), 1e-300);
+}
+
 }  // namespace stillhand::diagnosis

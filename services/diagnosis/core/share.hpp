@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "services/diagnosis/core/fitting/blocks.hpp"
+#include "services/diagnosis/core/measurement.hpp"
 
 namespace stillhand::diagnosis {
 
@@ -30,5 +31,10 @@ double rounded_share(double share);
 /// Pure.
 Share share_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& difference,
                const Blocks& parts);
+
+/// [-] of a signal's power about its mean that a mean over one period keeps, README Eq. DG-77.
+/// @param period  [samples]
+double slow_share(Eigen::VectorXd signal, const std::vector<Stretch>& stretches,
+                  std::size_t period);
 
 }  // namespace stillhand::diagnosis

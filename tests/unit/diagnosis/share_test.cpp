@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "tests/unit/diagnosis/made_measurement.hpp"
@@ -112,6 +113,22 @@ TEST(ShareTest, AnEffectThatActsInPartKeepsItsNumbersInAFit) {
   EXPECT_EQ(numbers.size(), packed(made::model_of(made::two_pole_body())).size());
   unpack(0.5 * numbers, model);
   EXPECT_EQ(model.effects[0].coefficients[0], 2.0);
+}
+
+// A mean over 100 samples keeps nothing of a sine of 100 but at the end, where it is over fewer: 50
+// of 6000.  Of one of 6000 it keeps sinc^2(1/60) = 0.999.
+TEST(ShareTest, WhatAMeanOverAPeriodKeepsIsSlow) {
+  Eigen::VectorXd quick(kCount);
+  Eigen::VectorXd slow(kCount);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    const double turn = 2.0 * std::numbers::pi * static_cast<double>(n) / 100.0;
+    quick[static_cast<Eigen::Index>(n)] = std::sin(turn);
+    slow[static_cast<Eigen::Index>(n)] = std::sin(turn / 60.0);
+  }
+  const std::vector<Stretch> whole{{0, kCount, 0.0}};
+  EXPECT_LT(slow_share(quick, whole, 100), 0.01);
+  EXPECT_GT(slow_share(slow, whole, 100), 0.99);
+  EXPECT_NEAR(slow_share(quick + slow, whole, 100), 0.5, 0.01);
 }
 
 }  // namespace
