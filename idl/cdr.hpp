@@ -16,6 +16,7 @@ class TrackingSample;
 class TrialAssignment;
 class FeedthroughModel;
 class AugmentedModel;
+class Event;
 }  // namespace stillhand_msgs
 
 namespace stillhand {
@@ -24,7 +25,7 @@ namespace stillhand {
 /// bytes make it one of today.  Zero is what the added fields are without a mitigation.
 struct EarlierForm {
   std::size_t size = 0;     ///< [bytes] with the encapsulation; 0: any
-  std::size_t missing = 0;  ///< [bytes] to add; 0: there was no earlier form
+  std::size_t missing = 0;  ///< [bytes] to add behind a multiple of 4; 0: no earlier form
   [[nodiscard]] bool fits(std::size_t bytes) const noexcept {
     // A transport fills a message up to four bytes.
     return missing > 0 && (size == 0 || bytes == size || bytes == (size + 3) / 4 * 4);
@@ -47,11 +48,15 @@ inline constexpr EarlierForm kEarlierForm<stillhand_msgs::FeedthroughModel>{0, 1
 template <>
 inline constexpr EarlierForm kEarlierForm<stillhand_msgs::AugmentedModel>{0, 8};
 
+// Ends in a text, too.
+template <>
+inline constexpr EarlierForm kEarlierForm<stillhand_msgs::Event>{0, 4};
+
 /// True for the types above, by their names in a schema.
 inline bool has_earlier_form(std::string_view type) noexcept {
   return type == "stillhand_msgs::MotorCommand" || type == "stillhand_msgs::TrackingSample" ||
          type == "stillhand_msgs::TrialAssignment" || type == "stillhand_msgs::FeedthroughModel" ||
-         type == "stillhand_msgs::AugmentedModel";
+         type == "stillhand_msgs::AugmentedModel" || type == "stillhand_msgs::Event";
 }
 
 /// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.  A
@@ -76,7 +81,7 @@ bool from_cdr(std::span<const std::byte> bytes, Message& message) {
   constexpr EarlierForm kEarlier = kEarlierForm<Message>;
   if (!kEarlier.fits(bytes.size())) return false;
   std::vector<std::byte> filled(bytes.begin(), bytes.end());
-  filled.resize(filled.size() + kEarlier.missing);
+  filled.resize((filled.size() + 3) / 4 * 4 + kEarlier.missing);
   return decoded(filled.data(), filled.size());
 }
 

@@ -43,9 +43,6 @@ inline constexpr std::string_view kTap = "tap";
 /// The client that may send requests to a session from outside; no process waits for it.
 inline constexpr std::string_view kDashboard = "dashboard";
 
-/// Text of the rig's event after an emergency stop opened the interlock.
-inline constexpr std::string_view kEmergencyStop = "emergency stop";
-
 /// Start of the recorder's note with its file name, if the process ends with the session.
 inline constexpr std::string_view kRecordingNote = "records ";
 

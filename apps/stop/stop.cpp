@@ -87,9 +87,8 @@ class Asked {
  private:
   void take(const stillhand_msgs::Event& event) {
     if (event.source() != "rig") return;
-    if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED) {
-      stopped_ = event.text() == topics::kEmergencyStop.data();
-    }
+    // For good: the event of another opening may come behind it.
+    stopped_ = stopped_ || event.code() == stillhand_msgs::CODE_EMERGENCY_STOP;
     if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && stopped_) zero_ = true;
   }
 
@@ -120,7 +119,10 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
     for (Asked& asked : all) asked.ask();
   };
   for (const RunningSession& session : sessions) {
-    if (!in_time()) break;
+    if (!in_time()) {
+      failures += fmt::format("stillhand stop: {}: no time was left to ask it\n", name_of(session));
+      continue;
+    }
     try {
       all.emplace_back(options, session);
     } catch (const std::exception& error) {

@@ -173,7 +173,7 @@ const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick t
 }
 
 const char* Shell::why_opened(const Trial& trial) const noexcept {
-  if (interlock_.stopped()) return topics::kEmergencyStop.data();
+  if (interlock_.stopped()) return "emergency stop";
   if (const char* unsound = plant_.unsound()) return unsound;
   if (drive_ended(trial)) return "growing oscillation of the stick";
   if (permission_.motion_lost(trial)) return "no commands of motion";
@@ -198,7 +198,9 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
       interlock_report_.step(interlock_.latched(trial) || permission_.latched(trial),
                              interlock_.stopped(), tick, motor_force_n);
   if (notice.opened) {
-    service_.note_event(stillhand_msgs::EVENT_INTERLOCK_OPENED, why_opened(trial));
+    service_.note_event(
+        stillhand_msgs::EVENT_INTERLOCK_OPENED, why_opened(trial), 0.0,
+        interlock_.stopped() ? stillhand_msgs::CODE_EMERGENCY_STOP : stillhand_msgs::CODE_NONE);
   }
   if (notice.force_zero) {
     service_.note_event(stillhand_msgs::EVENT_FORCE_ZERO, "",

@@ -111,19 +111,21 @@ void Reporter::publish_events() {
     Note note;
     int count;
   };
-  // Kind, topic, peer, text.
-  using Key = std::tuple<stillhand_msgs::EventKind, const topics::Topic*, std::string, std::string>;
+  // Kind, code, topic, peer, text.
+  using Key = std::tuple<stillhand_msgs::EventKind, stillhand_msgs::EventCode, const topics::Topic*,
+                         std::string, std::string>;
   std::map<Key, Merged> merged;
   Note note{};
   while (queue_.pop(note)) {
-    const auto [place, first] =
-        merged.try_emplace(Key{note.kind, note.topic, note.peer, note.text}, Merged{note, 0});
+    const auto [place, first] = merged.try_emplace(
+        Key{note.kind, note.code, note.topic, note.peer, note.text}, Merged{note, 0});
     ++place->second.count;
     place->second.note.by_us = std::max(place->second.note.by_us, note.by_us);
   }
   for (const auto& [key, entry] : merged) {
     stillhand_msgs::Event event;
     event.kind(entry.note.kind);
+    event.code(entry.note.code);
     event.tick(entry.note.tick);
     event.source(bus_.options().service);
     event.topic(entry.note.topic == nullptr ? std::string() : std::string(entry.note.topic->name));

@@ -19,6 +19,7 @@ namespace stillhand::runtime {
 /// One event, plain enough to leave a control path without lock or allocation.
 struct Note {
   stillhand_msgs::EventKind kind;
+  stillhand_msgs::EventCode code;
   const topics::Topic* topic;  ///< nullptr: none
   Tick tick;
   double by_us;

@@ -78,6 +78,7 @@ Service::Service(ServiceOptions options, Stop& stop) : options_(std::move(option
   }
   bus_options.on_incident = [this](const BusIncident& incident) {
     Note note{event_kind(incident.kind),
+              stillhand_msgs::CODE_NONE,
               incident.topic,
               tick_.load(std::memory_order_relaxed),
               incident.by_us,
@@ -144,8 +145,9 @@ void Service::on_incident(std::function<void(const BusIncident&)> call) {
   on_incident_ = std::move(call);
 }
 
-void Service::note_event(stillhand_msgs::EventKind kind, const char* text, double by_us) noexcept {
-  Note note{kind, nullptr, tick_.load(std::memory_order_relaxed), by_us, {}, {}};
+void Service::note_event(stillhand_msgs::EventKind kind, const char* text, double by_us,
+                         stillhand_msgs::EventCode code) noexcept {
+  Note note{kind, code, nullptr, tick_.load(std::memory_order_relaxed), by_us, {}, {}};
   std::strncpy(note.text, text, sizeof(note.text) - 1);
   reporting_->reporter.tell(note);
 }

@@ -68,7 +68,8 @@ class Service {
   /// The session's state by trial control; the experiment, which writes it, calls this itself.
   void follow_session(stillhand_msgs::SessionState session);
   /// An event on the bus, from any thread, without lock or allocation.
-  void note_event(stillhand_msgs::EventKind kind, const char* text, double by_us = 0.0) noexcept;
+  void note_event(stillhand_msgs::EventKind kind, const char* text, double by_us = 0.0,
+                  stillhand_msgs::EventCode code = stillhand_msgs::CODE_NONE) noexcept;
 
   /// Starts the bus and the status thread, and waits for the stop.
   void run();

@@ -113,5 +113,20 @@ TEST(EarlierFormTest, AModelOfAForceIsRead) {
   }
 }
 
+TEST(EarlierFormTest, AnEventWithoutACodeIsRead) {
+  for (const std::string text : {"", "a", "ab", "abc", "abcd"}) {
+    const auto old = bytes_of(U32{1}, I64{2}, I64{3}, U32{stillhand_msgs::EVENT_INTERLOCK_OPENED},
+                              std::string("rig"), std::string(), std::string(), 4.5, text);
+    for (const auto& bytes : {old, filled_up(old)}) {
+      stillhand_msgs::Event message;
+      message.code(stillhand_msgs::CODE_EMERGENCY_STOP);
+      ASSERT_TRUE(from_cdr(bytes, message)) << text;
+      EXPECT_EQ(std::tuple(message.tick(), message.by_us()), std::tuple(2, 4.5));
+      EXPECT_STREQ(message.text().c_str(), text.c_str());
+      EXPECT_EQ(message.code(), stillhand_msgs::CODE_NONE);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace stillhand

@@ -24,17 +24,21 @@ struct Rig {
         events(bus.publisher<stillhand_msgs::Event>(topics::kEvent)) {
     bus.subscribe<stillhand_msgs::SessionCommand>(
         topics::kSessionCommand, [this](const stillhand_msgs::SessionCommand&, const auto&) {
-          report(stillhand_msgs::EVENT_INTERLOCK_OPENED, topics::kEmergencyStop.data());
-          report(stillhand_msgs::EVENT_FORCE_ZERO, "");
+          // As a reporter sorts and counts what happened within a tenth of a second.
+          report(stillhand_msgs::EVENT_INTERLOCK_OPENED, "emergency stop, 2 times",
+                 stillhand_msgs::CODE_EMERGENCY_STOP);
+          report(stillhand_msgs::EVENT_INTERLOCK_OPENED, "rig", stillhand_msgs::CODE_NONE);
+          report(stillhand_msgs::EVENT_FORCE_ZERO, "", stillhand_msgs::CODE_NONE);
         });
     bus.start();
   }
   ~Rig() { bus.stop_receiving(); }
-  void report(stillhand_msgs::EventKind kind, const char* text) {
+  void report(stillhand_msgs::EventKind kind, const char* text, stillhand_msgs::EventCode code) {
     stillhand_msgs::Event event;
     event.source("rig");
     event.kind(kind);
     event.text(text);
+    event.code(code);
     events.write(event);
   }
   runtime::Bus bus;

@@ -188,10 +188,7 @@ void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at
   events_.push_front({at_ns, event});
   if (events_.size() > kMostEvents) events_.pop_back();
   if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && options_.blinded) hide_delay();
-  if (event.kind() == stillhand_msgs::EVENT_INTERLOCK_OPENED &&
-      event.text() == topics::kEmergencyStop.data()) {
-    emergency_ns_ = at_ns;
-  }
+  if (event.code() == stillhand_msgs::CODE_EMERGENCY_STOP) emergency_ns_ = at_ns;
   if (const std::string text = event.text().to_string();
       device_rig::is_parts_note(event.source().to_string(), text)) {
     rig_parts_ = text.substr(device_rig::kPartsNote.size());

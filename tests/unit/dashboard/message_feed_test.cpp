@@ -51,7 +51,7 @@ class MessageFeedTest : public ::testing::Test {
     stillhand_msgs::Event event;
     event.rig(1);
     event.kind(stillhand_msgs::EVENT_INTERLOCK_OPENED);
-    event.text(topics::kEmergencyStop.data());
+    event.code(stillhand_msgs::CODE_EMERGENCY_STOP);
     take(sut_,
          sut_.add({std::string(topics::kEvent.name), std::string(topics::kEvent.type),
                    "stillhand/1/rig", false}),

@@ -82,13 +82,13 @@ stillhand_msgs::Event event_of(const std::string& text) {
 }
 
 // Every field follows the one before, so a message that ends early lacks at least one byte of its
-// last field, a text.
+// last fields: a text, and the code that a message of before did not have.
 TEST(FromBytesTest, AMessageThatEndsEarlyIsRefusedAtEveryLength) {
   const auto support = support_of<stillhand_msgs::Event>();
   auto event = event_of("two ticks lost");
   const SerializedSample whole = to_bytes(support, &event);
   // A text ends in a zero byte, which a reader may leave out, and CDR may pad to four bytes.
-  constexpr std::size_t kTail = 4;
+  constexpr std::size_t kTail = 4 + sizeof(stillhand_msgs::EventCode);
   for (std::size_t size = 1; size + kTail < whole.size(); ++size) {
     const SerializedSample cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     stillhand_msgs::Event back;
