@@ -2,6 +2,7 @@
 #include "apps/lab/hosts.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
@@ -144,7 +145,10 @@ Place Hosts::of(std::string_view service) const {
 
 Launch Hosts::placed(const Launch& local) const {
   const RemoteHost* remote = remote_of(local.name);
-  return remote == nullptr ? local : remote->on_it(local);
+  if (remote != nullptr) return remote->on_it(local);
+  Launch launch = local;
+  launch.arguments.insert(launch.arguments.end(), {"--end-with-parent", std::to_string(getpid())});
+  return launch;
 }
 
 void Hosts::clear() noexcept {

@@ -18,17 +18,11 @@ namespace {
 using Arguments = std::vector<std::string>;
 
 Arguments shared_words(const LabOptions& options, const Hosts& hosts, const Place& place) {
-  Arguments words{"--domain",
-                  fmt::to_string(hosts.domain()),
-                  "--rig",
-                  fmt::to_string(options.rig),
-                  "--seed",
-                  fmt::to_string(options.protocol.seed),
-                  "--profiles",
-                  place.profiles.string(),
-                  "--config",
-                  place.config.string(),
-                  "--end-with-parent"};
+  Arguments words{"--domain",   fmt::to_string(hosts.domain()),
+                  "--rig",      fmt::to_string(options.rig),
+                  "--seed",     fmt::to_string(options.protocol.seed),
+                  "--profiles", place.profiles.string(),
+                  "--config",   place.config.string()};
   if (options.real_time) words.push_back("--real-time");
   if (!place.security.empty()) words.insert(words.end(), {"--security", place.security.string()});
   return words;

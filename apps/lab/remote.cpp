@@ -175,7 +175,7 @@ Launch RemoteHost::on_it(const Launch& local) const {
   // lab holds, is closed.  In braces, so that the shell has read the whole script before another
   // command reads on.
   launch.standard_input = "{\n" + command +
-                          " < /dev/null &\n"
+                          " --end-with-parent $$ < /dev/null &\n"
                           "child=$!\n"
                           "{ cat; kill $child; sleep 10; kill -9 $child; } <&0 > /dev/null 2>&1 &\n"
                           "wait $child; status=$?\n"

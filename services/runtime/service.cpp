@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iostream>
+#include <optional>
 
 #include "idl/session_state.hpp"
 #include "services/contract/config_error.hpp"
@@ -178,7 +179,7 @@ int run_service(const std::string& name, int argc, char** argv,
   options.service = name;
   CLI::App cli("stillhand-" + name +
                ": one process of a session; `stillhand lab` starts all of them");
-  bool with_parent = false;
+  std::optional<pid_t> parent;
   cli.add_option("--domain", options.domain, "DDS domain, 0 to 232");
   cli.add_option("--rig", options.rig, "number of the rig on the bus");
   cli.add_option("--seed", options.seed, "seed of all randomness in this process");
@@ -197,7 +198,7 @@ int run_service(const std::string& name, int argc, char** argv,
   cli.add_option("--experiment", options.experiment,
                  "participant of the experiment that starts this process: no other one names the "
                  "session's sources or announces a trial [any, the first one]");
-  cli.add_flag("--end-with-parent", with_parent, "stop when the starting process ends");
+  cli.add_option("--end-with-parent", parent, "stop when this process, which starts it, ends");
   if (more_options) more_options(cli, options);
   try {
     cli.parse(argc, argv);
@@ -205,8 +206,8 @@ int run_service(const std::string& name, int argc, char** argv,
     return cli.exit(error) == 0 ? 0 : 2;
   }
   try {
-    if (with_parent) end_with_parent();
-    Stop stop;
+    Stop stop;  // a signal is kept for it from here on
+    if (parent) end_with_parent(*parent);
     if (options.real_time) {
       options.real_time = become_real_time(!options.security.empty(), priority_of(name));
       lock_memory();  // host_status tells whether it is

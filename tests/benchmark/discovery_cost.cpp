@@ -9,6 +9,7 @@
 // Packets are those that lo and the host's interface sent; a refused one counts twice, since the
 // refusal is a packet too.
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,7 @@ void say(const char* what, std::int64_t figure) {
 /// quiet.
 int member(const std::string& service, std::uint32_t rig, std::uint32_t count,
            const fs::path& profiles, const fs::path& quiet) {
-  runtime::end_with_parent();
+  runtime::end_with_parent(getppid());
   runtime::Stop stop;
   runtime::Bus::Options options;
   options.service = service;

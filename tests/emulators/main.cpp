@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // emulated_laboratory: a moteus drive behind a pseudo-terminal and a platform behind UDP, with the
 // simulated rig's body, stick and platform between them.  README.md.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -44,7 +46,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return cli.exit(error) == 0 ? 0 : 2;
   }
-  runtime::end_with_parent();
+  runtime::end_with_parent(getppid());
   if (!ordinary) runtime::become_real_time();
   const auto rig = rig::seeded(settings::load<rig::RigConfig>(config / "rig.yaml", "rig"), seed);
   std::optional<emulators::Person> person;

@@ -101,7 +101,7 @@ int run(int argc, char** argv) {
   cli.add_option("--config", config, "folder with rig.yaml and devices.yaml")->required();
   CLI11_PARSE(cli, argc, argv);
   std::signal(SIGPIPE, SIG_IGN);  // as every process of a session
-  runtime::end_with_parent();
+  runtime::end_with_parent(getppid());
   runtime::become_real_time();
   device_rig::DevicePlant plant(
       settings::load<rig::RigConfig>(config / "rig.yaml", "rig"),

@@ -47,9 +47,10 @@ void limit(int resource, rlim_t most) {
 }
 
 // In the child; never returns.  Nothing of the parent's is written, flushed or destroyed here.
-[[noreturn]] void run_child(int descriptor, const std::string& path,
+[[noreturn]] void run_child(pid_t parent, int descriptor, const std::string& path,
                             const std::function<void(Wire&)>& work) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it ended before
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, kMostProcessor_s);
   // What a library prints about a file goes nowhere: the parent says it in its own line.
@@ -165,6 +166,7 @@ void in_child(const std::string& path, const std::function<void(Wire&)>& work,
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::system_error(errno, std::generic_category(), "pipe2");
   }
+  const pid_t own = getpid();
   const pid_t id = fork();
   if (id < 0) {
     const int error = errno;
@@ -174,7 +176,7 @@ void in_child(const std::string& path, const std::function<void(Wire&)>& work,
   }
   if (id == 0) {
     close(ends[0]);
-    run_child(ends[1], path, work);
+    run_child(own, ends[1], path, work);
   }
   close(ends[1]);
   Child child(id);

@@ -60,6 +60,9 @@ OrdinaryWhile::~OrdinaryWhile() {
   sched_setscheduler(0, policy_, &parameter);
 }
 
-void end_with_parent() noexcept { prctl(PR_SET_PDEATHSIG, SIGTERM); }
+void end_with_parent(pid_t parent) noexcept {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) kill(getpid(), SIGTERM);
+}
 
 }  // namespace stillhand::runtime

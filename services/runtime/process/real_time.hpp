@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <string_view>
 
@@ -56,7 +58,8 @@ class OrdinaryWhile {
   int priority_;
 };
 
-/// SIGTERM for this process when its parent ends, so that a killed lab leaves no process behind.
-void end_with_parent() noexcept;
+/// SIGTERM for this process when its parent ends, so that a killed lab leaves no process behind; at
+/// once if it has ended already.  @param parent  as the parent knows itself, before it starts this
+void end_with_parent(pid_t parent) noexcept;
 
 }  // namespace stillhand::runtime

@@ -8,6 +8,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <regex>
 
 #include "apps/lab/keys.hpp"
 #include "services/contract/config_error.hpp"
@@ -157,8 +158,9 @@ TEST(RemoteHostTest, AProcessThereGetsItsWordsAndEndsWithItsInput) {
   host.prefix = here.path() / "still hand";
   fs::create_directories(host.prefix / "bin");
   const fs::path program = host.prefix / "bin" / "stillhand-rig";
-  std::ofstream(program) << "#!/bin/bash\nprintf '<%s>' \"$@\" > \"$1\"\nmv \"$1\" \"$1.all\"\n"
-                            "trap 'exit 7' TERM\nsleep 60 & wait\n";
+  std::ofstream(program)
+      << "#!/bin/bash\nprintf '<%s>' \"$@\" $PPID > \"$1\"\nmv \"$1\" \"$1.all\"\n"
+         "trap 'exit 7' TERM\nsleep 60 & wait\n";
   fs::permissions(program, fs::perms::owner_all);
   const fs::path told = here.path() / "told";
   Launch local;
@@ -175,7 +177,12 @@ TEST(RemoteHostTest, AProcessThereGetsItsWordsAndEndsWithItsInput) {
   Processes processes;
   processes.start(launch);
   ASSERT_TRUE(support::eventually([&] { return fs::exists(told.string() + ".all"); }));
-  EXPECT_EQ(text_of(told.string() + ".all"), "<" + told.string() + "><it's><two words><$HOME>");
+  const std::string words = text_of(told.string() + ".all");
+  const std::string own = "<" + told.string() + "><it's><two words><$HOME>";
+  EXPECT_EQ(words.substr(0, own.size()), own);
+  // The shell is what it ends with, as the kernel says.
+  EXPECT_TRUE(
+      std::regex_match(words.substr(own.size()), std::regex("<--end-with-parent><([0-9]+)><\\1>")));
   EXPECT_FALSE(processes.reap());
   processes.end("rig", 20.0);  // closes its input
   EXPECT_EQ(text_of(local.log), "");
