@@ -84,6 +84,8 @@ void Conductor::subscribe() {
           if (event.source == topics::kEndsLast && event.text.starts_with(topics::kRecordingNote)) {
             recording_ = event.text.substr(topics::kRecordingNote.size());
           }
+          if (event.source == topics::kEndsLast && message.code() == stillhand_msgs::CODE_RECORDED)
+            seen_.recorded_tick = std::max(seen_.recorded_tick, event.tick);
           if (seen_.events.size() < kMostEvents) seen_.events.push_back(std::move(event));
         });
       });
@@ -266,6 +268,13 @@ session::TrialOutcome Conductor::run(const session::PlannedTrial& planned) {
   outcome.stopped = result.stopped;
   outcome.aborted = result.aborted;
   for (const EventSeen& event : result.events) session::add_mark(outcome.marks, mark_of(event));
+  if (outcome.completed) {
+    const Trial& ended = result.trial;
+    RecordingWait wait(ended.start_tick + ended.duration_ticks + ended.ramp_ticks, trouble_);
+    drive(wait);
+    outcome.completed = wait.failure().empty();
+    outcome.aborted = wait.failure();
+  }
   outcome.misses = {result.misses.deadline, result.misses.cycle, result.misses.lost_ticks};
   return outcome;
 }

@@ -28,7 +28,7 @@ std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
 }
 
 void add(const MessageView& message, std::uint64_t at_ns, recording::MessageBatch& batch) {
-  batch.add({message.channel.id, message.sequence, at_ns, message.publish_time_ns, 0, 0},
+  batch.add({message.channel.id, message.sequence, at_ns, message.publish_time_ns, 0, 0, 0},
             message.bytes);
 }
 

@@ -34,6 +34,9 @@ Shell::Shell(runtime::Service& service, const KeepOptions& keep, const OfExperim
   recording_.emplace(options_of(service.options(), keep, place));
   service.on_trial([this](const Trial& trial, const auto& control) {
     service_.note_armed(trial.number);
+    if (trial.phase != TrialPhase::kIdle) {
+      end_tick_ = trial.start_tick + trial.duration_ticks + trial.ramp_ticks;
+    }
     if (is_running(control.session())) tell_file();
   });
 }
@@ -48,6 +51,7 @@ void Shell::tell_file() {
 
 void Shell::subscribe(const topics::Topic& topic) {
   const bool stream = topic.pattern == topics::Pattern::kStream1khz;
+  const bool truth = &topic == &topics::kRigTruth;  // the last that the rig writes of a tick
   // A recording is read by the names of its own session: those of another experiment are left out.
   const std::string& wanted = service_.options().experiment;
   std::optional<runtime::ParticipantId> naming;
@@ -56,18 +60,21 @@ void Shell::subscribe(const topics::Topic& topic) {
   }
   service_.bus().subscribe_serialized(
       topic,
-      [this, stream, naming](std::span<const std::byte> bytes,
-                             const runtime::Arrival& arrival) -> runtime::detail::SampleClock {
+      [this, stream, truth, naming](std::span<const std::byte> bytes,
+                                    const runtime::Arrival& arrival)
+          -> runtime::detail::SampleClock {
         if (naming && arrival.participant != *naming) return {true, -1, 0};
         if (arrival.writer != nullptr) {
-          recording_->take(*arrival.writer, {arrival.writer_number, arrival.sequence,
-                                             arrival.source_ns, arrival.logged_ns, bytes});
+          recording_->take(*arrival.writer,
+                           {arrival.writer_number, arrival.sequence, arrival.source_ns,
+                            arrival.logged_ns, arrival.received_ns, bytes});
         } else {
           unattributed_.fetch_add(1, std::memory_order_relaxed);
         }
         // What a stranger writes is recorded, too; the session's ticks are its sources'.
         const SampleHead head = stream && !arrival.foreign ? sample_head(bytes) : SampleHead{};
         if (head.tick >= 0) service_.note_tick(head.tick);
+        if (head.tick >= 0 && truth) rig_tick_.store(head.tick, std::memory_order_relaxed);
         return {true, head.tick, head.stamp_ns};
       });
 }
@@ -76,12 +83,24 @@ void Shell::subscribe(const topics::Topic& topic) {
 void Shell::watch() {
   while (!service_.stop().requested() && !recording_->tape().stopped()) {
     runtime::sleep_until_ns(runtime::monotonic_ns() + kWatch_ns);
+    keep_trial();
   }
   if (service_.options().one_session) see_others_out();
   if (recording_->tape().stopped()) {
     service_.note_event(stillhand_msgs::EVENT_NOTE,
                         "recording stopped: the file cannot be written");
   }
+}
+
+// A power failure takes nothing of a trial that counts.
+void Shell::keep_trial() {
+  constexpr Tick kLate_ticks = 50;  // of the other streams
+  const Tick end = end_tick_;
+  if (end == kept_tick_ || rig_tick_.load(std::memory_order_relaxed) < end + kLate_ticks) return;
+  kept_tick_ = end;
+  if (!recording_->tape().sync()) return;
+  service_.note_event(stillhand_msgs::EVENT_NOTE, "the trial is on the disk", 0.0,
+                      stillhand_msgs::CODE_RECORDED);
 }
 
 // The last messages of the other processes belong to the session.

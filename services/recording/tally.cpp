@@ -51,7 +51,7 @@ void Tally::take(const FoundWriter& writer, const TappedSample& sample) {
   source.count.step(sample.sequence, source.has_ticks ? sample_head(sample.bytes).tick : -1);
   // MCAP has 32 bits for the sequence; a gap remains visible.
   tape_->put(source.channel, static_cast<std::uint32_t>(sample.sequence), sample.logged_ns,
-             sample.source_ns, sample.bytes);
+             sample.source_ns, sample.received_ns, sample.bytes);
 }
 
 std::map<std::string, TopicTally> Tally::topics(const std::vector<FoundWriter>& found) const {

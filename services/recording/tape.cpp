@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
@@ -63,7 +64,7 @@ struct Tape::Part {
   McapWriter writer;
   std::map<std::uint32_t, ChannelId> ids;
   std::map<std::string, SchemaId> schemas;
-  std::uint64_t first_ns = 0;  // log time of the first message, 0: none yet
+  std::optional<std::int64_t> first_ns;  // of the first message, as received
 };
 
 Tape::Tape(TapeOptions options)
@@ -93,7 +94,8 @@ std::uint32_t Tape::add_channel(Channel channel, std::string schema_name,
 }
 
 void Tape::put(std::uint32_t channel, std::uint32_t sequence, std::int64_t log_time_ns,
-               std::int64_t publish_time_ns, std::span<const std::byte> bytes) {
+               std::int64_t publish_time_ns, std::int64_t received_ns,
+               std::span<const std::byte> bytes) {
   bool much = false;
   {
     const std::lock_guard lock(mutex_);
@@ -107,11 +109,19 @@ void Tape::put(std::uint32_t channel, std::uint32_t sequence, std::int64_t log_t
       return;
     }
     filling_.add({channel, sequence, static_cast<std::uint64_t>(log_time_ns),
-                  static_cast<std::uint64_t>(publish_time_ns), 0, 0},
+                  static_cast<std::uint64_t>(publish_time_ns), received_ns, 0, 0},
                  bytes);
     much = filling_.bytes.size() > kWakeBytes;
   }
   if (much) wake_.notify_one();
+}
+
+bool Tape::sync() {
+  std::unique_lock lock(mutex_);
+  sync_wanted_ = true;
+  wake_.notify_one();
+  synced_.wait(lock, [this] { return !sync_wanted_; });
+  return !stopped();
 }
 
 void Tape::trigger(const std::string& why) {
@@ -136,10 +146,12 @@ void Tape::work(const std::stop_token& stop) {
   MessageBatch batch;
   for (bool last = false; !last;) {
     std::vector<std::string> triggers;
+    bool sync = false;
     {
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, stop, kWriteInterval,
-                     [this] { return filling_.bytes.size() > kWakeBytes; });
+                     [this] { return sync_wanted_ || filling_.bytes.size() > kWakeBytes; });
+      sync = sync_wanted_;
       last = stop.stop_requested();
       batch.clear();
       std::swap(batch, filling_);
@@ -155,7 +167,20 @@ void Tape::work(const std::stop_token& stop) {
         stop_because(status.text);
       }
     }
+    if (sync) put_on_disk();
   }
+}
+
+// Of a part that is closed, close_part() has done it.
+void Tape::put_on_disk() {
+  Status status = part_ ? part_->writer.flush_chunk() : Status{};
+  if (part_ && status.ok()) status = part_->file.flush();
+  if (!status.ok()) stop_because(status.text);
+  {
+    const std::lock_guard lock(mutex_);
+    sync_wanted_ = false;
+  }
+  synced_.notify_all();
 }
 
 void Tape::take_batch(MessageBatch& batch) {
@@ -183,15 +208,16 @@ void Tape::write_batch(const MessageBatch& batch) {
   std::uint64_t written = 0;
   std::vector<std::uint64_t> by_channel;
   for (const HeldMessage& held : batch.messages) {
-    if (part_ && part_->first_ns != 0 &&
-        is_full(options_.rotation, part_->file.size(),
-                static_cast<std::int64_t>(held.log_time_ns - part_->first_ns))) {
+    if (part_ && part_->first_ns &&
+        is_full(options_.rotation, part_->file.size(), held.received_ns - *part_->first_ns)) {
       close_part();
       if (!stopped()) open_part();
     }
     if (!part_) break;
-    if (part_->first_ns == 0) part_->first_ns = held.log_time_ns;
-    const Status status = part_->writer.write(id_of(held.channel), held.sequence, held.log_time_ns,
+    const std::optional<ChannelId> id = id_of(held.channel);
+    if (!id) continue;  // dropped, and counted
+    if (!part_->first_ns) part_->first_ns = held.received_ns;
+    const Status status = part_->writer.write(*id, held.sequence, held.log_time_ns,
                                               held.publish_time_ns, batch.content(held));
     if (status.ok()) {
       ++written;
@@ -208,9 +234,10 @@ void Tape::write_batch(const MessageBatch& batch) {
   if (part_) status_.bytes = part_->file.size();
 }
 
-ChannelId Tape::id_of(std::uint32_t channel) {
+std::optional<ChannelId> Tape::id_of(std::uint32_t channel) {
   const auto known = part_->ids.find(channel);
   if (known != part_->ids.end()) return known->second;
+  if (part_->ids.size() >= McapWriter::kMaxIds) return std::nullopt;
   const std::lock_guard lock(mutex_);
   return part_->define(channel, definitions_[channel]);
 }
@@ -249,7 +276,8 @@ void Tape::close_part() {
       static_cast<void>(part_->writer.add_metadata(words.name, words.texts));
     }
   }
-  const Status status = part_->writer.close();
+  Status status = part_->writer.close();
+  if (status.ok()) status = part_->file.flush();
   part_.reset();
   if (!status.ok()) stop_because(status.text);
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -69,7 +70,11 @@ class Tape {
   std::uint32_t add_channel(Channel channel, std::string schema_name, std::string_view schema_text);
   /// Copies one message into the queue; any thread; does not wait for the disk.
   void put(std::uint32_t channel, std::uint32_t sequence, std::int64_t log_time_ns,
-           std::int64_t publish_time_ns, std::span<const std::byte> bytes);
+           std::int64_t publish_time_ns, std::int64_t received_ns,
+           std::span<const std::byte> bytes);
+  /// Waits until the disk has every message that was put before; not after close(), and not from
+  /// two threads.  @returns false when the tape stopped instead
+  bool sync();
 
   /// A paused tape ignores messages and counts them.
   void set_paused(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }
@@ -96,7 +101,9 @@ class Tape {
   void take_batch(MessageBatch& batch);
   void write_batch(const MessageBatch& batch);
   void write_window(const std::string& why);
-  ChannelId id_of(std::uint32_t channel);
+  /// Nothing: the file has as many channels as MCAP allows.
+  std::optional<ChannelId> id_of(std::uint32_t channel);
+  void put_on_disk();
   bool open_part();
   void close_part();
   void guard_disk();
@@ -114,6 +121,8 @@ class Tape {
   std::vector<Definition> definitions_;
   std::vector<std::uint64_t> written_;
   std::vector<std::string> triggers_;
+  bool sync_wanted_ = false;
+  std::condition_variable_any synced_;
   TapeStatus status_;
   std::atomic<bool> paused_{false};
   std::atomic<bool> stopped_{false};

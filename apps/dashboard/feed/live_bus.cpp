@@ -32,7 +32,7 @@ void LiveBus::take(const runtime::FoundWriter& writer, const runtime::TappedSamp
   }
   filling_.add({known->second, static_cast<std::uint32_t>(sample.sequence),
                 static_cast<std::uint64_t>(sample.logged_ns),
-                static_cast<std::uint64_t>(sample.source_ns), 0, 0},
+                static_cast<std::uint64_t>(sample.source_ns), sample.received_ns, 0, 0},
                sample.bytes);
 }
 

@@ -43,4 +43,16 @@ Actions ModelUse::step(Seen& seen, std::int64_t now_ns) {
   return {};
 }
 
+Actions RecordingWait::step(Seen& seen, std::int64_t now_ns) {
+  constexpr std::int64_t kLimit_ns = 10'000'000'000;
+  if (limit_ns_ < 0) limit_ns_ = now_ns + kLimit_ns;
+  const Wait wait = trouble_.wait(seen.recorded_tick >= end_tick_, seen, limit_ns_, now_ns);
+  if (wait == Wait::kGoesOn) return {};
+  finish();
+  if (wait != Wait::kOver) {
+    failure_ = trouble_.why_stopped(seen, "the recorder's disk did not have the trial within 10 s");
+  }
+  return {};
+}
+
 }  // namespace stillhand::lab

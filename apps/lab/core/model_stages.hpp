@@ -40,4 +40,21 @@ class ModelUse final : public Stage {
   std::string failure_;
 };
 
+/// Waits until the recorder's disk has a trial, at most 10 s.
+class RecordingWait final : public Stage {
+ public:
+  /// @param end_tick  first tick after the trial
+  RecordingWait(Tick end_tick, Trouble& trouble) : end_tick_(end_tick), trouble_(trouble) {}
+
+  Actions step(Seen& seen, std::int64_t now_ns) override;
+  /// Why the trial is not there; empty: it is.
+  [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+
+ private:
+  Tick end_tick_;
+  Trouble& trouble_;
+  std::int64_t limit_ns_ = -1;  // -1: before the first step
+  std::string failure_;
+};
+
 }  // namespace stillhand::lab

@@ -83,6 +83,7 @@ struct Death {
 struct Seen {
   std::map<std::string, ProcessSeen, std::less<>> processes;
   std::vector<EventSeen> events;
+  Tick recorded_tick = -1;  ///< the recorder's disk has what ended before; -1: nothing
   std::optional<ModelSeen> model;
   std::optional<Death> ended;                ///< until Trouble takes it
   std::vector<std::string> missing_peers;    ///< of the conductor's own endpoints

@@ -7,13 +7,12 @@ namespace stillhand::recording {
 
 void EventWindow::add(MessageBatch batch) {
   if (batch.messages.empty()) return;
-  const std::uint64_t newest_ns = batch.messages.back().log_time_ns;
-  const auto keep_ns = static_cast<std::uint64_t>(keep_ns_);
+  const std::int64_t newest_ns = batch.messages.back().received_ns;
   bytes_ += batch.bytes.size();
   messages_ += batch.messages.size();
   batches_.push_back(std::move(batch));
   while (batches_.size() > 1 &&
-         batches_.front().messages.back().log_time_ns + keep_ns < newest_ns) {
+         batches_.front().messages.back().received_ns + keep_ns_ < newest_ns) {
     drop_oldest();
   }
   while (batches_.size() > 1 && bytes_ > max_bytes_) {

@@ -14,7 +14,8 @@ struct HeldMessage {
   std::uint32_t sequence;
   std::uint64_t log_time_ns;
   std::uint64_t publish_time_ns;
-  std::size_t begin;  ///< in the batch's bytes
+  std::int64_t received_ns;  ///< CLOCK_MONOTONIC: ages do not follow a clock that is set
+  std::size_t begin;         ///< in the batch's bytes
   std::size_t size;
 };
 

@@ -111,7 +111,7 @@ void WriterEndpoint::on_offered_incompatible_qos(edds::DataWriter* /*writer*/,
 
 ReaderEndpoint::ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus::Options& options,
                                const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
-                               Deliver deliver, const FoundWriters* writers)
+                               Deliver deliver, FoundWriters* writers)
     : Endpoint(row, peers, options, supervising),
       source_(Sources::writer_of(row)),
       sample_(std::move(sample)),

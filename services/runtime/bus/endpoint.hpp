@@ -99,7 +99,7 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   /// @param writers  where `deliver` hears of the writer, or nullptr
   ReaderEndpoint(const topics::Topic& row, Peers& peers, const Bus::Options& options,
                  const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
-                 Deliver deliver, const FoundWriters* writers);
+                 Deliver deliver, FoundWriters* writers);
 
   bool enable() override {
     return reader->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;

@@ -30,6 +30,7 @@ struct TappedSample {
   std::int64_t sequence;             ///< RTPS sequence number of that writer
   std::int64_t source_ns;            ///< [ns] system clock of the writer's host, as DDS stamped it
   std::int64_t logged_ns;            ///< [ns] system clock of this host
+  std::int64_t received_ns;          ///< [ns] CLOCK_MONOTONIC
   std::span<const std::byte> bytes;  ///< CDR with encapsulation header, valid during the call
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/bus/found_writers.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "idl/topics.hpp"
@@ -31,7 +32,7 @@ void FoundWriters::note_participant(const GuidPrefix_t& prefix, const std::strin
   participants_[prefix] = name;
   for (const auto& [handle, number] : by_handle_) {
     if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix == prefix) {
-      writers_[number].participant = name;
+      writers_.at(number).writer.participant = name;
     }
   }
 }
@@ -43,9 +44,10 @@ void FoundWriters::note_participant(const ParticipantDiscoveryInfo& info) {
     return note_participant(prefix, info.info.m_participantName.to_string());
   }
   const std::lock_guard lock(mutex_);
+  participants_.erase(prefix);
   for (const auto& [handle, number] : by_handle_) {
     if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix == prefix) {
-      writers_[number].present = false;
+      writers_.at(number).writer.present = false;
     }
   }
 }
@@ -56,10 +58,10 @@ std::optional<std::size_t> FoundWriters::note_writer(const WriterDiscoveryInfo& 
   const std::lock_guard lock(mutex_);
   const auto known = by_handle_.find(handle);
   if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
-    if (known != by_handle_.end()) writers_[known->second].present = false;
+    if (known != by_handle_.end()) writers_.at(known->second).writer.present = false;
     return std::nullopt;
   }
-  if (known != by_handle_.end()) return std::nullopt;
+  if (known != by_handle_.end() || !make_room()) return std::nullopt;
   FoundWriter writer;
   writer.topic = data.topicName().to_string();
   writer.type = data.typeName().to_string();
@@ -75,15 +77,26 @@ std::optional<std::size_t> FoundWriters::note_writer(const WriterDiscoveryInfo& 
   if (const topics::Topic* row = topics::find(writer.topic); row != nullptr) {
     writer.profile = std::string(topics::profile_of(row->pattern));
   }
-  by_handle_.emplace(handle, writers_.size());
-  writers_.push_back(std::move(writer));
-  return writers_.size() - 1;
+  by_handle_.emplace(handle, next_);
+  writers_.emplace(next_, Entry{std::move(writer), handle, false});
+  return next_++;
 }
 
-std::optional<std::size_t> FoundWriters::find(const Handle& writer) const {
+bool FoundWriters::make_room() {
+  if (writers_.size() < kMost) return true;
+  const auto left = std::ranges::find_if(
+      writers_, [](const auto& each) { return !each.second.writer.present && !each.second.heard; });
+  if (left == writers_.end()) return false;
+  by_handle_.erase(left->second.handle);
+  writers_.erase(left);
+  return true;
+}
+
+std::optional<std::size_t> FoundWriters::find(const Handle& writer) {
   const std::lock_guard lock(mutex_);
   const auto found = by_handle_.find(writer);
   if (found == by_handle_.end()) return std::nullopt;
+  writers_.at(found->second).heard = true;
   return found->second;
 }
 
@@ -95,13 +108,13 @@ FoundWriter FoundWriters::complete(FoundWriter writer) const {
 
 FoundWriter FoundWriters::at(std::size_t number) const {
   const std::lock_guard lock(mutex_);
-  return complete(writers_.at(number));
+  return complete(writers_.at(number).writer);
 }
 
 std::vector<FoundWriter> FoundWriters::all() const {
   const std::lock_guard lock(mutex_);
   std::vector<FoundWriter> all;
-  for (const FoundWriter& writer : writers_) all.push_back(complete(writer));
+  for (const auto& [number, entry] : writers_) all.push_back(complete(entry.writer));
   return all;
 }
 

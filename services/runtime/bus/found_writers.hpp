@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <filesystem>
@@ -16,10 +15,13 @@
 
 namespace stillhand::runtime {
 
-/// Every discovered writer, numbered in the order of discovery; writers that left stay.
-/// Any thread; every call locks.
+/// Discovered writers, numbered in the order of discovery.  Those that left stay, up to kMost
+/// altogether: then the first that left without a sample makes room, and if there is none, a new
+/// writer is not found.  So strangers that come and go fill no memory.  Any thread; every call
+/// locks.
 class FoundWriters {
  public:
+  static constexpr std::size_t kMost = 65535;  ///< what one recording can hold (MCAP)
   using Handle = eprosima::fastrtps::rtps::InstanceHandle_t;
 
   /// Discovery does not carry HISTORY, so the depth is that of the catalogue's profiles.  Before
@@ -34,16 +36,24 @@ class FoundWriters {
   std::optional<std::size_t> note_writer(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& info,
                                          bool wanted = true);
 
-  [[nodiscard]] std::optional<std::size_t> find(const Handle& writer) const;
+  /// Number of the writer of a sample.
+  std::optional<std::size_t> find(const Handle& writer);
   /// As known now.
   [[nodiscard]] FoundWriter at(std::size_t number) const;
   [[nodiscard]] std::vector<FoundWriter> all() const;
 
  private:
+  struct Entry {
+    FoundWriter writer;
+    Handle handle;
+    bool heard = false;  ///< a sample came from it
+  };
   [[nodiscard]] FoundWriter complete(FoundWriter writer) const;
+  bool make_room();
 
   mutable std::mutex mutex_;
-  std::deque<FoundWriter> writers_;
+  std::map<std::size_t, Entry> writers_;  // by number
+  std::size_t next_ = 0;
   std::map<Handle, std::size_t> by_handle_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> participants_;
   std::map<std::string, std::int32_t> depth_of_;  // by profile
@@ -58,13 +68,13 @@ class SampleWriters {
     FoundWriter writer;
   };
 
-  explicit SampleWriters(const FoundWriters& all) : all_(all) {}
+  explicit SampleWriters(FoundWriters& all) : all_(all) {}
 
   /// Valid as long as this object; nullptr for a writer that discovery did not announce.
   const Entry* of(const FoundWriters::Handle& writer);
 
  private:
-  const FoundWriters& all_;
+  FoundWriters& all_;
   std::map<FoundWriters::Handle, Entry> known_;
   FoundWriters::Handle newest_;
   const Entry* entry_ = nullptr;

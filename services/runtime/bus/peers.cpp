@@ -52,6 +52,10 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* 
     if (is_replay_mark(info.info.m_userData.data_vec())) mark(info.info.m_guid.guidPrefix);
   } else {
     services_.erase(info.info.m_guid.guidPrefix);
+    std::erase_if(heard_, [&](const InstanceHandle_t& writer) {
+      return eprosima::fastrtps::rtps::iHandle2GUID(writer).guidPrefix ==
+             info.info.m_guid.guidPrefix;
+    });
     marked_now_.erase(info.info.m_guid.guidPrefix);
     authenticated_.erase(info.info.m_guid.guidPrefix);
     refresh_replay();
@@ -135,7 +139,7 @@ bool Peers::count_alive(const InstanceHandle_t& writer, bool alive) {
   if (!service.empty()) heard_.insert(writer);
   if (alive && !service.empty()) {
     changed = alive_writers_.emplace(writer, service).second;
-    ever_alive_.insert(service);
+    if (topics::is_service(service)) ever_alive_.insert(service);
   } else if (!alive) {
     changed = alive_writers_.erase(writer) > 0;
   }

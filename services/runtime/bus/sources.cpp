@@ -176,6 +176,7 @@ void Sources::forget_participant(const Prefix& participant) {
   {
     const std::lock_guard lock(mutex_);
     names_.erase(participant);
+    replays_.erase(participant);
     std::erase_if(writers_, [&](const auto& entry) {
       return rtps::iHandle2GUID(entry.first).guidPrefix == participant;
     });

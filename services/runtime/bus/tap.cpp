@@ -114,7 +114,7 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
           entry->writer,
           {entry->number,
            static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long()),
-           info.source_timestamp.to_ns(), system_ns(), sample});
+           info.source_timestamp.to_ns(), system_ns(), monotonic_ns(), sample});
     }
   }
 

@@ -54,6 +54,33 @@ TEST_F(ModelWaitTest, AnEmergencyStopIsTheReason) {
   EXPECT_EQ(sut_.failure(), "emergency stop, asked by desk");
 }
 
+class RecordingWaitTest : public StageTest {
+ protected:
+  RecordingWait sut_{500, trouble_};
+};
+
+TEST_F(RecordingWaitTest, IsOverWhenTheDiskHasTheTrialAndNotAnEarlierOne) {
+  seen_.recorded_tick = 499;
+  step(sut_);
+  EXPECT_FALSE(sut_.over());
+  seen_.recorded_tick = 550;
+  step(sut_);
+  EXPECT_TRUE(sut_.over());
+  EXPECT_THAT(sut_.failure(), IsEmpty());
+}
+
+TEST_F(RecordingWaitTest, ADiskThatIsTooSlowIsAFailure) {
+  step(sut_);
+  step(sut_, 10 * kSecond + 1);
+  EXPECT_TRUE(sut_.over());
+  EXPECT_EQ(sut_.failure(), "the recorder's disk did not have the trial within 10 s");
+}
+
+TEST_F(RecordingWaitTest, ARecorderThatEndsIsTheReason) {
+  end_of_process({"recorder (pid 7) ended: exit status 1", false, false}, sut_);
+  EXPECT_EQ(sut_.failure(), "recorder (pid 7) ended: exit status 1");
+}
+
 class ModelUseTest : public StageTest {
  protected:
   ModelUse sut_{trouble_};

@@ -39,10 +39,10 @@ TEST(FieldTriggerTest, ReadsTheFieldFromTheBytesOfItsTopicOnly) {
   runtime::FoundWriter writer;
   writer.topic = "stillhand/other";
   writer.type = "stillhand_msgs::Sensed";
-  EXPECT_FALSE(sut.step(writer, {0, 1, 0, 0, bytes}));
+  EXPECT_FALSE(sut.step(writer, {0, 1, 0, 0, 0, bytes}));
   writer.topic = "stillhand/sensed";
-  EXPECT_TRUE(sut.step(writer, {0, 1, 0, 0, bytes}));
-  EXPECT_FALSE(sut.step(writer, {0, 2, 0, 0, std::span(bytes).first(10)}));
+  EXPECT_TRUE(sut.step(writer, {0, 1, 0, 0, 0, bytes}));
+  EXPECT_FALSE(sut.step(writer, {0, 2, 0, 0, 0, std::span(bytes).first(10)}));
 }
 
 /// A sample of a topic that the catalogue lacks, as its type says.
@@ -54,7 +54,7 @@ bool step(FieldTrigger& sut, const std::string& topic, const std::string& type,
   runtime::FoundWriter writer;
   writer.topic = topic;
   writer.type = type;
-  return sut.step(writer, {0, 1, 0, 0, bytes});
+  return sut.step(writer, {0, 1, 0, 0, 0, bytes});
 }
 
 // A lost field is no number; the sample after it crosses again.

@@ -14,7 +14,8 @@ namespace {
 MessageBatch batch(const std::vector<std::uint64_t>& times_ns, std::size_t size = 1) {
   MessageBatch made;
   const std::vector<std::byte> bytes(size);
-  for (const std::uint64_t at_ns : times_ns) made.add({0, 0, at_ns, at_ns, 0, 0}, bytes);
+  for (const std::uint64_t at_ns : times_ns)
+    made.add({0, 0, at_ns, at_ns, static_cast<std::int64_t>(at_ns), 0, 0}, bytes);
   return made;
 }
 
@@ -31,6 +32,23 @@ TEST(EventWindowTest, ItHoldsTheLastStretchAndForgetsWhatIsOlder) {
   for (std::uint64_t at_ns = 0; at_ns <= 500; at_ns += 50) sut.add(batch({at_ns}));
   EXPECT_EQ(times_of(sut), (std::vector<std::uint64_t>{400, 450, 500}));
   EXPECT_EQ(sut.crowded_out(), 0u);
+}
+
+TEST(EventWindowTest, AClockThatIsSetMovesNoMessageOut) {
+  for (const std::uint64_t set_ns : {std::uint64_t{1'000'000}, std::uint64_t{10}}) {
+    EventWindow sut(100, 1000);
+    std::vector<std::uint64_t> wanted;
+    for (std::int64_t at_ns = 0; at_ns <= 500; at_ns += 50) {
+      // From 250 on, the system's clock stands elsewhere.
+      const std::uint64_t log_ns =
+          (at_ns < 250 ? 5000 : set_ns) + static_cast<std::uint64_t>(at_ns);
+      MessageBatch one;
+      one.add({0, 0, log_ns, log_ns, at_ns, 0, 0}, {});
+      sut.add(std::move(one));
+      if (at_ns >= 400) wanted.push_back(log_ns);
+    }
+    EXPECT_EQ(times_of(sut), wanted);
+  }
 }
 
 TEST(EventWindowTest, ABatchStaysWhileItsNewestMessageIsYoungEnough) {

@@ -74,7 +74,7 @@ class TallyTest : public testing::Test {
   void take(const FoundWriter& writer, std::size_t number, std::int64_t sequence,
             std::span<const std::byte> bytes) {
     const std::int64_t at_ns = ++time_ns_;
-    sut_->take(writer, {number, sequence, at_ns, at_ns, bytes});
+    sut_->take(writer, {number, sequence, at_ns, at_ns, at_ns, bytes});
   }
 
   const std::filesystem::path folder_ =
@@ -169,7 +169,7 @@ std::vector<std::byte> control(std::int32_t trial, stillhand_msgs::Phase phase) 
 }
 
 void announce(TrialLog& log, std::span<const std::byte> bytes) {
-  log.take(writer_of(topics::kTrialControl, "experiment"), {0, 1, 1, 1, bytes});
+  log.take(writer_of(topics::kTrialControl, "experiment"), {0, 1, 1, 1, 1, bytes});
 }
 
 TEST(TrialLogTest, EachTrialIsListedWithItsTicksAndSeed) {
@@ -197,8 +197,8 @@ TEST(TrialLogTest, OtherTopicsOtherTypesCutBytesAndNoTrialAreIgnored) {
   announce(sut, control(-1, stillhand_msgs::PHASE_IDLE));
   FoundWriter stranger = writer_of(topics::kTrialControl, "stranger");
   stranger.type = "strange::Type";
-  sut.take(stranger, {0, 1, 1, 1, whole});
-  sut.take(writer_of(topics::kSensed, "sensing"), {0, 1, 1, 1, whole});
+  sut.take(stranger, {0, 1, 1, 1, 1, whole});
+  sut.take(writer_of(topics::kSensed, "sensing"), {0, 1, 1, 1, 1, whole});
   EXPECT_EQ(sut.newest(), -1);
   EXPECT_TRUE(sut.texts().empty());
   announce(sut, whole);

@@ -43,7 +43,8 @@ class TapeTest : public testing::Test {
   static void put(Tape& tape, std::uint32_t to, int first, int count) {
     const std::vector<std::byte> bytes(100, std::byte{7});
     for (int i = first; i < first + count; ++i) {
-      tape.put(to, static_cast<std::uint32_t>(i), 1'000'000LL * (i + 1), 1'000'000LL * i, bytes);
+      tape.put(to, static_cast<std::uint32_t>(i), 1'000'000LL * (i + 1), 1'000'000LL * i,
+               1'000'000LL * (i + 1), bytes);
     }
   }
   static std::vector<std::uint32_t> sequences(const std::string& path) {
@@ -122,6 +123,51 @@ TEST_F(TapeTest, RotationByTimeLosesNothingAndEveryPartReadsAlone) {
   }
   ASSERT_EQ(all.size(), 250u);
   for (std::uint32_t i = 0; i < 250; ++i) ASSERT_EQ(all[i], i);
+}
+
+// Not after an hour, and not at once: the writer's interval of chunks is longer than this test.
+TEST_F(TapeTest, WhatWasPutIsInTheFileAfterASync) {
+  TapeOptions slow = options();
+  slow.flush_interval_ns = 3'600'000'000'000;
+  Tape sut(slow);
+  put(sut, channel(sut), 0, 100);
+  ASSERT_TRUE(sut.sync());
+  FileSource file(slow.path);
+  McapReader reader(file);
+  std::size_t found = 0;
+  EXPECT_TRUE(reader
+                  .for_each_message({},
+                                    [&](const MessageView&) {
+                                      ++found;
+                                      return true;
+                                    })
+                  .ok());
+  EXPECT_EQ(found, 100u);
+}
+
+TEST_F(TapeTest, AClockThatIsSetStartsNoNewFile) {
+  auto rotating = options();
+  rotating.rotation.max_ns = 1'000'000'000;
+  Tape sut(rotating);
+  const std::uint32_t to = channel(sut);
+  const std::vector<std::byte> bytes(100, std::byte{7});
+  for (const std::int64_t set_ns : {std::int64_t{0}, std::int64_t{3'600'000'000'000}}) {
+    sut.put(to, 0, set_ns + 1, set_ns + 1, set_ns / 1'000'000, bytes);
+  }
+  ASSERT_TRUE(sut.close().ok());
+  EXPECT_EQ(sut.status().parts, 1u);
+}
+
+// A stranger that comes again and again has a channel each time.
+TEST_F(TapeTest, BeyondTheChannelsOfMcapMessagesAreDroppedAndCountedAndTheFileIsWhole) {
+  Tape sut(options());
+  const std::vector<std::byte> bytes(4, std::byte{7});
+  for (std::uint32_t i = 0; i <= McapWriter::kMaxIds; ++i) {
+    sut.put(channel(sut), i, 1 + i, 1 + i, 1 + i, bytes);
+  }
+  ASSERT_TRUE(sut.close().ok());
+  EXPECT_EQ(sut.status().dropped, 1u);
+  EXPECT_EQ(sequences(options().path).size(), McapWriter::kMaxIds);
 }
 
 TEST_F(TapeTest, RotationBySizeKeepsPartsNearIt) {

@@ -59,6 +59,22 @@ TEST(FoundWritersTest, AStrangersTopicHasNoProfileAndItsTypeIsNotKnown) {
   EXPECT_TRUE(sut.at(0).wanted);
 }
 
+// Each comes with a writer of its own, and leaves.
+TEST(FoundWritersTest, StrangersThatComeAndGoFillNoMemoryAndTakeNobodysPlace) {
+  FoundWriters sut;
+  sut.note_writer(sensed(9).info());
+  sut.find(handle_of(9));  // a sample came
+  sut.note_writer(sensed(9).info(WriterDiscoveryInfo::REMOVED_WRITER));
+  Writer stranger(7, 1, "chatter", "std_msgs::String");
+  for (std::uint32_t i = 0; i < FoundWriters::kMost + 100; ++i) {
+    stranger.data().guid({prefix_of(7), i << 8 | 0x02});
+    ASSERT_NE(sut.note_writer(stranger.info()), std::nullopt) << i;
+    sut.note_writer(stranger.info(WriterDiscoveryInfo::REMOVED_WRITER));
+  }
+  EXPECT_EQ(sut.all().size(), FoundWriters::kMost);
+  EXPECT_EQ(sut.find(handle_of(9)), 0u);
+}
+
 TEST(FoundWritersTest, EveryWriterHasAnIdOfItsOwn) {
   FoundWriters sut;
   std::set<std::string> ids;

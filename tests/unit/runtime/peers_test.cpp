@@ -156,6 +156,14 @@ TEST_F(PeersTest, OnlyWithNamedSourcesAndWithoutASecondWriterEverybodyIsAlive) {
   EXPECT_FALSE(sut.alive()) << "two writers of the motor command";
 }
 
+// The recorder counts them to know when the session's processes have gone.
+TEST_F(PeersTest, AStrangersLifeSignThatEndsIsNobodysLoss) {
+  join(sut_, 60, Peers::participant_name(kRig, "a stranger"));
+  sut_.set_alive(handle_of(60), true);
+  sut_.set_alive(handle_of(60), false);
+  EXPECT_THAT(sut_.lost(), IsEmpty());
+}
+
 TEST_F(PeersTest, ASecondLifeSignOfAServiceKeepsItAlive) {
   all_live(sut_);
   join(sut_, 60, Peers::participant_name(kRig, "motion"));

@@ -32,14 +32,16 @@ struct McapWriterOptions {
 /// std::bad_alloc.
 class McapWriter {
  public:
+  static constexpr std::size_t kMaxIds = 65535;  ///< of schemas, and of channels
+
   /// Writes magic and header; status() and every later call return a failure.
   explicit McapWriter(ByteSink& sink, McapWriterOptions options = {});
 
-  /// Registers a definition; at most 65535.  @returns its number, from 1.
+  /// Registers a definition; at most kMaxIds.  @returns its number, from 1.
   SchemaId add_schema(std::string name, std::string encoding, std::span<const std::byte> bytes);
   /// Registers a definition given as text.
   SchemaId add_schema(std::string name, std::string encoding, std::string_view text);
-  /// Registers a topic; at most 65535.  @param schema_id from add_schema, or 0 for none.
+  /// Registers a topic; at most kMaxIds.  @param schema_id from add_schema, or 0 for none.
   /// @returns its number, from 0.
   ChannelId add_channel(std::string topic, SchemaId schema_id, std::string message_encoding,
                         TextMap metadata = {});

@@ -7,6 +7,7 @@
 
 #include "services/runtime/bus/batched/batched_udp.hpp"
 #include "services/runtime/bus/batched/rtps_sample.hpp"
+#include "services/runtime/process/clock.hpp"
 
 namespace stillhand::runtime {
 
@@ -68,8 +69,8 @@ bool BatchedReader::take(std::span<const std::byte> datagram, std::int64_t arriv
   eprosima::fastrtps::rtps::Time_t sent;
   sent.seconds(sample->sent_s);
   sent.fraction(sample->sent_fraction);
-  on_sample_(heard->writer->writer,
-             {heard->writer->number, sample->sequence, sent.to_ns(), arrived_ns, sample->bytes});
+  on_sample_(heard->writer->writer, {heard->writer->number, sample->sequence, sent.to_ns(),
+                                     arrived_ns, monotonic_ns(), sample->bytes});
   return true;
 }
 

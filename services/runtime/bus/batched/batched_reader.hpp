@@ -26,7 +26,7 @@ class BatchedReader {
   using OnSample = std::function<void(const FoundWriter&, const TappedSample&)>;
 
   /// @param writers  outlives this
-  BatchedReader(const FoundWriters& writers, OnSample on_sample)
+  BatchedReader(FoundWriters& writers, OnSample on_sample)
       : writer_of_(writers), on_sample_(std::move(on_sample)) {}
 
   /// Replaces UDPv4 of a participant's QoS by BatchedUdp.
