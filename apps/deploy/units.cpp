@@ -89,10 +89,11 @@ std::string command_of(const Inventory& inventory, const Host& host, const Place
   return command;
 }
 
-// A new file for each start: the recorder never overwrites one.
+// A new file for each start, also after a step back of the clock: the recorder never overwrites
+// one, and one that is refused stays down.  systemd numbers each start.
 std::string recorder_command(const Inventory& inventory, const std::string& command) {
   return "/bin/sh -c 'exec " + command + " --out /var/lib/stillhand/" + inventory.lab +
-         "/$$(date -u +%%Y%%m%%dT%%H%%M%%SZ).mcap'";
+         "/$$(date -u +%%Y%%m%%dT%%H%%M%%SZ)_$$INVOCATION_ID.mcap'";
 }
 
 GeneratedFile unit_of(const Inventory& inventory, const Host& host, const Placement& placement) {

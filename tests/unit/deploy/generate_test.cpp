@@ -91,6 +91,15 @@ TEST(GenerateTest, TheExperimentHasNoUnitSinceAPersonStartsIt) {
                                                       Not(Contains(HasSubstr("experiment")))));
 }
 
+// The clock alone may name one twice, and a recorder that is refused a file stays down.
+TEST(GenerateTest, EachStartOfTheRecorderHasAFileOfItsOwn) {
+  const SampleFolder folder;
+  generate(example(), profiles(), folder.path());
+  std::ifstream unit(folder.path() / "desk" / "stillhand-recorder@1.service");
+  const std::string text{std::istreambuf_iterator<char>(unit), {}};
+  EXPECT_THAT(text, HasSubstr("_$$INVOCATION_ID.mcap"));
+}
+
 TEST(GenerateTest, TheSameInventoryGivesTheSameFiles) {
   const SampleFolder folder;
   generate(example(), profiles(), folder.path() / "one");
