@@ -105,6 +105,7 @@ void Shell::on_assignment(const stillhand_msgs::TrialAssignment& message) {
 void Shell::on_model(const Received& received) {
   why_no_model_.store("the model is being prepared");
   if (!received_.push(received)) {
+    why_no_model_.store(kTooMany);
     service_.note_event(stillhand_msgs::EVENT_MODEL_REFUSED, kTooMany);
     return;
   }
