@@ -11,7 +11,7 @@ installed=$(dpkg-query -W -f='${db:Status-Status}, ${Package}, ${Provides}\n' | 
             tr ',' '\n' | sed -e 's/(.*//' -e 's/[[:space:]]//g')
 missing=()
 while read -r package; do
-  grep -qxF "$package" <<<"$installed" || missing+=("$package")
+  grep -qxE "${package// | /|}" <<<"$installed" || missing+=("$package")
 done < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' deploy/packages.txt)
 
 if [ ${#missing[@]} -eq 0 ]; then
@@ -31,7 +31,7 @@ echo "set-up: installing ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 if ! { "${as_root[@]}" apt-get update &&
-       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } \
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get satisfy -y --no-install-recommends "${missing[@]}"; } \
      >"$log" 2>&1; then
   tail -n 20 "$log" >&2
   echo "set-up: apt-get failed; its last lines are above" >&2

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the fuzzers (preset fuzz: clang 14, address and undefined-behaviour sanitizers) and runs one after the other.
+# Builds the fuzzers (preset fuzz: clang, address and undefined-behaviour sanitizers) and runs one after the other.
 # Usage: tests/fuzz/run.sh [seconds of each, default 60] [reader...]
 # Prints a table; exit status 1 if one of them found something. What was found is in build-fuzz/found/.
 # A run that takes more than 60 s by the clock or 1 GB of memory is found, too. `edges` are those of the code that the
