@@ -60,9 +60,9 @@ void Shell::subscribe(const topics::Topic& topic) {
   }
   service_.bus().subscribe_serialized(
       topic,
-      [this, stream, truth, naming](std::span<const std::byte> bytes,
-                                    const runtime::Arrival& arrival)
-          -> runtime::detail::SampleClock {
+      [this, stream, truth, naming](
+          std::span<const std::byte> bytes,
+          const runtime::Arrival& arrival) -> runtime::detail::SampleClock {
         if (naming && arrival.participant != *naming) return {true, -1, 0};
         if (arrival.writer != nullptr) {
           recording_->take(*arrival.writer,
