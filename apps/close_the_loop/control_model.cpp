@@ -12,6 +12,7 @@
 #include "apps/close_the_loop/control_response.hpp"
 #include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/contract/tick.hpp"
 #include "services/diagnosis/core/fitting/baseline.hpp"
 #include "services/diagnosis/core/fitting/fit.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
@@ -39,15 +40,25 @@ Effect continued(const Effect& effect, const diagnosis::Signals& signals) {
           {}};
 }
 
-// The denominator with the smallest error, or the first that is good.
+// The denominator with the smallest error, or the first that is good; one that settles in time is
+// preferred where its error is allowed.
 ConvertedModel best_conversion(const Model& model, const diagnosis::Signals& signals,
                                const ControlOptions& options) {
   constexpr double kGood = 0.01;
   std::optional<ConvertedModel> best;
+  bool best_settles = false;
   for (const std::vector<double>& denominator : possible_denominators(model)) {
     ConvertedModel next = converted(model, signals, denominator, options);
-    if (!best || next.conversion_error < best->conversion_error) best = std::move(next);
-    if (best->conversion_error < kGood) break;
+    const bool settles = cancellation::settle_ticks({kControlRateHz, denominator, denominator}) <=
+                         cancellation::kMaxSettle_ticks;
+    const bool allowed = settles && !best_settles && next.conversion_error <= options.max_error;
+    const bool closer =
+        settles == best_settles && best && next.conversion_error < best->conversion_error;
+    if (!best || allowed || closer) {
+      best = std::move(next);
+      best_settles = settles;
+    }
+    if (best_settles && best->conversion_error < kGood) break;
   }
   return std::move(*best);
 }
@@ -106,9 +117,11 @@ class Export {
       if (drop_left_alone(next) || drop_unsound_spring(next)) continue;
       if (!carried_.effects.empty() && drop_worst(next)) continue;
       if (!(next.conversion_error <= options_.max_error)) {
-        throw ConfigError("the model's response at 1 kHz",
-                          fmt::format("off by {:.2g} %", 100.0 * next.conversion_error),
-                          fmt::format("at most {:.2g} % in the band", 100.0 * options_.max_error));
+        throw ConfigError(
+            "the model's response at 1 kHz",
+            fmt::format("off by {:.2g} %", 100.0 * next.conversion_error),
+            fmt::format("at most {:.2g} % from {:g} to {:g} Hz", 100.0 * options_.max_error,
+                        options_.low_hz, options_.high_hz));
       }
       name_shares();
       next.treatments = std::move(treatments_);

@@ -98,9 +98,9 @@ int run(const ControlModelWords& words) {
   files.set("--save", cancellation::control_model_json(control.model, words.rig));
   if (!words.json.empty()) files.set("--json", summary_of(control));
   files.publish();
-  std::printf("%s at 1 kHz, off by at most %.2g %% in the band, in %s\n",
-              words.model.string().c_str(), 100.0 * control.conversion_error,
-              words.save.string().c_str());
+  std::printf("%s at 1 kHz, off by at most %.2g %% from %g to %g Hz, in %s\n",
+              words.model.string().c_str(), 100.0 * control.conversion_error, options.low_hz,
+              options.high_hz, words.save.string().c_str());
   for (const Treatment& each : control.treatments) {
     std::printf("%s: %s: %s%s\n", each.kind.c_str(), each.cancelled ? "cancelled" : "left alone",
                 each.how.c_str(), difference_of(each).c_str());

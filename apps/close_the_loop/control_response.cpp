@@ -4,9 +4,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "apps/close_the_loop/control_laws.hpp"
 #include "services/cancellation/core/control_model_filter.hpp"
+#include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/contract/units.hpp"
@@ -42,6 +44,20 @@ std::vector<double> carried_poles(const std::vector<double>& denominator, double
   }
   const identification::Polynomial ascending = identification::from_roots(poles);
   return {ascending.rbegin(), ascending.rend()};
+}
+
+// Without the poles that the canceller finds too slow, Eq. CC-4: in a body of too high an order its
+// own zeros cancel them.  None: no pole is, or all are.
+std::optional<std::vector<double>> without_slow_poles(const std::vector<double>& denominator,
+                                                      double rate_hz) {
+  const std::vector<double> reversed(denominator.rbegin(), denominator.rend());
+  std::vector<Complex> poles = identification::roots(reversed);
+  const double longest =
+      static_cast<double>(cancellation::kMaxSettle_ticks) * rate_hz / kControlRateHz;
+  const auto slow = [&](const Complex& z) { return std::pow(std::abs(z), longest) > 0.01; };
+  if (std::erase_if(poles, slow) == 0 || poles.empty()) return std::nullopt;
+  const identification::Polynomial ascending = identification::from_roots(poles);
+  return std::vector<double>{ascending.rbegin(), ascending.rend()};
 }
 
 // A mode in addition to the body, at the model's own rate.
@@ -175,6 +191,9 @@ std::vector<std::vector<double>> possible_denominators(const diagnosis::Model& m
   };
   std::vector<std::vector<double>> all{
       with_modes(carried_poles(model.body.denominator, model.rate_hz))};
+  if (const auto quick = without_slow_poles(model.body.denominator, model.rate_hz)) {
+    all.push_back(with_modes(carried_poles(*quick, model.rate_hz)));
+  }
   if (model.body.order() == 0) all.push_back(with_modes({1.0, -kPoleOfStatic}));
   const auto add_fitted = [&](const identification::DifferenceModel& to_fit, const auto& extended) {
     try {

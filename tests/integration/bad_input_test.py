@@ -202,7 +202,8 @@ class BadInputTest(LabTestCase):
         lab = self.lab(*arguments)
         self.assertEqual(lab.end_status(90), 1)
         self.assertIn("cancellation was not prepared", lab.errors()[-1])
-        self.assertIn("model gain is above the bound", lab.errors()[-1])
+        self.assertEqual(lab.errors()[-1].count("the log of cancellation says why"), 1, "the reason, once")
+        self.assertIn("model gain is above the bound", (lab.out / "logs" / "cancellation.log").read_text())
         self.assertFalse(lab.summary()["trials"][-1]["completed"])
 
     def test_second_lab_on_a_domain_is_refused_and_the_first_goes_on(self):

@@ -159,9 +159,10 @@ std::string TrialRun::why_not_armed(const Seen& seen) const {
     if (armed(seen, member)) continue;
     std::string why = fmt::format("{} was not prepared within 10 s", member.name);
     for (const EventSeen& event : seen.events) {
-      if (event.kind == EventKind::kNote && event.source == member.name) {
-        why += fmt::format(" ({})", event.text);
-      }
+      if (event.kind != EventKind::kNote || event.source != member.name) continue;
+      // The trial was announced several times; each reason is given once.
+      const std::string reason = fmt::format(" ({})", event.text);
+      if (why.find(reason) == std::string::npos) why += reason;
     }
     reasons.push_back(why);
   }

@@ -11,6 +11,7 @@
 #include "services/cancellation/core/model_check.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/units.hpp"
+#include "services/diagnosis/core/fitting/modes.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
 #include "services/population/population.hpp"
 #include "tests/support/feedthrough_records.hpp"
@@ -98,6 +99,19 @@ TEST(ControlModelTest, ALinearBodyGivesTheSameForce) {
   EXPECT_LT(control.conversion_error, 0.005);
   EXPECT_EQ(cancellation::check_model(control.model, {60.0, 25.0}).refusal,
             cancellation::Refusal::kNone);
+}
+
+// A pole of 0.9995 at 100 Hz settles to 1 % in 92 s; the canceller takes 10 s.
+TEST(ControlModelTest, ASlowPoleThatAZeroCancelsIsLeftOut) {
+  const Motion motion;
+  diagnosis::Model model = two_modes();
+  const diagnosis::Model quick = model;
+  model.body.denominator = diagnosis::product(model.body.denominator, {1.0, -0.9995});
+  model.body.numerators.front() = diagnosis::product(model.body.numerators.front(), {1.0, -0.9995});
+  const ConvertedModel control = to_control_model(model, motion.signals());
+  EXPECT_EQ(cancellation::check_model(control.model, {60.0, 25.0}).refusal,
+            cancellation::Refusal::kNone);
+  EXPECT_LT(difference(quick, control.model, motion), 0.005);
 }
 
 TEST(ControlModelTest, WithALeadItComesSooner) {
