@@ -71,8 +71,8 @@ TEST_F(ExportTest, TextsAndEnumsAreReadable) {
   export_recording(path("a.mcap"), {path("out"), {}, {}, {}});
   const std::string text = recording::read_file(path("out/stillhand_event.csv"));
   EXPECT_THAT(text, HasSubstr("kind [-],kind.name [-],source [-]"));
-  EXPECT_THAT(text, HasSubstr(",2,EVENT_TICKS_LOST,recorder,,,0,plain\n"));
-  EXPECT_THAT(text, HasSubstr(",\"a \"\"quoted\"\", split\ntext\"\n"));
+  EXPECT_THAT(text, HasSubstr(",2,EVENT_TICKS_LOST,recorder,,,0,plain,0,CODE_NONE\n"));
+  EXPECT_THAT(text, HasSubstr(",\"a \"\"quoted\"\", split\ntext\",0,CODE_NONE\n"));
 }
 
 TEST_F(ExportTest, AMatlabFileHoldsTheSameNumbers) {
