@@ -127,6 +127,11 @@ bool TrialRun::await_armed(Seen& seen, std::int64_t now_ns, Actions& actions) {
     announce_idle(actions);
     return look_for_death(seen, now_ns);
   }
+  // The seat may be on its way to its place.
+  if (!seen.requests.trial_stopped().empty()) {
+    announce_idle(actions);
+    return end(seen);
+  }
   // Who lost sight of the session in a pause needs the next ticks to come back.
   const std::string stands = standstill_.look(seen, roster_, now_ns);
   switch (trouble_.wait(all && stands.empty(), seen, limit_ns_, now_ns)) {
