@@ -199,7 +199,7 @@ void MessageFeed::take_event(const stillhand_msgs::Event& event, std::int64_t at
   }
 }
 
-// How long a force takes to become zero tells whether there was one: the report appears as of the
+// How long a force takes to become zero shows whether there was one: the report appears as of the
 // instant at which the interlock opened.
 void MessageFeed::hide_delay() {
   stillhand_msgs::Event& zero = events_.front().event;
