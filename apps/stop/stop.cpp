@@ -5,11 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <deque>
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,11 @@ runtime::Bus::Options bus_options(const StopOptions& options, const RunningSessi
   return bus;
 }
 
-/// One rig that is asked, and what it answers.
+// Who calls itself a rig is found within half a second; a stranger may be found first.
+constexpr std::int64_t kSettles_ns = 1'000'000'000;
+
+/// The rig that is asked, and what it answers.  Without keys a stranger may call itself the rig,
+/// too: each participant of that name is asked, and each has to report zero force by itself.
 class Asked {
  public:
   Asked(const StopOptions& options, const RunningSession& session)
@@ -62,40 +67,58 @@ class Asked {
         bus_(bus_options(options, session)),
         request_(bus_, "stillhand stop") {
     // Events are kept for those that come later, in their order.
-    bus_.subscribe<stillhand_msgs::Event>(
-        topics::kEvent, [this](const stillhand_msgs::Event& event, const auto&) { take(event); });
+    bus_.subscribe<stillhand_msgs::Event>(topics::kEvent, [this](const stillhand_msgs::Event& event,
+                                                                 const runtime::Arrival& arrival) {
+      take(event, arrival.participant);
+    });
     bus_.start();
   }
 
   void ask() {
-    if (asked_ns_ == 0 && bus_.matched_peers(topics::kSessionCommand).contains("rig")) {
-      asked_ns_ = runtime::monotonic_ns();
+    for (const runtime::ParticipantId& rig : bus_.matched_as(topics::kSessionCommand, "rig")) {
+      if (!asked_.insert(rig).second) continue;
+      newest_ns_ = runtime::monotonic_ns();
+      if (asked_.size() == 1) first_ns_ = newest_ns_;
     }
     request_.ask();
   }
-  [[nodiscard]] bool confirmed() const noexcept { return zero_; }
+  [[nodiscard]] bool is_zero() const {
+    const std::lock_guard lock(mutex_);
+    return !asked_.empty() && std::ranges::includes(zero_, asked_);
+  }
+  [[nodiscard]] bool confirmed() const {
+    return is_zero() && runtime::monotonic_ns() - newest_ns_ >= kSettles_ns;
+  }
   [[nodiscard]] std::string line(std::int64_t began_ns) const {
-    if (!confirmed()) {
-      return name_ + (asked_ns_ == 0 ? ": no rig answers" : ": the rig did not report zero force");
+    if (asked_.empty()) return name_ + ": no rig answers";
+    if (!is_zero()) {
+      return name_ + (asked_.size() == 1 ? ": the rig did not report zero force"
+                                         : fmt::format(": {} participants call themselves the rig, "
+                                                       "and not all report zero force",
+                                                       asked_.size()));
     }
-    if (asked_ns_ == 0) return name_ + ": the force was zero before, after an emergency stop";
     // Not when: whether there was a force is the condition of a blinded trial.
     return fmt::format("{}: force zero ({:.0f} ms to reach the rig)", name_,
-                       static_cast<double>(asked_ns_ - began_ns) / 1e6);
+                       static_cast<double>(first_ns_ - began_ns) / 1e6);
   }
 
  private:
-  void take(const stillhand_msgs::Event& event) {
+  void take(const stillhand_msgs::Event& event, const runtime::ParticipantId& from) {
     if (event.source() != "rig") return;
+    const std::lock_guard lock(mutex_);
     // For good: the event of another opening may come behind it.
-    stopped_ = stopped_ || event.code() == stillhand_msgs::CODE_EMERGENCY_STOP;
-    if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && stopped_) zero_ = true;
+    if (event.code() == stillhand_msgs::CODE_EMERGENCY_STOP) stopped_.insert(from);
+    if (event.kind() == stillhand_msgs::EVENT_FORCE_ZERO && stopped_.contains(from)) {
+      zero_.insert(from);
+    }
   }
 
   std::string name_;
-  bool stopped_ = false;  // receiving thread
-  std::atomic<bool> zero_{false};
-  std::int64_t asked_ns_ = 0;
+  std::set<runtime::ParticipantId> asked_;
+  std::int64_t first_ns_ = 0;   // of asked_
+  std::int64_t newest_ns_ = 0;  // of asked_
+  mutable std::mutex mutex_;    // guards the next two
+  std::set<runtime::ParticipantId> stopped_, zero_;
   runtime::Bus bus_;  // its callbacks use what is above
   runtime::EmergencyStop request_;
 };
@@ -132,9 +155,7 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
     ask();
   }
   if (all.empty() && why) std::rethrow_exception(why);
-  const auto open = [&] {
-    return std::ranges::any_of(all, [](const Asked& asked) { return !asked.confirmed(); });
-  };
+  const auto open = [&] { return !std::ranges::all_of(all, &Asked::confirmed); };
   constexpr std::int64_t kPeriod_ns = 10'000'000;
   while (open() && in_time()) {
     ask();
@@ -142,10 +163,11 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
   }
   for (const Asked& asked : all) std::cout << asked.line(began_ns) << '\n';
   std::cerr << failures;
-  if (open() && options.security.empty()) {
+  const bool confirmed = std::ranges::all_of(all, &Asked::is_zero);
+  if (!confirmed && options.security.empty()) {
     std::cerr << "stillhand stop: a session with keys hears only a stop with --security DIR\n";
   }
-  return open() || all.size() < sessions.size() ? 1 : 0;
+  return confirmed && all.size() == sessions.size() ? 0 : 1;
 }
 
 int run_stop(const StopOptions& options, const runtime::Stop& interrupted) {

@@ -17,13 +17,15 @@
 namespace stillhand::stop {
 namespace {
 
-/// Reports zero force for each request.
+/// Reports zero force for each request, or only says that it had reported it before.
 struct Rig {
-  Rig()
+  explicit Rig(bool answers = true)
       : bus(support::bus_options("rig")),
         events(bus.publisher<stillhand_msgs::Event>(topics::kEvent)) {
     bus.subscribe<stillhand_msgs::SessionCommand>(
-        topics::kSessionCommand, [this](const stillhand_msgs::SessionCommand&, const auto&) {
+        topics::kSessionCommand,
+        [this, answers](const stillhand_msgs::SessionCommand&, const auto&) {
+          if (!answers) return;
           // As a reporter sorts and counts what happened within a tenth of a second.
           report(stillhand_msgs::EVENT_INTERLOCK_OPENED, "emergency stop, 2 times",
                  stillhand_msgs::CODE_EMERGENCY_STOP);
@@ -62,6 +64,23 @@ TEST(StopTest, ASessionThatCannotBeAskedKeepsNoOtherFromBeingAsked) {
   const int status = stop_sessions(sessions, options(), never);
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("rig 1: force zero"));
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("domain 233 rig 1: "));
+  EXPECT_EQ(status, 1);
+}
+
+// Without keys anybody may call themselves the rig, and be found before it.
+TEST(StopTest, AStrangerThatCallsItselfTheRigDoesNotAnswerForIt) {
+  const Rig stranger;
+  const Rig rig(false);
+  StopOptions asked = options();
+  asked.wait_s = 3.0;
+  const runtime::Stop never;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int status =
+      stop_sessions(std::vector<RunningSession>{{support::own_domain(), 1}}, asked, never);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("2 participants call themselves the rig"));
+  testing::internal::GetCapturedStderr();
   EXPECT_EQ(status, 1);
 }
 

@@ -227,6 +227,16 @@ std::set<std::string> Bus::matched_peers(const topics::Topic& topic) const {
   return peers;
 }
 
+std::vector<ParticipantId> Bus::matched_as(const topics::Topic& topic,
+                                           const std::string& service) const {
+  std::vector<ParticipantId> participants;
+  for (const auto& endpoint : impl_->endpoints) {
+    if (&endpoint->topic() != &topic) continue;
+    std::ranges::copy(endpoint->matched_as(service), std::back_inserter(participants));
+  }
+  return participants;
+}
+
 std::vector<std::string> Bus::missing_peers() const {
   std::vector<std::string> missing;
   for (const auto& endpoint : impl_->endpoints) {

@@ -189,6 +189,9 @@ class Bus {
   /// Names of the processes that are matched with this process's endpoints of a topic: of this rig,
   /// without Taps.
   [[nodiscard]] std::set<std::string> matched_peers(const topics::Topic& topic) const;
+  /// Number of each participant that calls itself `service` among them.
+  [[nodiscard]] std::vector<ParticipantId> matched_as(const topics::Topic& topic,
+                                                      const std::string& service) const;
   /// Catalogue peers that are not matched yet, as "service (topic)", empty when complete.
   [[nodiscard]] std::vector<std::string> missing_peers() const;
   /// Services that are on the bus more than once under this rig number.

@@ -50,6 +50,17 @@ std::set<std::string> Endpoint::matched_services() const {
   return services;
 }
 
+std::vector<ParticipantId> Endpoint::matched_as(const std::string& service) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<ParticipantId> participants;
+  for (const auto& handle : matched_) {
+    if (peers_.service_of(handle) != service) continue;
+    ParticipantId& participant = participants.emplace_back();
+    for (std::size_t i = 0; i < participant.size(); ++i) participant[i] = handle.value[i];
+  }
+  return participants;
+}
+
 std::uint32_t Endpoint::matched_count() const {
   const std::lock_guard lock(mutex_);
   return static_cast<std::uint32_t>(matched_.size());

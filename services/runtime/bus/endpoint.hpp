@@ -42,6 +42,8 @@ class Endpoint {
   virtual EndpointReport report() = 0;
   /// Services matched now.
   [[nodiscard]] std::set<std::string> matched_services() const;
+  /// The participants of one service among them.
+  [[nodiscard]] std::vector<ParticipantId> matched_as(const std::string& service) const;
   [[nodiscard]] const topics::Topic& topic() const noexcept { return topic_; }
   [[nodiscard]] virtual bool writes() const noexcept = 0;
 

@@ -122,25 +122,29 @@ void Sources::set(std::size_t service, const ParticipantId& participant) {
 }
 
 void Sources::adopt() {
-  contested_.store(announced_.size() > 1, std::memory_order_release);
+  // Before a name changes, and set back after it: admits() sees no moment in which any experiment
+  // counts that did not count before.
+  if (announced_.size() > 1) contested_.store(true, std::memory_order_release);
   if (announced_.size() != 1) {
     named_.store(false, std::memory_order_release);
     for (Named& named : sources_) named.known.store(false, std::memory_order_release);
     if (options_.experiment) set(place_of("experiment"), *options_.experiment);
-    if (contested()) set(place_of("experiment"), {});  // no participant's number
+    if (announced_.empty()) contested_.store(false, std::memory_order_release);
     return;
   }
   for (const Source& source : announced_.front().second) {
     set(place_of(source.service), source.participant);
   }
   named_.store(true, std::memory_order_release);
+  contested_.store(false, std::memory_order_release);
 }
 
 bool Sources::admits(std::size_t service, const Handle& writer) const noexcept {
   if (service >= sources_.size()) return true;
   const Named& named = sources_[service];
   if (!named.known.load(std::memory_order_acquire)) {
-    return topics::kServices[service] == "experiment";
+    return topics::kServices[service] == "experiment" && !options_.experiment && !this->named() &&
+           !contested();
   }
   return is(named, static_cast<const rtps::octet*>(writer.value));
 }

@@ -171,6 +171,7 @@ TEST_F(SourcesTest, OfTwoExperimentsNoneCountsUntilOneLeft) {
   ASSERT_TRUE(sut_.take(experiment(20), all_sources(20)));
   EXPECT_FALSE(sut_.sound());
   EXPECT_STREQ(sut_.why_not(), "two experiments name the session's sources");
+  EXPECT_FALSE(sut_.admits(place_of("experiment"), handle_of(kStranger)));
   EXPECT_FALSE(motor_from(sut_, number_of("cancellation")));
   EXPECT_FALSE(motor_from(sut_, number_of("cancellation", 20)));
   for (const std::uint8_t from : {std::uint8_t{1}, std::uint8_t{20}}) {
