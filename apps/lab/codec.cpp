@@ -108,9 +108,10 @@ session::Mark mark_of(const EventSeen& event) {
           event.text, event.tick,   1,           event.by_us};
 }
 
-Command from_idl(const stillhand_msgs::SessionCommand& command) {
+Command from_idl(const stillhand_msgs::SessionCommand& command,
+                 const runtime::ParticipantId& sender) {
   return {action_of(command.action()), command.request(), command.asker().c_str(),
-          command.text().c_str()};
+          command.text().c_str(), runtime::text_of(sender)};
 }
 
 ModelSeen from_idl(const stillhand_msgs::FeedthroughModel& model) {

@@ -9,13 +9,15 @@
 #include "apps/session/protocol.hpp"
 #include "idl/model.h"
 #include "idl/session.h"
+#include "services/runtime/bus/source.hpp"
 
 /// The conductor's core to bus messages and back.  Pure.
 namespace stillhand::lab {
 
 ProcessSeen from_idl(const stillhand_msgs::ServiceStatus& status);
 EventSeen from_idl(const stillhand_msgs::Event& event);
-Command from_idl(const stillhand_msgs::SessionCommand& command);
+Command from_idl(const stillhand_msgs::SessionCommand& command,
+                 const runtime::ParticipantId& sender);
 ModelSeen from_idl(const stillhand_msgs::FeedthroughModel& model);
 AnswerSeen from_idl(const stillhand_msgs::Answer& answer);
 /// @param now  newest tick, from which the prompt's wait counts; -1: none yet

@@ -105,11 +105,12 @@ void Conductor::subscribe() {
                                         });
   // Every request leaves an event, whether it is obeyed or not.
   bus.subscribe<stillhand_msgs::SessionCommand>(
-      topics::kSessionCommand, [this, stored](const auto& command, const auto&) {
+      topics::kSessionCommand,
+      [this, stored](const auto& command, const runtime::Arrival& arrival) {
         std::string reported;
         bool aborted = false;
         stored([&] {
-          reported = seen_.requests.take(from_idl(command), seen_.trial_runs);
+          reported = seen_.requests.take(from_idl(command, arrival.participant), seen_.trial_runs);
           aborted = !seen_.requests.aborted().empty();
         });
         if (aborted) service_.stop().request();

@@ -96,9 +96,10 @@ PlatformDrive::Output PlatformDrive::faulted(const Input& input) noexcept {
 }
 
 PlatformDrive::Output PlatformDrive::hold(const Input& input) noexcept {
-  // Taken once: a platform that stays engaged would creep after its own report, and one that is
-  // silent for a while is still there.
-  if (fresh_ && !held_) hold_m_ = input.reply.position_m;
+  // Taken once: a platform that stays engaged would creep after its own report.  And once more
+  // after a silence: somebody else may have moved it, and it must not jump back.
+  if (fresh_ && (!held_ || silent_)) hold_m_ = input.reply.position_m;
+  silent_ = !fresh_;
   if (fresh_) held_ = input.reply.stage == PlatformStage::kFollowing;
   if (!fresh_ && !held_) return {stage_, {.order = PlatformOrder::kRelease}, kInhibited};
   return {stage_, {.order = PlatformOrder::kHold, .position_m = hold_m_}, kInhibited};

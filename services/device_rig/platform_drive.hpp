@@ -105,8 +105,9 @@ class PlatformDrive {
   bool confirmed_ = false;  ///< the platform has said that it follows
   double stood_m_ = 0.0;    ///< it is within a millimetre of this place
   Tick stands_ticks_ = 0;   ///< for so long
-  bool held_ = false;
-  double hold_m_ = 0.0;  ///< set-point of a platform that stays engaged
+  bool held_ = false;       ///< hold_m_ is known
+  bool silent_ = false;     ///< somebody else may have moved it since
+  double hold_m_ = 0.0;     ///< set-point of a platform that stays engaged
 };
 
 }  // namespace stillhand::device_rig

@@ -23,7 +23,7 @@ std::string Requests::take(const Command& command, bool trial_runs) {
     emergency_ = "emergency stop, asked by " + asker;
     return emergency_;
   }
-  if (!newest_.take(asker, command.request)) return "";
+  if (!newest_.take(command.sender, command.request)) return "";
   const std::string asked = ", asked by " + asker;
   const std::string reason = printable(command.text);
   switch (command.action) {

@@ -26,9 +26,10 @@ enum class Action : std::uint8_t {
 /// One request of a dashboard, as it came from the bus.
 struct Command {
   Action action = Action::kUnknown;
-  std::uint64_t request = 0;  ///< number of the request, larger than the asker's last
+  std::uint64_t request = 0;  ///< number of the request, larger than the sender's last
   std::string asker;          ///< a name for a person; any bytes
   std::string text;           ///< of a note, or a reason; any bytes
+  std::string sender = {};    ///< whose numbers count: the participant, as anybody may use a name
 };
 
 /// Requests that concern the protocol of an experiment, for its script.

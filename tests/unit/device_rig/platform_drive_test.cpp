@@ -198,5 +198,22 @@ TEST_F(PlatformDriveTest, APlatformThatStaysEngagedHoldsOnePlaceWhateverItReport
   }
 }
 
+TEST_F(PlatformDriveTest, APlatformThatSomebodyMovedInASilenceIsHeldWhereItIsThen) {
+  follow(1);
+  in_.leave = MotionLeave::kHold;
+  steps(200);
+  in_.reply.stage = PlatformStage::kFollowing;  // a Moog stays engaged
+  const double held_m = sut_.step(in_).set_point.position_m;
+  in_.age_ticks = 5000;
+  EXPECT_EQ(sut_.step(in_).set_point.position_m, held_m);
+  in_.age_ticks = 1;
+  in_.reply.position_m = held_m - 0.05;
+  for (int i = 0; i < 10; ++i) {
+    const auto out = sut_.step(in_);
+    EXPECT_EQ(out.set_point.order, PlatformOrder::kHold);
+    EXPECT_EQ(out.set_point.position_m, held_m - 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::device_rig

@@ -96,15 +96,17 @@ TEST(LabCodecTest, AnAnswerNamesItsPrompt) {
 }
 
 TEST(LabCodecTest, AnActionOfAnotherVersionIsUnknown) {
+  constexpr runtime::ParticipantId sender{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   stillhand_msgs::SessionCommand command;
   command.action(static_cast<stillhand_msgs::SessionAction>(99));
   command.request(7);
   command.asker("desk");
-  EXPECT_EQ(from_idl(command).action, Action::kUnknown);
+  EXPECT_EQ(from_idl(command, sender).action, Action::kUnknown);
   command.action(stillhand_msgs::SESSION_STOP);
-  EXPECT_EQ(from_idl(command).action, Action::kStop);
-  EXPECT_EQ(from_idl(command).request, 7u);
-  EXPECT_EQ(from_idl(command).asker, "desk");
+  EXPECT_EQ(from_idl(command, sender).action, Action::kStop);
+  EXPECT_EQ(from_idl(command, sender).request, 7u);
+  EXPECT_EQ(from_idl(command, sender).asker, "desk");
+  EXPECT_EQ(from_idl(command, sender).sender, "0102030405060708090a0b0c");
 }
 
 TEST(LabCodecTest, AnAnnouncementWithoutATrialIsIdle) {

@@ -12,7 +12,7 @@ using testing::IsEmpty;
 using testing::StartsWith;
 
 Command command(Action action, std::uint64_t request, const char* asker = "desk") {
-  return {action, request, asker, ""};
+  return {action, request, asker, "", asker};
 }
 
 TEST(RequestsTest, APauseHoldsUntilAStart) {
@@ -49,6 +49,16 @@ TEST(RequestsTest, TheSameRequestAndAnOlderOneAreHeardOnce) {
   EXPECT_THAT(sut.take(command(Action::kPause, 7), false), IsEmpty());
   EXPECT_FALSE(sut.paused());
   EXPECT_THAT(sut.take(command(Action::kPause, 7, "another"), false), Not(IsEmpty()));
+}
+
+// Anybody may call themselves the desk, with the largest number that there is.
+TEST(RequestsTest, AStrangerWithTheSameNameKeepsNobodyFromBeingHeard) {
+  Requests sut;
+  Command stranger = command(Action::kNote, UINT64_MAX);
+  stranger.sender = "a stranger";
+  sut.take(stranger, true);
+  EXPECT_THAT(sut.take(command(Action::kPause, 1), true), StartsWith("pause, asked by desk"));
+  EXPECT_TRUE(sut.paused());
 }
 
 TEST(RequestsTest, AnEmergencyStopIsHeardWhateverItsNumberAndNeverTakenBack) {
