@@ -13,6 +13,7 @@
 
 #include "apps/deploy/generate.hpp"
 #include "apps/deploy/machine.hpp"
+#include "apps/deploy/real_time_checks.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/process/shipped.hpp"
@@ -94,6 +95,7 @@ int run_check(const Words& words) {
   const Host& host = this_host(inventory, words.host);
   const LabProfiles profiles(words.profiles);
   std::vector<Finding> findings = check_machine(inventory, host, profiles.buffers());
+  std::ranges::move(check_real_time_kernel(), std::back_inserter(findings));
   if (!words.devices.empty()) {
     std::ranges::move(check_devices(words.devices), std::back_inserter(findings));
   }
