@@ -258,6 +258,23 @@ void take_words(const Words& words, LabOptions& options) {
   options.real_time = !words.ordinary;
 }
 
+// What is left is what people use first.
+void group_options(CLI::App& lab) {
+  settings::in_group(lab, "Motion and vehicle",
+                     {"--motion", "--ride", "--road-class", "--speed-m-s", "--vehicle"});
+  settings::in_group(lab, "Canceller and model",
+                     {"--canceller", "--model", "--arms", "--undeclared-effect"});
+  settings::in_group(lab, "Trials",
+                     {"--identify-seconds", "--subject", "--gamepad", "--wait-for-start", "--video",
+                      "--match-seconds", "--stop-key"});
+  settings::in_group(
+      lab, "Identification of arm and feedthrough at once",
+      {"--identify", "--perturb-period-s", "--task", "--held-stick", "--swap-lines"});
+  settings::in_group(
+      lab, "Machines and bus",
+      {"--domain", "--inventory", "--security", "--profiles", "--attach", "--no-real-time"});
+}
+
 }  // namespace
 
 void add_lab_command(CLI::App& cli, int& status) {
@@ -277,6 +294,7 @@ void add_lab_command(CLI::App& cli, int& status) {
   add_motion_options(*lab, *options, *words);
   add_output_options(*lab, *options);
   add_bus_options(*lab, *options, *words);
+  group_options(*lab);
   lab->callback([options, words, &status] {
     take_words(*words, *options);
     runtime::Stop stop;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/calibrate/calibrate_command.hpp"
 #include "apps/close_the_loop/closed_loop_command.hpp"
@@ -19,6 +23,7 @@
 #include "apps/record/record_command.hpp"
 #include "apps/recordings/recorder_commands.hpp"
 #include "apps/replay/replay_command.hpp"
+#include "apps/stillhand/help.hpp"
 #include "apps/stop/stop_command.hpp"
 #include "apps/study/study_command.hpp"
 #include "apps/vehicle/vehicle_command.hpp"
@@ -64,11 +69,26 @@ int run(int argc, char** argv) {
     stillhand::calibrate::add_calibrate_command(cli, status);
     stillhand::stop::add_stop_command(cli, status);
     stillhand::deploy::add_deploy_command(cli, status);
-    cli.parse(argc, argv);
+    stillhand::add_help(cli);
+    std::vector<std::string> words = stillhand::without_help_verb({argv + 1, argv + argc});
+    if (words.empty()) {
+      std::cerr << cli.help();
+      return 2;
+    }
+    if (const std::string why = stillhand::misspelt_verb(words); !why.empty()) {
+      std::cerr << "stillhand: " << why << '\n';
+      return 2;
+    }
+    std::ranges::reverse(words);  // as CLI11 takes them
+    cli.parse(std::move(words));
     return flushed(status);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return flushed(cli.exit(error));  // --help, --version
-    std::cerr << "stillhand: " << error.what() << "; see `stillhand <verb> --help`\n";
+    const std::string why = stillhand::misspelt_word(cli);
+    std::cerr << (why.empty()
+                      ? "stillhand: " + std::string(error.what()) + "; see `stillhand help VERB`"
+                      : why)
+              << '\n';
     return 2;
   } catch (const stillhand::ConfigError& error) {
     std::cerr << "stillhand: " << error.what() << '\n';

@@ -24,6 +24,7 @@
 #include "services/settings/check_name.hpp"
 #include "services/settings/check_number.hpp"
 #include "services/settings/load.hpp"
+#include "services/settings/repeatable.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -232,6 +233,13 @@ void add_study_command(CLI::App& cli, int& status) {
   for (const char* name : {"--plan", "--plan-effect", "--diagnose", "--simulated"}) {
     study->get_option(name)->needs("--sessions");
   }
+  settings::in_group(*study, "Simulated subjects and rig",
+                     {"--population", "--stick-damping", "--motor-delay", "--answer-wait",
+                      "--canceller", "--wrong-models", "--undeclared-effect"});
+  settings::in_group(*study, "Recorded people",
+                     {"--sessions", "--plan", "--plan-effect", "--diagnose", "--simulated"});
+  settings::in_group(*study, "Several machines", {"--shard", "--merge"});
+  settings::in_group(*study, "Research", {"--explain-paper", "--calibrate", "--mitigations"});
   study->callback([record, words, &status, study] {
     record->options.protocol.conditions =
         session::parse_conditions(words->conditions, session::kStudyConditions);

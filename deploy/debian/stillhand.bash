@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# Completes verbs, options and the choices of an option from `stillhand ... --help`, and file names elsewhere.
+# Completes verbs, options and the choices of an option from `stillhand ... --help-all`, and file names elsewhere.
 _stillhand() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
   local next help words choices=
   local -a path=()
   for next in "${COMP_WORDS[@]:1:COMP_CWORD-1}" ""; do
-    help=$("${COMP_WORDS[0]}" "${path[@]}" --help 2>/dev/null) || return
+    help=$("${COMP_WORDS[0]}" "${path[@]}" --help-all 2>/dev/null) || return
     words=$(sed -n '/^Subcommands:/,$ s/^  \([a-z-]\{1,\}\) .*/\1/p' <<<"$help")
     [[ -n $next && " ${words//$'\n'/ } " == *" $next "* ]] || break
     path+=("$next")

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+/// What `stillhand`, `stillhand help VERB` and `stillhand VERB --help` print.
+namespace stillhand {
+
+/// Gives the program and each of its verbs the help texts of this folder.  Call after the verbs are
+/// added.  A verb with many options shows the first group of them; --help-all shows all.
+/// @throws std::logic_error for a verb that the overview does not know
+void add_help(CLI::App& cli);
+
+/// "stillhand help lab" is "stillhand lab --help", and "stillhand help" is "stillhand --help".
+/// @param words  of the command line, without the program
+std::vector<std::string> without_help_verb(std::vector<std::string> words);
+
+/// Why the first word is no verb and which one is meant, in one line; empty: it is one, or an
+/// option, or there is none.
+std::string misspelt_verb(const std::vector<std::string>& words);
+
+/// Of a command line that did not end well: which word is neither an option nor a verb of its verb,
+/// and which is meant; empty: it has none of this kind.
+std::string misspelt_word(const CLI::App& cli);
+
+}  // namespace stillhand
