@@ -80,6 +80,7 @@ report::Page session_page(const session::SessionResult& result,
   page.paragraph(
       "One unit of the paper's RMS error is near 5.5 mm. One trial of each condition has no "
       "interval: another session gives other figures.");
+  for (const std::string& line : disturbance_lines(result)) page.paragraph(line + ".");
   add_mitigations(result, page);
   if (drawings.empty()) return page;
   page.section("Traces");

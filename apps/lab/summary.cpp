@@ -70,6 +70,10 @@ void print_mitigations(const session::SessionResult& result) {
   std::printf("restored: (B - it)/(B - A) of the RMS error behind the first third of each trial\n");
 }
 
+void print_disturbances(const session::SessionResult& result) {
+  for (const std::string& line : disturbance_lines(result)) std::printf("%s\n", line.c_str());
+}
+
 void print_rig(const LabOptions& options) {
   if (options.devices.empty()) return;
   const auto devices = settings::load<device_rig::DevicesConfig>(options.devices, "devices");
@@ -169,6 +173,7 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   draw(result, options.out);
   print_table(result);
   print_mitigations(result);
+  print_disturbances(result);
   print_rig(options);
   print_models(result, options.model);
   print_motion(outcomes, options.protocol);

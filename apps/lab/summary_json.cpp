@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/summary_json.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <functional>
 
 #include "apps/report/or_null.hpp"
 #include "apps/session/live_mitigation.hpp"
@@ -61,6 +64,20 @@ ordered_json clocks_json(const session::SessionResult& result) {
                        {"steps", offset.steps()}};
   }
   return clocks;
+}
+
+ordered_json disturbances_json(const session::SessionResult& result) {
+  ordered_json list = ordered_json::array();
+  for (const auto& [label, miss] : result.disturbances) {
+    list.push_back(ordered_json{{"condition", session::condition_label(label)},
+                                {"time_s", miss.time_s},
+                                {"process", miss.process},
+                                {"late_s", miss.late_s},
+                                {"waited", miss.waited},
+                                {"zero_s", miss.zero_s},
+                                {"back_s", or_null(miss.back_s)}});
+  }
+  return list;
 }
 
 ordered_json restoration_json(const session::SessionResult& result) {
@@ -227,6 +244,24 @@ std::optional<double> settled_restoration_of(const session::SessionResult& resul
          (b->settled_rms_error_mm - a->settled_rms_error_mm);
 }
 
+std::vector<std::string> disturbance_lines(const session::SessionResult& result) {
+  constexpr std::size_t kMost = 5;
+  std::vector<session::Disturbance> worst = result.disturbances;
+  std::ranges::stable_sort(worst, std::greater(),
+                           [](const session::Disturbance& each) { return each.miss.late_s; });
+  std::vector<std::string> lines;
+  for (const auto& [label, miss] : worst) {
+    if (lines.size() == kMost) break;
+    lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::condition_label(label),
+                                miss.time_s, session::what_happened(miss)));
+  }
+  if (worst.size() > kMost) {
+    lines.push_back(fmt::format("{} more times: `stillhand misses` lists them on session.mcap",
+                                worst.size() - kMost));
+  }
+  return lines;
+}
+
 ordered_json summary_json(const LabOptions& options,
                           const std::vector<session::TrialOutcome>& outcomes,
                           const session::SessionResult& result, bool interrupted) {
@@ -256,6 +291,7 @@ ordered_json summary_json(const LabOptions& options,
     summary["trials"].push_back(trial_json(outcome, options));
   }
   summary["lost_ticks"] = result.lost_ticks;
+  summary["disturbances"] = disturbances_json(result);
   summary["clocks"] = clocks_json(result);
   summary["recording_damage"] = result.damage;
   summary["interrupted"] = interrupted;

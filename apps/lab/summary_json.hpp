@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/lab/lab_options.hpp"
@@ -23,6 +24,10 @@ std::optional<double> restoration_of(const session::SessionResult& result,
 std::optional<double> settled_restoration_of(const session::SessionResult& result, char label);
 /// The trials with a mitigation of their own, in the order of the study's table.
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result);
+
+/// "C disturbed at 11.5 s: sensing was late by 73 ms, force 0 for 0.12 s": the longest five, and
+/// how to see all.
+std::vector<std::string> disturbance_lines(const session::SessionResult& result);
 
 /// Contents of summary.json (README, "summary.json").
 nlohmann::ordered_json summary_json(const LabOptions& options,

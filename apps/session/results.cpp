@@ -255,6 +255,22 @@ std::string why_unrecorded(const SessionRecording& session, const Trial& trial) 
                      trial.duration_ticks);
 }
 
+void find_disturbances(const SessionRecording& session, const std::vector<TrialOutcome>& outcomes,
+                       SessionResult& result) {
+  // An older command is not used: deploy/config/rig.yaml, motor.max_motor_age_ticks.
+  constexpr double kUnused_s = 0.010;
+  for (Miss& miss : misses_in(session, kUnused_s)) {
+    const auto hit = std::ranges::find_if(outcomes, [&](const TrialOutcome& each) {
+      const Trial& trial = each.planned.trial;
+      return each.completed && trial.number == miss.trial && miss.time_s >= 0.0 &&
+             trial.measures(trial.start_tick + ticks_in(miss.time_s));
+    });
+    if (hit != outcomes.end()) {
+      result.disturbances.push_back({hit->planned.label, std::move(miss)});
+    }
+  }
+}
+
 }  // namespace
 
 SessionResult evaluate(const std::string& recording, const std::vector<TrialOutcome>& outcomes) {
@@ -284,6 +300,7 @@ SessionResult evaluate(const std::string& recording, const std::vector<TrialOutc
     }
   }
   judge_by_senses(session, outcomes, result);
+  find_disturbances(session, outcomes, result);
   return result;
 }
 

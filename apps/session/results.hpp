@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/session/misses.hpp"
 #include "apps/session/sensed_share.hpp"
 #include "apps/session/session_recording.hpp"
 #include "apps/session/trial_forces.hpp"
@@ -72,6 +73,13 @@ struct RateConversionCost {
 };
 
 /// The part of a session's summary that is computed from the recording.
+/// A process was late while a trial that counts was measured, by more than a force command may be
+/// old: the force went down, and the trial's figures hold what that did.
+struct Disturbance {
+  char label;  ///< of the trial
+  Miss miss;
+};
+
 struct SessionResult {
   std::vector<TrialResult> trials;
   std::map<std::int64_t, std::string> unrecorded;  ///< by trial: why it does not count
@@ -81,6 +89,7 @@ struct SessionResult {
   std::vector<std::string> damage;
   std::string rig_parts;  ///< as the recording says it (parts_note.hpp); empty: all simulated
   std::map<std::string, stillhand_msgs::ClockOffset> clocks;  ///< by process, the last that came
+  std::vector<Disturbance> disturbances;                      ///< in time
 };
 
 /// Computes the completed trials' results from a recording.  One of which it lacks a second or more

@@ -48,6 +48,7 @@ const std::vector<Door>& overview() {
         {"control-model", "convert a diagnosed model for the motor"}}},
       {"Recordings of sessions",
        {{"info", "say what is in a recording"},
+        {"misses", "say who was late, and what the motor force did"},
         {"verify", "look for damage and gaps"},
         {"recover", "save what a damaged recording still holds"},
         {"export", "write it as CSV"},

@@ -19,6 +19,7 @@
 #include "apps/identify/identify_command.hpp"
 #include "apps/lab/conductor.hpp"
 #include "apps/lab/lab_command.hpp"
+#include "apps/misses/misses_command.hpp"
 #include "apps/predict/predict_command.hpp"
 #include "apps/record/record_command.hpp"
 #include "apps/recordings/recorder_commands.hpp"
@@ -63,6 +64,7 @@ int run(int argc, char** argv) {
     stillhand::close_the_loop::add_control_model_command(cli, status);
     stillhand::predict::add_predict_command(cli, status);
     stillhand::recordings::add_file_commands(cli, status);
+    stillhand::misses::add_misses_command(cli, status);
     stillhand::record::add_record_command(cli, status);
     stillhand::replay::add_replay_command(cli, status);
     stillhand::dashboard::add_dashboard_command(cli, status);

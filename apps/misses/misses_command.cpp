@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/misses/misses_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/report/or_null.hpp"
+#include "apps/report/plot/draw.hpp"
+#include "apps/report/result_files.hpp"
+#include "apps/session/misses.hpp"
+#include "apps/session/session_recording.hpp"
+#include "services/contract/config_error.hpp"
+
+namespace stillhand::misses {
+namespace {
+
+struct Words {
+  std::string recording;
+  double least_ms = 5.0;
+  std::filesystem::path json, picture;
+};
+
+std::string when(const session::Miss& miss) {
+  if (miss.trial < 0) return fmt::format("at {:.3f} s", miss.time_s);
+  return fmt::format("trial {} at {:.3f} s", miss.trial, miss.time_s);
+}
+
+std::string json_of(const Words& words, const std::vector<session::Miss>& misses) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const session::Miss& miss : misses) {
+    list.push_back(Json{{"process", miss.process},
+                        {"topic", miss.topic},
+                        {"trial", miss.trial < 0 ? Json() : Json(miss.trial)},
+                        {"time_s", miss.time_s},
+                        {"late_s", miss.late_s},
+                        {"waited", miss.waited},
+                        {"force_before_n", miss.force_before_n},
+                        {"zero_s", miss.zero_s},
+                        {"back_s", report::or_null(miss.back_s)}});
+  }
+  return Json{{"file", words.recording}, {"least_ms", words.least_ms}, {"misses", list}}.dump(2) +
+         "\n";
+}
+
+// The motor force around the longest one, and the time between the samples of who was late.
+report::Figure figure_of(const session::SessionRecording& session,
+                         const std::vector<session::Miss>& misses) {
+  const auto worst = std::ranges::max_element(misses, {}, &session::Miss::late_s);
+  report::Panel force{.title = when(*worst) + ": " + session::what_happened(*worst),
+                      .x = {.label = "time from the silence on [s]", .low = -0.5, .high = 2.0},
+                      .y = {.label = "motor force [N]"}};
+  report::Series acted{.label = "acted", .colour = report::Colour::kConditionC};
+  for (const auto& truth : session.rig_truths) {
+    const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns() - worst->from_ns);
+    if (t_s < -0.5 || t_s > 2.0) continue;
+    acted.x.push_back(t_s);
+    acted.y.push_back(truth.motor_force_n());
+  }
+  report::Series asked{.label = "that the prediction asks for",
+                       .kind = report::Kind::kDottedLine,
+                       .colour = report::Colour::kTarget};
+  for (const auto& command : session.motor_commands) {
+    const double t_s = 1e-9 * static_cast<double>(command.stamp_ns() - worst->from_ns);
+    if (t_s < -0.5 || t_s > 2.0) continue;
+    asked.x.push_back(t_s);
+    asked.y.push_back(-command.predicted_force_n());
+  }
+  force.series = {std::move(asked), std::move(acted)};
+  force.reference_lines = {
+      {report::Direction::kVertical, 0.0, "", report::Colour::kWarning},
+      {report::Direction::kVertical, worst->late_s, fmt::format("{:.0f} ms", 1e3 * worst->late_s),
+       report::Colour::kWarning}};
+  return {.name = "misses", .panels = {std::move(force)}};
+}
+
+int run(const Words& words) {
+  report::ResultFiles files({{"--json", words.json}, {"--picture", words.picture}},
+                            {words.recording});
+  const session::SessionRecording session = session::read_session(words.recording);
+  if (session.raw_samples.empty()) {
+    throw ConfigError(words.recording, "no sample of a rig", "the recording of a session");
+  }
+  const auto misses = session::misses_in(session, 1e-3 * words.least_ms);
+  for (const session::Miss& miss : misses) {
+    fmt::print("{:<22} {}{}\n", when(miss), session::what_happened(miss),
+               miss.waited.empty() ? "" : fmt::format("; {} waited", fmt::join(miss.waited, ", ")));
+  }
+  if (misses.empty()) {
+    fmt::print("nobody was late by {} ms or more\n", words.least_ms);
+  }
+  if (files.wants("--json")) files.set("--json", json_of(words, misses));
+  if (files.wants("--picture")) {
+    if (misses.empty()) throw ConfigError("--picture", "no miss to draw", "a smaller --least-ms");
+    const std::vector<report::Figure> figures{figure_of(session, misses)};
+    files.set("--picture", report::draw(figures).front().svg);
+  }
+  files.publish();
+  for (const std::string& damage : session.damage) {
+    fmt::print(stderr, "stillhand misses: {}: {}\n", words.recording, damage);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_misses_command(CLI::App& cli, int& status) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = cli.add_subcommand(
+      "misses",
+      "Says who was late in the recording of a session: which process was silent by itself, when,\n"
+      "for how long, who had to wait for it, and what the motor force did.\n"
+      "Example: stillhand misses run1/session.mcap --picture late.svg");
+  verb->add_option("FILE", words->recording, "recording of a session (MCAP)")->required();
+  verb->add_option("--least-ms", words->least_ms, "a process that is late by less is not listed")
+      ->check(CLI::Range(1.0, 1e4))
+      ->capture_default_str();
+  verb->add_option("--json", words->json, "write the same as JSON to this file");
+  verb->add_option("--picture", words->picture,
+                   "draw the motor force around the longest one into this file (SVG)");
+  verb->callback([words, &status] { status = run(*words); });
+}
+
+}  // namespace stillhand::misses

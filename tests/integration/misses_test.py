@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`stillhand misses` on sessions in which processes were stopped for a known time, and on files that are none.
+
+A stopped process writes nothing, so it is late by at least the time from its stop to its continuation, on however busy
+a machine. `--campaign` stops five processes for 20 to 140 ms in ten sessions and prints by how much each gap differs.
+"""
+import json
+import os
+import signal
+import subprocess
+import time
+
+import lab_process
+from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
+
+# The stop may come half a tick after the sample, Eq. MI-1, and the kernel stops a process a little later.
+HALF_TICK_S = 0.5e-3
+
+
+def misses(recording, *words):
+    result = recording.with_suffix(".misses.json")
+    out = subprocess.run([STILLHAND, "misses", recording, "--json", result, *words], capture_output=True, text=True)
+    return out, json.loads(result.read_text()) if out.returncode == 0 else None
+
+
+class MissesTest(LabTestCase):
+    def session_with_a_stop(self, service, length_s):
+        """Returns the recording, and when [ns, monotonic] the service stood still."""
+        lab = self.lab(*quick_session(self.folder / f"config-{service}-{length_s}"), "--trial-seconds", "6",
+                       out=self.folder / f"run-{service}-{length_s}")
+        lab.wait_for_tick(1, 2, TRIAL_LIMIT_S)
+        pid = lab.pid_of(service)
+        os.kill(pid, signal.SIGSTOP)
+        from_ns = time.monotonic_ns()
+        time.sleep(length_s)
+        until_ns = time.monotonic_ns()
+        os.kill(pid, signal.SIGCONT)
+        lab.end_status(TRIAL_LIMIT_S)
+        return lab.out / "session.mcap", (until_ns - from_ns) / 1e9
+
+    def the_stop(self, service, length_s):
+        recording, stopped_s = self.session_with_a_stop(service, length_s)
+        out, result = misses(recording)
+        self.assertEqual(out.returncode, 0, out.stderr)
+        found = max((miss for miss in result["misses"] if miss["process"] == service), key=lambda miss: miss["late_s"],
+                    default=None)
+        self.assertIsNotNone(found, out.stdout)
+        print(out.stdout)
+        return found, stopped_s
+
+    def test_a_process_that_stood_still_is_named_with_the_time_and_the_force(self):
+        found, stopped_s = self.the_stop("sensing", 0.08)
+        self.assertGreaterEqual(found["late_s"], stopped_s - HALF_TICK_S)
+        self.assertIn("cancellation", found["waited"])
+        self.assertEqual(found["trial"], 1)
+        self.assertGreater(found["force_before_n"], 0.1)
+        self.assertGreater(found["zero_s"], 0.0)
+
+    def test_what_is_no_session_is_refused(self):
+        for name, content in (("empty.mcap", b""), ("text.mcap", b"not a recording\n")):
+            path = self.folder / name
+            path.write_bytes(content)
+            out, _ = misses(path)
+            self.assertEqual(out.returncode, 2, out.stderr)
+            self.assertEqual(len(out.stderr.splitlines()), 1, out.stderr)
+
+    @campaign
+    def test_ten_stops(self):
+        worst_s = 0.0
+        for number, (service, length_s) in enumerate(
+                (service, length_s) for service in ("sensing", "cancellation", "motion", "rig", "display")
+                for length_s in (0.03, 0.14)):
+            found, stopped_s = self.the_stop(service, length_s)
+            error_s = found["late_s"] - stopped_s
+            print(f"{number} {service}: stood still for {1e3 * stopped_s:.1f} ms, found {1e3 * found['late_s']:.1f} ms")
+            worst_s = max(worst_s, abs(error_s))
+        print(f"largest difference {1e3 * worst_s:.2f} ms")
+
+
+if __name__ == "__main__":
+    lab_process.main()

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sessions whose stamps the test has written.
+#include "apps/session/misses.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "services/contract/tick.hpp"
+
+namespace stillhand::session {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::int64_t kTick_ns = 1'000'000;
+constexpr Tick kTicks = 5000;
+constexpr Tick kTrialStart = 500;
+
+/// [from, until): the ticks in which a process writes nothing; what waits is written at its end.
+struct Stop {
+  std::string process;
+  Tick from, until;
+};
+
+bool stands(const std::vector<Stop>& stops, const std::string& process, Tick tick) {
+  return std::ranges::any_of(stops, [&](const Stop& each) {
+    return each.process == process && tick >= each.from && tick < each.until;
+  });
+}
+
+// Each process answers 0.1 ms after its source; who stood answers all that waited at once.
+SessionRecording session(const std::vector<Stop>& stops) {
+  SessionRecording out;
+  const auto stamp = [&](const std::string& process, Tick tick, std::int64_t source_ns) {
+    std::int64_t at_ns = source_ns;
+    for (const Stop& each : stops) {
+      if (each.process == process && tick >= each.from && tick < each.until) {
+        at_ns = std::max(at_ns, each.until * kTick_ns);
+      }
+    }
+    return at_ns + kTick_ns / 10;
+  };
+  const auto add = [](auto& list, Tick tick, std::int64_t at_ns) -> auto& {
+    auto& message = list.emplace_back();
+    message.tick(tick);
+    message.stamp_ns(at_ns);
+    return message;
+  };
+  stillhand_msgs::TrialControl control;
+  control.trial(3);
+  control.phase(stillhand_msgs::PHASE_TRACKING);
+  control.start_tick(kTrialStart);
+  control.duration_ticks(4000);
+  control.ramp_ticks(100);
+  out.trial_controls.push_back(control);
+  for (Tick tick = 0; tick < kTicks; ++tick) {
+    const std::int64_t raw_ns = stamp("rig", tick, tick * kTick_ns);
+    add(out.raw_samples, tick, raw_ns);
+    const std::int64_t sensed_ns = stamp("sensing", tick, raw_ns);
+    add(out.sensed, tick, sensed_ns);
+    add(out.platform_commands, tick, stamp("motion", tick, sensed_ns));
+    const double predicted_n =
+        5.0 * std::sin(2.0 * std::numbers::pi * 2e-3 * static_cast<double>(tick));
+    auto& command = add(out.motor_commands, tick, stamp("cancellation", tick, sensed_ns));
+    command.predicted_force_n(predicted_n);
+    const std::int64_t shown_ns = stamp("display", tick, sensed_ns);
+    add(out.tracking_samples, tick, shown_ns);
+    add(out.operator_forces, tick, stamp("human_operator", tick, shown_ns));
+    auto& truth = add(out.rig_truths, tick, raw_ns);
+    truth.motor_tick(tick);
+    // Zero as long as sensing stands.
+    truth.motor_force_n(stands(stops, "sensing", tick) ? 0.0 : -predicted_n);
+  }
+  return out;
+}
+
+TEST(MissesTest, ASessionInTimeHasNone) { EXPECT_THAT(misses_in(session({})), IsEmpty()); }
+
+TEST(MissesTest, WhoStandsIsNamedWithTimeLengthForceAndWhoWaited) {
+  const auto sut = misses_in(session({{"sensing", 2000, 2073}}));
+  ASSERT_THAT(sut, SizeIs(1));
+  const Miss& miss = sut.front();
+  EXPECT_EQ(miss.process, "sensing");
+  EXPECT_EQ(miss.topic, "stillhand/sensed");
+  EXPECT_EQ(miss.trial, 3);
+  EXPECT_NEAR(miss.time_s, 1.5, 1e-3);
+  EXPECT_NEAR(miss.late_s, 0.073, 0.5e-3 + 1e-12);  // Eq. MI-1: half a tick
+  EXPECT_THAT(miss.waited, ElementsAre("motion", "cancellation", "display", "human_operator"));
+  EXPECT_NEAR(miss.force_before_n, 5.0 / std::sqrt(2.0), 0.05);
+  EXPECT_NEAR(miss.zero_s, 0.073, 2e-3);
+  // It is looked at in steps of 10 ms.
+  EXPECT_NEAR(miss.back_s, 0.073, 11e-3);
+  EXPECT_EQ(what_happened(miss),
+            "sensing was late by 73 ms, force 0 for 0.07 s, whole again after 0.1 s");
+}
+
+TEST(MissesTest, EachProcessIsNamedForItself) {
+  for (const std::string process :
+       {"rig", "sensing", "motion", "cancellation", "display", "human_operator"}) {
+    const auto sut = misses_in(session({{process, 2000, 2040}}));
+    ASSERT_THAT(sut, SizeIs(1)) << process;
+    EXPECT_EQ(sut.front().process, process);
+    EXPECT_NEAR(sut.front().late_s, 0.040, 0.5e-3 + 1e-12) << process;
+  }
+}
+
+TEST(MissesTest, TwoThatStandOneAfterTheOtherAreTwo) {
+  const auto sut = misses_in(session({{"cancellation", 1000, 1020}, {"sensing", 3000, 3030}}));
+  ASSERT_THAT(sut, SizeIs(2));
+  EXPECT_EQ(sut[0].process, "cancellation");
+  EXPECT_EQ(sut[1].process, "sensing");
+}
+
+// Sensing comes back, and cancellation stands for another 60 ms.
+TEST(MissesTest, WhoStandsLongerThanItsSourceIsLateByItself) {
+  const auto sut = misses_in(session({{"sensing", 2000, 2020}, {"cancellation", 2000, 2080}}));
+  ASSERT_THAT(sut, SizeIs(2));
+  EXPECT_EQ(std::min(sut[0].late_s, sut[1].late_s) < 0.03, true);
+  EXPECT_NEAR(std::max(sut[0].late_s, sut[1].late_s), 0.08, 1e-3);
+}
+
+TEST(MissesTest, AForceThatDoesNotComeBackIsSaid) {
+  SessionRecording recording = session({{"sensing", 2000, 2073}});
+  for (auto& truth : recording.rig_truths) {
+    if (truth.tick() > 2000) truth.motor_force_n(0.0);
+  }
+  const auto sut = misses_in(recording);
+  ASSERT_THAT(sut, SizeIs(1));
+  EXPECT_TRUE(std::isnan(sut.front().back_s));
+  EXPECT_THAT(what_happened(sut.front()), testing::HasSubstr("not whole again"));
+}
+
+TEST(MissesTest, OtherClocksAreConverted) {
+  SessionRecording recording = session({{"sensing", 2000, 2073}});
+  constexpr std::int64_t kAhead_ns = 7'000'000'000;
+  for (auto& sample : recording.motor_commands) sample.stamp_ns(sample.stamp_ns() + kAhead_ns);
+  stillhand_msgs::ClockOffset offset;
+  offset.service("cancellation");
+  offset.offset_ns(kAhead_ns);
+  recording.clock_offsets.push_back(offset);
+  const auto sut = misses_in(recording);
+  ASSERT_THAT(sut, SizeIs(1));
+  EXPECT_EQ(sut.front().process, "sensing");
+}
+
+TEST(MissesTest, AnEmptyRecordingHasNone) { EXPECT_THAT(misses_in({}), IsEmpty()); }
+
+}  // namespace
+}  // namespace stillhand::session
