@@ -96,7 +96,7 @@ int run(const ControlModelWords& words) {
       settings::load<cancellation::Config>(words.config / "cancellation.yaml", "cancellation"),
       words.model.string());
   files.set("--save", cancellation::control_model_json(control.model, words.rig));
-  if (!words.json.empty()) files.set("--json", summary_of(control));
+  if (!words.json.empty()) files.set_json("--json", summary_of(control));
   files.publish();
   std::printf("%s at 1 kHz, off by at most %.2g %% from %g to %g Hz, in %s\n",
               words.model.string().c_str(), 100.0 * control.conversion_error, options.low_hz,

@@ -106,7 +106,7 @@ int run_check(const Words& words) {
                each.mend.empty() ? "" : ": ", each.mend);
   }
   if (files.wants("--json")) {
-    files.set("--json", json_of(inventory, host, findings, all_good));
+    files.set_json("--json", json_of(inventory, host, findings, all_good));
     files.publish();
   }
   return all_good ? 0 : 1;

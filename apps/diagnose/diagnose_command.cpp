@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/diagnose/diagnose_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -13,9 +15,9 @@
 #include "apps/measurement/read_options.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/progress.hpp"
-#include "apps/report/provenance.hpp"
 #include "apps/report/result_files.hpp"
 #include "apps/report/staged_folder.hpp"
+#include "apps/report/text.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/core/diagnose.hpp"
 #include "services/diagnosis/model_file.hpp"
@@ -78,20 +80,22 @@ int run(const Words& words) {
   };
   const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
   progress.finish();
-  const report::Provenance origin =
-      report::provenance_of_this_call({words.recordings.begin(), words.recordings.end()});
   if (files.wants("--save")) {
-    const std::string text =
-        diagnosis::model_json(result.model, result.carried, result.baseline.model);
-    files.set("--save", report::with_provenance(text, origin));
+    files.set_json("--save",
+                   diagnosis::model_json(result.model, result.carried, result.baseline.model));
   }
-  if (files.wants("--json")) {
-    files.set("--json", report::with_provenance(diagnosis_json(result), origin));
-  }
+  if (files.wants("--json")) files.set_json("--json", diagnosis_json(result));
   if (folder) write_report(result, measurement, words.recordings, *folder);
   files.publish();
   std::fputs(diagnosis_table(result).c_str(), stdout);
   if (folder) std::printf("report in %s\n", words.report.string().c_str());
+  report::say_next(words.report.empty()
+                       ? "the same command with --report DIR draws what was found"
+                       : fmt::format("open {}", (words.report / "index.html").string()));
+  report::say_next(words.save.empty()
+                       ? "--save MODEL keeps the model, for `stillhand predict`"
+                       : fmt::format("stillhand predict {} ANOTHER_RECORDING --out predicted.csv",
+                                     words.save.string()));
   return 0;
 }
 

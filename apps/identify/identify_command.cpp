@@ -12,8 +12,8 @@
 #include "apps/identify/identify_output.hpp"
 #include "apps/measurement/read_options.hpp"
 #include "apps/report/plot/draw.hpp"
-#include "apps/report/provenance.hpp"
 #include "apps/report/result_files.hpp"
+#include "apps/report/text.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/identification/model_file.hpp"
 #include "services/settings/check_name.hpp"
@@ -45,7 +45,7 @@ int run_admittance(const Words& words) {
                             {words.recording, words.held, words.swapped});
   const AdmittanceResult result =
       identify_admittance({words.recording, words.held, words.swapped}, words.lever_m);
-  if (files.wants("--json")) files.set("--json", result_json(result));
+  if (files.wants("--json")) files.set_json("--json", result_json(result));
   if (files.wants("--picture")) {
     const std::vector<report::Figure> figures{figure(result)};
     files.set("--picture", report::draw(figures).front().png);
@@ -67,19 +67,17 @@ int run(const Words& words) {
                             {words.recording, words.read.map_file});
   const IdentifyResult result =
       identify(measurement::read_measurement(words.recording, words.read), words.identify);
-  const report::Provenance origin = report::provenance_of_this_call({words.recording});
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",
                         "no --save, or another --order");
     }
-    files.set("--save", report::with_provenance(identification::model_json(result.model), origin));
+    files.set_json("--save", identification::model_json(result.model));
   }
-  if (files.wants("--json")) {
-    files.set("--json", report::with_provenance(result_json(result), origin));
-  }
+  if (files.wants("--json")) files.set_json("--json", result_json(result));
   files.publish();
   std::fputs(result_table(result).c_str(), stdout);
+  report::say_next("stillhand diagnose " + words.recording + " says what this model lacks");
   return 0;
 }
 

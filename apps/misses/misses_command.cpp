@@ -96,7 +96,7 @@ int run(const Words& words) {
   if (misses.empty()) {
     fmt::print("nobody was late by {} ms or more\n", words.least_ms);
   }
-  if (files.wants("--json")) files.set("--json", json_of(words, misses));
+  if (files.wants("--json")) files.set_json("--json", json_of(words, misses));
   if (files.wants("--picture")) {
     if (misses.empty()) throw ConfigError("--picture", "no miss to draw", "a smaller --least-ms");
     const std::vector<report::Figure> figures{figure_of(session, misses)};

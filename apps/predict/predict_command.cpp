@@ -54,27 +54,23 @@ bool is_svg(const std::filesystem::path& path) {
 }
 
 void print(const Words& words, const Models& models, const Prediction& prediction,
-           const std::optional<Judgement>& judgement, std::FILE* stream) {
-  std::fprintf(stream, "%zu samples of %s from", prediction.table.row_count(),
-               prediction.output.c_str());
+           const std::optional<Judgement>& judgement) {
+  std::printf("%zu samples of %s from", prediction.table.row_count(), prediction.output.c_str());
   for (const std::string& input : models.carried.model.inputs) {
-    std::fprintf(stream, " %s", input.c_str());
+    std::printf(" %s", input.c_str());
   }
-  std::fprintf(stream, " in %s\n", words.out.string().c_str());
-  if (models.origin)
-    std::fprintf(stream, "model    %s\n", report::in_words(*models.origin).c_str());
-  if (judgement) std::fputs(judgement_table(*judgement).c_str(), stream);
+  std::printf(" in %s\n", words.out.string().c_str());
+  if (models.origin) std::printf("model    %s\n", report::in_words(*models.origin).c_str());
+  if (judgement) std::fputs(judgement_table(*judgement).c_str(), stdout);
   for (const std::string& note : prediction.notes) {
-    std::fprintf(stream, "note: %s\n", note.c_str());
+    std::printf("note: %s\n", note.c_str());
   }
 }
 
 int run(const Words& words) {
-  const bool to_stdout = words.json == "-";
-  report::ResultFiles files({{"--out", words.out},
-                             {"--json", to_stdout ? "/dev/stdout" : words.json},
-                             {"--picture", words.picture}},
-                            {words.model, words.recording, words.read.map_file});
+  report::ResultFiles files(
+      {{"--out", words.out}, {"--json", words.json}, {"--picture", words.picture}},
+      {words.model, words.recording, words.read.map_file});
   const bool svg = is_svg(words.picture);
   if (files.wants("--picture")) report::require_gnuplot();
   const Models models = read_models(words.model);
@@ -97,7 +93,7 @@ int run(const Words& words) {
   if (judgement) prediction.table.columns.push_back(judgement->measured);
   files.set("--out", recording::to_csv(prediction.table));
   files.publish();
-  print(words, models, prediction, judgement, to_stdout ? stderr : stdout);
+  print(words, models, prediction, judgement);
   return 0;
 }
 

@@ -37,7 +37,7 @@ int run_info(const InfoWords& words) {
   report::ResultFiles files({{"--json", words.json}}, {words.recording});
   OpenRecording recording(words.recording);
   const RecordingInfo info = info_of(recording);
-  if (files.wants("--json")) files.set("--json", info_json(info));
+  if (files.wants("--json")) files.set_json("--json", info_json(info));
   files.publish();
   std::fputs(info_text(info).c_str(), stdout);
   recording.tell_loss(info.messages);

@@ -7,9 +7,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
+#include "apps/report/provenance.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/expects.hpp"
 
@@ -56,6 +59,25 @@ void write(const fs::path& path, const std::string& text) {
   if (!stream) throw std::runtime_error(path.string() + ": cannot be written: " + reason(errno));
 }
 
+// What is printed from here on goes to standard error.
+int standard_output_apart() {
+  std::fflush(stdout);
+  const int descriptor = ::dup(STDOUT_FILENO);
+  if (descriptor < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {
+    throw std::runtime_error("standard output: " + reason(errno));
+  }
+  return descriptor;
+}
+
+void write(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t count = ::write(descriptor, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw std::runtime_error("standard output cannot be written: " + reason(errno));
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
 // Temporary files next to their places.  Removes those that were not moved.
 struct Staged {
   std::vector<fs::path> paths;
@@ -68,9 +90,18 @@ struct Staged {
 
 ResultFiles::ResultFiles(const std::vector<ResultFile>& files,
                          const std::vector<fs::path>& inputs) {
+  std::ranges::copy_if(inputs, std::back_inserter(inputs_),
+                       [](const fs::path& input) { return !input.empty(); });
   for (const ResultFile& file : files) {
     if (file.path.empty()) continue;
-    Entry entry{file, followed(file.path), true, {}};
+    if (file.path == "-") {
+      if (std::ranges::any_of(entries_, [](const Entry& e) { return e.descriptor >= 0; })) {
+        throw ConfigError(file.option, "-", "one result on standard output");
+      }
+      entries_.push_back({file, {}, false, standard_output_apart(), {}});
+      continue;
+    }
+    Entry entry{file, followed(file.path), true, -1, {}};
     check_place(file, entry.place);
     std::error_code error;
     entry.plain = !fs::exists(entry.place, error) || fs::is_regular_file(entry.place, error);
@@ -102,6 +133,10 @@ void ResultFiles::set(const std::string& option, std::string text) {
   entry->text = std::move(text);
 }
 
+void ResultFiles::set_json(const std::string& option, const std::string& json) {
+  if (wants(option)) set(option, with_provenance(json, provenance_of_this_call(inputs_)));
+}
+
 void ResultFiles::publish() {
   Staged staged_files;
   for (const Entry& entry : entries_) {
@@ -114,7 +149,9 @@ void ResultFiles::publish() {
   }
   std::size_t next = 0;
   for (const Entry& entry : entries_) {
-    if (!entry.plain) {
+    if (entry.descriptor >= 0) {
+      write(entry.descriptor, entry.text);
+    } else if (!entry.plain) {
       write(entry.place, entry.text);
     } else if (std::rename(staged_files.paths[next++].c_str(), entry.place.c_str()) != 0) {
       throw std::runtime_error(entry.file.path.string() + ": cannot be replaced: " + reason(errno));

@@ -14,7 +14,9 @@ struct ResultFile {
 };
 
 /// Files of results that appear together or not at all.  They replace files of the same names.  A
-/// path that is no plain file, such as /dev/stdout, is written directly.
+/// path that is no plain file, such as /dev/stdout, is written directly.  "-" is standard output;
+/// what the verb prints otherwise then goes to standard error, so that a pipe gets the result
+/// alone.
 class ResultFiles {
  public:
   /// Checks the places before the work, without writing.
@@ -27,6 +29,9 @@ class ResultFiles {
   [[nodiscard]] bool wants(const std::string& option) const;
   /// Sets the content of a wanted file.
   void set(const std::string& option, std::string text);
+  /// Sets it to a JSON object with its provenance, where it is wanted.
+  /// @throws std::runtime_error for an input that cannot be read
+  void set_json(const std::string& option, const std::string& json);
   /// Writes every file next to its place, then moves it there.
   /// @throws std::runtime_error with the file and the reason; earlier files are then unchanged.
   void publish();
@@ -36,10 +41,12 @@ class ResultFiles {
     ResultFile file;
     std::filesystem::path place;  ///< path of the file itself, with links followed
     bool plain = true;
+    int descriptor = -1;  ///< to which "-" is written
     std::string text;
   };
 
   std::vector<Entry> entries_;
+  std::vector<std::filesystem::path> inputs_;
 };
 
 }  // namespace stillhand::report

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/report/text.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -162,6 +165,10 @@ double text_width_px(std::string_view text, double font_size_px) {
     }
   }
   return width_em * font_size_px;
+}
+
+void say_next(const std::string& step) {
+  if (isatty(STDOUT_FILENO) == 1) fmt::print("next: {}\n", step);
 }
 
 }  // namespace stillhand::report

@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 
@@ -105,6 +107,26 @@ TEST_F(ResultFilesTest, AnInputIsNotWrittenOver) {
   fs::create_hard_link(at("ride.csv"), at("twin"));
   EXPECT_THAT(error_of({{"--save", at("ride.csv")}}, {at("ride.csv")}), HasSubstr("which is read"));
   EXPECT_THAT(error_of({{"--save", at("twin")}}, {at("ride.csv")}), HasSubstr("which is read"));
+}
+
+TEST_F(ResultFilesTest, ADashGetsTheResultAloneAndTheRestGoesToStandardError) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int own_stdout = dup(STDOUT_FILENO);
+  {
+    ResultFiles sut({{"--json", "-"}}, {});
+    std::printf("a table\n");
+    std::fflush(stdout);
+    sut.set_json("--json", R"({"a": 1})");
+    sut.publish();
+  }
+  dup2(own_stdout, STDOUT_FILENO);
+  close(own_stdout);
+  const std::string result = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(result, testing::StartsWith("{"));
+  EXPECT_THAT(result, HasSubstr("\"provenance\""));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("a table"));
+  EXPECT_THAT(error_of({{"--json", "-"}, {"--save", "-"}}), HasSubstr("one result"));
 }
 
 }  // namespace
