@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well admittance, feedthrough and the physical arm are recovered from the simulated rig, and
-// what a pegged identification costs.  README, "Admittance and feedthrough".
+// what a pegged identification costs.  RESULTS, "Admittance and feedthrough".
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -38,7 +38,7 @@ constexpr double kUnseenLow_hz = 0.7;
 constexpr double kUnseenHigh_hz = 2.0;
 constexpr double kUnseen_m_s2 = 1.6;
 
-// README: the setting of a task is a choice of ours.
+// RESULTS: the setting of a task is a choice of ours.
 rig::RigConfig rig_of(std::int64_t arm, Task task, Variant variant) {
   rig::RigConfig rig;
   rig.seed = 1000 + 10 * arm + static_cast<std::int64_t>(task);

@@ -13,7 +13,7 @@ known or published, and what a linear difference model by ordinary least squares
 The engine's bounds in seconds mean a hand. Where a recording is slower, or its rate is not published, the CSV has 10
 rows a second (PERIOD_S); `--period` tries another one.
 
-Exit status: 0; 1 where a file is not the one of the README's figures, or where the effects make the error on the unseen
+Exit status: 0; 1 where a file is not the one of the RESULTS' figures, or where the effects make the error on the unseen
 record more than 5 % larger; 77 where no recording is to be had.
 
     STILLHAND_BUILD=build python3 tests/benchmark/public_recordings.py                       # all, about a minute
@@ -60,7 +60,7 @@ SOURCES = {
                   commit="2a565d57ca30bdf126da507c00ad1f1e481ca434",
                   origin="cascaded tanks with overflow (Schoukens, Mattson, Wigren and Noel 2016)"),
 }
-# Of the CSV files that the figures in services/diagnosis/README.md were measured on.
+# Of the CSV files that the figures in services/diagnosis/RESULTS.md were measured on.
 SHA_256 = {
     "cd_arm_check.csv": "c3702146f9f68de3b3165017d930bd4cffe77a97aef73f7dc2de1ec0614a3f5a",
     "cd_arm_fit.csv": "565773823556d95e95599f5d99e96cd7ae3d139f926ceeafbaaa98faacf4d9f7",
@@ -309,7 +309,7 @@ class Study:
 
 
 def prepared(name, options, scratch, out):
-    """The CSV pair of a recording, and the names of those that are not the files of the README's figures."""
+    """The CSV pair of a recording, and the names of those that are not the files of the RESULTS' figures."""
     source = SOURCES[name]
     folder = options.folder
     path = package_member(folder, source, scratch) if "package" in source else repository_file(folder, source)
@@ -322,7 +322,7 @@ def prepared(name, options, scratch, out):
 def judged(name, options, scratch, out):
     """Prints the rows of a recording; returns what is wrong."""
     (fit, check), other = prepared(name, options, scratch, out)
-    wrong = [f"{each} is not the file of the figures in the README" for each in other]
+    wrong = [f"{each} is not the file of the figures in RESULTS" for each in other]
     for asked in STUDIES[name]:
         study = Study(scratch, fit, check, asked["inputs"], asked["output"])
         for row in study.rows(f"{name}, {asked['output']}", asked["known"], asked.get("published", "")):

@@ -7,7 +7,7 @@
 
 namespace stillhand::diagnosis {
 
-/// [-] 0 to 1, README Eq. DG-59: how surely a recording distinguishes an effect of a slow channel
+/// [-] 0 to 1, METHOD Eq. DG-59: how surely a recording distinguishes an effect of a slow channel
 /// from one of time alone.  1 for an effect of no channel, of inputs, or of channels that are not
 /// slow.  Pure.
 /// @param model  fitted, the effect among its effects

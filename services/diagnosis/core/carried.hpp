@@ -19,7 +19,7 @@ struct LeftOut {
   bool like_time = false;
 };
 
-/// The model that predicts other recordings of the same rig, README Eq. DG-58: the effects that
+/// The model that predicts other recordings of the same rig, METHOD Eq. DG-58: the effects that
 /// another recording can share, fitted again without the others, each with the range in which it
 /// was seen.
 struct CarriedModel {

@@ -21,7 +21,7 @@ namespace {
 constexpr double kStaticIsEnough = 1.02;
 constexpr double kSameChannel = 0.95;
 // Of the held-out error.  A mode that its bound hides leaves most of it; less may be what an effect
-// leaves, which freer poles imitate (the shaking table of the README: 0.92).
+// leaves, which freer poles imitate (the shaking table of RESULTS: 0.92).
 constexpr double kWorthSlowPoles = 0.5;
 
 // Half of the 95 % interval of the blocks' mean, Student's t.

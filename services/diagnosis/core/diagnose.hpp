@@ -20,7 +20,7 @@ namespace stillhand::diagnosis {
 enum class ModelClass { kAuto, kArx, kLinear };
 
 /// [N] RMS force from which on an effect counts: 0.1 N move the cursor of the mean subject by 0.8
-/// mm RMS, a 26th of the error of a hand at rest; README Eq. DG-76.
+/// mm RMS, a 26th of the error of a hand at rest; METHOD Eq. DG-76.
 inline constexpr double kLeastForce_n = 0.1;
 
 /// What to diagnose, and how.  As it is, it is what `stillhand diagnose` does without options.
@@ -50,7 +50,7 @@ struct HeldOutError {
 };
 
 /// RMS of what an effect explains of samples that the fit has not seen, with its interval of 95 %
-/// over the blocks, README Eq. DG-76.
+/// over the blocks, METHOD Eq. DG-76.
 struct Explained {
   double rms = 0.0;  ///< [unit of the output]
   double low = 0.0;

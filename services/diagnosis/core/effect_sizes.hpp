@@ -8,7 +8,7 @@
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/size.hpp"
 
-/// Physical numbers of a model's effects with their standard errors, README "Sizes".  Pure.
+/// Physical numbers of a model's effects with their standard errors, METHOD "Sizes".  Pure.
 namespace stillhand::diagnosis {
 
 /// What an effect's sizes are made of, at the model as it was fitted.

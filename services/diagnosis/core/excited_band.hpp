@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Where the power of a signal lies, README Eq. DG-65.  Pure.
+/// Where the power of a signal lies, METHOD Eq. DG-65.  Pure.
 namespace stillhand::diagnosis {
 
 /// All but a hundredth of a signal's power on each side, about its mean.

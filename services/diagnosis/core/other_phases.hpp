@@ -7,7 +7,7 @@
 
 namespace stillhand::diagnosis {
 
-/// A signal with the same power at every frequency and other phases, README Eq. DG-57 d).  Signals
+/// A signal with the same power at every frequency and other phases, METHOD Eq. DG-57 d).  Signals
 /// of one draw are turned alike, so that what they share stays shared.  Pure.
 /// @param draw  the phases; taken by value
 std::vector<double> other_phases(std::vector<double> x, signal::Gaussian draw);

@@ -25,7 +25,7 @@ bool scales_body(const Effect& effect);
 /// inputs do not.
 bool has_body_of_baseline(const Model& model, const Signals& signals);
 
-/// Judges models on parts that are held out whole, README Eq. DG-58, DG-68 and DG-69: thirds of a
+/// Judges models on parts that are held out whole, METHOD Eq. DG-58, DG-68 and DG-69: thirds of a
 /// recording, or the recordings that were joined.  Pure; it refers to what it is made from.
 class PartsOut {
  public:
@@ -44,7 +44,7 @@ class PartsOut {
   [[nodiscard]] Share share(const OutOfParts& without, const OutOfParts& with) const;
 
   /// [-] of the power of what one model predicts beyond the other that a mean over one period of
-  /// the lowest excited frequency keeps, README Eq. DG-77.
+  /// the lowest excited frequency keeps, METHOD Eq. DG-77.
   [[nodiscard]] double slow_share(const OutOfParts& without, const OutOfParts& with) const;
 
   /// Of the body of a model whose effects scale it, or do not, from now on.  The prior stays with

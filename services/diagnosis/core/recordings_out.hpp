@@ -8,7 +8,7 @@
 
 namespace stillhand::diagnosis {
 
-/// Errors of an effect's model on each of the recordings that were joined, held out whole, README
+/// Errors of an effect's model on each of the recordings that were joined, held out whole, METHOD
 /// Eq. DG-52.  Pure.
 class RecordingsOut {
  public:

@@ -44,7 +44,7 @@ struct SearchResult {
   HeldOut last_current;                ///< what they were compared with
 };
 
-/// Forward selection with re-testing, README "Selection": propose, fit jointly, compare on held-out
+/// Forward selection with re-testing, METHOD "Selection": propose, fit jointly, compare on held-out
 /// blocks, add the simplest of the best; after each addition every earlier one is tested again.
 SearchResult search(const Baseline& baseline, const Signals& signals, const Blocks& blocks,
                     const SearchOptions& options, const ForEach& for_each,

@@ -33,7 +33,7 @@ std::ptrdiff_t place_of(const std::string& kind) {
   return std::ranges::find(effect_kinds(), kind, &EffectKind::name) - effect_kinds().begin();
 }
 
-// README Eq. DG-50: an error and what its numbers cost.
+// METHOD Eq. DG-50: an error and what its numbers cost.
 double schwarz(const Trial& trial) {
   if (!std::isfinite(trial.rmse)) return std::numeric_limits<double>::infinity();
   const double samples = sum_of(trial.held_out.weights);

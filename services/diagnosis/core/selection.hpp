@@ -8,10 +8,10 @@
 
 #include "services/diagnosis/core/fitting/held_out.hpp"
 
-/// The choice among the models that were tried, README "Selection".
+/// The choice among the models that were tried, METHOD "Selection".
 namespace stillhand::diagnosis {
 
-/// Settings of the search; README "Selection" gives the reason of each number.
+/// Settings of the search; METHOD "Selection" gives the reason of each number.
 struct SearchOptions {
   std::size_t most_effects = 4;
   double first_least_fall = 0.005;  ///< [-] of the held-out error: is anything missing at all?
@@ -25,7 +25,7 @@ struct SearchOptions {
   int fit_iterations = 30;
 };
 
-/// Held-out errors of two models compared block by block, README Eq. DG-16.
+/// Held-out errors of two models compared block by block, METHOD Eq. DG-16.
 struct Comparison {
   double rmse_ratio = 1.0;  ///< [-] after / before
   double t = 0.0;           ///< [-] mean of the blocks' differences over its standard error

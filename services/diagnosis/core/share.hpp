@@ -9,7 +9,7 @@
 
 namespace stillhand::diagnosis {
 
-/// How much of what effects add to a prediction another recording will show, README Eq. DG-69.
+/// How much of what effects add to a prediction another recording will show, METHOD Eq. DG-69.
 struct Share {
   double estimate = 0.0;   ///< [-] least squares on parts that no fit has seen
   double std_error = 0.0;  ///< [-] over the blocks or over the parts, the larger
@@ -32,7 +32,7 @@ double rounded_share(double share);
 Share share_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& difference,
                const Blocks& parts);
 
-/// [-] of a signal's power about its mean that a mean over one period keeps, README Eq. DG-77.
+/// [-] of a signal's power about its mean that a mean over one period keeps, METHOD Eq. DG-77.
 /// @param period  [samples]
 double slow_share(Eigen::VectorXd signal, const std::vector<Stretch>& stretches,
                   std::size_t period);

@@ -10,7 +10,7 @@ namespace stillhand::diagnosis {
 ///   v + k |v| of input or output;  feedback of |z| or z^2 inside the body;
 ///   c (x - m)^2 of a channel
 ///
-/// Source: README Eq. DG-25; bilinear and quadratic stiffness: Worden and Tomlinson (2001).
+/// Source: METHOD Eq. DG-25; bilinear and quadratic stiffness: Worden and Tomlinson (2001).
 const EffectKind& asymmetry_kind();
 
 }  // namespace stillhand::diagnosis

@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   c (x_1 - m_1)(x_2 - m_2);  g = 1 + s (x - m) on the body's output
 ///
-/// Source: README Eq. DG-36.
+/// Source: METHOD Eq. DG-36.
 const EffectKind& bilinear_kind();
 
 }  // namespace stillhand::diagnosis

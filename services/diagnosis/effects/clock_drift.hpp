@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   u(t - d (t - t_m)),  t_m the middle of the record
 ///
-/// Source: README Eq. DG-35, by the fractional delay of DG-2, Laakso et al. (1996).
+/// Source: METHOD Eq. DG-35, by the fractional delay of DG-2, Laakso et al. (1996).
 const EffectKind& clock_drift_kind();
 
 }  // namespace stillhand::diagnosis

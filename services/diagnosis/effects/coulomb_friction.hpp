@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   c sign(v)  or  c tanh(v / v_t)
 ///
-/// Source: README Eq. DG-23; Worden and Tomlinson (2001).
+/// Source: METHOD Eq. DG-23; Worden and Tomlinson (2001).
 const EffectKind& coulomb_friction_kind();
 
 }  // namespace stillhand::diagnosis

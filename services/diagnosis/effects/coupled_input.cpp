@@ -33,7 +33,7 @@ std::vector<double> low_passed(const Signal& signal, double lag_s, const Signals
   return y;
 }
 
-// README Eq. DG-55: behind a longer lag little is left of the channel but its start and its slowest
+// METHOD Eq. DG-55: behind a longer lag little is left of the channel but its start and its slowest
 // part, which would imitate a drift.
 double longest_lag_s(const Signal& signal, const Signals& signals) {
   const std::vector<double> means(signals.stretches().size(), signal.mean);

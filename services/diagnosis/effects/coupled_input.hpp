@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   c x;  c_1 x + c_2 x';  c times a first-order low-pass of x;  x through the body's poles
 ///
-/// Source: README Eq. DG-22.
+/// Source: METHOD Eq. DG-22.
 const EffectKind& coupled_input_kind();
 
 }  // namespace stillhand::diagnosis

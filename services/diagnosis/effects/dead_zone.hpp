@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   x - clip(x, h) of input, output or a position;  feedback of clip(z, 1) inside the body
 ///
-/// Source: README Eq. DG-27; piecewise linear stiffness: Worden and Tomlinson (2001).
+/// Source: METHOD Eq. DG-27; piecewise linear stiffness: Worden and Tomlinson (2001).
 const EffectKind& dead_zone_kind();
 
 }  // namespace stillhand::diagnosis

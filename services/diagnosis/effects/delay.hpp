@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   u(t - d)
 ///
-/// Source: README Eq. DG-20, by the fractional delay of DG-2, Laakso et al. (1996).
+/// Source: METHOD Eq. DG-20, by the fractional delay of DG-2, Laakso et al. (1996).
 const EffectKind& delay_kind();
 
 }  // namespace stillhand::diagnosis

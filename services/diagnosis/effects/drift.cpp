@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTriedTimeConstants[] = {0.1, 0.25, 0.5};  // [record lengths]
 
-// Slow noise is no drift: the lowest half-cosines must stand out from those that follow, README
+// Slow noise is no drift: the lowest half-cosines must stand out from those that follow, METHOD
 // Eq. DG-32.  For a spectrum like 1/f the ratio is about 5, for 1/f^2 about 25.
 constexpr int kSlowest = 3;
 constexpr int kFollowing = 15;

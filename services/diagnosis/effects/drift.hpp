@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   c (t/L - 1/2);  c e^(-t/tau);  sum_{k=1..3} c_k cos(pi k t/L)
 ///
-/// Source: README Eq. DG-32.
+/// Source: METHOD Eq. DG-32.
 const EffectKind& drift_kind();
 
 }  // namespace stillhand::diagnosis

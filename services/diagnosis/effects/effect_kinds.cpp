@@ -23,7 +23,7 @@
 namespace stillhand::diagnosis {
 
 // The one list: a new kind adds its line here.  Of those that explain as much, as far as the blocks
-// can say, with as many numbers, the earliest is named, README Eq. DG-17.
+// can say, with as many numbers, the earliest is named, METHOD Eq. DG-17.
 const std::vector<const EffectKind*>& effect_kinds() {
   static const std::vector<const EffectKind*> kKinds{&delay_kind(),
                                                      &resonance_kind(),

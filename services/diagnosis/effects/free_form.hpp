@@ -12,7 +12,7 @@ namespace stillhand::diagnosis {
 /// as a force h(x) or h(x) v, or as a factor 1 + h(x) on the body's output, x a channel or the
 /// size of an input (its RMS over some seconds).  When it is tried: Eq. DG-64.
 ///
-/// Source: README Eq. DG-63; Hastie, Tibshirani and Friedman (2009), section 5.2 (basis of linear
+/// Source: METHOD Eq. DG-63; Hastie, Tibshirani and Friedman (2009), section 5.2 (basis of linear
 /// splines).
 const EffectKind& free_form_kind();
 

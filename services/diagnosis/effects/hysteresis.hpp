@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   w(n) = clip(w(n-1) + z(n) - z(n-1), 1)  or  dw = dz (1 - w sign dz)
 ///
-/// Source: README Eq. DG-26; Visintin (1994) for the first, Dahl (1968) for the second.
+/// Source: METHOD Eq. DG-26; Visintin (1994) for the first, Dahl (1968) for the second.
 const EffectKind& hysteresis_kind();
 
 }  // namespace stillhand::diagnosis

@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   clip(u_1, L)  or  L tanh(u_1 / L)
 ///
-/// Source: README Eq. DG-29; a static map before a linear system: Schoukens and Ljung (2019).
+/// Source: METHOD Eq. DG-29; a static map before a linear system: Schoukens and Ljung (2019).
 const EffectKind& input_saturation_kind();
 
 }  // namespace stillhand::diagnosis

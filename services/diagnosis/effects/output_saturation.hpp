@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   clip(y, L)  or  L tanh(y / L)
 ///
-/// Source: README Eq. DG-28; a static map behind a linear system: Schoukens and Ljung (2019).
+/// Source: METHOD Eq. DG-28; a static map behind a linear system: Schoukens and Ljung (2019).
 const EffectKind& output_saturation_kind();
 
 }  // namespace stillhand::diagnosis

@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   sum_h c_h sin(2 pi h k x) + c'_h cos(2 pi h k x)
 ///
-/// Source: README Eq. DG-30.
+/// Source: METHOD Eq. DG-30.
 const EffectKind& position_ripple_kind();
 
 }  // namespace stillhand::diagnosis

@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   g = 1 - c before t_0, 1 + c after
 ///
-/// Source: README Eq. DG-34.
+/// Source: METHOD Eq. DG-34.
 const EffectKind& regime_change_kind();
 
 }  // namespace stillhand::diagnosis

@@ -10,7 +10,7 @@ namespace stillhand::diagnosis {
 ///   (c_k,1 D + c_k,2) x_k,  x_k = u_k / (1 - 2 r cos(w sqrt(1 - z^2)) q^-1 + r^2 q^-2),
 ///   r = e^(-z w),  w = 2 pi f T
 ///
-/// Source: README Eq. DG-21.
+/// Source: METHOD Eq. DG-21.
 const EffectKind& resonance_kind();
 
 }  // namespace stillhand::diagnosis

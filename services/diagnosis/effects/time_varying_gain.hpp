@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   g = 1 + c (2 t/L - 1);  1 + sum_{k=1..4} c_k cos(pi k t/L);  1 + s sin + c cos of 2 pi m t/L
 ///
-/// Source: README Eq. DG-33.
+/// Source: METHOD Eq. DG-33.
 const EffectKind& time_varying_gain_kind();
 
 }  // namespace stillhand::diagnosis

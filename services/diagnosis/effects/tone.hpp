@@ -9,7 +9,7 @@ namespace stillhand::diagnosis {
 ///
 ///   c sin(2 pi f t) + c' cos(2 pi f t)
 ///
-/// Source: README Eq. DG-31.
+/// Source: METHOD Eq. DG-31.
 const EffectKind& tone_kind();
 
 }  // namespace stillhand::diagnosis

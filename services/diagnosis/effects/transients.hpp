@@ -7,7 +7,7 @@ namespace stillhand::diagnosis {
 
 /// Isolated bursts: the samples from the begin to the end of each have weight 0.
 ///
-/// Source: README Eq. DG-37.
+/// Source: METHOD Eq. DG-37.
 const EffectKind& transients_kind();
 
 }  // namespace stillhand::diagnosis

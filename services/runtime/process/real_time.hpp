@@ -11,7 +11,7 @@ namespace stillhand::runtime {
 /// Real-time priority of the control path: below the kernel's threaded interrupts at 50.
 inline constexpr int kControlPriority = 40;
 /// Of the processes that listen to the loop: where cores are fewer than processes, the answer to a
-/// sample goes first (measured: tests/benchmark/README.md, "The loop").
+/// sample goes first (measured: tests/benchmark/RESULTS.md, "The loop").
 inline constexpr int kListenerPriority = 35;
 /// kControlPriority for the processes between a sample and the motor command that answers it (rig,
 /// sensing, cancellation), kListenerPriority for all others.

@@ -9,7 +9,7 @@
 #include "tests/unit/diagnosis/made_measurement.hpp"
 
 // The free run against difference equations that are written out here, stage by stage of the model
-// (services/diagnosis/README.md); two stretches, so that nothing leaks from one into the other.
+// (services/diagnosis/RESULTS.md); two stretches, so that nothing leaks from one into the other.
 namespace stillhand::diagnosis {
 namespace {
 

@@ -42,7 +42,7 @@ struct Spread {
   double largest_ratio = 1.0;  ///< [-] largest over median
 };
 
-/// What the residual of a model still depends on, README "Detection".
+/// What the residual of a model still depends on, METHOD "Detection".
 struct DetectionResult {
   std::vector<Detection> detections;    ///< strongest first
   Whiteness whiteness;                  ///< colour alone is no effect

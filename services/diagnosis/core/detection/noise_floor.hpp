@@ -15,7 +15,7 @@ struct NoiseEstimate {
   double rmse = 0.0;  ///< [unit of the output]
 };
 
-/// The size of the noise, README "Noise floor".  No single estimate is reliable: the one that is
+/// The size of the noise, METHOD "Noise floor".  No single estimate is reliable: the one that is
 /// used, its interval, and all that exist.
 struct NoiseFloor {
   double rmse = 0.0;

@@ -15,7 +15,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t kShortest = 16;  // samples of a part worth looking at
-// README "Periodic excitation" has the reasons of these.
+// METHOD "Periodic excitation" has the reasons of these.
 constexpr double kTolerance = 0.01;       // of the power may fail to repeat
 constexpr double kLocalTolerance = 0.04;  // of an eighth of a period alone
 constexpr double kAsGood = 1.5;           // times the least deviation: the shortest lag is taken

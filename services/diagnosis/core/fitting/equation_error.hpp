@@ -9,8 +9,8 @@
 namespace stillhand::diagnosis {
 
 /// Least squares of A(q) target = B(q) inputs + offset over the samples that count: the paper's
-/// fit, where every free-run fit starts.  Output noise biases it (README "Fit and
-/// cross-validation"). The body's poles are bounded as README Eq. DG-1 says and stable.
+/// fit, where every free-run fit starts.  Output noise biases it (METHOD "Fit and
+/// cross-validation"). The body's poles are bounded as METHOD Eq. DG-1 says and stable.
 /// @param valid  one a sample; a row needs the sample and the one `order` samples before it
 /// @throws stillhand::ConfigError for fewer than two usable samples a number.
 Body equation_error_fit(const std::vector<std::vector<double>>& inputs,

@@ -8,7 +8,7 @@
 
 namespace stillhand::diagnosis {
 
-/// Impulse responses by least squares, README Eq. DG-13:
+/// Impulse responses by least squares, METHOD Eq. DG-13:
 ///
 ///   y(n) = offset + sum_k sum_{i=0..L-1} h_k,i u_k(n-i),   n from a stretch's L-th sample on
 ///

@@ -14,7 +14,7 @@ struct Line {
   double prominence = 0.0;  ///< [-] power over the median of its surroundings
 };
 
-/// Strongest lines of a residual over any axis (time, a position), README Eq. DG-15: the samples
+/// Strongest lines of a residual over any axis (time, a position), METHOD Eq. DG-15: the samples
 /// are gathered in equal bins of the axis, far finer than the shortest period, and transformed by
 /// FFT. Frequencies from `lowest` to `highest` [cycles per unit of the axis] in quarters of
 /// 1/range. A line within three times 1/range of a stronger one is that one's side lobe.

@@ -11,7 +11,7 @@ namespace stillhand::diagnosis {
 
 /// How exactly a recording determines the numbers of a model that was fitted to it, and whatever is
 /// a function of them: the covariance of the joint fit under noise of the residual's own colour,
-/// README Eq. DG-70, and standard errors by the gradient, Eq. DG-71.
+/// METHOD Eq. DG-70, and standard errors by the gradient, Eq. DG-71.
 /// Linearised, and right as far as the model is: what the model lacks is no noise.  Pure.
 /// Source: Ljung, System Identification, 2nd ed., 9.2 to 9.4.
 class NumberErrors {

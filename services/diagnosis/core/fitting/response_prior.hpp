@@ -19,7 +19,7 @@ Body scaled_to(const Body& other, const Body& body, const std::vector<ExcitedBan
                double rate_hz);
 
 /// What is assumed of a body's response where the input did not excite it: that of another body,
-/// README Eq. DG-67.  Terms of a least-squares fit next to the samples'.
+/// METHOD Eq. DG-67.  Terms of a least-squares fit next to the samples'.
 class ResponsePrior {
  public:
   /// @param body     with the response that is assumed

@@ -19,7 +19,7 @@ bool ends_inside_body(const Model& model);
 /// order.
 Model lifted(const Model& model);
 
-/// README Eq. DG-49: the last effect's phi(z) with the nearest alpha psi(z/beta) + gamma z put in
+/// METHOD Eq. DG-49: the last effect's phi(z) with the nearest alpha psi(z/beta) + gamma z put in
 /// its place, psi of `other`'s kind and form.
 /// @return nullopt where that is unstable or runs away
 std::optional<Model> with_shape_of(const Effect& other, const Model& model, const Signals& signals);

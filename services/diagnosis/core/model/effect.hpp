@@ -10,7 +10,7 @@
 
 namespace stillhand::diagnosis {
 
-/// Where in the model an effect acts, README "The model", in the order of the signal's way.
+/// Where in the model an effect acts, METHOD "The model", in the order of the signal's way.
 enum class Stage {
   kInputTime,    ///< when the input reaches the body, Eq. DG-2
   kInputValue,   ///< a memoryless map of the input, Eq. DG-3
@@ -32,7 +32,7 @@ struct Parameter {
 };
 
 /// Where an effect was seen: the range of a signal that it reads, or of what its nonlinearity is
-/// given.  It goes on as it is for a quarter of the range on each side, and is held there, README
+/// given.  It goes on as it is for a quarter of the range on each side, and is held there, METHOD
 /// Eq. DG-56.
 struct SeenRange {
   static constexpr double kWider = 0.25;  ///< [-] of the range

@@ -60,13 +60,13 @@ class EffectKind {
                                                    const Signals& /*signals*/) const {
     return {};
   }
-  /// Its physical numbers, README "Sizes", without their standard errors: functions of the model's
+  /// Its physical numbers, METHOD "Sizes", without their standard errors: functions of the model's
   /// numbers alone.  By default none but those that are fitted.
   [[nodiscard]] virtual std::vector<Size> sizes(const SizeCase& at) const;
   /// kTerm, a linear path: its response from what drives it, [output unit per that unit].
   [[nodiscard]] virtual std::optional<std::complex<double>> path(const SizeCase& at,
                                                                  double frequency_hz) const;
-  /// [-] times Eq. DG-62: the size at which it is found as often as not, measured (README,
+  /// [-] times Eq. DG-62: the size at which it is found as often as not, measured (RESULTS,
   /// "Power"): 1, 1.5, 2 or 6.
   [[nodiscard]] virtual double size_found() const { return 1.0; }
 

@@ -12,7 +12,7 @@
 
 namespace stillhand::diagnosis {
 
-/// How a nonlinearity phi sits in the body of order p, README Eq. DG-4; e, n, m are its
+/// How a nonlinearity phi sits in the body of order p, METHOD Eq. DG-4; e, n, m are its
 /// coefficients in the difference basis D = 1 - q^-1:
 ///
 ///   A y_b = B u + E phi(z)

@@ -5,7 +5,7 @@
 
 #include "services/diagnosis/core/model/size.hpp"
 
-/// Physical numbers of a nonlinearity inside the body, README Eq. DG-73 to DG-75.  Pure.
+/// Physical numbers of a nonlinearity inside the body, METHOD Eq. DG-73 to DG-75.  Pure.
 namespace stillhand::diagnosis {
 
 /// z of the largest motion that was seen, in thresholds.

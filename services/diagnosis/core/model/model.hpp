@@ -9,7 +9,7 @@
 
 namespace stillhand::diagnosis {
 
-/// The linear part, README Eq. DG-1, for input k:
+/// The linear part, METHOD Eq. DG-1, for input k:
 ///
 ///   y_b(n) = sum_k sum_{i=0..p} b_k,i u_k(n-i) - sum_{j=1..p} a_j y_b(n-j)
 struct Body {

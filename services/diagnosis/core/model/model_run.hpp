@@ -32,7 +32,7 @@ struct KnownRun {
   std::vector<std::optional<std::size_t>> owners;  ///< [models] whose number; none: the body's
 };
 
-/// Runs a model over its signals, README "The model".
+/// Runs a model over its signals, METHOD "The model".
 void run_all(const Model& model, const Signals& signals, ModelRun& run);
 /// The same for models that differ in their numbers alone.
 void run_all(std::span<const Model> models, const Signals& signals, std::span<ModelRun> runs,

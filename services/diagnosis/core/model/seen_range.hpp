@@ -6,7 +6,7 @@
 
 #include "services/diagnosis/core/model/evaluation.hpp"
 
-/// Where a model was seen, and where a recording leaves that range, README Eq. DG-56.  Pure.
+/// Where a model was seen, and where a recording leaves that range, METHOD Eq. DG-56.  Pure.
 namespace stillhand::diagnosis {
 
 /// Sets the ranges of a fitted model's effects: what each of them reads over the samples that

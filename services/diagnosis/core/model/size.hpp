@@ -11,7 +11,7 @@
 #include "services/diagnosis/core/model/model.hpp"
 #include "services/diagnosis/core/signals.hpp"
 
-/// Physical numbers of an effect, README "Sizes".  Pure.
+/// Physical numbers of an effect, METHOD "Sizes".  Pure.
 namespace stillhand::diagnosis {
 
 /// One number that a reader quotes.

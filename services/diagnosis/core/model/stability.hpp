@@ -8,7 +8,7 @@
 
 namespace stillhand::diagnosis {
 
-/// What is known of a model whose nonlinearities are held at the edges of their ranges, README Eq.
+/// What is known of a model whose nonlinearities are held at the edges of their ranges, METHOD Eq.
 /// DG-57.
 enum class Stability {
   kProved,   ///< bounded, and its answers from two pasts become the same, on every input

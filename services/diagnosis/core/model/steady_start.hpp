@@ -5,7 +5,7 @@
 
 #include "services/diagnosis/core/signals.hpp"
 
-/// Paths that start in the steady state of their first inputs, README Eq. DG-54.  Pure.
+/// Paths that start in the steady state of their first inputs, METHOD Eq. DG-54.  Pure.
 namespace stillhand::diagnosis {
 
 /// A signal, and the level that it held before each stretch.
