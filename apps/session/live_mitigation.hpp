@@ -18,7 +18,7 @@ struct LiveMitigation {
 };
 
 /// All, in the order of the study's table.  Their numbers are those that the study chose on other
-/// people (apps/study/README.md, SU-18, seed 20261125), and the hand is the average of CC-5: no
+/// people (apps/study/METHOD.md, SU-18, seed 20261125), and the hand is the average of CC-5: no
 /// trial of a session changes them.  The arms of `scheduled` are the person's own:
 /// ProtocolOptions::arms.
 const std::vector<LiveMitigation>& live_mitigations();

@@ -19,7 +19,7 @@ namespace stillhand::study {
 
 inline constexpr std::size_t kMetricCount = session::kMetrics.size();
 inline constexpr const char* kPaperConditions = "ABC";  ///< of the paper's tables and figures
-/// Assumed size of a unit of the paper's RMS error [mm]; README, "The paper's unit".
+/// Assumed size of a unit of the paper's RMS error [mm]; METHOD, "The paper's unit".
 inline constexpr double kPaperUnit_mm = 5.5;
 
 /// One metric under one condition.

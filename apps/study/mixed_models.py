@@ -4,7 +4,7 @@
 
 Usage: mixed_models.py STUDY/trials.csv [> mixed_models.json]
 
-For each metric, by restricted maximum likelihood (SU-11 of apps/study/README.md):
+For each metric, by restricted maximum likelihood (SU-11 of apps/study/METHOD.md):
 
     metric ~ condition + place,   a random intercept for each participant
 

@@ -29,7 +29,7 @@ struct Shard {
 /// "K/N" of --shard.  @throws ConfigError for other words, and for more shards than subjects.
 Shard parse_shard(const std::string& word, std::int64_t subjects);
 
-/// Name of the one file of a shard's folder; README, "shard.cbor".
+/// Name of the one file of a shard's folder; METHOD, "shard.cbor".
 inline constexpr const char* kShardFile = "shard.cbor";
 /// Its last item, a digest: a text of 64 characters as CBOR.
 inline constexpr std::size_t kShardDigestBytes = 66;

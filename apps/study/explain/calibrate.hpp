@@ -26,7 +26,7 @@ struct Calibration {
 };
 
 /// Moves the calibrated means (causes.hpp) so that conditions A and B meet the paper's Table I,
-/// README Eq. SU-6.  C is not looked at.
+/// METHOD Eq. SU-6.  C is not looked at.
 /// @throws ConfigError for options out of range; Interrupted
 Calibration calibrate(const ExplainOptions& options, const OnStage& on_stage);
 

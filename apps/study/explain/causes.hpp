@@ -31,7 +31,7 @@ struct Cause {
 const std::vector<Cause>& causes();
 
 /// A mean of the population that is calibrated; its logarithm has a normal prior about the
-/// default, README SU-6.
+/// default, METHOD SU-6.
 struct Calibrated {
   std::string name;
   double prior_sd;  ///< of the logarithm [-]

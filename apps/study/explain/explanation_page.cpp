@@ -215,7 +215,7 @@ report::Page explanation_page(const Explanation& explanation, const std::string&
       "twelve such subjects. The means that were calibrated to A and B are calibrated again with "
       "each cause: they have priors from literature and are integrated out. The evidence "
       "integrates the cause's parameters over their range, so a parameter that is not needed costs "
-      "evidence. apps/study/README.md has the equations.");
+      "evidence. apps/study/METHOD.md has the equations.");
   return page;
 }
 

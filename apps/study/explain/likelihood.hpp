@@ -16,7 +16,7 @@ struct Prediction {
       simulation;  ///< covariance of `mean` itself: the simulated subjects are finitely many
 };
 
-/// README Eq. SU-8.  Means are normal with the covariance of the subjects over 12; the logarithm of
+/// METHOD Eq. SU-8.  Means are normal with the covariance of the subjects over 12; the logarithm of
 /// a standard deviation is normal with the bias and variance of 11 degrees of freedom, and two of
 /// them correlate with the square of the metrics' correlation.  Subjects without a crossover are
 /// left out.

@@ -7,7 +7,7 @@
 
 namespace stillhand::study {
 
-/// What Tables I and II say, as one vector [mm, -, Hz], README Eq. SU-7: for each metric the mean
+/// What Tables I and II say, as one vector [mm, -, Hz], METHOD Eq. SU-7: for each metric the mean
 /// of A, of B - A and of C - B, then the logarithm of the standard deviation of A - B and of B - C
 /// between subjects.
 inline constexpr Eigen::Index kTableFigures = 15;

@@ -33,7 +33,7 @@ struct CellKey {
   TrialMotion motion = TrialMotion::kBand;
 };
 
-/// What a mitigation does to people, README Eqs. SU-19 and SU-20.
+/// What a mitigation does to people, METHOD Eqs. SU-19 and SU-20.
 struct CellFigures {
   CellKey key;
   std::vector<TrialFigures> people;  ///< in their order

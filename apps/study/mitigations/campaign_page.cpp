@@ -181,7 +181,7 @@ report::Page campaign_page(const Campaign& campaign, const std::string& command_
       "motion. Mean: ratio of the means with Fieller's interval; median over people with an "
       "interval between order statistics; harmed: people whose error is larger than in B, with "
       "the interval of Clopper and Pearson. Motor and effort: mean over people of the RMS of the "
-      "motor's force and of the force that the person wants to give. apps/study/README.md has the "
+      "motor's force and of the force that the person wants to give. apps/study/METHOD.md has the "
       "equations.");
   return page;
 }

@@ -30,7 +30,7 @@ inline constexpr std::array<const char*, 3> kTrialMotionNames{"0.7-2 Hz", "road"
 enum class ModelOf : std::uint8_t { kNone, kOwn, kAverage, kOther };
 inline constexpr std::array<const char*, 4> kModelOfNames{"none", "own", "average", "other"};
 
-/// Parameters that were chosen on other people, README Eq. SU-18.
+/// Parameters that were chosen on other people, METHOD Eq. SU-18.
 struct Chosen {
   mitigation::ShapingConfig low_pass;
   mitigation::ShapingConfig notch;

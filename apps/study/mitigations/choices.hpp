@@ -20,7 +20,7 @@ std::uint64_t person_seed(std::uint64_t seed, std::int64_t index);
 TrialScene scene_of(const CampaignOptions& options, const population::Subject& subject,
                     std::uint64_t seed, TrialTask task, TrialMotion motion);
 
-/// Chooses every parameter that the wanted mitigations need on these people, README Eq. SU-18: by
+/// Chooses every parameter that the wanted mitigations need on these people, METHOD Eq. SU-18: by
 /// trials for the filters, the damping and the steps of LMS (least mean over people and motions of
 /// RMS error over that without a mitigation, while tracking), by Eqs. MI-7 and MI-8 for the rest.
 Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, std::uint64_t seed,

@@ -42,7 +42,7 @@ TrialFigures run_mitigated(const TrialScene& scene, const mitigation::Recipe& re
 motion::MotionTrajectory trial_motion(TrialMotion motion, Tick duration_ticks, Tick ramp_ticks,
                                       std::uint64_t seed);
 
-/// A made ride, README Eq. SU-17: lateral acceleration [m/s^2] at 100 Hz of a vehicle that sways at
+/// A made ride, METHOD Eq. SU-17: lateral acceleration [m/s^2] at 100 Hz of a vehicle that sways at
 /// 1.4 Hz on a road whose roughness changes, and drives curves.  Own choice, no recording.
 std::vector<double> made_ride(double length_s, std::uint64_t seed);
 inline constexpr double kMadeRide_hz = 100.0;

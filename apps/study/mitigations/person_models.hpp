@@ -30,7 +30,7 @@ inline constexpr int kReducedOrders = 4;
 /// Length of each of the two records of force and motion at once: eight periods of 20 s.
 inline constexpr std::int64_t kAdmittancePeriods = 8;
 
-/// Identifies a person, README Eq. SU-16: pegged and idle; free and holding, both with the motion
+/// Identifies a person, METHOD Eq. SU-16: pegged and idle; free and holding, both with the motion
 /// of paper III-A; then force and motion at once (AD-1 to AD-15), relaxing and holding.
 /// @param seed  of motions and of the rig's noise
 /// @throws ConfigError when no usable model results.

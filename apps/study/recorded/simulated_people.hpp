@@ -51,7 +51,7 @@ SimulatedSide simulate_people(const RecordedSource& source, unsigned threads,
 /// @param options  population, lengths and conditions of the trials, number of subjects
 SimulatedSide simulate_population(const StudyOptions& options, const OnProgress& on_progress);
 
-/// Recorded - simulated, person by person: README Eq. SU-15.  Pure.
+/// Recorded - simulated, person by person: METHOD Eq. SU-15.  Pure.
 /// @param participants  of `recorded`
 std::vector<PairedCheck> paired_checks(const std::vector<std::string>& participants,
                                        const Analysis& recorded,
