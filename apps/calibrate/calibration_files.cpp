@@ -35,7 +35,7 @@ void write_calibrations(const std::filesystem::path& config, const device_rig::C
   // Its numbers must be ones that sensing accepts.
   settings::load_text<sensing::Config>(sensing, "sensing", "calibration");
   const std::string calibrations =
-      "# Written by `stillhand calibrate`; services/device_rig/README.md, Eq. DR-16.\n" +
+      "# Written by `stillhand calibrate`; services/device_rig/METHOD.md, Eq. DR-16.\n" +
       settings::yaml_text(all);
   settings::load_text<device_rig::Calibrations>(calibrations, "calibration", "calibration");
   if (numbers.empty()) {

@@ -194,7 +194,7 @@ void DevicePlant::take_drive() noexcept {
   if (!drive_) return;
   const DriveSample& newest = drive_->newest();
   if (newest.sequence > stick_.sequence && stick_.sequence > 0) {
-    // README Eq. DR-11; 2 ms: two stamps of a busy host differ from the drive's times by as much.
+    // METHOD Eq. DR-11; 2 ms: two stamps of a busy host differ from the drive's times by as much.
     const double elapsed_s = 1e-9 * static_cast<double>(newest.at_ns - stick_.at_ns) + 0.002;
     const double moved_rad =
         kTurn_rad * std::abs(newest.reply.position_rev - stick_.reply.position_rev);

@@ -36,7 +36,7 @@ const char* unserved(const Parts& parts, const rig::RawSample& raw) noexcept;
 
 /// The rig made of devices: settings say which part serves which signal; the simulated rig serves
 /// the rest.  Each tick takes the newest sample of each device and gives it one demand; the links
-/// do the talking.  README Eq. DR-3 to DR-11, DR-20 to DR-24.
+/// do the talking.  METHOD Eq. DR-3 to DR-11, DR-20 to DR-24.
 class DevicePlant final : public rig::Plant {
  public:
   /// Opens and checks every device, and that each signal of a device is published: the simulated

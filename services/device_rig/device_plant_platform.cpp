@@ -56,7 +56,7 @@ PlatformDrive::Output DevicePlant::move_platform(const rig::RigInput& input, boo
   return asked;
 }
 
-// A platform that lost its permission stays unsound for the trial: README Eq. DR-22.
+// A platform that lost its permission stays unsound for the trial: METHOD Eq. DR-22.
 void DevicePlant::judge_platform() noexcept {
   const bool lost = seat_drive_.stage() == SeatStage::kFaulted &&
                     seat_drive_.trial() == trial_.number && trial_.number >= 0;

@@ -36,7 +36,7 @@ struct IioSample {
 std::string in_words(const IioSample& sample);
 
 /// An IIO device, in a thread of its own: a read may wait for ever.  The loop takes the newest
-/// sample without lock or allocation and judges its age by itself (README Eq. DR-13).
+/// sample without lock or allocation and judges its age by itself (METHOD Eq. DR-13).
 class IioLink {
  public:
   /// @param channels  at most three, sampled together

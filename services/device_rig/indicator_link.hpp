@@ -28,7 +28,7 @@ struct IndicatorSample {
 
 /// A load cell indicator that streams lines to a serial port, in a thread of its own.  The loop
 /// takes the newest line without lock or allocation and judges its age by itself.  Nothing is ever
-/// sent.  README Eq. DR-36.
+/// sent.  METHOD Eq. DR-36.
 class IndicatorLink {
  public:
   /// Opens the port and listens for a second, three if the lines do not come as the settings say.

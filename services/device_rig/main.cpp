@@ -12,7 +12,7 @@
 
 namespace {
 
-// README Eq. DR-16: what sensing uses is what was calibrated on these devices, not long ago.
+// METHOD Eq. DR-16: what sensing uses is what was calibrated on these devices, not long ago.
 void refuse_uncalibrated(const stillhand::device_rig::DevicePlant& plant,
                          const stillhand::device_rig::DevicesConfig& devices,
                          const std::filesystem::path& folder) {
@@ -31,7 +31,7 @@ void refuse_uncalibrated(const stillhand::device_rig::DevicePlant& plant,
                              devices.calibration.check_max_age_days, today);
 }
 
-// README Eq. DR-17, DR-18: 0 where nobody identified this platform.
+// METHOD Eq. DR-17, DR-18: 0 where nobody identified this platform.
 double platform_lag_s(const stillhand::device_rig::DevicesConfig& devices,
                       const std::filesystem::path& folder) {
   const auto all = stillhand::device_rig::load_calibrations(folder / "calibration.yaml");

@@ -83,7 +83,7 @@ PlatformDrive::Output PlatformDrive::fail(const Input& input, SeatReason reason)
   return faulted(input);
 }
 
-// README Eq. DR-22: what was asked for before is forgotten.
+// METHOD Eq. DR-22: what was asked for before is forgotten.
 PlatformDrive::Output PlatformDrive::faulted(const Input& input) noexcept {
   confirmed_ = held_ = false;
   const bool quiet = fresh_ && input.reply.stage != PlatformStage::kFault && !input.stranger;

@@ -34,7 +34,7 @@ enum class SeatReason : std::uint8_t {
 };
 const char* text_of(SeatReason reason) noexcept;
 
-/// Decides what a platform is asked for, README Eq. DR-20 to DR-24.  Nothing moves without the
+/// Decides what a platform is asked for, METHOD Eq. DR-20 to DR-24.  Nothing moves without the
 /// permission of this trial; a set-point begins where the platform reports to stand; each one can
 /// be stopped before the wall (Eq. MO-1, the guard of motion); a platform that lost its permission
 /// in a trial moves again in another one alone.  Without permission the set-point brakes by Eq.

@@ -175,7 +175,7 @@ struct Subject {
 };
 
 /// Feel of the stick for a subject who has learnt it, Eq. SU-2: M, B, K of the driving-point
-/// impedance of stick and tracking arm at the hand (README of rig, RG-7), by least squares over 0.1
+/// impedance of stick and tracking arm at the hand (METHOD of rig, RG-7), by least squares over 0.1
 /// to 1 Hz.
 /// @param feel  gives the bounds of the force and the scale of the cursor
 human_operator::ArmFeel learnt_feel(const rig::BodyConfig& body, const rig::StickConfig& stick,

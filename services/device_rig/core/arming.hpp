@@ -30,7 +30,7 @@ enum class Reason : std::uint8_t {
 };
 const char* text_of(Reason reason) noexcept;
 
-/// Decides when the drive follows torque commands, README Eq. DR-4 to DR-8.  Nothing arms by
+/// Decides when the drive follows torque commands, METHOD Eq. DR-4 to DR-8.  Nothing arms by
 /// itself; a drive that lost its permission in a trial is armed again in another trial alone; an
 /// armed drive begins at zero torque.  Pure; one thread; never allocates.
 class Arming {

@@ -11,7 +11,7 @@
 
 namespace stillhand::device_rig::moteus {
 
-/// A CAN-FD frame as Linux's raw CAN sockets carry it, README Eq. DR-34: `struct canfd_frame` of
+/// A CAN-FD frame as Linux's raw CAN sockets carry it, METHOD Eq. DR-34: `struct canfd_frame` of
 /// <linux/can.h>, 72 bytes in the machine's byte order.
 struct CanRecord {
   static constexpr std::size_t kSize = 72;

@@ -18,7 +18,7 @@ enum class Order : std::uint8_t {
   kTorque  ///< a torque; the only order that feeds the watchdog
 };
 
-/// What a drive's own settings must be before it may be armed, README "The drive's settings".
+/// What a drive's own settings must be before it may be armed, DEVICES "The drive's settings".
 struct SettingLimits {
   double max_current_a = 10.0;  ///< current limit, at most
   double travel_rev = 0.1;      ///< of the stick to each side: position limits lie outside

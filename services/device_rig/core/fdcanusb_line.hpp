@@ -22,7 +22,7 @@ struct Line {
   [[nodiscard]] std::string_view view() const noexcept { return {text.data(), size}; }
 };
 
-/// "can send <ID> <payload>", README Eq. DR-2.
+/// "can send <ID> <payload>", METHOD Eq. DR-2.
 /// @param identifier  source << 8 | destination; 0x8000 asks for a reply
 /// @param checked     with " *XX": the CRC of everything before the star
 Line send_line(std::uint32_t identifier, const Frame& frame, bool checked) noexcept;

@@ -6,7 +6,7 @@
 
 namespace stillhand::device_rig {
 
-/// What was seen with the hand off, README Eq. DR-19.  Each function gives what is wrong, in words
+/// What was seen with the hand off, METHOD Eq. DR-19.  Each function gives what is wrong, in words
 /// for the person at the rig; empty: it is right.  Pure.
 
 /// Angle at both stops, + right.  @param stop_rad  of the settings

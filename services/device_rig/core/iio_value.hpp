@@ -6,7 +6,7 @@
 
 namespace stillhand::device_rig {
 
-/// Value of a converter's number, README Eq. DR-13: (raw + offset) * scale.  At an end of the
+/// Value of a converter's number, METHOD Eq. DR-13: (raw + offset) * scale.  At an end of the
 /// converter's range it is no measurement (DR-12): NaN.
 inline double iio_value(std::int64_t raw, double offset, double scale, std::int64_t lowest,
                         std::int64_t highest) noexcept {

@@ -13,7 +13,7 @@
 
 namespace stillhand::device_rig {
 
-/// A force-feedback joystick by evdev, README Eq. DR-35.  A demonstration: it has no newtons, no
+/// A force-feedback joystick by evdev, METHOD Eq. DR-35.  A demonstration: it has no newtons, no
 /// measured torque, no current limit and no watchdog of its own, and nothing can be read back.  Its
 /// words to the port are records of fixed size, which JoystickPort plays.
 class JoystickProtocol final : public DriveProtocol {

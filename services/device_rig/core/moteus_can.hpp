@@ -8,7 +8,7 @@
 
 namespace stillhand::device_rig::moteus {
 
-/// A moteus drive on a CAN interface of the kernel, README Eq. DR-34: what MoteusLines carries as
+/// A moteus drive on a CAN interface of the kernel, METHOD Eq. DR-34: what MoteusLines carries as
 /// text goes as a frame.
 class MoteusCan final : public MoteusProtocol {
  public:

@@ -27,7 +27,7 @@ struct TorqueCommand {
   double watchdog_s = 0.0;      ///< the command counts for so long
 };
 
-/// A pure torque, README Eq. DR-3: mode 10 with position NaN, kp, kd and the integral's limit 0.
+/// A pure torque, METHOD Eq. DR-3: mode 10 with position NaN, kp, kd and the integral's limit 0.
 /// Mode 10 because only there the drive's watchdog trips; in current mode it never does.  Every
 /// command writes the mode, since nothing else feeds the watchdog, and carries the watchdog's time.
 /// The frame also asks for the reply of query().

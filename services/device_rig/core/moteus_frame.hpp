@@ -25,7 +25,7 @@ struct Frame {
 };
 
 /// Puts subframes into a frame.  What does not fit makes good() false and is left out.  Source:
-/// mjbots/moteus, docs/protocol/can.md; README Eq. DR-1.  Pure; never allocates.
+/// mjbots/moteus, docs/protocol/can.md; METHOD Eq. DR-1.  Pure; never allocates.
 class FrameWriter {
  public:
   explicit FrameWriter(Frame& frame) noexcept : frame_(frame) { frame_.size = 0; }

@@ -15,7 +15,7 @@
 
 namespace stillhand::device_rig::moteus {
 
-/// A moteus drive, README Eq. DR-1 and DR-3: orders to frames, frames to states.  How a frame
+/// A moteus drive, METHOD Eq. DR-1 and DR-3: orders to frames, frames to states.  How a frame
 /// travels is the business of the two classes below.
 class MoteusProtocol : public DriveProtocol {
  public:
@@ -57,7 +57,7 @@ class MoteusProtocol : public DriveProtocol {
   std::optional<SerialNumber> serial_;
 };
 
-/// Through an fdcanusb or the drive's own UART, README Eq. DR-2.
+/// Through an fdcanusb or the drive's own UART, METHOD Eq. DR-2.
 class MoteusLines final : public MoteusProtocol {
  public:
   MoteusLines(const DriveConfig& config, const SettingLimits& limits)

@@ -6,7 +6,7 @@
 
 namespace stillhand::device_rig {
 
-/// How a three-axis sensor sits on the platform, README Eq. DR-33: a = M s, with the readings s of
+/// How a three-axis sensor sits on the platform, METHOD Eq. DR-33: a = M s, with the readings s of
 /// its channels x, y, z, and a the same vector forward, to the right and up.  The rows of M are
 /// these directions in the sensor's own axes.  Pure.
 class Mount {

@@ -20,7 +20,7 @@ inline constexpr std::uint64_t kWatchdogExpired = 0x800;
 enum class Extra : std::uint8_t { kMotorError, kEncoderError, kControllerError, kCurrent };
 Extra extra_of(std::uint64_t number) noexcept;
 
-/// Adds the questions of exchange `number` to the lines, README Eq. DR-31.
+/// Adds the questions of exchange `number` to the lines, METHOD Eq. DR-31.
 void put_questions(Lines& lines, std::size_t axis, std::uint64_t number) noexcept;
 
 /// The answers to the questions of one exchange.
@@ -34,7 +34,7 @@ struct Answers {
   double extra = 0.0;  ///< of extra_of(number)
 };
 
-/// Matches answers to questions, README Eq. DR-31: the protocol gives an answer no address.  The
+/// Matches answers to questions, METHOD Eq. DR-31: the protocol gives an answer no address.  The
 /// first answer of an exchange alone has two numbers, so it begins one; the others must follow in
 /// their order; the last must be the number of an exchange that was asked and not answered yet.
 /// Pure; one thread; never allocates.

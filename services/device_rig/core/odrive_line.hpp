@@ -12,7 +12,7 @@ namespace stillhand::device_rig::odrive {
 /// XOR of all characters.  Source: odriverobotics/ODrive at a5f4efe, docs/ascii-protocol.md.
 std::uint8_t checksum_of(std::string_view text) noexcept;
 
-/// Lines to the drive, README Eq. DR-30: "command *NN", NN the checksum of everything before the
+/// Lines to the drive, METHOD Eq. DR-30: "command *NN", NN the checksum of everything before the
 /// star.  The drive ignores a line of a wrong checksum, and answers one with a checksum with one.
 /// What does not fit is left out, and good() is false.  Never allocates.
 class Lines {

@@ -121,7 +121,7 @@ void OdriveProtocol::take_setting(std::string_view text) noexcept {
   }
 }
 
-// README Eq. DR-32.
+// METHOD Eq. DR-32.
 DriveReply OdriveProtocol::reply_of(const Answers& answers) noexcept {
   const Extra extra = extra_of(answers.number);
   errors_[0].bits = answers.axis_error;

@@ -16,7 +16,7 @@
 
 namespace stillhand::device_rig::odrive {
 
-/// An axis of an ODrive by its ASCII protocol, firmware 0.5.3 to 0.5.x, README Eq. DR-30 to DR-32.
+/// An axis of an ODrive by its ASCII protocol, firmware 0.5.3 to 0.5.x, METHOD Eq. DR-30 to DR-32.
 /// Torque is "c", which alone feeds the watchdog here; "u", which would prolong an old torque, is
 /// never sent, nor "p", "q", "v" or "t".
 class OdriveProtocol final : public DriveProtocol {

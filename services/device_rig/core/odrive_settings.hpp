@@ -12,7 +12,7 @@
 
 namespace stillhand::device_rig::odrive {
 
-/// Properties of an axis that are read back, README "The settings of an ODrive".
+/// Properties of an axis that are read back, DEVICES "The drive's settings".
 std::span<const std::string_view> settings_of(std::size_t axis) noexcept;
 
 /// @param text  the drive's answer to "r NAME"

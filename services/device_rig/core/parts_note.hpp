@@ -5,7 +5,7 @@
 
 namespace stillhand::device_rig {
 
-/// First words of the rig's note of which parts it is made (README, "Settings"): in each recording,
+/// First words of the rig's note of which parts it is made (README.md): in each recording,
 /// at the first tick and at each trial.  What reads a session names its parts by this note.
 inline constexpr std::string_view kPartsNote = "rig of devices: ";
 

@@ -20,7 +20,7 @@ struct PlatformSample {
 };
 
 /// The language of a platform: set-points to packets, packets to samples.  A reply is as old as the
-/// command that it answers, README Eq. DR-20: late replies are old ones.  No clock, no descriptor;
+/// command that it answers, METHOD Eq. DR-20: late replies are old ones.  No clock, no descriptor;
 /// never allocates or throws; one thread.
 class PlatformExchange {
  public:

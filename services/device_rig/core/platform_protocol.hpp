@@ -51,7 +51,7 @@ struct Packet {
   }
 };
 
-/// The plain protocol, README "The plain platform protocol": little-endian, CRC-32 at the end.
+/// The plain protocol, METHOD "The plain platform protocol": little-endian, CRC-32 at the end.
 namespace plain {
 /// @param set_point  one that is not finite becomes kRelease
 /// @param token      of this process, not 0
@@ -62,7 +62,7 @@ PlatformReply read_reply(std::span<const std::uint8_t> payload) noexcept;
 }  // namespace plain
 
 /// Moog 6DOF2000E: big-endian, 60 Hz, six axes of which Stillhand moves the lateral one.  Source:
-/// E. Loewenthal's header (2018), by way of README "Moog".  Not tried on a machine.
+/// E. Loewenthal's header (2018), by way of METHOD "Moog".  Not tried on a machine.
 namespace moog {
 inline constexpr std::uint32_t kNewPosition = 130;
 inline constexpr std::uint32_t kEngage = 180;

@@ -24,7 +24,7 @@ struct PlatformLine {
   double error;                   ///< standard error of the response, both parts together [-]
 };
 
-/// What a platform makes of its set-point, README Eq. DR-18; each with its standard error.
+/// What a platform makes of its set-point, METHOD Eq. DR-18; each with its standard error.
 struct PlatformResponse {
   std::vector<PlatformLine> lines;  ///< ascending
   double gain = 0.0, gain_error = 0.0;

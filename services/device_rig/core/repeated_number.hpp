@@ -5,7 +5,7 @@
 
 namespace stillhand::device_rig {
 
-/// A sensor that gives the same number again and again while the seat moves, README Eq. DR-14: its
+/// A sensor that gives the same number again and again while the seat moves, METHOD Eq. DR-14: its
 /// samples are young, and say nothing.
 class RepeatedNumber {
  public:

@@ -8,7 +8,7 @@
 
 namespace stillhand::device_rig {
 
-/// Judges by the drive's millisecond counter whether a reply is as young as it looks, README
+/// Judges by the drive's millisecond counter whether a reply is as young as it looks, METHOD
 /// Eq. DR-10.  A reply that was held up on its way, or that is sent again and again, falls behind
 /// the host's clock; a counter that goes back, runs ahead, or jumps and runs on is a drive that
 /// started again.  A stream whose samples count the time gives a limit of the drift: a reader that

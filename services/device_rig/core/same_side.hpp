@@ -6,7 +6,7 @@
 
 namespace stillhand::device_rig {
 
-/// Whether an accelerometer sees the platform's motion on the side to which it is commanded, README
+/// Whether an accelerometer sees the platform's motion on the side to which it is commanded, METHOD
 /// Eq. DR-17.  The sensor's zero and gain do not matter.  Pure; never allocates.
 class SameSide {
  public:

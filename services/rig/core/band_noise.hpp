@@ -13,7 +13,7 @@ namespace stillhand::rig {
 ///
 ///   y = R h * n / |h|,   n white noise of unit variance, h the impulse response of the filters
 ///
-/// Source: filters after Eq. SG-4 (services/signal); noise after README Eq. RG-11.
+/// Source: filters after Eq. SG-4 (services/signal); noise after METHOD Eq. RG-11.
 /// Never allocates or throws after construction.
 class BandNoise {
  public:

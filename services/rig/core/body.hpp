@@ -13,7 +13,7 @@
 namespace stillhand::rig {
 
 /// Body and stick together; coordinates relative to the platform, + right.
-/// Source: README Eq. RG-3 to RG-5.  The discretisation of the linear part is exact (Eq. RG-10).
+/// Source: METHOD Eq. RG-3 to RG-5.  The discretisation of the linear part is exact (Eq. RG-10).
 /// Friction, stops and peg are implicit forces at the end of the tick, so they never add energy.
 /// Pure: no clock, no I/O; never allocates or throws after construction.
 class Body {

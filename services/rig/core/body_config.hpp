@@ -6,10 +6,10 @@
 
 namespace stillhand::rig {
 
-/// Seated subject as a lateral chain seat - trunk - arm - grip - hand, README Eq. RG-3.  The values
+/// Seated subject as a lateral chain seat - trunk - arm - grip - hand, METHOD Eq. RG-3.  The values
 /// describe the idle, relaxed hand; the factors `cocontraction_*` give those of a tracking hand.
 /// They are the mean subject's of services/population, rounded.
-/// The ranges cover a population of subjects; README, "Where the numbers come from".
+/// The ranges cover a population of subjects; METHOD, "Where the numbers come from".
 struct BodyConfig {
   double trunk_mass_kg = 30.0;                  ///< m_t
   double seat_stiffness_n_m = 12280.0;          ///< k_t
@@ -69,7 +69,7 @@ struct BodyConfig {
   }
 };
 
-/// Joystick; all quantities refer to the hand [N, kg, m], README Eq. RG-4 and RG-5.
+/// Joystick; all quantities refer to the hand [N, kg, m], METHOD Eq. RG-4 and RG-5.
 struct StickConfig {
   double lever_m = 0.10;                   ///< r, hand to pivot
   double handle_mass_kg = 0.10;            ///< m_g, above the load cell; a_y acts on it

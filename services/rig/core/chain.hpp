@@ -28,7 +28,7 @@ ChainParameters chain_parameters(const BodyConfig& body, const StickConfig& stic
 ///
 ///   x[n] = Phi x[n-1] + B0 a[n-1] + B1 a[n] + G u[n]
 ///
-/// Source: README Eq. RG-10; Franklin, Powell and Workman, Digital Control of Dynamic Systems, 3rd
+/// Source: METHOD Eq. RG-10; Franklin, Powell and Workman, Digital Control of Dynamic Systems, 3rd
 /// ed., section 6.3.
 template <std::size_t N>
 struct LinearStep {

@@ -58,7 +58,7 @@ struct MotorDemand {
   bool permitted;  ///< the interlock
 };
 
-/// Motor, README Eq. RG-8: delay, gain, current limit, first-order lag, then the drive's last
+/// Motor, METHOD Eq. RG-8: delay, gain, current limit, first-order lag, then the drive's last
 /// barrier, which takes any force to exactly zero within `limits.ramp_ticks` of a command that is
 /// missing, too old, not finite or not permitted.  Pure; never allocates or throws.
 class Motor {

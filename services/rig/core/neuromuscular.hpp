@@ -21,7 +21,7 @@ struct StiffnessLevels {
 };
 
 /// Forces and stiffness that nerves and muscles add, but for the reflex, which needs the chain.
-/// Source: README Eq. RG-27, 28, 30, 31 and 32.
+/// Source: METHOD Eq. RG-27, 28, 30, 31 and 32.
 /// Pure: no clock, no I/O; the same seed gives the same bits; step() never allocates or throws.
 class Neuromuscular {
  public:

@@ -7,7 +7,7 @@ namespace stillhand::rig {
 
 /// What nerves and muscles add to the linear body of Eq. RG-3; 0 everywhere by default.  A hand on
 /// the pegged stick is idle: it has no reflex, and neither vibration nor motor stiffens it.
-/// Source: README Eq. RG-27 to RG-32 and "What a person adds".
+/// Source: METHOD Eq. RG-27 to RG-32 and "What a person adds".
 struct NeuromuscularConfig {
   double stiffening_by_vibration_s2_m = 0.0;
   double stiffening_by_motor_n = 0.0;

@@ -68,7 +68,7 @@ struct PlatformDemand {
 /// Without a command it brakes to rest and holds; so it does while it is held, and comes from there
 /// to the next command on the slow way of Eq. SG-21.  Acceleration is constant within a tick;
 /// position_m and velocity_m_s are the values at its end.
-/// Source: README Eq. RG-1 and RG-2; paper II-A (the vehicle is much heavier than the body).
+/// Source: METHOD Eq. RG-1 and RG-2; paper II-A (the vehicle is much heavier than the body).
 /// Pure; never allocates or throws.
 class Platform {
  public:

@@ -83,7 +83,7 @@ struct RigOutput {
 ///   command -> Platform -> a_y -> Body (+ Motor, volitional force) -> Sensors -> RawSample
 /// A volitional force that is stale or not finite fades to zero within 50 ticks.  Without one
 /// (operator_valid false) the force is 0.
-/// Source: README Eq. RG-1 to RG-11, RG-38; paper section III-C.
+/// Source: METHOD Eq. RG-1 to RG-11, RG-38; paper section III-C.
 /// Pure: the same config and inputs give the same bits; step() never allocates, locks or throws.
 /// The output is finite and bounded for every input.
 class Rig {

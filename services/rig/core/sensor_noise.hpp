@@ -12,7 +12,7 @@ namespace stillhand::rig {
 /// of equal area under exp(-x^2/2).  The distribution is exactly normal, including the tail.  The
 /// method is four to five times as fast as std::normal_distribution and gives the same values with
 /// every standard library.
-/// Source: README Eq. RG-11; Marsaglia and Tsang (2000), J. Stat. Software 5(8); Doornik (2005),
+/// Source: METHOD Eq. RG-11; Marsaglia and Tsang (2000), J. Stat. Software 5(8); Doornik (2005),
 /// ZIGNOR, for the separate bits of layer and value.
 /// Never allocates or throws after construction.
 class SensorNoise {

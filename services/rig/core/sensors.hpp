@@ -71,7 +71,7 @@ struct SensorInput {
   double roll_rad;
 };
 
-/// Sensors and acquisition board.  Source: README Eq. RG-9.
+/// Sensors and acquisition board.  Source: METHOD Eq. RG-9.
 /// Config, seed and inputs determine the output.  Never allocates or throws.
 class Sensors {
  public:

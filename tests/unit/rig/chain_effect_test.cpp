@@ -44,7 +44,7 @@ const std::vector<Spring> kInBody{Spring::kSofteningShoulder,
                                   Spring::kTighteningArm,
                                   Spring::kArmRest};
 
-/// Springs of the chain as README Eq. RG-14 to RG-19 write them, whole and not as differences.
+/// Springs of the chain as METHOD Eq. RG-14 to RG-19 write them, whole and not as differences.
 struct Springs {
   std::function<double(double)> seat, shoulder, grip;
   double rest_on_arm_n_m = 0.0;  ///< stiffness that the arm rest adds at the arm, at rest
@@ -169,7 +169,7 @@ std::vector<Body::Output> shaken(const ChainEffect& effect, int split) {
 }
 
 // Measured: 8e-6 rad and 1e-3 N at most, 0.011 N for the grip, whose stiffness triples within a
-// millimetre (README Eq. RG-13).  The bounds are twice that.
+// millimetre (METHOD Eq. RG-13).  The bounds are twice that.
 TEST(ChainEffectTest, AHeldDifferenceForceAgreesWithATenTimesFinerStep) {
   std::vector<Spring> springs = kInBody;
   springs.push_back(Spring::kCogging);

@@ -161,7 +161,7 @@ TEST(UndeclaredEffectTest, AMotorCommandIsLateAndAGapVoidsWhatWasUnderWay) {
   EXPECT_EQ(sut.motor_force(7.0, true), 7.0);
 }
 
-// README: sizes are 8 to 30 % of the force's RMS, delays 10 to 60 ms.
+// METHOD: sizes are 8 to 30 % of the force's RMS, delays 10 to 60 ms.
 TEST(UndeclaredEffectTest, SizesOfThirtySeedsLieWithinTheStatedRanges) {
   std::set<std::string> places;
   std::size_t none = 0;

@@ -103,7 +103,7 @@ TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
   EXPECT_GT(rms(session.signals.at('C').motor_n), 1.0);
 }
 
-// What the model cannot know, services/rig/README.md: the arm that tracks is stiffer than the idle
+// What the model cannot know, services/rig/METHOD.md: the arm that tracks is stiffer than the idle
 // one that was identified, 25 % of the force; unmeasured motion 20 %, involuntary force 6 %, wander
 // up to 10 %; together 34 % in RMS.  The delay of two ticks and the motor's lag add less than 3 %.
 // More than 0.8 cancelled would mean that something knows too much.

@@ -28,7 +28,7 @@ struct ChainForces {
 /// Parameters of an effect that the chain of Eq. RG-3 lacks, as a difference force.  d = x_a - x_t
 /// is the stretch of the shoulder, s = x_a - x_j that of the grip.  `spring` determines which
 /// numbers are used.
-/// Source: README Eq. RG-12 to RG-21, RG-33 to RG-36.
+/// Source: METHOD Eq. RG-12 to RG-21, RG-33 to RG-36.
 struct ChainEffect {
   enum class Spring : std::uint8_t {
     kNone,
@@ -63,7 +63,7 @@ struct ChainEffect {
   double exponent = 0.5;    ///< RG-35 [-]
 };
 
-/// A further mass next to the arm; arm and platform drive its motion.  Source: README Eq. RG-19.
+/// A further mass next to the arm; arm and platform drive its motion.  Source: METHOD Eq. RG-19.
 class RestMode {
  public:
   RestMode(const ChainEffect& effect, double period_s);

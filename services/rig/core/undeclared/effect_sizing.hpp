@@ -12,7 +12,7 @@ namespace stillhand::rig {
 /// A short pegged identification trial, the reference for the size of an effect.  The motion is
 /// noise of 0.7 to 4 Hz (order 4 at each edge) with an RMS of 0.75 g / 3.8, as in the
 /// identification of paper III-A.  It lasts 40 s and is always the same.
-/// Source: README Eq. RG-12.  Pure.
+/// Source: METHOD Eq. RG-12.  Pure.
 class PeggedTrial {
  public:
   /// @throws ConfigError if a field is out of range.

@@ -7,7 +7,7 @@
 namespace stillhand::rig {
 
 /// Derivative of a fractional order a between 0 and 1 by lags whose rates are a factor 3 apart from
-/// 0.002 to 354 Hz, README Eq. RG-35:
+/// 0.002 to 354 Hz, METHOD Eq. RG-35:
 ///
 ///   D^a x ~ sum g_i (x - x_i),   dx_i/dt = w_i (x - x_i),   g_i = w_i^a ln(3) sin(a pi)/pi
 ///

@@ -11,7 +11,7 @@ struct RigConfig;
 
 /// Draws an effect that no kind of the residual engine describes: near the threshold of detection
 /// or far above it.  Every seed has one.
-/// Source: README, "Outside of the kinds", Eq. RG-33 to RG-36.
+/// Source: METHOD, "Outside of the kinds", Eq. RG-33 to RG-36.
 /// @param seed       not 0
 /// @param sized_for  as draw_effect()
 /// @throws ConfigError if one of its fields is out of range.

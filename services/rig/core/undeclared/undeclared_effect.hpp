@@ -42,7 +42,7 @@ inline constexpr double kRollHigh_hz = 0.3;
 /// A drawn effect at 1 kHz.  It advances with the rig in which it acts.  The Body applies the part
 /// inside the chain, on_chain().  The effect exceeds no limit: the motor envelope, the stops and
 /// the range of the board act after it.
-/// Source: README Eq. RG-12 to RG-26.
+/// Source: METHOD Eq. RG-12 to RG-26.
 /// Pure: no clock, no I/O; never allocates, locks or throws after construction.
 class UndeclaredEffect {
  public:
