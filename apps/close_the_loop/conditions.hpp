@@ -86,7 +86,7 @@ Estimate change(const Conditions& conditions, const std::string& from, const std
 /// (B - X)/(B - A) of a measure, repeat by repeat.
 Estimate restored(const Conditions& conditions, const std::string& label, const Measure& measure);
 
-/// Whether C+ is kept, README Eq. CL-10: by what its motor leaves in trials that no fit has seen.
+/// Whether C+ is kept, METHOD Eq. CL-10: by what its motor leaves in trials that no fit has seen.
 struct LoopDecision {
   std::size_t measure = kForceLeft;  ///< in kMeasures
   Estimate over_c;                   ///< change of the measure from C to C+, repeat by repeat

@@ -16,7 +16,7 @@ std::vector<std::vector<double>> forces_of(const std::vector<cancellation::Contr
 /// Another motion with the signals' spectra: other phases, and 1.25 times as large about its means.
 diagnosis::Signals second_motion(const diagnosis::Signals& signals);
 
-/// README Eq. CL-7 of every effect of a model that the canceller carries, over the signals' motion
+/// METHOD Eq. CL-7 of every effect of a model that the canceller carries, over the signals' motion
 /// and over second_motion().  Pure.
 /// @param model        each effect is carried; effects of time alone as the session continues them
 /// @param denominator  of the conversion

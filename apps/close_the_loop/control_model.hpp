@@ -12,7 +12,7 @@
 
 namespace stillhand::close_the_loop {
 
-/// README Eq. CL-7: what an effect's force in the canceller differs by from that in the diagnosed
+/// METHOD Eq. CL-7: what an effect's force in the canceller differs by from that in the diagnosed
 /// model, of the latter [-].
 struct EffectDifference {
   double source = 0.0;  ///< over the motion that the model was fitted to
@@ -50,7 +50,7 @@ struct ControlOptions {
 /// The hand that the adaptation assumes: that of the population's mean subject (study SU-2).
 cancellation::HandCompliance average_hand();
 
-/// Converts a diagnosed model to the control rate, README Eq. CL-1 to CL-4: the body's poles by
+/// Converts a diagnosed model to the control rate, METHOD Eq. CL-1 to CL-4: the body's poles by
 /// z' = z^(rate/1000 Hz), each numerator by least squares on its response, springs inside the body,
 /// paths next to it and waves unchanged.  What becomes of an effect is its body_role()
 /// (services/diagnosis/core/model/control_role.hpp).  Then each effect runs next to the diagnosed

@@ -8,7 +8,7 @@
 #include "apps/close_the_loop/control_model.hpp"
 #include "services/diagnosis/core/model/model.hpp"
 
-/// A diagnosed model's linear parts at the control rate, README Eq. CL-1 and CL-2.
+/// A diagnosed model's linear parts at the control rate, METHOD Eq. CL-1 and CL-2.
 namespace stillhand::close_the_loop {
 
 using Response = std::function<std::complex<double>(double frequency_hz)>;

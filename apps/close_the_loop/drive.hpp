@@ -19,7 +19,7 @@ struct DeclaredDrive {
   double motor_delay_s = 0.0025;
 };
 
-/// Delay between the commanded and the felt force, README Eq. CL-5:
+/// Delay between the commanded and the felt force, METHOD Eq. CL-5:
 ///
 ///   f(t) = m lever alpha(t - c) + b lever omega(t - c) + F sign(omega)(t - c) - k f_m(t - m - c)
 ///

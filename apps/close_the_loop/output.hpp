@@ -46,7 +46,7 @@ struct LoopRecord {
   LoopDecision decision;       ///< by the conditions: is C+ kept?
   std::optional<Truth> truth;  ///< empty: nothing was sealed
 
-  /// Verdict and truth agree: README, "Right".
+  /// Verdict and truth agree: METHOD, "Right".
   [[nodiscard]] bool right() const { return truth && truth->agrees_with(result.verdict()); }
 };
 
@@ -65,7 +65,7 @@ std::string summary_json(const LoopRecord& record);
 void print_result(const LoopRecord& record);
 /// One sentence of an output in newtons; 0: of another one.
 std::string nothing_that_counts(double least_force_n);
-/// What became of C+, with the rows that decide, README Eq. CL-10; empty: it is C'.
+/// What became of C+, with the rows that decide, METHOD Eq. CL-10; empty: it is C'.
 std::string kept_text(const LoopRecord& record);
 /// "mean [low, high]" of an estimate, or the mean alone.
 std::string with_interval(const Estimate& estimate, int decimals, double factor = 1.0);

@@ -91,7 +91,7 @@ double detectable_n(const Verdict& verdict, bool in_drive);
 diagnosis::Measurement advanced(const diagnosis::Measurement& record, const std::string& output,
                                 double seconds);
 
-/// Diagnoses body, drive and latency, and makes the canceller's model from them, README "The
+/// Diagnoses body, drive and latency, and makes the canceller's model from them, METHOD "The
 /// verdict".
 /// @param options  of the body, as `stillhand diagnose` takes them; the drive has a model of its
 /// own

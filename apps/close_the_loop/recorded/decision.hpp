@@ -19,7 +19,7 @@ struct Judged {
   std::optional<Remaining> motor_augmented;  ///< the same samples (C+)
 };
 
-/// Which model the loop keeps, README Eq. CL-9.  It is computed from the rows that are shown, so
+/// Which model the loop keeps, METHOD Eq. CL-9.  It is computed from the rows that are shown, so
 /// that a model that leaves more is not kept.
 struct Decision {
   bool by_motor = true;  ///< else by the prediction

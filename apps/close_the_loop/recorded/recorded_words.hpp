@@ -20,7 +20,7 @@ std::string conclusion_text(const RecordedLoop& loop);
 std::string unseen_size_text(const RecordedLoop& loop);
 /// The share of the force that the motor takes away, or the prediction where no motor was run.
 std::string cuts_text(const RecordedLoop& loop);
-/// What became of the augmented model, README Eq. CL-9; empty: it is the linear one.
+/// What became of the augmented model, METHOD Eq. CL-9; empty: it is the linear one.
 std::string kept_text(const RecordedLoop& loop);
 /// Why no motor ran, or ran with one model alone; empty: both ran.
 std::string motor_text(const RecordedLoop& loop);

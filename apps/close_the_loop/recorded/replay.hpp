@@ -13,7 +13,7 @@
 
 namespace stillhand::close_the_loop {
 
-/// RMS of a signal about its mean over a record, README Eq. CL-6.
+/// RMS of a signal about its mean over a record, METHOD Eq. CL-6.
 struct Level {
   double rms = 0.0;                                     ///< in the output's unit
   std::optional<std::pair<double, double>> interval95;  ///< none with fewer than three blocks
@@ -27,7 +27,7 @@ struct Excerpt {
   std::vector<double> left;
 };
 
-/// What a record of the pegged stick keeps of its force under a model, README Eq. CL-6.
+/// What a record of the pegged stick keeps of its force under a model, METHOD Eq. CL-6.
 struct Remaining {
   Level without;  ///< the force itself
   Level left;     ///< the force less the prediction, or plus the motor's

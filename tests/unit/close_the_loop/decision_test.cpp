@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which model the loop over recordings keeps: README Eq. CL-9.
+// Which model the loop over recordings keeps: METHOD Eq. CL-9.
 #include "apps/close_the_loop/recorded/decision.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings through a model, and through canceller and motor: README Eq. CL-6.
+// Recordings through a model, and through canceller and motor: METHOD Eq. CL-6.
 #include "apps/close_the_loop/recorded/replay.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // Every fault of a platform, for five times, in every phase of a session: what the platform is sent
 // stays within the limits, nothing moves without a trial, and what was lost in a trial stays lost
 // in it.  Deterministic: simulated time.  STILLHAND_TABLE=1 prints the table of
-// tests/faults/README.md.
+// tests/faults/RESULTS.md.
 #include <gtest/gtest.h>
 
 #include <cstdio>
