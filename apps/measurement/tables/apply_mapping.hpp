@@ -18,7 +18,7 @@ struct MappedRows {
 };
 
 /// Takes the columns that the mapping names, converts their units and leaves out rows that lack a
-/// value: README "Recordings of other programs".  Without a mapping of columns, the titles must be
+/// value: RECORDINGS_OF_OTHER_PROGRAMS.md.  Without a mapping of columns, the titles must be
 /// 'name [unit]' and one of them the time, t or time.
 /// @throws stillhand::ConfigError for a column that is not there, units that do not convert, times
 ///         that do not increase, and for titles that need a mapping: the message holds one that

@@ -5,7 +5,7 @@
 
 namespace stillhand::measurement {
 
-/// Values of a signal at other times, README Eq. ME-6: Lagrange's cubic through the two rows around
+/// Values of a signal at other times, Eq. ME-6: Lagrange's cubic through the two rows around
 /// a time and one more on each side, fewer at the ends.  A time that a row has gets that row's
 /// value unchanged.  NaN outside of the signal, and between rows that are more than `longest_s`
 /// apart.  Pure.

@@ -7,7 +7,7 @@
 
 namespace stillhand::measurement {
 
-/// A measured value in another unit, README Eq. ME-5:
+/// A measured value in another unit, Eq. ME-5:
 ///
 ///   y = ((x * factor / divisor) * scale / parts) + offset
 ///
