@@ -22,7 +22,8 @@ struct ReadOptions {
   std::string session_trial = {};
   /// [-] samples times channels that are read at most; 8 B each, and as much again while reading.
   std::size_t most_values = 60'000'000;
-  /// Columns, sample rate and signs of a file of another program, RECORDINGS_OF_OTHER_PROGRAMS.md.  If it is empty, the titles state the columns.
+  /// Columns, sample rate and signs of a file of another program,
+  /// RECORDINGS_OF_OTHER_PROGRAMS.md.  If it is empty, the titles state the columns.
   Mapping mapping = {};
   std::string map_file = {};  ///< YAML file of a mapping; empty: none
   /// Makes the mapping for a `map_file` that is not there; empty: nobody can be asked.
