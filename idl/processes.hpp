@@ -10,7 +10,7 @@ namespace stillhand::topics {
 
 /// One process of a session.
 struct Process {
-  std::string_view name;   ///< on the bus; its executable is stillhand-<name>
+  std::string_view name;   ///< on the bus; its executable is stillhand-NAME
   int launch = 0;          ///< place in the order of the launches, from 1; 0: a person starts it
   bool prepares = false;   ///< reports that it is prepared (armed_trial) before a trial begins
   bool ticks = false;      ///< reports ticks from the session's begin; without: during trials only

@@ -27,7 +27,7 @@ struct ServiceOptions {
   std::uint32_t rig = 1;           ///< number of the rig
   std::uint64_t seed = 1;          ///< seed of all randomness in this process
   std::filesystem::path profiles;  ///< QoS profiles
-  std::filesystem::path config;    ///< folder of <service>.yaml
+  std::filesystem::path config;    ///< folder of the settings files
   std::filesystem::path security;  ///< see Bus::Options
   bool real_time = false;          ///< request a real-time scheduling policy
   bool serialized = false;         ///< see Bus::Options

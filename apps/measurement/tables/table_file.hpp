@@ -58,7 +58,7 @@ class TableFile {
 
 /// Signs of a text table; 0: found by its content.
 struct TextForm {
-  char separator = 0;  ///< ',', ';', '\t' or ' ' (any number of blanks)
+  char separator = 0;  ///< ',', ';', a tab or ' ' (any number of blanks)
   char decimal = 0;    ///< '.' or ','
 };
 

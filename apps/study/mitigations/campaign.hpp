@@ -69,7 +69,7 @@ using OnCampaign = std::function<bool(const std::string& stage, double share)>;
 Campaign run_campaign(const CampaignOptions& options, const OnCampaign& on_stage);
 
 /// The figures of a cell from those of all people, Eqs. SU-19 and SU-20.
-/// @param none, still  RMS errors [mm] without a mitigation, and without motion
+/// @param none_mm, still_mm  RMS errors without a mitigation, and without motion
 CellFigures cell_figures(const CellKey& key, std::vector<TrialFigures> people,
                          const std::vector<double>& none_mm, const std::vector<double>& still_mm);
 

@@ -41,7 +41,7 @@ struct IdlType {
 struct IdlMember {
   std::string name;
   std::uint32_t type = 0;  ///< number in IdlSchema::types
-  std::string unit;        ///< from "// [unit] ..." after the member, or @unit; empty: none
+  std::string unit;        ///< from "// [unit] ..." after the member, or annotated; empty: none
   bool key = false;
   bool optional = false;  ///< not decoded
 };
