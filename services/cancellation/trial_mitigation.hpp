@@ -14,7 +14,7 @@
 
 namespace stillhand::cancellation {
 
-/// The mitigation of a trial, README CC-18: made in a thread of its own, of the newest assignment
+/// The mitigation of a trial, METHOD CC-18: made in a thread of its own, of the newest assignment
 /// and of the session's models; run by the thread that receives samples.
 /// All calls come from that thread, offer_force() from the one thread that prepares models.  None
 /// waits for the thread that makes it: queues reach it, and it hands over without a lock.

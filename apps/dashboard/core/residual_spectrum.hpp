@@ -8,7 +8,7 @@
 
 namespace stillhand::dashboard {
 
-/// Power densities of the hand's force and of its residual, README Eq. DB-6; lines above 0 Hz.
+/// Power densities of the hand's force and of its residual, METHOD Eq. DB-6; lines above 0 Hz.
 struct ResidualSpectrum {
   std::vector<double> frequency_hz;       ///< [Hz] up to 50
   std::vector<double> force_n2_hz;        ///< [N^2/Hz]

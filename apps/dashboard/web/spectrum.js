@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Power density of the measured force and of the residual (README, Eq. DB-6).
+// Power density of the measured force and of the residual (METHOD, Eq. DB-6).
 import uPlot from "/uPlot.esm.js";
 import { axisOf, colour, figureOf } from "/charts.js";
 import { mark, write } from "/elements.js";

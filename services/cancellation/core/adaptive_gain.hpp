@@ -10,7 +10,7 @@
 
 namespace stillhand::cancellation {
 
-/// Follows gain and phase of the feedthrough force online, README Eq. CC-10 to CC-13:
+/// Follows gain and phase of the feedthrough force online, METHOD Eq. CC-10 to CC-13:
 ///
 ///   counter force = w_0 f^ + w_1 f^'/Omega,          Omega = 2 pi 1.2 rad/s
 ///   r_i = F P (f^, f^'/Omega),  e = F x              x = lever theta

@@ -61,7 +61,7 @@ inline ModelBounds bounds(const Config& config) noexcept {
   return {config.max_model_gain_n_s2_m, config.max_path_force_n, config.sampling.model_ticks};
 }
 
-/// Cancels biodynamic feedthrough, README Eq. CC-1 (paper III: the motor acts against f_hat):
+/// Cancels biodynamic feedthrough, METHOD Eq. CC-1 (paper III: the motor acts against f_hat):
 ///
 ///   f_hat = H a_y,   wanted = -gain f_hat,   force = ForceEnvelope(wanted)   (Eq. SG-6)
 ///

@@ -13,7 +13,7 @@ struct CommandFilterConfig {
   double lever_m = 0.10;  ///< r, hand to pivot; paper II
 };
 
-/// Takes the predicted feedthrough off the command instead of off the hand, README Eq. CC-5:
+/// Takes the predicted feedthrough off the command instead of off the hand, METHOD Eq. CC-5:
 ///
 ///   M x'' + B x' + K x = f_hat,   theta_clean = theta - x / r
 ///

@@ -43,14 +43,14 @@ struct ValueMap {
   std::vector<double> values;
 };
 
-/// What drives the body, README Eq. CC-6: a channel, through a map, with its own numerator.
+/// What drives the body, METHOD Eq. CC-6: a channel, through a map, with its own numerator.
 struct InputPath {
   Channel channel = Channel::kAccelY;
   ValueMap map;
   std::vector<double> numerator;  ///< c_0 .. c_p [N a unit of the channel]
 };
 
-/// A nonlinear spring inside the body, README Eq. CC-7; by powers of q^-1, each p + 1 long.  With a
+/// A nonlinear spring inside the body, METHOD Eq. CC-7; by powers of q^-1, each p + 1 long.  With a
 /// Hysteresis of its own, phi is over w and may be empty.
 struct LoopPath {
   std::vector<double> e;  ///< from phi to the force
@@ -60,7 +60,7 @@ struct LoopPath {
   std::int64_t ticks = 1;  ///< from one value of phi to the next: held from each multiple on
 };
 
-/// A path next to the body, README Eq. CC-8: gain * map(lag(channel)); with a Hysteresis of its
+/// A path next to the body, METHOD Eq. CC-8: gain * map(lag(channel)); with a Hysteresis of its
 /// own, gain * map(w(lag(channel))).
 struct DirectPath {
   Channel channel = Channel::kAccelX;
@@ -69,7 +69,7 @@ struct DirectPath {
   double gain = 0.0;  ///< [N a unit of the map]
 };
 
-/// An element with memory in front of the map of the spring or of a path, README Eq. CC-19.
+/// An element with memory in front of the map of the spring or of a path, METHOD Eq. CC-19.
 struct Hysteresis {
   std::optional<std::size_t> path;  ///< its place in ControlModel::paths; none: the spring's
   signal::HysteresisOperator operation = signal::HysteresisOperator::kStop;
@@ -78,7 +78,7 @@ struct Hysteresis {
   double high = 0.0;       ///< [unit of the argument]
 };
 
-/// Periodic in a channel (cogging) or, without one, in time (a tone), README Eq. CC-9.
+/// Periodic in a channel (cogging) or, without one, in time (a tone), METHOD Eq. CC-9.
 struct Wave {
   std::optional<Channel> channel;  ///< none: time, tick 0 at 0 s
   double frequency = 0.0;          ///< [1/unit of the channel] or [Hz]
@@ -87,7 +87,7 @@ struct Wave {
 };
 
 /// Compliance of the stick to a force at the hand while tracking, M x'' + B x' + K x = f; the
-/// adaptation judges the motion by it, README Eq. CC-10.
+/// adaptation judges the motion by it, METHOD Eq. CC-10.
 struct HandCompliance {
   double mass_kg = 0.0;
   double damping_n_s_m = 0.0;
@@ -95,7 +95,7 @@ struct HandCompliance {
   double lever_m = 0.0;  ///< hand to pivot
 };
 
-/// The model that the canceller runs, README Eq. CC-6 to CC-9 and CC-19: the feedthrough force as a
+/// The model that the canceller runs, METHOD Eq. CC-6 to CC-9 and CC-19: the feedthrough force as a
 /// function of the sensed channels at the control rate.  A linear body with several inputs, at most
 /// one nonlinear spring inside it, and paths and waves next to it; the spring and each path may
 /// have a memory. On the bus it is stillhand_msgs::AugmentedModel; its file is control_model.json.

@@ -12,7 +12,7 @@
 
 namespace stillhand::cancellation {
 
-/// A control model as a running filter of fixed size, README Eq. CC-6 to CC-9 and CC-19,
+/// A control model as a running filter of fixed size, METHOD Eq. CC-6 to CC-9 and CC-19,
 /// transposed direct form II of services/signal Eq. SG-12 with further inputs:
 ///
 ///   z = n_0 v_1 + t_1,   t_i = n_i v_1 + m_i phi(z) - d_i z + t_{i+1}

@@ -7,7 +7,7 @@
 
 namespace stillhand::cancellation {
 
-/// A Hysteresis of the control model as it runs, README Eq. CC-19:
+/// A Hysteresis of the control model as it runs, METHOD Eq. CC-19:
 ///
 ///   w(clip(x, low, high) / threshold)
 ///

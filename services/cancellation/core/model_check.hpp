@@ -54,7 +54,7 @@ struct ModelCheck {
 /// where that is too long, or never.
 std::int64_t settle_ticks(const signal::DifferenceModel& model);
 
-/// Checks a control model, README Eq. CC-4 and CC-14.  Stability is judged by the reflection
+/// Checks a control model, METHOD Eq. CC-4 and CC-14.  Stability is judged by the reflection
 /// coefficients (services/signal, Eq. SG-13) and by the poles, which fail differently when
 /// coefficients are ill conditioned; both must agree.  The gain is judged at 0 Hz, at 500 Hz, on
 /// 400 frequencies between and at each pole's own, so that no narrow peak is missed.  A spring

@@ -8,7 +8,7 @@
 
 namespace stillhand::cancellation {
 
-/// Decides at which sample the canceller takes a model that is ready, README CC-15.  A model names
+/// Decides at which sample the canceller takes a model that is ready, METHOD CC-15.  A model names
 /// the first tick at which it may be used, so that a replay takes it at the tick at which the
 /// session took it.  A model that is ready later is taken at once and counted late; until then the
 /// model before it stays in use, or no force acts.

@@ -23,7 +23,7 @@ Slopes slopes_of(const ValueMap& map);
 /// The same behind an element with memory; null: without one.
 Slopes slopes_of(const ValueMap& map, const Hysteresis* memory);
 
-/// The gains of README Eq. CC-14 against their bounds.  Paths of one channel add up, and so do
+/// The gains of METHOD Eq. CC-14 against their bounds.  Paths of one channel add up, and so do
 /// waves: a force that one of them may not ask for is refused from all of them together, too. Pure.
 /// @param model  well formed and stable
 /// @param poles  of its denominator

@@ -15,7 +15,7 @@ namespace stillhand::cancellation {
 ///
 /// The force leaves zero only while enabled, permitted, inside the trial and with a sound new
 /// sample; the envelope is that of cancelling, with the same start-up limits.
-/// Source: README Eq. CC-17.  One thread; step() neither allocates nor throws.
+/// Source: METHOD Eq. CC-17.  One thread; step() neither allocates nor throws.
 class Perturbation {
  public:
   /// @param force  [N] as its accel_m_s2, at 1 kHz; its first sample is that of the trial's start

@@ -21,7 +21,7 @@ struct Preparation {
   PreparedModel model;  ///< empty where the model is refused
 };
 
-/// Checks a control model (README Eq. CC-4 and CC-14) and, if it is sound, builds its filter. Pure;
+/// Checks a control model (METHOD Eq. CC-4 and CC-14) and, if it is sound, builds its filter. Pure;
 /// never throws.  It allocates and takes tens of microseconds (gain scan), or milliseconds with a
 /// spring inside the body (trial run): not for the control path.
 Preparation prepare(const ControlModel& model, const ModelBounds& bounds) noexcept;

@@ -14,7 +14,7 @@ namespace stillhand::cancellation {
 
 inline constexpr std::int64_t kMostLatency_samples = 5;
 
-/// How the canceller samples what it predicts from, README Eq. CC-16.  The default, `now`, runs the
+/// How the canceller samples what it predicts from, METHOD Eq. CC-16.  The default, `now`, runs the
 /// model on every tick; `paper` is the chain of the paper's data, run on line.
 struct SamplingConfig {
   std::int64_t low_pass_order = 0;

@@ -9,7 +9,7 @@
 
 namespace stillhand::cancellation {
 
-/// A ValueMap of fixed size for the control path: the memoryless maps m_k of README Eq. CC-6.
+/// A ValueMap of fixed size for the control path: the memoryless maps m_k of METHOD Eq. CC-6.
 /// It trusts its map: check_model() comes first.
 class ValueTable {
  public:

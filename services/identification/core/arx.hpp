@@ -17,7 +17,7 @@ struct ArxFit {
   bool stable = false;            ///< that fit and this one
 };
 
-/// The paper's fit, README Eq. ID-1 and ID-2 (paper Eqs 3 to 5): least squares on
+/// The paper's fit, METHOD Eq. ID-1 and ID-2 (paper Eqs 3 to 5): least squares on
 ///
 ///   f(n) = sum_{i=0..p} c_i a(n-i) - sum_{j=1..p} d_j f(n-j),   n = p .. N-1
 ///

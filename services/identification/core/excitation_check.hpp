@@ -7,7 +7,7 @@
 
 namespace stillhand::identification {
 
-/// Whether a record can identify a model, README Eq. ID-4.
+/// Whether a record can identify a model, METHOD Eq. ID-4.
 struct Excitation {
   bool sufficient = false;
   std::string verdict;                 ///< one line for a person

@@ -7,7 +7,7 @@
 
 namespace stillhand::identification {
 
-/// One point of a Bode plot, README Eq. ID-8.
+/// One point of a Bode plot, METHOD Eq. ID-8.
 struct ResponsePoint {
   double frequency_hz;  ///< [Hz]
   double magnitude_db;  ///< 20 log10 |H| [dB re 1 N s^2/m]; -infinity at an exact zero

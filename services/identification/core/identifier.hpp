@@ -82,7 +82,7 @@ Identification identify(const PeggedTrial& trial, const Config& config);
 /// Displacement of the hand by the stick's angle; paper III-C: 0.10 m from the pivot.
 inline double displacement_m(double theta_rad) noexcept { return 0.10 * theta_rad; }
 
-/// The same of a trial with the stick free, which the person holds still, README Eq. ID-22: `trial`
+/// The same of a trial with the stick free, which the person holds still, METHOD Eq. ID-22: `trial`
 /// has the stick's displacement [m] in the place of the force, and so has the model.  The hand's
 /// own motion is noise on the output, which biases the equation error: the fit is refined.
 Identification identify_position(const PeggedTrial& trial, const Config& config);

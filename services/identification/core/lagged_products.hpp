@@ -13,7 +13,7 @@ using LaggedCopies = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 LaggedCopies lagged_copies(const std::vector<double>& x, Eigen::Index lags, Eigen::Index first,
                            Eigen::Index end);
 
-/// X^T X over the rows n = first .. end - 1, README Eq. ID-19; X holds, of one signal after the
+/// X^T X over the rows n = first .. end - 1, METHOD Eq. ID-19; X holds, of one signal after the
 /// other, x(n), x(n-1) .. x(n-lags).  In the next row a copy holds the value that the copy of one
 /// lag less holds in this row, so only the products with lag 0 are summed over the rows.  Gram
 /// matrices of adjacent rows add up.  Source of Eq. ID-19: Björck, Linear Algebra Appl. 88/89,

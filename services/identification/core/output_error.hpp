@@ -15,7 +15,7 @@ struct OutputErrorFit {
   double rms_n = 0.0;        ///< [N] free-run error reached, never above start_rms_n
 };
 
-/// Refines a model on its free-run (simulation) error, README Eq. ID-6: minimises
+/// Refines a model on its free-run (simulation) error, METHOD Eq. ID-6: minimises
 ///
 ///   V(c, d) = sum (f(n) - f_sim(n; c, d))^2,   D(z) f_sim = C(z) a
 ///

@@ -9,7 +9,7 @@ namespace stillhand::identification {
 inline constexpr double kRecordingRateHz = 100.0;
 inline constexpr double kFitRateHz = 50.0;
 
-/// Paper III-A, README Eq. ID-5: to 100 Hz, fifth-order Butterworth low-pass at 10 Hz, every second
+/// Paper III-A, METHOD Eq. ID-5: to 100 Hz, fifth-order Butterworth low-pass at 10 Hz, every second
 /// sample, 50 Hz.  A record above 100 Hz first passes an anti-alias filter (Butterworth, order 8,
 /// 40 Hz: -43 dB at 75 Hz and more above) and is decimated, or resampled with a windowed sinc when
 /// its rate is no multiple of 100 Hz.  Both channels pass the same filters, so the response between

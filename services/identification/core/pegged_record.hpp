@@ -20,7 +20,7 @@ struct PeggedTrial {
 /// lost ticks the interpolation begins to colour the fit.
 std::string why_unusable(const PeggedTrial& trial);
 
-/// Collects the measured ticks of one pegged trial, README Eq. ID-20.  Ticks lost between two
+/// Collects the measured ticks of one pegged trial, METHOD Eq. ID-20.  Ticks lost between two
 /// samples are interpolated on a straight line, those lost at the start repeat the first sample,
 /// those lost at the end shorten the record.  A tick that does not increase is ignored. Pure; one
 /// thread.  begin() reserves the room for the whole trial; take() does not allocate.

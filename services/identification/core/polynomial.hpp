@@ -9,7 +9,7 @@ namespace stillhand::identification {
 /// Real polynomial by its coefficients, lowest power first: c_0 + c_1 x + ... + c_n x^n.
 using Polynomial = std::vector<double>;
 
-/// Roots, the eigenvalues of the companion matrix; for the poles of README Eq. ID-10.  Leading
+/// Roots, the eigenvalues of the companion matrix; for the poles of METHOD Eq. ID-10.  Leading
 /// coefficients of exactly 0 are dropped.
 std::vector<std::complex<double>> roots(Polynomial polynomial);
 

@@ -22,7 +22,7 @@ struct RateConversion {
   int reflected_poles = 0;     ///< [-] unstable poles mirrored
 };
 
-/// Carries a model identified at a low rate to 1 kHz, README Eq. ID-9 to ID-11.  A rational
+/// Carries a model identified at a low rate to 1 kHz, METHOD Eq. ID-9 to ID-11.  A rational
 /// function of the same order in the bilinear variable of the *control* rate,
 ///
 ///   v(f) = j tan(pi f / 1000 Hz) / tan(pi upper / 1000 Hz),

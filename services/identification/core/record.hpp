@@ -26,7 +26,7 @@ void check(const Record& record);
 /// Samples [first, first + count) of a record.
 Record part(const Record& record, std::size_t first, std::size_t count);
 
-/// How well a model predicts a record, README Eq. ID-3.
+/// How well a model predicts a record, METHOD Eq. ID-3.
 struct FitQuality {
   double one_step_rms_n = 0.0;        ///< [N] error given the measured past of f
   double one_step_vaf_percent = 0.0;  ///< [%] variance accounted for, the same

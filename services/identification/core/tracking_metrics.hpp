@@ -33,7 +33,7 @@ struct OpenLoopLine {
   double error_snr;           ///< |X_e|^2 over the same [-]
 };
 
-/// Paper III-C, README Eq. ID-12 to ID-17.
+/// Paper III-C, METHOD Eq. ID-12 to ID-17.
 struct TrackingMetrics {
   double rms_error_mm = 0.0;            ///< Eq. ID-12 [mm]
   double dwell_ratio = 0.0;             ///< Eq. ID-13 [-], |x_e| < half width
@@ -49,7 +49,7 @@ struct TrackingMetrics {
 /// S(x_r,x_p) / S(x_r,x_e), are one and the same number at a line; the bias that the remnant leaves
 /// in it is of the logarithm, where signal and remnant are of one size.  crossover_reference_hz
 /// avoids it: the remnant's power, read from the unexcited harmonics around each line, is taken off
-/// and the lines are pooled before a ratio is formed.  README "Crossover" compares them.  Pure.
+/// and the lines are pooled before a ratio is formed.  METHOD "Crossover" compares them.  Pure.
 /// @throws stillhand::ConfigError for unequal or short records, a sample that isn't finite, or a
 /// harmonic beyond half the rate.
 TrackingMetrics tracking_metrics(const TrackingRecord& record,

@@ -169,7 +169,7 @@ TEST(CancellerPropertyTest, NoSequenceDrivesTheForceBeyondForceSlewOrDuration) {
   EXPECT_GT(at_limit, static_cast<int>(kSequences) / 4);
 }
 
-// README Eq. CC-14.  The scan has 400 frequencies and each pole's own.  Between them a response can
+// METHOD Eq. CC-14.  The scan has 400 frequencies and each pole's own.  Between them a response can
 // be higher by what it bends over half a step of the scan, (1.25 Hz)^2 / 2 of its second
 // derivative; a resonance narrower than that is judged at its pole.  5 % covers both.
 TEST(CancellerPropertyTest, NoModelThatIsTakenAnswersAnyFrequencyWithMoreThanItsBound) {

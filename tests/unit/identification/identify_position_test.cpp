@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feedthrough to position of a free stick, README Eq. ID-22, of a known hand.
+// Feedthrough to position of a free stick, METHOD Eq. ID-22, of a known hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
