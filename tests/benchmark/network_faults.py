@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a network that fails does to a session over three machines; the table of deploy/README.md.
+"""What a network that fails does to a session over three machines; the table of deploy/RESULTS.md.
 
 Usage, as root: STILLHAND_BUILD=build python3 tests/benchmark/network_faults.py [--only WORD] [--keep DIR]
 

@@ -37,7 +37,7 @@ struct OscillationLimits {
   }
 };
 
-/// Detects a growing oscillation of the stick, README Eq. VH-6 to VH-8, and stays with its finding
+/// Detects a growing oscillation of the stick, METHOD Eq. VH-6 to VH-8, and stays with its finding
 /// until reset().  y is the stick behind a band-pass; a half wave lasts from one change of sign to
 /// the next, and p_k is its largest |y|, p_0 that of the one that goes on:
 ///

@@ -28,7 +28,7 @@ struct Margin {
   bool stable = false;                  ///< gain below critical gain
 };
 
-/// Margin of the loop through vehicle and hand, README Eq. VH-9 and VH-10:
+/// Margin of the loop through vehicle and hand, METHOD Eq. VH-9 and VH-10:
 ///
 ///   L(jw) = V(jw) Theta(jw),   1 - L = 0 on the limit
 ///   G_critical = G / max { Re L(jw): Im L(jw) = 0, Re L(jw) > 0 }
@@ -47,7 +47,7 @@ struct GainInterval {
   double gain_m_s2_rad;                ///< of the response itself
   double low_m_s2_rad, high_m_s2_rad;  ///< 2.5 and 97.5 % of the draws
 };
-/// Source: README Eq. VH-11.  Pure: the same seed gives the same draws.
+/// Source: METHOD Eq. VH-11.  Pure: the same seed gives the same draws.
 /// @throws as margin()
 GainInterval critical_gain(const VehicleConfig& config, const IdentifiedResponse& theta,
                            int draws = 200, std::uint64_t seed = 1);

@@ -27,7 +27,7 @@ struct VehicleMotion {
   Flags flags = kGood;  ///< kInputStale: a stick sample was bridged; kSaturated: |a| at its bound
 };
 
-/// A vehicle under the stick, on a platform of limited travel, README Eq. VH-1 to VH-5:
+/// A vehicle under the stick, on a platform of limited travel, METHOD Eq. VH-1 to VH-5:
 ///
 ///   u = G clip(theta, th_max) share, late by the delay            (VH-1)
 ///   a_v = u lagged, of first or second order; or the speed is     (VH-2, VH-3)

@@ -118,7 +118,7 @@ TEST(GrowingOscillationTest, NothingThatAStickReportsBreaksIt) {
 }
 
 // False alarms a minute of a stable, noise-driven loop: a resonance of damping z driven by white
-// noise, its RMS a share of the floor.  README, "False alarms", has the table; 20 minutes of each.
+// noise, its RMS a share of the floor.  METHOD, "False alarms", has the table; 20 minutes of each.
 // Bounds: four half waves that each grow by 1.05 are one in some hundred half waves of such noise;
 // what decides is the floor, which a Gaussian of RMS floor/4 reaches with exp(-8) a half wave.
 TEST(GrowingOscillationTest, FalseAlarmsOfAStableLoopAreRare) {

@@ -10,7 +10,7 @@
 namespace stillhand::recording {
 namespace {
 
-// With level 1, a 1 kHz recorder needs far less than one core; the README has the measurements.
+// With level 1, a 1 kHz recorder needs far less than one core; RESULTS.md has the measurements.
 constexpr int kZstdLevel = 1;
 
 Status damaged(const std::string& what) { return Status::failure(StatusKind::kDamaged, what); }
