@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the pictures of README.md: runs one session over DDS (two minutes), takes its figure, a frame of its screen, and
+# Makes the pictures of the documents: runs one session over DDS (two minutes), takes its figure, a frame of its screen, and
 # the dashboard's page of its recording.  Needs a build in build/, chromium with its driver, and ffmpeg.
 # Usage: deploy/pictures/make.sh
 set -euo pipefail
