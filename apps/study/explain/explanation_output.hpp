@@ -11,7 +11,7 @@
 
 namespace stillhand::study {
 
-/// explanation.json; README, "explanation.json".
+/// explanation.json; METHOD, "explanation.json".
 std::string explanation_json(const Explanation& explanation);
 
 /// Ranking, tables before and after, posteriors.
