@@ -61,7 +61,7 @@ std::string why_not_augmented(const Verdict& verdict) {
 
 void Loop::paper_trials() {
   for (const session::PlannedTrial& planned : session::plan(options_.protocol)) {
-    const std::string label(1, planned.label);
+    const std::string label = session::name_of(planned.label);
     step("trial " + label);
     result_.trials.push_back(session_.run(planned, label));
     if (planned.trial.phase == TrialPhase::kPegged) {

@@ -11,6 +11,7 @@
 #include "apps/report/command_line.hpp"
 #include "apps/report/page.hpp"
 #include "apps/report/plot/draw.hpp"
+#include "apps/session/core/conditions.hpp"
 #include "version.hpp"
 
 namespace stillhand::compare {
@@ -20,22 +21,13 @@ std::string interval_text(double low, double high) {
   return fmt::format(" ({:.3g} to {:.3g})", low, high);
 }
 
-report::Colour colour_of(const std::string& condition) {
-  using report::Colour;
-  if (condition == "C+") return Colour::kConditionCPlus;
-  if (condition == "C'") return Colour::kConditionCPrime;
-  switch (condition.front()) {
-    case 'C':
-      return Colour::kConditionC;
-    case 'D':
-      return Colour::kConditionD;
-    case 'E':
-      return Colour::kConditionE;
-    case 'F':
-      return Colour::kConditionF;
-    default:
-      return Colour::kAccent;
-  }
+// The palette begins with the conditions' own colours, in the order of their table.
+report::Colour colour_of(const std::string& name) {
+  using session::Condition;
+  static_assert(static_cast<int>(report::Colour::kConditionF) == static_cast<int>(Condition::kF));
+  const auto condition = session::condition_named(name);
+  return condition && *condition <= Condition::kF ? static_cast<report::Colour>(*condition)
+                                                  : report::Colour::kAccent;
 }
 
 // One panel: the share that each option restores, with its interval.

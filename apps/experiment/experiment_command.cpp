@@ -117,7 +117,7 @@ void add_new(CLI::App& verb, const std::shared_ptr<Words>& words) {
   CLI::App* sub = subcommand(verb, "new", "Makes the folder and its experiment.yaml.", *words);
   Design& design = words->design;
   sub->add_option("--title", design.title, "title")->capture_default_str();
-  sub->add_option("--conditions", words->conditions, kLiveConditions)->capture_default_str();
+  sub->add_option("--conditions", words->conditions, live_conditions())->capture_default_str();
   sub->add_option("--participants", design.participants, "planned number")->capture_default_str();
   sub->add_option("--order", words->order, "random, latin or williams")->capture_default_str();
   sub->add_option("--blocks", design.blocks, "blocks")->capture_default_str();

@@ -11,7 +11,6 @@
 #include "apps/lab/control_model.hpp"
 #include "apps/measurement/written_trial.hpp"
 #include "apps/session/instructions.hpp"
-#include "apps/session/live_mitigation.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -34,12 +33,6 @@ double dwell_ratio(const std::filesystem::path& recording, const Trial& trial) {
   return static_cast<double>(inside) / static_cast<double>(target_m.size());
 }
 
-// C' and C+ are C with another model.
-session::Condition letter_of(const std::string& condition) {
-  return static_cast<session::Condition>(is_mitigation(condition) ? session::letter_of(condition)
-                                                                  : condition.front());
-}
-
 bool chooses_models(const Design& design) {
   return std::ranges::any_of(design.conditions, [](const std::string& each) {
     return each.size() > 1 && !is_mitigation(each);
@@ -49,7 +42,7 @@ bool chooses_models(const Design& design) {
 // `signal` takes off by a model of the feedthrough to position.
 bool needs_position(const Design& design) {
   return std::ranges::any_of(design.conditions, [](const std::string& each) {
-    return session::needs_position(letter_of(each));
+    return needs_position(condition_of(each));
   });
 }
 
@@ -74,8 +67,9 @@ void SessionScript::add(Entry entry) {
 }
 
 session::PlannedTrial SessionScript::planned_of(const Step& step) const {
+  const session::Condition condition = experiment::condition_of(condition_of(step));
   session::PlannedTrial planned =
-      session::tracking_trial(lab_.protocol, letter_of(condition_of(step)), step.place);
+      session::tracking_trial(lab_.protocol, planned_as(condition), step.place);
   planned.motion_seed = step.motion_seed;
   planned.reference_seed = step.target_seed;
   return planned;
@@ -93,7 +87,7 @@ session::PlannedTrial SessionScript::practice_of(std::int64_t number) const {
   session::ProtocolOptions protocol = lab_.protocol;
   protocol.trial_s = folder_.design().practice.trial_s;
   session::PlannedTrial planned =
-      session::tracking_trial(protocol, session::Condition::kStationary, number + 1);
+      session::tracking_trial(protocol, session::Condition::kA, number + 1);
   planned.reference_seed = practice_trial(folder_.design(), index_, number).target_seed;
   return planned;
 }

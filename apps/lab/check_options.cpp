@@ -11,7 +11,6 @@
 
 #include "apps/lab/control_model.hpp"
 #include "apps/lab/core/prompt.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "services/cancellation/core/canceller.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
@@ -125,7 +124,7 @@ void check_mitigations(const LabOptions& options,
       const mitigation::Mitigation sound(recipe_of(planned.parts, models, config));
       check_settling(sound, config, planned);
     } catch (const ConfigError& error) {
-      const std::string name = session::condition_label(planned.label);
+      const std::string name = session::name_of(planned.label);
       throw ConfigError(
           "--conditions",
           options.canceller == "now" ? name : name + " with --canceller " + options.canceller,
@@ -138,11 +137,10 @@ void check_driven(const LabOptions& options, const std::vector<session::PlannedT
   if (options.vehicle.empty()) return;
   for (const session::PlannedTrial& planned : trials) {
     if (planned.parts.empty()) continue;
-    throw ConfigError(
-        "--vehicle",
-        fmt::format("{} with {}", options.vehicle, session::condition_label(planned.label)),
-        "it with A, B and C alone: the vehicle follows the raw stick, not the "
-        "command that a mitigation gives");
+    throw ConfigError("--vehicle",
+                      fmt::format("{} with {}", options.vehicle, session::name_of(planned.label)),
+                      "it with A, B and C alone: the vehicle follows the raw stick, not the "
+                      "command that a mitigation gives");
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/lab/codec.hpp"
 
-#include "apps/session/live_mitigation.hpp"
-
 namespace stillhand::lab {
 namespace {
 
@@ -188,7 +186,7 @@ stillhand_msgs::TrialAssignment assignment_of(const session::PlannedTrial& plann
     to.kind(static_cast<stillhand_msgs::MitigationPartKind>(part.kind));
     to.values(part.values);
   }
-  if (!planned.parts.empty()) message.mitigation(session::condition_label(planned.label));
+  if (!planned.parts.empty()) message.mitigation(session::name_of(planned.label));
   return message;
 }
 

@@ -85,9 +85,9 @@ const session::TrialOutcome& ConductedTrials::run_once(const session::PlannedTri
 const session::TrialOutcome& ConductedTrials::finished() {
   session::TrialOutcome& outcome = outcomes_.back();
   // A perturbed trial on the peg is for `stillhand identify`: no model of it is needed here.
-  const char label = outcome.planned.label;
-  if (outcome.completed &&
-      (label == session::kIdentification || label == session::kFreeIdentification)) {
+  const session::Condition label = outcome.planned.label;
+  if (outcome.completed && (label == session::Condition::kIdentification ||
+                            label == session::Condition::kFreeIdentification)) {
     take_model(outcome);
   }
   return outcome;
@@ -103,7 +103,7 @@ void ConductedTrials::take_model(session::TrialOutcome& outcome) {
     return;
   }
   const bool answered = awaited.model.trial() == outcome.planned.trial.number;
-  const bool pegged = outcome.planned.label == session::kIdentification;
+  const bool pegged = outcome.planned.label == session::Condition::kIdentification;
   if (answered && pegged && !needs_model(options_)) return note(awaited.failure);
   outcome.completed = false;
   outcome.aborted = awaited.failure;

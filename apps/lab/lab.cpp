@@ -108,8 +108,8 @@ Prompt before_trial(const LabOptions& options, const std::vector<session::Planne
     return {.kind = PromptKind::kInstructions, .wait_s = lead_s, .text = session::kHoldStill};
   }
   const auto tracks = [](const session::PlannedTrial& planned) {
-    return planned.label != session::kIdentification &&
-           planned.label != session::kFreeIdentification;
+    return planned.label != session::Condition::kIdentification &&
+           planned.label != session::Condition::kFreeIdentification;
   };
   return {.kind = PromptKind::kTrial,
           .trial = std::count_if(plan.begin(),

@@ -17,7 +17,6 @@
 
 #include "apps/lab/arms_file.hpp"
 #include "apps/lab/lab.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/settings/check_name.hpp"
 #include "services/settings/repeatable.hpp"
@@ -53,7 +52,7 @@ void take_perturbation(const Words& words, LabOptions& options) {
     if (given == nullptr) return;
     throw ConfigError(given, "it without --identify", "it with --identify admittance,feedthrough");
   }
-  options.protocol.conditions = {session::Condition::kPerturbed};
+  options.protocol.conditions = {session::Condition::kP};
   options.protocol.perturb_period_s = words.perturb_period_s.value_or(20.0);
   options.protocol.stick_held = words.held;
   options.protocol.perturb_swapped = words.swapped;
@@ -102,12 +101,8 @@ void take_rig(const std::vector<std::string>& words, LabOptions& options) {
 
 // The trials and the person or model that tracks.
 void add_trial_options(CLI::App& lab, LabOptions& options, Words& words) {
-  std::vector<std::string> mitigations;
-  for (const auto& one : session::live_mitigations()) mitigations.emplace_back(one.name);
   lab.add_option("--conditions", words.conditions,
-                 fmt::format("comma-separated: A stationary, B moving, C moving with cancellation; "
-                             "or a mitigation of `stillhand study --mitigations`: {}",
-                             fmt::join(mitigations, ", ")))
+                 "comma-separated: " + session::known_conditions(session::kLabConditions))
       ->capture_default_str();
   lab.add_option("--arms", words.arms,
                  "for the condition scheduled: the person's arms relaxed and holding, two files of "
@@ -234,8 +229,7 @@ void add_bus_options(CLI::App& lab, LabOptions& options, Words& words) {
 }
 
 void take_words(const Words& words, LabOptions& options) {
-  options.protocol.conditions = session::parse_conditions(words.conditions, session::kLabConditions,
-                                                          session::Named::kMitigationsToo);
+  options.protocol.conditions = session::parse_conditions(words.conditions);
   const bool scheduled =
       std::ranges::find(options.protocol.conditions, session::Condition::kScheduled) !=
       options.protocol.conditions.end();

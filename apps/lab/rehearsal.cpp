@@ -5,7 +5,6 @@
 
 #include <optional>
 
-#include "apps/session/live_mitigation.hpp"
 #include "services/admittance/core/session_excitation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/display/core/tracking_display.hpp"
@@ -37,7 +36,7 @@ ConfigError refusal(const session::PlannedTrial& planned, const session::Protoco
     case session::Motion::kBandNoise:
       return {"motion.yaml",
               fmt::format("the noise of trial {} ({})", planned.trial.number,
-                          session::condition_label(planned.label)),
+                          session::name_of(planned.label)),
               fmt::format("limits that allow it ({})", why)};
     case session::Motion::kRoad:
       return {

@@ -29,8 +29,8 @@ report::Panel panel(std::string title, std::string unit, double extent) {
 
 // A picture is shown without its page: it says of which parts the rig was.
 std::string title_of(const session::TrialResult& trial, const std::string& rig_parts) {
-  const std::string title =
-      std::string(1, trial.label) + (trial.label == 'B' ? ", moving" : ", cancelled");
+  const std::string title = std::string(session::name_of(trial.label)) +
+                            (trial.label == session::Condition::kB ? ", moving" : ", cancelled");
   if (rig_parts.empty()) return title;
   const std::size_t at = rig_parts.find("simulated: ");
   return title + " (devices" + (at == std::string::npos ? "" : "; " + rig_parts.substr(at)) + ")";
@@ -65,7 +65,7 @@ report::Panel hand_panel(const session::TrialResult& trial, Colour colour) {
 std::vector<report::Drawing> draw_session(const session::SessionResult& result,
                                           const std::filesystem::path& folder) {
   std::vector<const session::TrialResult*> shown;
-  for (const char label : {'B', 'C'}) {
+  for (const auto label : {session::Condition::kB, session::Condition::kC}) {
     const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
     if (trial != result.trials.end()) shown.push_back(&*trial);
   }
@@ -76,8 +76,9 @@ std::vector<report::Drawing> draw_session(const session::SessionResult& result,
   figure.height_px = 520;
   for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial, result.rig_parts));
   for (const auto* trial : shown) {
-    figure.panels.push_back(
-        hand_panel(*trial, trial->label == 'B' ? Colour::kConditionB : Colour::kConditionC));
+    figure.panels.push_back(hand_panel(*trial, trial->label == session::Condition::kB
+                                                   ? Colour::kConditionB
+                                                   : Colour::kConditionC));
   }
   return report::render({{figure}}, folder);
 }

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "apps/lab/summary_json.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "apps/session/paper_table.hpp"
 
 namespace stillhand::lab {
@@ -26,7 +25,7 @@ std::string percent(std::optional<double> share) {
 std::vector<report::Cell> own_row(const session::SessionResult& result,
                                   const session::Metric& metric) {
   std::vector<report::Cell> row{std::string(metric.title) + ", this session"};
-  for (const char label : {'A', 'B', 'C'}) {
+  for (const auto label : session::kPaperConditions) {
     const session::TrialResult* trial = trial_of(result, label);
     row.emplace_back(number(trial ? std::optional(value_of(*trial, metric)) : std::nullopt),
                      report::Emphasis::kStrong);
@@ -46,14 +45,14 @@ std::vector<report::Cell> paper_row(const session::Metric& metric) {
 void add_mitigations(const session::SessionResult& result, report::Page& page) {
   std::vector<const session::TrialResult*> trials = mitigated_trials(result);
   if (trials.empty()) return;
-  if (const session::TrialResult* c = trial_of(result, 'C')) trials.insert(trials.begin(), c);
+  if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
+    trials.insert(trials.begin(), c);
   report::Table table{
       "Every condition against the feedthrough, by the error behind the first third of its trial, "
       "as in the study's table of mitigations.",
       {"", "RMS error [mm]", "restored (B - it)/(B - A)", "motor [N]", "hand [N]"}};
   for (const session::TrialResult* trial : trials) {
-    table.rows.push_back({session::condition_label(trial->label),
-                          number(trial->settled_rms_error_mm),
+    table.rows.push_back({session::name_of(trial->label), number(trial->settled_rms_error_mm),
                           percent(settled_restoration_of(result, trial->label)),
                           number(trial->forces.motor_n), number(trial->forces.volitional_n)});
   }

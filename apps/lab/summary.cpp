@@ -11,7 +11,6 @@
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/identification/codec.hpp"
 #include "services/identification/model_file.hpp"
@@ -22,7 +21,7 @@ namespace stillhand::lab {
 namespace {
 
 void print_table(const session::SessionResult& result) {
-  if (trial_of(result, 'P') != nullptr) {
+  if (trial_of(result, session::Condition::kP) != nullptr) {
     std::printf("`stillhand identify session.mcap --admittance` reads the perturbed trial\n");
     return;
   }
@@ -30,7 +29,7 @@ void print_table(const session::SessionResult& result) {
               "paper (12 subjects): A, B, C, restored");
   for (const session::Metric& metric : session::kMetrics) {
     std::printf("%-22s", metric.title);
-    for (const char label : {'A', 'B', 'C'}) {
+    for (const auto label : session::kPaperConditions) {
       const session::TrialResult* trial = trial_of(result, label);
       if (trial == nullptr) {
         std::printf(" %9s", "-");
@@ -55,12 +54,13 @@ void print_table(const session::SessionResult& result) {
 void print_mitigations(const session::SessionResult& result) {
   std::vector<const session::TrialResult*> trials = mitigated_trials(result);
   if (trials.empty()) return;
-  if (const session::TrialResult* c = trial_of(result, 'C')) trials.insert(trials.begin(), c);
+  if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
+    trials.insert(trials.begin(), c);
   std::printf("\n%-16s %14s %9s %9s %9s\n", "mitigation", "RMS error [mm]", "restored", "motor [N]",
               "hand [N]");
   for (const session::TrialResult* trial : trials) {
     const std::optional<double> restored = settled_restoration_of(result, trial->label);
-    std::printf("%-16s %14.1f %9s %9.1f %9.1f\n", session::condition_label(trial->label).c_str(),
+    std::printf("%-16s %14.1f %9s %9.1f %9.1f\n", session::name_of(trial->label),
                 trial->settled_rms_error_mm,
                 restored && std::isfinite(*restored)
                     ? fmt::format("{:.0f} %", 100.0 * *restored).c_str()
@@ -90,7 +90,7 @@ void print_models(const session::SessionResult& result,
   }
   if (!control_model.empty()) std::printf("C ran %s instead\n", control_model.c_str());
   for (const session::TrialResult& trial : result.trials) {
-    if (trial.label == 'C' && trial.cancelled_share) {
+    if (trial.label == session::Condition::kC && trial.cancelled_share) {
       std::printf("feedthrough force cancelled while tracking: %.1f %%\n",
                   100.0 * *trial.cancelled_share);
     }
@@ -98,7 +98,7 @@ void print_models(const session::SessionResult& result,
       std::printf(
           "of the stick's motion with the seat, as sensed in B, %s takes away: %.0f %% (%.0f to "
           "%.0f)\n",
-          session::condition_label(trial.label).c_str(), 100.0 * trial.sensed_share->share,
+          session::name_of(trial.label), 100.0 * trial.sensed_share->share,
           100.0 * trial.sensed_share->low, 100.0 * trial.sensed_share->high);
     }
   }
@@ -188,8 +188,8 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
       continue;
     }
     std::cerr << fmt::format("stillhand lab: trial {} ({}) is marked: {}\n",
-                             outcome.planned.trial.number,
-                             session::condition_label(outcome.planned.label), outcome.aborted);
+                             outcome.planned.trial.number, session::name_of(outcome.planned.label),
+                             outcome.aborted);
   }
   return !interrupted && completed == session::plan(options.protocol).size() ? 0 : 1;
 }

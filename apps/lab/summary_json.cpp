@@ -7,7 +7,6 @@
 #include <functional>
 
 #include "apps/report/or_null.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "apps/session/paper_table.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/settings/load.hpp"
@@ -96,10 +95,11 @@ ordered_json number_json(const std::optional<std::int32_t>& number) {
 ordered_json mitigations_json(const session::SessionResult& result) {
   std::vector<const session::TrialResult*> shown = mitigated_trials(result);
   if (shown.empty()) return ordered_json::object();
-  if (const session::TrialResult* c = trial_of(result, 'C')) shown.insert(shown.begin(), c);
+  if (const session::TrialResult* c = trial_of(result, session::Condition::kC))
+    shown.insert(shown.begin(), c);
   ordered_json json = ordered_json::object();
   for (const session::TrialResult* trial : shown) {
-    ordered_json& one = json[session::condition_label(trial->label)];
+    ordered_json& one = json[session::name_of(trial->label)];
     one = {{"restored", or_null(settled_restoration_of(result, trial->label))},
            {"settled_rms_error_mm", or_null(trial->settled_rms_error_mm)},
            {"motor_n", or_null(trial->forces.motor_n)},
@@ -168,7 +168,7 @@ ordered_json trial_json(const session::TrialOutcome& outcome, const LabOptions& 
   }
   const Trial& trial = outcome.planned.trial;
   return {{"number", trial.number},
-          {"condition", session::condition_label(outcome.planned.label)},
+          {"condition", session::name_of(outcome.planned.label)},
           {"start_tick", trial.start_tick},
           {"duration_ticks", trial.duration_ticks},
           {"motion", motion_json(outcome, options)},
@@ -207,7 +207,8 @@ ordered_json identification_json(const session::SessionResult& result) {
 
 }  // namespace
 
-const session::TrialResult* trial_of(const session::SessionResult& result, char label) {
+const session::TrialResult* trial_of(const session::SessionResult& result,
+                                     session::Condition label) {
   const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
   return trial == result.trials.end() ? nullptr : &*trial;
 }
@@ -217,9 +218,9 @@ double value_of(const session::TrialResult& trial, const session::Metric& metric
 }
 
 std::optional<double> restoration_of(const session::SessionResult& result,
-                                     const session::Metric& metric, char label) {
-  const session::TrialResult* a = trial_of(result, 'A');
-  const session::TrialResult* b = trial_of(result, 'B');
+                                     const session::Metric& metric, session::Condition label) {
+  const session::TrialResult* a = trial_of(result, session::Condition::kA);
+  const session::TrialResult* b = trial_of(result, session::Condition::kB);
   const session::TrialResult* c = trial_of(result, label);
   if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
   return (value_of(*b, metric) - value_of(*c, metric)) /
@@ -228,16 +229,17 @@ std::optional<double> restoration_of(const session::SessionResult& result,
 
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result) {
   std::vector<const session::TrialResult*> out;
-  for (const session::LiveMitigation& one : session::live_mitigations()) {
-    const session::TrialResult* trial = trial_of(result, static_cast<char>(one.condition));
-    if (trial != nullptr) out.push_back(trial);
+  for (const session::Condition each : session::conditions_of(session::kLabConditions)) {
+    const session::TrialResult* trial = trial_of(result, each);
+    if (trial != nullptr && session::is_mitigation(each)) out.push_back(trial);
   }
   return out;
 }
 
-std::optional<double> settled_restoration_of(const session::SessionResult& result, char label) {
-  const session::TrialResult* a = trial_of(result, 'A');
-  const session::TrialResult* b = trial_of(result, 'B');
+std::optional<double> settled_restoration_of(const session::SessionResult& result,
+                                             session::Condition label) {
+  const session::TrialResult* a = trial_of(result, session::Condition::kA);
+  const session::TrialResult* b = trial_of(result, session::Condition::kB);
   const session::TrialResult* c = trial_of(result, label);
   if (a == nullptr || b == nullptr || c == nullptr) return std::nullopt;
   return (b->settled_rms_error_mm - c->settled_rms_error_mm) /
@@ -267,13 +269,13 @@ ordered_json summary_json(const LabOptions& options,
                           const session::SessionResult& result, bool interrupted) {
   ordered_json summary;
   summary["conditions"] = ordered_json::object();
-  for (const char label : {'A', 'B', 'C'}) {
+  for (const auto label : session::kPaperConditions) {
     if (const session::TrialResult* trial = trial_of(result, label)) {
-      summary["conditions"][std::string(1, label)] = condition_json(*trial);
+      summary["conditions"][session::name_of(label)] = condition_json(*trial);
     }
   }
   for (const session::TrialResult* trial : mitigated_trials(result)) {
-    summary["conditions"][session::condition_label(trial->label)] = condition_json(*trial);
+    summary["conditions"][session::name_of(trial->label)] = condition_json(*trial);
   }
   // Tests over subjects need subjects; a lab session has one.
   summary["t_tests"] = nullptr;

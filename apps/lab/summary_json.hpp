@@ -14,14 +14,17 @@
 namespace stillhand::lab {
 
 /// The trial of a condition; nullptr: none was completed.
-const session::TrialResult* trial_of(const session::SessionResult& result, char label);
+const session::TrialResult* trial_of(const session::SessionResult& result,
+                                     session::Condition label);
 double value_of(const session::TrialResult& trial, const session::Metric& metric);
 /// (B - C) / (B - A) of a metric; nothing without all three conditions.
 /// @param label  of the condition in the place of C
 std::optional<double> restoration_of(const session::SessionResult& result,
-                                     const session::Metric& metric, char label = 'C');
+                                     const session::Metric& metric,
+                                     session::Condition label = session::Condition::kC);
 /// The same of the RMS error behind each trial's first third: the study's share (SU-19).
-std::optional<double> settled_restoration_of(const session::SessionResult& result, char label);
+std::optional<double> settled_restoration_of(const session::SessionResult& result,
+                                             session::Condition label);
 /// The trials with a mitigation of their own, in the order of the study's table.
 std::vector<const session::TrialResult*> mitigated_trials(const session::SessionResult& result);
 

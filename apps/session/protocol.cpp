@@ -9,7 +9,6 @@
 #include <random>
 #include <sstream>
 
-#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/motion/core/excitation.hpp"
 
@@ -87,75 +86,33 @@ std::string check_seed(const std::string& word) {
                      std::numeric_limits<std::int64_t>::max());
 }
 
-const char* condition_name(Condition condition) {
-  switch (condition) {
-    case Condition::kStationary:
-      return "stationary";
-    case Condition::kMoving:
-      return "moving";
-    case Condition::kMovingCancelled:
-      return "cancelled";
-    case Condition::kCommandFilter:
-      return "command filter";
-    case Condition::kDampedStick:
-      return "damped stick";
-    case Condition::kArmRest:
-      return "arm rest";
-    case Condition::kPerturbed:
-      return "perturbed";
-    default:
-      break;
-  }
-  const LiveMitigation* const mitigated = live_mitigation(condition);
-  return mitigated == nullptr ? "unknown" : mitigated->name;
-}
-
-namespace {
-
-// Of one word; 0: it is none.
-char condition_of(const std::string& word, const std::string& allowed, Named named) {
-  if (word.size() == 1 && allowed.find(word) != std::string::npos) return word[0];
-  if (named == Named::kLettersAlone) return '\0';
-  // The study's names of two conditions.
-  if (word == "none") return static_cast<char>(Condition::kMoving);
-  if (word == "force") return static_cast<char>(Condition::kMovingCancelled);
-  return letter_of(word);
-}
-
-std::vector<std::string> known_conditions(const std::string& allowed, Named named) {
+std::string known_conditions(Where where) {
   std::vector<std::string> known;
-  for (const char letter : allowed) {
-    known.push_back(fmt::format("{} ({})", letter, condition_name(static_cast<Condition>(letter))));
+  if (where == kMitigations) known.emplace_back("all");
+  for (const Condition each : conditions_of(where)) {
+    known.push_back(where == kMitigations ? mitigation_name(each) : title_of(each, " (", ")"));
   }
-  if (named == Named::kMitigationsToo) {
-    for (const LiveMitigation& one : live_mitigations()) known.emplace_back(one.name);
-  }
-  return known;
+  return fmt::format("{}", fmt::join(known, ", "));
 }
 
-}  // namespace
-
-std::vector<Condition> parse_conditions(const std::string& text, const std::string& allowed,
-                                        Named named) {
+std::vector<Condition> parse_conditions(const std::string& text, Where where, const char* option) {
   std::vector<Condition> conditions;
   std::istringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
-    const char letter = condition_of(word, allowed, named);
-    if (letter == '\0') {
-      throw ConfigError(
-          "--conditions", fmt::format("\"{}\"", word),
-          fmt::format("a list of {}", fmt::join(known_conditions(allowed, named), ", ")));
+    const std::optional<Condition> condition = condition_named(word);
+    if (!condition || (row_of(*condition).where & where) == 0) {
+      throw ConfigError(option, fmt::format("\"{}\"", word),
+                        "a list of " + known_conditions(where));
     }
-    const auto condition = static_cast<Condition>(letter);
-    if (std::find(conditions.begin(), conditions.end(), condition) != conditions.end()) {
-      const bool alias = word == "none" || word == "force";
+    if (std::ranges::find(conditions, *condition) != conditions.end()) {
+      const bool alias = word == row_of(*condition).alias;
       throw ConfigError(
-          "--conditions", word + " twice",
+          option, word + " twice",
           alias ? "each condition once; none is B, and force is C" : "each condition once");
     }
-    conditions.push_back(condition);
+    conditions.push_back(*condition);
   }
-  if (conditions.empty()) throw ConfigError("--conditions", "nothing", "for example A,B,C");
+  if (conditions.empty()) throw ConfigError(option, "nothing", "for example A,B,C");
   return conditions;
 }
 
@@ -165,7 +122,7 @@ PlannedTrial identification_trial(const ProtocolOptions& options) {
   planned.trial.phase = TrialPhase::kPegged;
   planned.trial.duration_ticks = ticks_in(options.identify_s);
   planned.trial.ramp_ticks = ticks_in(options.ramp_s);
-  planned.label = kIdentification;
+  planned.label = Condition::kIdentification;
   planned.moving = true;
   planned.motion = Motion::kBandNoise;  // white noise whatever the trials use: paper III-A
   planned.band_low_hz = 0.7;
@@ -185,7 +142,7 @@ PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int6
   PlannedTrial planned = identification_trial(options);
   planned.trial.number = number;
   planned.trial.phase = TrialPhase::kFree;
-  planned.label = kFreeIdentification;
+  planned.label = Condition::kFreeIdentification;
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
   return planned;
 }
@@ -198,24 +155,23 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
   planned.trial.duration_ticks = ticks_in(options.trial_s);
   planned.trial.ramp_ticks = ticks_in(options.ramp_s);
   planned.reference_seed = derived_seed(options.seed, SeedUse::kReference, number);
-  planned.label = static_cast<char>(condition);
-  planned.moving = condition != Condition::kStationary;
+  planned.label = condition;
+  planned.moving = condition != Condition::kA;
   ProtocolOptions own = options;
-  if (condition == Condition::kPerturbed) own.motion = Motion::kInterleaved;
+  if (condition == Condition::kP) own.motion = Motion::kInterleaved;
   set_tracking_motion(planned, own);
   planned.motion_seed = derived_seed(options.seed, SeedUse::kMotion, number);
-  planned.cancellation =
-      condition == Condition::kMovingCancelled || condition == Condition::kPerturbed;
-  if (condition == Condition::kPerturbed && options.stick_held) {
+  const ConditionRow& row = row_of(condition);
+  planned.cancellation = row.means == Means::kCanceller;
+  if (condition == Condition::kP && options.stick_held) {
     planned.trial.phase = TrialPhase::kPegged;
     planned.cancellation = false;
   }
-  planned.command_filter = condition == Condition::kCommandFilter;
-  if (const LiveMitigation* const mitigated = live_mitigation(condition)) {
-    planned.parts = mitigated->parts;
-    for (mitigation::Part& part : planned.parts) {
-      if (part.kind == mitigation::PartKind::kSchedule) part.values = options.arms;
-    }
+  planned.command_filter = row.means == Means::kCommandFilter;
+  if (row.means != Means::kMitigation) return planned;
+  planned.parts = row.parts;
+  for (mitigation::Part& part : planned.parts) {
+    if (part.kind == mitigation::PartKind::kSchedule) part.values = options.arms;
   }
   return planned;
 }
@@ -229,7 +185,7 @@ std::vector<PlannedTrial> plan(const ProtocolOptions& options) {
   std::shuffle(order.begin(), order.end(), engine);
 
   std::vector<PlannedTrial> trials{identification_trial(options)};
-  if (std::ranges::any_of(order, [](Condition each) { return needs_position(each); })) {
+  if (std::ranges::any_of(order, needs_position)) {
     trials.push_back(free_identification_trial(options, 1));
   }
   for (const Condition condition : order) {

@@ -5,45 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/session/core/conditions.hpp"
 #include "services/contract/trial.hpp"
-#include "services/mitigation/core/part.hpp"
 #include "services/motion/core/motion_profile.hpp"
 
 namespace stillhand::session {
-
-/// A to C are the conditions of the paper, section III-C.  D to F, all with the motor off, are the
-/// alternatives that its section V proposes to compare with the motor.
-enum class Condition : char {
-  kStationary = 'A',       ///< platform still, motor off
-  kMoving = 'B',           ///< platform moves, motor off
-  kMovingCancelled = 'C',  ///< platform moves, motor cancels
-  kCommandFilter = 'D',    ///< platform moves, the prediction is taken off the command
-  kDampedStick = 'E',      ///< platform moves, more stick damping
-  kArmRest = 'F',          ///< platform moves, the forearm rests
-  kPerturbed = 'P',        ///< platform and motor move the hand at once, to identify it
-  // Mitigations that a session over the bus runs too, live_mitigation.hpp; the platform moves.
-  kLowPass = 'l',
-  kNotch = 'n',
-  kModelFilter = 'm',
-  kSignal = 's',
-  kLmsSignal = 'u',
-  kAdaptive = 'a',
-  kScheduled = 'h',
-  kLmsForce = 'v',
-  kDamping = 'd',
-  kImpedance = 'i',
-  kDampingForce = 'f',
-};
-
-/// Label of the pegged trial that gives the session its model.
-inline constexpr char kIdentification = 'I';
-/// Label of the trial with a free stick that gives it the feedthrough to position, where a
-/// condition needs it.
-inline constexpr char kFreeIdentification = 'J';
-
-/// Conditions of a session over the bus, and of a study.
-inline constexpr const char* kLabConditions = "ABC";
-inline constexpr const char* kStudyConditions = "ABCDEF";
 
 /// Kind of platform motion during B and C; kInterleaved during P.
 enum class Motion : std::uint8_t { kBandNoise, kRoad, kRide, kInterleaved };
@@ -70,7 +36,7 @@ struct ProtocolOptions {
 struct PlannedTrial {
   Trial trial;                   ///< start_tick is set when it runs
   std::uint64_t reference_seed;  ///< phases of the target
-  char label;                    ///< 'I' identification, or the condition: blinded
+  Condition label;               ///< or an identification: blinded
   bool moving;
   Motion motion;
   double band_low_hz, band_high_hz;  ///< [Hz]
@@ -86,18 +52,12 @@ struct PlannedTrial {
 /// number that is too large for the largest one.)
 std::string check_seed(const std::string& word);
 
-/// Name in reports.
-const char* condition_name(Condition condition);
-
-/// Whether a list of conditions may name mitigations too.
-enum class Named : std::uint8_t { kLettersAlone, kMitigationsToo };
-
 /// "A,B,C" or "A,B,signal" to conditions; `none` is B, and `force` is C.
-/// @param allowed  their letters
-/// @throws ConfigError for an unknown, repeated or missing one.
-std::vector<Condition> parse_conditions(const std::string& text,
-                                        const std::string& allowed = kLabConditions,
-                                        Named named = Named::kLettersAlone);
+/// @throws ConfigError for one that does not run there, a repeated or a missing one.
+std::vector<Condition> parse_conditions(const std::string& text, Where where = kLabConditions,
+                                        const char* option = "--conditions");
+/// "A (stationary), B (moving), ..., notch, ...": what parse_conditions() takes.
+std::string known_conditions(Where where);
 
 /// Identification first, with the stick pegged and, where a condition needs it, free; then the
 /// conditions in an order shuffled by the seed; every seed of a trial follows from the session's.
@@ -105,9 +65,10 @@ std::vector<Condition> parse_conditions(const std::string& text,
 ///         not define, or a speed out of range (0.5 to 70 m/s).
 std::vector<PlannedTrial> plan(const ProtocolOptions& options);
 
-/// The pegged trial, number 0.
+/// The pegged trial, number 0, which gives the session its model.
 PlannedTrial identification_trial(const ProtocolOptions& options);
-/// The one with the stick free, in the same motion with other phases.
+/// The one with the stick free, in the same motion with other phases: it gives the feedthrough to
+/// position.
 PlannedTrial free_identification_trial(const ProtocolOptions& options, std::int64_t number);
 /// One tracking trial of a condition.
 /// @param number  of the trial in its session, from 1; its seeds follow from it and the session's

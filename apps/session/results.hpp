@@ -26,7 +26,7 @@ struct Excerpt {
 /// One tracking trial, computed from the recording alone.
 struct TrialResult {
   std::int64_t number;
-  char label;  ///< condition
+  Condition label;
   identification::TrackingMetrics metrics;
   std::int64_t missing_ticks = 0;  ///< of the tracking samples; the last one before is held
   /// Share of the feedthrough force that the motor cancelled: 1 - RMS(f' + f_m) / RMS(f'), f' the

@@ -6,6 +6,7 @@
 #include <complex>
 #include <iterator>
 #include <limits>
+#include <span>
 
 #include "services/contract/config_error.hpp"
 
@@ -20,7 +21,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastGain = 0.05;
 constexpr std::size_t kWindow_s = 10;  // of the moving averages, which have one value a second
 
-bool has(const Analysis& analysis, char condition) {
+bool has(const Analysis& analysis, Condition condition) {
   return analysis.conditions.contains(condition);
 }
 
@@ -41,7 +42,7 @@ MultivariateResult manova(const Eigen::MatrixXd& observations,
   }
 }
 
-MultivariateResult main_effects(const Analysis& analysis, const std::string& conditions,
+MultivariateResult main_effects(const Analysis& analysis, std::span<const Condition> conditions,
                                 std::size_t subjects) {
   const std::size_t count = conditions.size();
   Eigen::MatrixXd observations(count * subjects, kMetricCount);
@@ -70,7 +71,7 @@ std::array<double, 2> third(const TrackedTrial& trial, std::size_t which, std::s
 }
 
 MultivariateResult thirds(const std::vector<SubjectResult>& results,
-                          const std::string& conditions) {
+                          std::span<const Condition> conditions) {
   const auto entries = results.front().trials.begin()->second.metrics.moving_rms_mm.size();
   const std::size_t windows = (entries + kWindow_s - 1) / kWindow_s / kThirds;
   if (windows == 0) return {std::nullopt, "the thirds of a trial need 30 s or more"};
@@ -87,7 +88,8 @@ MultivariateResult thirds(const std::vector<SubjectResult>& results,
   return manova(observations, {subjects, count, kThirds});
 }
 
-std::vector<PooledLine> pooled_lines(const std::vector<SubjectResult>& results, char condition) {
+std::vector<PooledLine> pooled_lines(const std::vector<SubjectResult>& results,
+                                     Condition condition) {
   std::vector<PooledLine> out(signal::kReferenceLines);
   for (std::size_t line = 0; line < out.size(); ++line) {
     std::complex<double> cursor = 0.0;
@@ -121,8 +123,8 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
       }));
     }
     wrong.surviving_share = over_subjects(results, [&](const SubjectResult& result) {
-      const double b = result.trials.at('B').metrics.rms_error_mm;
-      const double c = result.trials.at('C').metrics.rms_error_mm;
+      const double b = result.trials.at(kB).metrics.rms_error_mm;
+      const double c = result.trials.at(kC).metrics.rms_error_mm;
       if (!(b - c > kLeastGain * b)) return kNan;
       return (b - result.wrong.at(which).metrics.rms_error_mm) / (b - c);
     });
@@ -130,11 +132,11 @@ void add_wrong_models(Analysis& analysis, const std::vector<SubjectResult>& resu
 }
 
 // Eq. SU-5, over the subjects whose metric was found in all three conditions.
-Restoration restoration_by(const Analysis& analysis, char cancelled) {
+Restoration restoration_by(const Analysis& analysis, Condition cancelled) {
   Restoration out;
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    out[k] = statistics::restored_share(analysis.conditions.at('A')[k].per_subject,
-                                        analysis.conditions.at('B')[k].per_subject,
+    out[k] = statistics::restored_share(analysis.conditions.at(kA)[k].per_subject,
+                                        analysis.conditions.at(kB)[k].per_subject,
                                         analysis.conditions.at(cancelled)[k].per_subject);
   }
   return out;
@@ -159,7 +161,7 @@ MetricSample summarised(std::vector<double> values) {
   return out;
 }
 
-Comparison compared(const Analysis& analysis, char from, char to) {
+Comparison compared(const Analysis& analysis, Condition from, Condition to) {
   Comparison out{from, to, {}};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     const auto& before = analysis.conditions.at(from)[k].per_subject;
@@ -176,23 +178,24 @@ Comparison compared(const Analysis& analysis, char from, char to) {
 
 namespace {
 
-std::string conditions_in(const Analysis& analysis) {
-  std::string out;
-  for (const auto& entry : analysis.conditions) out += entry.first;
+std::vector<Condition> conditions_in(const Analysis& analysis) {
+  std::vector<Condition> out;
+  for (const auto& entry : analysis.conditions) out.push_back(entry.first);
   return out;
 }
 
 void add_comparisons(Analysis& analysis) {
-  const auto add = [&analysis](char from, char to) {
+  const auto add = [&analysis](Condition from, Condition to) {
     if (!has(analysis, from) || !has(analysis, to)) return;
     analysis.comparisons.push_back(compared(analysis, from, to));
   };
-  add('A', 'B');
-  for (const char to : {'C', kFollowing, kAugmented, 'D', 'E', 'F'}) add('B', to);
+  add(kA, kB);
+  for (const Condition to : {kC, kCPrime, kCPlus, kD, kE, kF}) add(kB, to);
   for (const auto& [from, to] : kCancellerSteps) add(from, to);
-  for (const session::LiveMitigation& one : session::live_mitigations()) {
-    add('B', static_cast<char>(one.condition));
-    add('C', static_cast<char>(one.condition));
+  for (const Condition each : conditions_in(analysis)) {
+    if (!is_mitigation(each)) continue;
+    add(kB, each);
+    add(kC, each);
   }
 }
 
@@ -200,8 +203,8 @@ void add_comparisons(Analysis& analysis) {
 
 std::string words_of_conditions(const Analysis& analysis) {
   std::string out;
-  for (const char condition : conditions_in(analysis)) {
-    out += (out.empty() ? "" : ", ") + condition_word(condition);
+  for (const Condition condition : conditions_in(analysis)) {
+    out += (out.empty() ? "" : ", ") + std::string(name_of(condition));
   }
   return out;
 }
@@ -209,7 +212,7 @@ std::string words_of_conditions(const Analysis& analysis) {
 Analysis analyse(const std::vector<SubjectResult>& results) {
   Analysis out;
   for (const auto& entry : results.front().trials) {
-    const char condition = entry.first;
+    const Condition condition = entry.first;
     for (std::size_t k = 0; k < kMetricCount; ++k) {
       out.conditions[condition][k] =
           summarised(over_subjects(results, [&](const SubjectResult& result) {
@@ -222,7 +225,7 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
         }));
     out.open_loop[condition] = pooled_lines(results, condition);
   }
-  for (const char condition : {'C', kFollowing, kAugmented}) {
+  for (const Condition condition : kCancelling) {
     if (!has(out, condition)) continue;
     out.cancelled_share[condition] =
         summarised(over_subjects(results, [condition](const SubjectResult& r) {
@@ -233,25 +236,25 @@ Analysis analyse(const std::vector<SubjectResult>& results) {
           return r.trials.at(condition).counterforce_delay_s;
         }));
   }
-  for (const char condition : conditions_in(out)) {
+  for (const Condition condition : conditions_in(out)) {
     if (!cancels(condition) && !is_mitigation(condition)) continue;
-    if (has(out, 'A') && has(out, 'B')) {
+    if (has(out, kA) && has(out, kB)) {
       out.restoration[condition] = restoration_by(out, condition);
     }
   }
   add_comparisons(out);
-  if (has(out, 'A') && has(out, 'B') && has(out, 'C')) {
+  if (has(out, kA) && has(out, kB) && has(out, kC)) {
     out.main_effects = main_effects(out, kPaperConditions, results.size());
     out.thirds = thirds(results, kPaperConditions);
   } else {
     out.main_effects.reason = out.thirds.reason = "needs conditions A, B and C";
   }
-  const std::string all = conditions_in(out);
-  if (all.size() > 1 && all != kPaperConditions) {
+  const std::vector<Condition> all = conditions_in(out);
+  if (all.size() > 1 && !std::ranges::equal(all, kPaperConditions)) {
     out.all_main_effects = main_effects(out, all, results.size());
     out.all_thirds = thirds(results, all);
   }
-  if (has(out, 'B') && has(out, 'C')) add_wrong_models(out, results);
+  if (has(out, kB) && has(out, kC)) add_wrong_models(out, results);
   for (const SubjectResult& result : results) {
     if (!result.identification.paper_unusable.empty()) ++out.refined_used;
   }

@@ -18,7 +18,6 @@
 namespace stillhand::study {
 
 inline constexpr std::size_t kMetricCount = session::kMetrics.size();
-inline constexpr const char* kPaperConditions = "ABC";  ///< of the paper's tables and figures
 /// Assumed size of a unit of the paper's RMS error [mm]; METHOD, "The paper's unit".
 inline constexpr double kPaperUnit_mm = 5.5;
 
@@ -33,7 +32,7 @@ struct MetricSample {
 
 /// Two conditions, all metrics.
 struct Comparison {
-  char from, to;
+  Condition from, to;
   /// Tests of the differences to - from; none for one subject or without variance.
   std::array<std::optional<statistics::TTest>, kMetricCount> tests;
 };
@@ -66,11 +65,11 @@ using Restoration = std::array<statistics::RestoredShare, kMetricCount>;
 
 /// All numbers of the report and the summary.
 struct Analysis {
-  std::map<char, std::array<MetricSample, kMetricCount>> conditions;
-  std::map<char, MetricSample> cancelled_share;       ///< conditions with a motor
-  std::map<char, MetricSample> counterforce_delay_s;  ///< conditions with a motor
-  std::map<char, MetricSample> crossover_reference_hz;
-  std::map<char, std::vector<PooledLine>> open_loop;
+  std::map<Condition, std::array<MetricSample, kMetricCount>> conditions;
+  std::map<Condition, MetricSample> cancelled_share;       ///< conditions with a motor
+  std::map<Condition, MetricSample> counterforce_delay_s;  ///< conditions with a motor
+  std::map<Condition, MetricSample> crossover_reference_hz;
+  std::map<Condition, std::vector<PooledLine>> open_loop;
   std::vector<Comparison> comparisons;
   MultivariateResult main_effects;  ///< A, B, C with one value a cell: no interaction
   MultivariateResult thirds;        ///< RMS error and dwell, thirds of a trial as replicates
@@ -78,7 +77,7 @@ struct Analysis {
   std::optional<MultivariateResult> all_main_effects;
   std::optional<MultivariateResult> all_thirds;
   /// Eq. SU-5 of C, C' and C+, as far as they were run next to A and B.
-  std::map<char, Restoration> restoration;
+  std::map<Condition, Restoration> restoration;
   std::map<char, WrongModel> wrong;
   std::int64_t refined_used = 0;  ///< subjects whose paper's fit could not cancel
 };
@@ -89,7 +88,7 @@ MetricSample summarised(std::vector<double> values);
 
 /// Paired t-tests of the differences to - from.
 /// @param from, to  conditions that the analysis has
-Comparison compared(const Analysis& analysis, char from, char to);
+Comparison compared(const Analysis& analysis, Condition from, Condition to);
 
 /// "A, B, C, C', C+": the conditions of an analysis, in their order in its tests.
 std::string words_of_conditions(const Analysis& analysis);

@@ -22,9 +22,10 @@ CsvFile metrics_file(const StudyRecord& record) {
       "subject,condition,place in order,rms error [mm],dwell ratio [-],crossover [Hz],"
       "crossover through reference [Hz],cancelled share [-],feedthrough rms [N]\n";
   for (std::size_t i = 0; i < record.results.size(); ++i) {
+    const std::vector<Condition>& order = record.results[i].order;
     for (const auto& [condition, trial] : record.results[i].trials) {
-      out += row({subject_key(record, i), condition_word(condition),
-                  std::to_string(record.results[i].order.find(condition) + 1),
+      const auto place = std::ranges::find(order, condition) - order.begin() + 1;
+      out += row({subject_key(record, i), name_of(condition), std::to_string(place),
                   text(trial.metrics.rms_error_mm), text(trial.metrics.dwell_ratio),
                   text(trial.metrics.crossover_hz), text(trial.metrics.crossover_reference_hz),
                   text(trial.cancelled_share), text(trial.feedthrough_rms_n)});
@@ -81,7 +82,7 @@ CsvFile moving_file(const StudyRecord& record) {
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     for (const auto& [condition, trial] : record.results[i].trials) {
       for (std::size_t s = 0; s < trial.metrics.moving_rms_mm.size(); ++s) {
-        out += row({subject_key(record, i), condition_word(condition), std::to_string(s),
+        out += row({subject_key(record, i), name_of(condition), std::to_string(s),
                     text(trial.metrics.moving_rms_mm[s]), text(trial.metrics.moving_dwell[s])});
       }
     }
@@ -95,7 +96,7 @@ CsvFile open_loop_file(const StudyRecord& record) {
   for (std::size_t i = 0; i < record.results.size(); ++i) {
     for (const auto& [condition, trial] : record.results[i].trials) {
       for (const auto& line : trial.metrics.lines) {
-        out += row({subject_key(record, i), condition_word(condition), text(line.frequency_hz),
+        out += row({subject_key(record, i), name_of(condition), text(line.frequency_hz),
                     text(std::abs(line.gain)), text(std::arg(line.gain)),
                     text(std::min(1.0, 1.0 / line.error_snr))});
       }
@@ -117,8 +118,8 @@ CsvFile trials_file(const RecordedSource& source) {
   for (const RecordedTrial& trial : source.trials) {
     const auto& metrics = trial.tracked.metrics;
     out += row({quoted(trial.participant), quoted(trial.session), std::to_string(trial.number),
-                std::to_string(trial.place), condition_word(trial.condition),
-                text(metrics.rms_error_mm), text(metrics.dwell_ratio), text(metrics.crossover_hz),
+                std::to_string(trial.place), name_of(trial.condition), text(metrics.rms_error_mm),
+                text(metrics.dwell_ratio), text(metrics.crossover_hz),
                 text(metrics.crossover_reference_hz), text(trial.tracked.cancelled_share),
                 text(trial.lost_share), planned_number(trial.block), planned_number(trial.step),
                 source.used.contains(id_of(trial)) ? "1" : "0"});
@@ -133,7 +134,7 @@ CsvFile simulated_file(const SimulatedSide& simulated) {
     for (const auto& [condition, trial] : simulated.results[i].trials) {
       const auto& metrics = trial.metrics;
       out += row({simulated.same_people ? quoted(simulated.participants[i]) : std::to_string(i + 1),
-                  condition_word(condition), text(metrics.rms_error_mm), text(metrics.dwell_ratio),
+                  name_of(condition), text(metrics.rms_error_mm), text(metrics.dwell_ratio),
                   text(metrics.crossover_hz)});
     }
   }

@@ -44,8 +44,8 @@ std::vector<report::Figure> study_figures(const StudyRecord& record) {
 }
 
 std::size_t typical_subject(const StudyRecord& record) {
-  const auto& metrics = record.analysis.conditions.contains('B')
-                            ? record.analysis.conditions.at('B')
+  const auto& metrics = record.analysis.conditions.contains(kB)
+                            ? record.analysis.conditions.at(kB)
                             : record.analysis.conditions.begin()->second;
   const std::vector<double>& values = metrics[0].per_subject;
   const double middle = metrics[0].box.median;
@@ -61,35 +61,10 @@ double phase_up_to_deg(std::complex<double> response, double highest_deg) {
   return deg > highest_deg ? deg - 360.0 : deg;
 }
 
-report::Colour colour_of(char condition) {
-  switch (condition) {
-    case 'A':
-      return Colour::kConditionA;
-    case 'B':
-      return Colour::kConditionB;
-    case 'C':
-      return Colour::kConditionC;
-    case 'D':
-      return Colour::kConditionD;
-    case 'E':
-      return Colour::kConditionE;
-    case 'F':
-      return Colour::kConditionF;
-    case kFollowing:
-      return Colour::kConditionCPrime;
-    case kAugmented:
-      return Colour::kConditionCPlus;
-    default:
-      return Colour::kNeutral;
-  }
-}
-
-std::string label_of(char condition) {
-  if (condition == kFollowing) return "C' following";
-  if (condition == kAugmented) return "C+ augmented";
-  if (is_mitigation(condition)) return condition_word(condition);
-  return std::string(1, condition) + " " +
-         session::condition_name(static_cast<session::Condition>(condition));
+// The palette begins with the conditions' own colours, in the order of their table.
+report::Colour colour_of(Condition condition) {
+  static_assert(static_cast<int>(Colour::kConditionF) == static_cast<int>(kF));
+  return condition <= kF ? static_cast<Colour>(condition) : Colour::kNeutral;
 }
 
 std::string subject_name(const StudyRecord& record, std::size_t index) {
@@ -97,10 +72,10 @@ std::string subject_name(const StudyRecord& record, std::size_t index) {
                          : "subject " + std::to_string(index + 1);
 }
 
-std::string conditions_run(const StudyRecord& record, const std::string& among) {
-  std::string out;
-  for (const char condition : among) {
-    if (record.analysis.conditions.contains(condition)) out += condition;
+std::vector<Condition> conditions_run(const StudyRecord& record, std::span<const Condition> among) {
+  std::vector<Condition> out;
+  for (const Condition condition : among) {
+    if (record.analysis.conditions.contains(condition)) out.push_back(condition);
   }
   return out;
 }

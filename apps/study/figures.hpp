@@ -4,6 +4,7 @@
 #include <array>
 #include <complex>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ inline constexpr std::array<const char*, 12> kFigureNames{"fig04_feedthrough_est
 report::Figure estimate_figure(const Identification& found, const std::string& name,
                                const std::string& caption);
 /// A panel for each condition.
-report::Figure traces_figure(const std::map<char, const TrackedTrial*>& trials,
+report::Figure traces_figure(const std::map<Condition, const TrackedTrial*>& trials,
                              const std::string& name, const std::string& caption);
 
 /// Parts of study_figures().
@@ -60,13 +61,9 @@ std::size_t typical_subject(const StudyRecord& record);
 /// end that no curve crosses, a curve needs no unwrapping.
 double phase_up_to_deg(std::complex<double> response, double highest_deg);
 
-report::Colour colour_of(char condition);
-/// "A stationary"
-std::string label_of(char condition);
+report::Colour colour_of(Condition condition);
 /// The conditions in `among` that were run.
-std::string conditions_run(const StudyRecord& record, const std::string& among);
-/// Those that the paper's figures show: A, B, C, and C' and C+ where a session ran them.
-inline constexpr const char kFigureConditions[]{'A', 'B', 'C', kFollowing, kAugmented, '\0'};
+std::vector<Condition> conditions_run(const StudyRecord& record, std::span<const Condition> among);
 /// "subject 3", or a participant's code.
 std::string subject_name(const StudyRecord& record, std::size_t index);
 

@@ -35,8 +35,8 @@ report::Figure figure_box(const StudyRecord& record, std::size_t metric) {
     series.show_in_legend = false;
     // Without a known value the box's zeros are no result.
     if (metrics[metric].known > 0) panel.series.push_back(series);
-    panel.x.ticks.push_back({place, label_of(condition)});
-    if (condition <= 'C') {
+    panel.x.ticks.push_back({place, title_of(condition)});
+    if (condition <= kC) {
       paper.x.push_back(place);
       paper.y.push_back(paper_value(metric, condition));
     }

@@ -20,9 +20,9 @@ constexpr double kExcerptRate_hz = 20.0;
 constexpr std::size_t kFittedLines = 11;  // paper III-C
 constexpr double kHighestPhase_deg = 90.0;
 
-Panel trace_panel(const TrackedTrial& trial, char condition) {
+Panel trace_panel(const TrackedTrial& trial, Condition condition) {
   Panel panel;
-  panel.title = label_of(condition);
+  panel.title = title_of(condition);
   panel.x.label = "time [s]";
   panel.y.label = "position on the screen [mm]";
   Series target{.label = "target", .kind = Kind::kLine, .colour = Colour::kTarget};
@@ -39,10 +39,10 @@ Panel trace_panel(const TrackedTrial& trial, char condition) {
 }
 
 // Mean over subjects with one standard deviation on either side, against the start of the window.
-Panel moving_panel(const StudyRecord& record, char condition,
+Panel moving_panel(const StudyRecord& record, Condition condition,
                    const std::vector<double>& (*series_of)(const TrackedTrial&)) {
   Panel panel;
-  panel.title = label_of(condition);
+  panel.title = title_of(condition);
   panel.x.label = "start of the 10 s window [s]";
   panel.legend = report::Legend::kNone;
   Series band{.kind = Kind::kBand, .colour = colour_of(condition)};
@@ -79,7 +79,7 @@ report::Figure moving_figure(const StudyRecord& record, const char* name, const 
                         .width_px = 1180,
                         .height_px = 330};
   double highest = 0.0;
-  for (const char condition : conditions_run(record, kFigureConditions)) {
+  for (const Condition condition : conditions_run(record, kFigureConditions)) {
     figure.panels.push_back(moving_panel(record, condition, series_of));
     for (const double y : figure.panels.back().series.front().y_high) {
       highest = std::max(highest, y);
@@ -96,7 +96,7 @@ report::Figure moving_figure(const StudyRecord& record, const char* name, const 
 }
 
 void add_open_loop(Panel& magnitude, Panel& phase, const identification::TrackingMetrics& metrics,
-                   char condition) {
+                   Condition condition) {
   Series points{.label = "X_p/X_e", .kind = Kind::kPoints, .colour = colour_of(condition)};
   Series line{.label = "−20 dB/decade", .kind = Kind::kLine, .colour = Colour::kModel};
   Series angle = points;
@@ -117,7 +117,7 @@ void add_open_loop(Panel& magnitude, Panel& phase, const identification::Trackin
 
 }  // namespace
 
-report::Figure traces_figure(const std::map<char, const TrackedTrial*>& trials,
+report::Figure traces_figure(const std::map<Condition, const TrackedTrial*>& trials,
                              const std::string& name, const std::string& caption) {
   report::Figure figure{.name = name,
                         .caption = caption,
@@ -141,8 +141,8 @@ report::Figure traces_figure(const std::map<char, const TrackedTrial*>& trials,
 
 report::Figure figure_traces(const StudyRecord& record) {
   const std::size_t typical = typical_subject(record);
-  std::map<char, const TrackedTrial*> trials;
-  for (const char condition : conditions_run(record, kFigureConditions)) {
+  std::map<Condition, const TrackedTrial*> trials;
+  for (const Condition condition : conditions_run(record, kFigureConditions)) {
     trials[condition] = &record.results[typical].trials.at(condition);
   }
   report::Figure figure = traces_figure(
@@ -182,14 +182,14 @@ report::Figure figure_open_loop(const StudyRecord& record) {
       .width_px = 1180,
       .height_px = 560};
   std::vector<Panel> phases;
-  for (const char condition : conditions_run(record, kFigureConditions)) {
+  for (const Condition condition : conditions_run(record, kFigureConditions)) {
     Panel magnitude;
     Panel phase;
     const auto& metrics = record.results[typical].trials.at(condition).metrics;
     add_open_loop(magnitude, phase, metrics, condition);
     magnitude.notes = {{.text = fmt::format("f_c = {:.2f} Hz", metrics.crossover_hz),
                         .corner = report::Corner::kTopRight}};
-    magnitude.title = label_of(condition);
+    magnitude.title = title_of(condition);
     magnitude.x = phase.x = {.label = "", .scale = Scale::kLogarithmic, .low = 0.008, .high = 6.0};
     phase.x.label = "frequency [Hz]";
     magnitude.y = {.label = phases.empty() ? "|X_p/X_e| [dB]" : "", .low = -45.0, .high = 35.0};

@@ -44,8 +44,8 @@ void write_participants(const StudyRecord& record, const report::StagedFolder& f
 }
 
 // Of a condition's column: a mitigation's name is the longest.
-std::size_t column_width(char condition) {
-  return std::max<std::size_t>(condition_word(condition).size(), 9);
+std::size_t column_width(Condition condition) {
+  return std::max<std::size_t>(std::string_view(name_of(condition)).size(), 9);
 }
 
 // Means under each condition, restoration, and the paper's values.
@@ -56,11 +56,11 @@ void print_metric(const Analysis& analysis, std::size_t k) {
     fmt::print(" {:{}.3f}", metrics[k].mean, column_width(condition));
   }
   fmt::print("   {:>16}", restored_text(analysis, k));
-  fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, 'A'), paper_value(k, 'B'),
-             paper_value(k, 'C'), metric.paper_restored_percent);
+  fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, kA), paper_value(k, kB),
+             paper_value(k, kC), metric.paper_restored_percent);
   for (const auto& entry : analysis.restoration) {
-    if (entry.first == 'C') continue;
-    fmt::print("{:>25} {}\n", "restored by " + condition_word(entry.first),
+    if (entry.first == kC) continue;
+    fmt::print("{:>25} {}\n", std::string("restored by ") + name_of(entry.first),
                restored_text(analysis, k, entry.first));
   }
 }
@@ -160,7 +160,7 @@ void print_study(const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
   fmt::print("\n{:<22}", "mean of the subjects");
   for (const auto& entry : analysis.conditions) {
-    fmt::print(" {:>{}}", condition_word(entry.first), column_width(entry.first));
+    fmt::print(" {:>{}}", name_of(entry.first), column_width(entry.first));
   }
   fmt::print("   {:>16}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);

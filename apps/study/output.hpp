@@ -34,7 +34,7 @@ struct StudyRecord {
 /// Level of one test, and the planned comparisons: those of the registration, otherwise 0.05 and
 /// A-B, B-C.
 double alpha_of(const StudyRecord& record);
-std::vector<std::pair<char, char>> planned_pairs(const StudyRecord& record);
+std::vector<std::pair<Condition, Condition>> planned_pairs(const StudyRecord& record);
 
 /// summary.json; README, "summary.json".
 std::string summary_json(const StudyRecord& record);

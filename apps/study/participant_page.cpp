@@ -33,15 +33,15 @@ std::vector<const RecordedTrial*> trials_of(const RecordedSource& source, const 
 }
 
 // Of each condition the last complete trial: a trace has no mean.
-std::map<char, const TrackedTrial*> last_trials(const RecordedSource& source,
-                                                const std::string& code) {
-  std::map<char, const TrackedTrial*> out;
+std::map<Condition, const TrackedTrial*> last_trials(const RecordedSource& source,
+                                                     const std::string& code) {
+  std::map<Condition, const TrackedTrial*> out;
   for (const RecordedTrial* trial : trials_of(source, code))
     out[trial->condition] = &trial->tracked;
   return out;
 }
 
-double own_value(const SubjectResult* own, char condition, std::size_t metric) {
+double own_value(const SubjectResult* own, Condition condition, std::size_t metric) {
   if (own == nullptr || !own->trials.contains(condition)) return kNan;
   return kMetrics[metric].of(own->trials.at(condition).metrics);
 }
@@ -65,11 +65,11 @@ report::Panel among_panel(const StudyRecord& record, const SubjectResult* own, s
     }
     one.x.push_back(place - 0.18);
     one.y.push_back(own_value(own, condition, metric));
-    if (condition <= 'C') {
+    if (condition <= kC) {
       paper.x.push_back(place + 0.18);
       paper.y.push_back(paper_value(metric, condition));
     }
-    panel.x.ticks.push_back({place, condition_word(condition)});
+    panel.x.ticks.push_back({place, name_of(condition)});
     place += 1.0;
   }
   panel.x.low = 0.4;
@@ -91,10 +91,10 @@ report::Table numbers_table(const StudyRecord& record, const SubjectResult* own)
       const MetricSample& group = metrics[k];
       const double spread = group.standard_deviation.value_or(kNan);
       table.rows.push_back(
-          {kMetrics[k].title, condition_word(condition),
+          {kMetrics[k].title, name_of(condition),
            Cell(number(value, decimals(k)), Emphasis::kStrong), mean_and_deviation(group, k),
            number((value - group.mean) / spread, 1),
-           Cell(condition <= 'C' ? number(paper_value(k, condition), decimals(k)) : "–",
+           Cell(condition <= kC ? number(paper_value(k, condition), decimals(k)) : "–",
                 Emphasis::kFaint)});
     }
   }
@@ -108,14 +108,14 @@ report::Table restored_table(const StudyRecord& record, const SubjectResult* own
   table.header = {"metric", "canceller", "own", "group [95 %]", "paper"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     for (const auto& entry : record.analysis.restoration) {
-      const double a = own_value(own, 'A', k);
-      const double b = own_value(own, 'B', k);
+      const double a = own_value(own, kA, k);
+      const double b = own_value(own, kB, k);
       const double share = (b - own_value(own, entry.first, k)) / (b - a);
       table.rows.push_back(
-          {kMetrics[k].title, condition_word(entry.first),
+          {kMetrics[k].title, name_of(entry.first),
            Cell(std::isfinite(share) ? percent(share) : "–", Emphasis::kStrong),
            restored_text(record.analysis, k, entry.first),
-           Cell(entry.first == 'C' ? number(kMetrics[k].paper_restored_percent, 0) + " %" : "–",
+           Cell(entry.first == kC ? number(kMetrics[k].paper_restored_percent, 0) + " %" : "–",
                 Emphasis::kFaint)});
     }
   }
@@ -134,7 +134,7 @@ report::Table trials_table(const RecordedSource& source, const std::string& code
     const auto& metrics = trial->tracked.metrics;
     const bool used = source.used.contains(id_of(*trial));
     table.rows.push_back({std::to_string(trial->number), trial->session, planned(trial->block),
-                          planned(trial->step), condition_word(trial->condition),
+                          planned(trial->step), name_of(trial->condition),
                           number(metrics.rms_error_mm, 1), number(metrics.dwell_ratio, 2),
                           number(metrics.crossover_hz, 2), number(100.0 * trial->lost_share, 1),
                           Cell(used ? "yes" : "no", used ? Emphasis::kNone : Emphasis::kFaint)});
@@ -146,7 +146,7 @@ report::Table trials_table(const RecordedSource& source, const std::string& code
 std::string order_of(const RecordedSource& source, const std::string& code) {
   std::string out;
   for (const RecordedTrial* trial : trials_of(source, code)) {
-    out += (out.empty() ? "" : " ") + condition_word(trial->condition);
+    out += (out.empty() ? "" : " ") + std::string(name_of(trial->condition));
   }
   return out;
 }
@@ -236,7 +236,7 @@ void add_participants(report::Page& page, const StudyRecord& record) {
       "means over the own trials.";
   table.header = {"participant", "trials"};
   for (const auto& entry : record.analysis.conditions) {
-    table.header.push_back("RMS " + condition_word(entry.first));
+    table.header.push_back(std::string("RMS ") + name_of(entry.first));
   }
   table.header.push_back("in the tables");
   for (const auto& [code, file] : files) {

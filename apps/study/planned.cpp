@@ -33,7 +33,7 @@ Needed needed(const std::string& comparison, std::size_t metric, const char* eff
 }  // namespace
 
 std::vector<PlannedComparison> planned_comparisons(
-    const Analysis& analysis, const std::vector<std::pair<char, char>>& pairs) {
+    const Analysis& analysis, const std::vector<std::pair<Condition, Condition>>& pairs) {
   std::vector<PlannedComparison> out;
   std::vector<double> p;
   for (const auto& [from, to] : pairs) {
@@ -55,7 +55,7 @@ std::vector<PlannedComparison> planned_comparisons(
 }
 
 std::vector<Needed> participants_needed(const Analysis& analysis,
-                                        const std::vector<std::pair<char, char>>& pairs,
+                                        const std::vector<std::pair<Condition, Condition>>& pairs,
                                         const std::vector<double>& given_dz, double alpha) {
   std::vector<Needed> out;
   for (const PlannedComparison& planned : planned_comparisons(analysis, pairs)) {

@@ -21,8 +21,8 @@ struct PlannedComparison {
 };
 
 /// Paired t-tests of the pairs whose conditions the analysis has, in their order.
-std::vector<PlannedComparison> planned_comparisons(const Analysis& analysis,
-                                                   const std::vector<std::pair<char, char>>& pairs);
+std::vector<PlannedComparison> planned_comparisons(
+    const Analysis& analysis, const std::vector<std::pair<Condition, Condition>>& pairs);
 
 /// Participants that a paired t-test needs, Eq. SU-13.
 struct Needed {
@@ -43,7 +43,7 @@ struct Needed {
 /// @param given_dz  [-] effect sizes, 0.01 to 100
 /// @param alpha     [-] level of one test
 std::vector<Needed> participants_needed(const Analysis& analysis,
-                                        const std::vector<std::pair<char, char>>& pairs,
+                                        const std::vector<std::pair<Condition, Condition>>& pairs,
                                         const std::vector<double>& given_dz, double alpha);
 
 }  // namespace stillhand::study

@@ -13,10 +13,10 @@ using session::kMetrics;
 
 int decimals(std::size_t metric) { return metric == 0 ? 1 : 2; }
 
-double paper_value(std::size_t metric, char condition) {
+double paper_value(std::size_t metric, Condition condition) {
   const session::Metric& what = kMetrics[metric];
   const double unit = metric == 0 ? kPaperUnit_mm : 1.0;
-  return unit * (condition == 'A' ? what.paper_a : condition == 'B' ? what.paper_b : what.paper_c);
+  return unit * (condition == kA ? what.paper_a : condition == kB ? what.paper_b : what.paper_c);
 }
 
 // A tail below the range of a double is 0, but no probability is.
@@ -24,7 +24,7 @@ std::string p_value(double p) { return p > 0.0 ? short_number(p) : "< 10⁻³⁰
 
 std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 
-std::string restored_text(const Analysis& analysis, std::size_t metric, char condition) {
+std::string restored_text(const Analysis& analysis, std::size_t metric, Condition condition) {
   const auto found = analysis.restoration.find(condition);
   if (found == analysis.restoration.end() || !found->second[metric].share) return "–";
   std::string out = percent(*found->second[metric].share);
@@ -34,7 +34,7 @@ std::string restored_text(const Analysis& analysis, std::size_t metric, char con
   return out;
 }
 
-const Comparison* find_comparison(const Analysis& analysis, char from, char to) {
+const Comparison* find_comparison(const Analysis& analysis, Condition from, Condition to) {
   for (const Comparison& comparison : analysis.comparisons) {
     if (comparison.from == from && comparison.to == to) return &comparison;
   }

@@ -13,7 +13,7 @@ namespace stillhand::study {
 int decimals(std::size_t metric);
 
 /// The paper's mean of a metric under condition A, B or C; RMS error at kPaperUnit_mm a unit.
-double paper_value(std::size_t metric, char condition);
+double paper_value(std::size_t metric, Condition condition);
 
 /// A probability for people; "< 10⁻³⁰⁰" if it underflows.
 std::string p_value(double p);
@@ -25,9 +25,9 @@ std::string percent(double share);
 std::string mean_and_deviation(const MetricSample& sample, std::size_t metric);
 
 /// "89 % [84, 93]": the restoration of a metric by C, C' or C+ with its interval, as far as known.
-std::string restored_text(const Analysis& analysis, std::size_t metric, char condition = 'C');
+std::string restored_text(const Analysis& analysis, std::size_t metric, Condition condition = kC);
 
 /// The comparison of two conditions, or nullptr.
-const Comparison* find_comparison(const Analysis& analysis, char from, char to);
+const Comparison* find_comparison(const Analysis& analysis, Condition from, Condition to);
 
 }  // namespace stillhand::study

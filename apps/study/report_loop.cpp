@@ -29,11 +29,11 @@ void add_open_loop(report::Page& page, const Analysis& analysis) {
       "error's power at the line. In B and C this share includes the effect of the platform's "
       "motion.";
   table.header = {"f [Hz]"};
-  std::map<char, std::vector<PooledLine>> shown;
+  std::map<Condition, std::vector<PooledLine>> shown;
   for (const auto& [condition, lines] : analysis.open_loop) {
-    if (condition > 'C' && !cancels(condition)) continue;  // the others are in open_loop.csv
+    if (condition > kC && !cancels(condition)) continue;  // the others are in open_loop.csv
     shown[condition] = lines;
-    const std::string letter = condition_word(condition);
+    const std::string letter = name_of(condition);
     table.header.insert(table.header.end(),
                         {letter + " paper", letter + " ref.", letter + " rem."});
   }
@@ -57,7 +57,7 @@ void add_crossover(report::Page& page, const Analysis& analysis) {
       "remnant's power subtracted (identification, Eq. ID-15).";
   table.header = {"condition", "paper's line [Hz]", "through the reference [Hz]"};
   for (const auto& [condition, metrics] : analysis.conditions) {
-    table.rows.push_back({label_of(condition), mean_and_deviation(metrics[2], 2),
+    table.rows.push_back({title_of(condition), mean_and_deviation(metrics[2], 2),
                           mean_and_deviation(analysis.crossover_reference_hz.at(condition), 2)});
   }
   page.table(table);
@@ -71,15 +71,15 @@ report::Table mitigations_table(const Analysis& analysis) {
   table.header = {"condition", "RMS error [mm]", "dwell ratio",
                   "f_c [Hz]",  "RMS restored",   "p (RMS, to B)"};
   for (const auto& [condition, metrics] : analysis.conditions) {
-    const Comparison* test = find_comparison(analysis, 'B', condition);
+    const Comparison* test = find_comparison(analysis, kB, condition);
     std::string restored = "–";
-    if (condition > 'B' && analysis.conditions.contains('A') && analysis.conditions.contains('B')) {
-      const double a = analysis.conditions.at('A')[0].mean;
-      const double b = analysis.conditions.at('B')[0].mean;
+    if (condition > kB && analysis.conditions.contains(kA) && analysis.conditions.contains(kB)) {
+      const double a = analysis.conditions.at(kA)[0].mean;
+      const double b = analysis.conditions.at(kB)[0].mean;
       restored = percent((b - metrics[0].mean) / (b - a));
     }
     table.rows.push_back(
-        {label_of(condition), mean_and_deviation(metrics[0], 0), mean_and_deviation(metrics[1], 1),
+        {title_of(condition), mean_and_deviation(metrics[0], 0), mean_and_deviation(metrics[1], 1),
          mean_and_deviation(metrics[2], 2), restored,
          test != nullptr && test->tests[0] ? p_value(test->tests[0]->p) : std::string("–")});
   }
@@ -93,7 +93,7 @@ report::Table restorations_table(const Analysis& analysis) {
       "Restoration (B − X)/(B − A) of the means, with its 95 % interval over the participants.";
   table.header = {"metric"};
   for (const auto& entry : analysis.restoration) {
-    table.header.push_back(condition_word(entry.first));
+    table.header.push_back(name_of(entry.first));
   }
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     std::vector<Cell> row{session::kMetrics[k].title};
@@ -137,7 +137,8 @@ report::Table steps_table(const Analysis& analysis) {
 
 void add_mitigations(report::Page& page, const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
-  if (conditions_run(record, "DEF").empty() || !analysis.conditions.contains('B')) return;
+  if (conditions_run(record, std::array{kD, kE, kF}).empty() || !analysis.conditions.contains(kB))
+    return;
   page.section("Other mitigations");
   page.paragraph(fmt::format(
       "The paper names these as future work; all run with the motor off. D subtracts the "
@@ -154,7 +155,7 @@ void add_cancellers(report::Page& page, const Analysis& analysis) {
   const bool mitigates = std::ranges::any_of(
       analysis.conditions, [](const auto& entry) { return is_mitigation(entry.first); });
   const bool cancels_beyond =
-      analysis.conditions.contains(kFollowing) || analysis.conditions.contains(kAugmented);
+      analysis.conditions.contains(kCPrime) || analysis.conditions.contains(kCPlus);
   if (!mitigates && !cancels_beyond) return;
   page.section(mitigates ? "Mitigations" : "Cancellers that go beyond the paper's");
   std::string text = "C cancels with the model of the session's pegged trial, as the paper does.";

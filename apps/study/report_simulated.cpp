@@ -33,13 +33,13 @@ report::Table means_table(const StudyRecord& record) {
     for (const auto& [condition, metrics] : record.analysis.conditions) {
       const auto made = simulated.analysis.conditions.find(condition);
       table.rows.push_back(
-          {kMetrics[k].title, condition_word(condition), mean_and_deviation(metrics[k], k),
+          {kMetrics[k].title, name_of(condition), mean_and_deviation(metrics[k], k),
            made == simulated.analysis.conditions.end() ? std::string("–")
                                                        : mean_and_deviation(made->second[k], k),
-           Cell(condition <= 'C' ? number(paper_value(k, condition), decimals(k)) : "–",
+           Cell(condition <= kC ? number(paper_value(k, condition), decimals(k)) : "–",
                 Emphasis::kFaint)});
     }
-    if (!record.analysis.restoration.contains('C')) continue;
+    if (!record.analysis.restoration.contains(kC)) continue;
     table.rows.push_back(
         {std::string(kMetrics[k].title) + ", restored by C", "", restored_text(record.analysis, k),
          restored_text(simulated.analysis, k),
@@ -59,7 +59,7 @@ report::Table paired_table(const SimulatedSide& simulated) {
   std::vector<PairedCheck> checks = simulated.paired;
   std::ranges::stable_sort(checks, {}, &PairedCheck::metric);
   for (const PairedCheck& check : checks) {
-    std::vector<Cell> row{kMetrics[check.metric].title, condition_word(check.condition),
+    std::vector<Cell> row{kMetrics[check.metric].title, name_of(check.condition),
                           std::to_string(check.n)};
     if (check.test) {
       row.emplace_back(fmt::format("{} [{}, {}]", number(check.mean_difference, fine(check.metric)),
@@ -142,11 +142,11 @@ report::Figure figure_simulated(const StudyRecord& record) {
       if (made != record.simulated->analysis.conditions.end()) {
         add(panel, made->second[k], place, Colour::kNeutral);
       }
-      if (condition <= 'C') {
+      if (condition <= kC) {
         paper.x.push_back(place + 0.2);
         paper.y.push_back(paper_value(k, condition));
       }
-      panel.x.ticks.push_back({place, condition_word(condition)});
+      panel.x.ticks.push_back({place, name_of(condition)});
       place += 1.0;
     }
     panel.x.low = 0.4;

@@ -19,13 +19,18 @@ using report::short_number;
 using session::kMetrics;
 
 // Tables I and II of the paper: two conditions, their difference, its significance.
-report::Table paper_table(const Analysis& analysis, char from, char to, const char* title,
+report::Table paper_table(const Analysis& analysis, Condition from, Condition to, const char* title,
                           double session::Metric::*paper_p) {
   report::Table table;
   table.caption = title;
-  const std::string letters = {from, ',', ' ', to};
-  table.header = {"metric", std::string(1, from), std::string(1, to), "change [95 % CI]", "p",
-                  "g_z",    "paper " + letters,   "paper p"};
+  table.header = {"metric",
+                  name_of(from),
+                  name_of(to),
+                  "change [95 % CI]",
+                  "p",
+                  "g_z",
+                  fmt::format("paper {}, {}", name_of(from), name_of(to)),
+                  "paper p"};
   const Comparison* comparison = find_comparison(analysis, from, to);
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     std::vector<Cell> row{kMetrics[k].title, mean_and_deviation(analysis.conditions.at(from)[k], k),
@@ -59,13 +64,13 @@ report::Table calibration_table(const Analysis& analysis, bool is_default) {
             "population or other lengths of the trials.";
   table.header = {"metric", "condition", "study", "paper", "study / paper", "role"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    for (const char condition : {'A', 'B', 'C'}) {
+    for (const Condition condition : kPaperConditions) {
       const double mean = analysis.conditions.at(condition)[k].mean;
       const double paper = paper_value(k, condition);
       const double ratio = mean / paper;
-      const bool calibrated = is_default && condition != 'C';
+      const bool calibrated = is_default && condition != kC;
       table.rows.push_back(
-          {kMetrics[k].title, std::string(1, condition), number(mean, decimals(k)),
+          {kMetrics[k].title, std::string(name_of(condition)), number(mean, decimals(k)),
            number(paper, decimals(k)),
            Cell(number(ratio, 2),
                 calibrated && std::abs(ratio - 1.0) > 0.1 ? Emphasis::kBad : Emphasis::kNone),
@@ -74,7 +79,7 @@ report::Table calibration_table(const Analysis& analysis, bool is_default) {
                         : "–"});
     }
   }
-  const double ours = analysis.conditions.at('B')[0].mean / analysis.conditions.at('A')[0].mean;
+  const double ours = analysis.conditions.at(kB)[0].mean / analysis.conditions.at(kA)[0].mean;
   const double theirs = kMetrics[0].paper_b / kMetrics[0].paper_a;
   table.rows.push_back({"RMS error, B / A (no unit needed)", "", number(ours, 2), number(theirs, 2),
                         number(ours / theirs, 2), is_default ? "calibrated" : "–"});
@@ -97,11 +102,11 @@ report::Table restoration_table(const Analysis& analysis) {
 }
 
 void add_outcome(report::Page& page, const Analysis& analysis) {
-  const double restored = analysis.restoration.at('C')[0].share.value_or(NAN);
+  const double restored = analysis.restoration.at(kC)[0].share.value_or(NAN);
   const double paper = kMetrics[0].paper_restored_percent / 100.0;
   page.paragraph(fmt::format(
       "The motor cancels {} of the feedthrough force and restores {} of the RMS error. {}",
-      percent(analysis.cancelled_share.at('C').mean), percent(restored),
+      percent(analysis.cancelled_share.at(kC).mean), percent(restored),
       restored > paper
           ? "That is more than in the paper. Between the pegged trial and tracking, these "
             "subjects differ only in the stiffness of a co-contracted arm. Real subjects "
@@ -138,11 +143,11 @@ void add_manova(report::Page& page, const MultivariateResult& result, const std:
 void add_paper_tables(report::Page& page, const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
   page.table(
-      paper_table(analysis, 'A', 'B',
+      paper_table(analysis, kA, kB,
                   "Table I: the effect of the motion. Mean ± SD over the subjects; g_z is Hedges' "
                   "corrected effect size of the differences; p is not adjusted for three metrics.",
                   &session::Metric::paper_p_ab));
-  page.table(paper_table(analysis, 'B', 'C',
+  page.table(paper_table(analysis, kB, kC,
                          "Table II: the effect of cancellation. Columns as in Table I.",
                          &session::Metric::paper_p_bc));
   page.table(restoration_table(analysis));
@@ -170,7 +175,7 @@ void add_statistics(report::Page& page, const Analysis& analysis) {
     add_manova(page, *analysis.all_thirds,
                all + ". RMS error and dwell ratio, thirds of each trial.");
   }
-  const Comparison* test = find_comparison(analysis, 'B', 'C');
+  const Comparison* test = find_comparison(analysis, kB, kC);
   if (test == nullptr) return;
   report::Table table;
   table.caption =

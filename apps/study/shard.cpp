@@ -48,13 +48,9 @@ population::Population population_of(const json& from) {
 
 // All that the options of the verb can change and that changes a result; see options_of().
 json settings_json(const StudyOptions& options) {
-  std::string conditions;
-  for (const auto condition : options.protocol.conditions) {
-    conditions += static_cast<char>(condition);
-  }
   return {{"subjects", options.subjects},
           {"seed", options.seed},
-          {"conditions", conditions},
+          {"conditions", stored::to_json(options.protocol.conditions)},
           {"trial_seconds", options.protocol.trial_s},
           {"identify_seconds", options.protocol.identify_s},
           {"canceller", options.canceller},
@@ -68,9 +64,7 @@ StudyOptions options_of(const json& settings) {
   StudyOptions options;
   settings.at("subjects").get_to(options.subjects);
   settings.at("seed").get_to(options.seed);
-  for (const char condition : settings.at("conditions").get<std::string>()) {
-    options.protocol.conditions.push_back(static_cast<session::Condition>(condition));
-  }
+  stored::from_json(settings.at("conditions"), options.protocol.conditions);
   settings.at("trial_seconds").get_to(options.protocol.trial_s);
   settings.at("identify_seconds").get_to(options.protocol.identify_s);
   settings.at("canceller").get_to(options.canceller);

@@ -124,11 +124,13 @@ template <typename Type>
 Json to_json(const Type& value) {
   if constexpr (kPlain<Type>) {
     return value;
+  } else if constexpr (std::same_as<Type, Condition>) {
+    return name_of(value);
   } else if constexpr (std::same_as<Type, std::complex<double>>) {
     return Json::array({value.real(), value.imag()});
-  } else if constexpr (std::same_as<Type, std::map<char, TrackedTrial>>) {
+  } else if constexpr (std::same_as<Type, std::map<Condition, TrackedTrial>>) {
     Json out = Json::object();
-    for (const auto& [label, each] : value) out[std::string(1, label)] = to_json(each);
+    for (const auto& [condition, each] : value) out[name_of(condition)] = to_json(each);
     return out;
   } else if constexpr (List<const Type>) {
     Json out = Json::array();
@@ -146,10 +148,12 @@ template <typename Type>
 void from_json(const Json& json, Type& value) {
   if constexpr (kPlain<Type>) {
     value = json.get<Type>();
+  } else if constexpr (std::same_as<Type, Condition>) {
+    value = named(json.get<std::string>());
   } else if constexpr (std::same_as<Type, std::complex<double>>) {
     value = {json.at(0).get<double>(), json.at(1).get<double>()};
-  } else if constexpr (std::same_as<Type, std::map<char, TrackedTrial>>) {
-    for (const auto& [label, each] : json.items()) from_json(each, value[label.at(0)]);
+  } else if constexpr (std::same_as<Type, std::map<Condition, TrackedTrial>>) {
+    for (const auto& [name, each] : json.items()) from_json(each, value[named(name)]);
   } else if constexpr (List<Type>) {
     if constexpr (requires { value.resize(1); }) value.resize(json.size());
     for (std::size_t i = 0; i < value.size(); ++i) from_json(json.at(i), value[i]);

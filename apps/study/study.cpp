@@ -37,9 +37,9 @@ void check_wrong_models(const StudyOptions& options) {
     throw ConfigError("--wrong-models", "1 subject", "2 or more subjects");
   }
   const auto& conditions = options.protocol.conditions;
-  for (const auto needed : {session::Condition::kMoving, session::Condition::kMovingCancelled}) {
+  for (const auto needed : {session::Condition::kB, session::Condition::kC}) {
     if (std::find(conditions.begin(), conditions.end(), needed) == conditions.end()) {
-      throw ConfigError("--wrong-models", std::string("no condition ") + static_cast<char>(needed),
+      throw ConfigError("--wrong-models", std::string("no condition ") + name_of(needed),
                         "conditions B and C, because their difference is a model's gain");
     }
   }

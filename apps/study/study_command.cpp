@@ -97,8 +97,7 @@ void add_protocol_options(CLI::App& study, StudyOptions& options, Words& words) 
       ->capture_default_str();
   study
       .add_option("--conditions", words.conditions,
-                  "A stationary, B moving, C moving with cancellation, D filter on the command, "
-                  "E damped stick, F arm rest")
+                  session::known_conditions(session::kStudyConditions))
       ->capture_default_str();
   study
       .add_option("--canceller", options.canceller,

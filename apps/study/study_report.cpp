@@ -129,7 +129,7 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
           "Gillespie and Sövényi.");
   add_lead_facts(page, record);
   add_warnings(page, record);
-  const bool whole = conditions_run(record, "ABC") == "ABC";
+  const bool whole = conditions_run(record, kPaperConditions).size() == kPaperConditions.size();
   const auto show = [&](std::string_view prefix) {
     for (const report::Drawing& drawing : drawings) {
       if (drawing.name.starts_with(prefix)) page.figure(drawing);

@@ -95,9 +95,9 @@ SimulatedSide simulated_next_to(const StudyRecord& record, const OnProgress& on_
   }
   StudyOptions options = record.options;
   options.protocol.conditions.clear();
-  for (const char condition : std::string(kPaperConditions)) {
+  for (const Condition condition : kPaperConditions) {
     if (record.results.front().trials.contains(condition)) {
-      options.protocol.conditions.push_back(static_cast<session::Condition>(condition));
+      options.protocol.conditions.push_back(condition);
     }
   }
   return simulate_population(options, on_progress);

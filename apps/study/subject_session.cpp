@@ -34,14 +34,14 @@ std::vector<PlannedTrial> plan_of(const StudyOptions& options, std::int64_t inde
 
 // Settings of every core for this subject under a condition.
 session::CoreConfigs configs_of(const StudyOptions& options, const population::Subject& subject,
-                                char condition) {
+                                Condition condition) {
   session::CoreConfigs configs;
   configs.rig.body = subject.body;
   configs.rig.motor = options.motor;
   configs.human_operator = subject.who;
   configs.cancellation.sampling = cancellation::sampling_named(options.canceller);
-  if (condition == 'E') configs.rig.stick.viscous_damping_n_s_m += options.damped_stick_n_s_m;
-  if (condition == 'F') {
+  if (condition == kE) configs.rig.stick.viscous_damping_n_s_m += options.damped_stick_n_s_m;
+  if (row_of(condition).arm_rest) {
     configs.rig.body.arm_rest_stiffness_n_m = options.arm_rest_stiffness_n_m;
     configs.rig.body.arm_rest_damping_n_s_m = options.arm_rest_damping_n_s_m;
   }
@@ -65,7 +65,7 @@ void use(session::InProcessLoop& loop, const identification::FeedthroughModel& m
 }
 
 // E and F change the stick or the body, so they need their own rig.
-bool own_rig(char condition) { return condition == 'E' || condition == 'F'; }
+bool own_rig(Condition condition) { return condition == kE || row_of(condition).arm_rest; }
 
 }  // namespace
 
@@ -92,7 +92,7 @@ void check_subject(const StudyOptions& options, std::int64_t index) {
       population::draw_subject(options.population, options.seed, index);
   try {
     for (const auto condition : options.protocol.conditions) {
-      const auto configs = configs_of(options, subject, static_cast<char>(condition));
+      const auto configs = configs_of(options, subject, condition);
       const session::InProcessLoop loop(configs, 0);
     }
   } catch (const ConfigError& error) {
@@ -107,7 +107,7 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
   result.subject = population::draw_subject(options.population, options.seed, index);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const std::uint64_t seed = subject_seed(options.seed, index);
-  session::InProcessLoop loop(configs_of(options, result.subject, 'A'), seed, kKeepEvery,
+  session::InProcessLoop loop(configs_of(options, result.subject, kA), seed, kKeepEvery,
                               sealed_effect(options));
   for (const PlannedTrial& planned : trials) {
     if (planned.trial.phase == TrialPhase::kPegged) {
@@ -115,7 +115,7 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
       use(loop, used_model(result.identification));
       continue;
     }
-    result.order += planned.label;
+    result.order.push_back(planned.label);
     if (own_rig(planned.label)) {
       session::InProcessLoop other(configs_of(options, result.subject, planned.label), seed,
                                    kKeepEvery, sealed_effect(options));
@@ -129,13 +129,13 @@ SubjectResult run_subject(const StudyOptions& options, std::int64_t index) {
 
 TrackedTrial run_with_model(const StudyOptions& options, const SubjectResult& result,
                             std::int64_t index, const identification::FeedthroughModel& model) {
-  session::InProcessLoop loop(configs_of(options, result.subject, 'C'),
+  session::InProcessLoop loop(configs_of(options, result.subject, kC),
                               subject_seed(options.seed, index), kKeepEvery,
                               sealed_effect(options));
   use(loop, model);
   const std::vector<PlannedTrial> trials = plan_of(options, index);
   const auto planned = std::find_if(trials.begin(), trials.end(),
-                                    [](const PlannedTrial& t) { return t.label == 'C'; });
+                                    [](const PlannedTrial& t) { return t.label == kC; });
   STILLHAND_EXPECTS(planned != trials.end());
   return evaluated(loop.run(*planned), *planned);
 }

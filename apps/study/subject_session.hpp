@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/session/in_process.hpp"
+#include "apps/study/conditions.hpp"
 #include "services/identification/core/arx.hpp"
 #include "services/identification/core/identifier.hpp"
 #include "services/identification/core/output_error.hpp"
@@ -64,8 +65,8 @@ struct TrackedTrial {
 struct SubjectResult {
   population::Subject subject;
   Identification identification;
-  std::map<char, TrackedTrial> trials;  ///< by condition
-  std::string order;                    ///< order in which the conditions were run
+  std::map<Condition, TrackedTrial> trials;  ///< by condition
+  std::vector<Condition> order;              ///< order in which the conditions were run
   std::map<char, TrackedTrial> wrong;  ///< 'O' another subject's model, 'M' the mean of all others'
 };
 

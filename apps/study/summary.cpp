@@ -34,7 +34,7 @@ ordered_json conditions_json(const Analysis& analysis) {
       one["cancelled_share"] = sample_json(analysis.cancelled_share.at(condition));
       one["counterforce_delay_s"] = sample_json(analysis.counterforce_delay_s.at(condition));
     }
-    out[condition_word(condition)] = one;
+    out[name_of(condition)] = one;
   }
   return out;
 }
@@ -125,15 +125,15 @@ ordered_json restoration_json(const Restoration& restoration) {
 
 // By C; null values where it was not run.
 Restoration restoration_of(const Analysis& analysis) {
-  const auto found = analysis.restoration.find('C');
+  const auto found = analysis.restoration.find(kC);
   return found == analysis.restoration.end() ? Restoration{} : found->second;
 }
 
 // "restoration_c_prime" and "restoration_c_plus" as in close-the-loop, or "restoration_signal".
-std::string restoration_key(char condition) {
-  if (condition == kFollowing) return "restoration_c_prime";
-  if (condition == kAugmented) return "restoration_c_plus";
-  std::string word = condition_word(condition);
+std::string restoration_key(Condition condition) {
+  if (condition == kCPrime) return "restoration_c_prime";
+  if (condition == kCPlus) return "restoration_c_plus";
+  std::string word = name_of(condition);
   std::ranges::replace_if(
       word, [](char c) { return c == '-' || c == '+'; }, '_');
   return "restoration_" + word;
@@ -142,7 +142,7 @@ std::string restoration_key(char condition) {
 // By C', C+ and mitigations, where they were run.
 void add_other_restorations(const Analysis& analysis, ordered_json& summary) {
   for (const auto& [condition, restoration] : analysis.restoration) {
-    if (condition == 'C') continue;
+    if (condition == kC) continue;
     const std::string key = restoration_key(condition);
     summary[key] = restoration_json(restoration);
     summary[key + "_interval95"] = restoration_interval_json(restoration);
@@ -265,7 +265,7 @@ ordered_json simulated_json(const SimulatedSide& simulated) {
   if (!simulated.same_people) return out;
   out["paired"] = ordered_json::object();
   for (const PairedCheck& check : simulated.paired) {
-    out["paired"][condition_word(check.condition)][kMetrics[check.metric].key] = paired_json(check);
+    out["paired"][name_of(check.condition)][kMetrics[check.metric].key] = paired_json(check);
   }
   out["alpha"] = SimulatedSide::kAlpha;
   out["more_than_chance"] = simulated.more_than_chance();
@@ -280,10 +280,10 @@ double alpha_of(const StudyRecord& record) {
   return registered ? record.recorded->registered->registration.alpha : kAlpha;
 }
 
-std::vector<std::pair<char, char>> planned_pairs(const StudyRecord& record) {
+std::vector<std::pair<Condition, Condition>> planned_pairs(const StudyRecord& record) {
   const bool registered = record.recorded && record.recorded->registered;
   if (registered) return record.recorded->registered->registration.comparisons;
-  return {{'A', 'B'}, {'B', 'C'}};
+  return {{kA, kB}, {kB, kC}};
 }
 
 std::string summary_json(const StudyRecord& record) {

@@ -21,13 +21,6 @@ constexpr std::array<std::pair<const char*, Question::After>, 4> kAfters{
      {"trial", Question::After::kTrial},
      {"block", Question::After::kBlock},
      {"end", Question::After::kEnd}}};
-constexpr std::array<const char*, 5> kRunnable{"A", "B", "C", "C'", "C+"};
-// apps/session/live_mitigation.hpp, without `scheduled`: it needs the arms of each participant.
-constexpr std::array<const char*, 10> kMitigations{
-    "low-pass", "notch",     "model-filter", "signal",    "lms-signal",
-    "adaptive", "lms-force", "damping",      "impedance", "damping+force"};
-constexpr std::array<const char*, 3> kInOneProcess{"D", "E", "F"};
-
 bool has(const std::vector<std::string>& words, const std::string& word) {
   return std::ranges::find(words, word) != words.end();
 }
@@ -35,18 +28,17 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
 void check_conditions(const Design& design) {
   if (design.conditions.empty()) throw ConfigError("conditions", "nothing", "[A, B, C]");
   for (const std::string& word : design.conditions) {
-    if (std::ranges::find(kInOneProcess, word) != kInOneProcess.end()) {
+    const auto condition = session::condition_named(word);
+    if (!condition || session::row_of(*condition).where == 0 || word != name_of(*condition)) {
+      throw ConfigError("conditions", "\"" + word + "\"", live_conditions());
+    }
+    const unsigned where = session::row_of(*condition).where;
+    if ((where & session::kExperimentConditions) == 0) {
       throw ConfigError("conditions", word,
-                        fmt::format("{}: {} runs in one process alone (`stillhand study`)",
-                                    kLiveConditions, word));
-    }
-    if (word == "scheduled") {
-      throw ConfigError(
-          "conditions", word,
-          fmt::format("{}: scheduled needs two arms of each participant", kLiveConditions));
-    }
-    if (std::ranges::find(kRunnable, word) == kRunnable.end() && !is_mitigation(word)) {
-      throw ConfigError("conditions", "\"" + word + "\"", kLiveConditions);
+                        fmt::format("{}: {} {}", live_conditions(), word,
+                                    where == session::kStudyConditions
+                                        ? "runs in one process alone (`stillhand study`)"
+                                        : "needs two arms of each participant"));
     }
     if (std::ranges::count(design.conditions, word) > 1) {
       throw ConfigError("conditions", word + " twice", "each condition once");
@@ -125,8 +117,21 @@ Value named(const std::array<std::pair<const char*, Value>, N>& list, const std:
 
 }  // namespace
 
+std::string live_conditions() {
+  std::string plain, mitigations;
+  for (const session::Condition each : session::conditions_of(session::kExperimentConditions)) {
+    std::string& list = is_mitigation(each) ? mitigations : plain;
+    list += (list.empty() ? "" : ", ") + std::string(name_of(each));
+  }
+  return plain + "; or A, B, C and mitigations: " + mitigations;
+}
+
+session::Condition condition_of(const std::string& name) {
+  return session::condition_named(name).value();
+}
+
 bool is_mitigation(const std::string& condition) {
-  return std::ranges::find(kMitigations, condition) != kMitigations.end();
+  return session::is_mitigation(condition_of(condition));
 }
 
 // A mitigation's name may hold a dash: the one between two conditions counts.

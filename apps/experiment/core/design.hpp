@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/experiment/core/counterbalance.hpp"
+#include "apps/session/core/conditions.hpp"
 #include "services/contract/config_field.hpp"
 
 namespace stillhand::experiment {
@@ -19,9 +20,7 @@ inline constexpr std::uint32_t kRig = 1;
 
 /// Conditions that a session over the bus can run.  D to F need the command filter, another stick
 /// or another rest of the arm, which run in one process alone (`stillhand study`).
-inline constexpr const char* kLiveConditions =
-    "A, B, C, C' or C+; or A, B, C and mitigations: low-pass, notch, model-filter, signal, "
-    "lms-signal, adaptive, lms-force, damping, impedance, damping+force";
+std::string live_conditions();
 
 /// Trials before the measured ones, in a condition that the participant may know.
 struct Practice {
@@ -142,6 +141,8 @@ struct Design {
   }
 };
 
+/// Of a checked design's name.
+session::Condition condition_of(const std::string& name);
 /// Whether a condition is one of `stillhand lab`'s mitigations.
 bool is_mitigation(const std::string& condition);
 

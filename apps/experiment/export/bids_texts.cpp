@@ -30,25 +30,6 @@ constexpr std::array<MotionChannel, 10> kChannels{
      {"x_r", "y", "POS", "ScreenTarget", "target on the screen, right of its centre"},
      {"x_p", "y", "POS", "ScreenCursor", "cursor on the screen, right of its centre"}}};
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kMeanings{
-    {{"A", "platform still, motor off"},
-     {"B", "platform moves, motor off"},
-     {"C", "platform moves, motor cancels by the model of the session's identification"},
-     {"C'", "as C, and the model follows an average hand"},
-     {"C+", "platform moves, motor cancels by the model that the experiment was given"},
-     {"low-pass", "platform moves, motor off, the command passes a low-pass"},
-     {"notch", "platform moves, motor off, the command passes a notch"},
-     {"model-filter",
-      "platform moves, motor off, what the predicted force moves is taken off the command"},
-     {"signal",
-      "platform moves, motor off, the identified feedthrough to position is taken off the command"},
-     {"lms-signal", "platform moves, motor off, an LMS filter takes the feedthrough off"},
-     {"adaptive", "as C, and gain and phase of the model follow an average hand"},
-     {"lms-force", "platform moves, the motor cancels by an LMS filter"},
-     {"damping", "platform moves, the motor adds damping to the stick"},
-     {"impedance", "platform moves, the motor adds stiffness and damping to the stick"},
-     {"damping+force", "as C, and the motor adds damping to the stick"}}};
-
 std::string text_of(const ordered_json& json) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
@@ -67,8 +48,12 @@ ordered_json levels(const char* description,
 }
 
 ordered_json condition_levels() {
+  std::vector<std::pair<std::string_view, std::string_view>> all;
+  for (const session::Condition each : session::conditions_of(session::kExperimentConditions)) {
+    all.emplace_back(name_of(each), session::row_of(each).meaning);
+  }
   return levels("Condition of the trial; n/a: the motor ran another model than the condition's",
-                {kMeanings.begin(), kMeanings.end()});
+                all);
 }
 
 // Of every table with a row a trial.
@@ -119,7 +104,7 @@ std::string readme_head(const Design& design, const DataSet& set) {
       design.title, set.participants.size(), design.who);
   text += "Conditions\n";
   for (const std::string& condition : design.conditions) {
-    text += fmt::format("- {}: {}\n", condition, meaning_of(condition));
+    text += fmt::format("- {}: {}\n", condition, session::row_of(condition_of(condition)).meaning);
   }
   return text;
 }
@@ -131,13 +116,6 @@ const MotionChannel& channel_of(const std::string& column) {
     if (column == channel.name) return channel;
   }
   throw ConfigError(column, "a column without a place in BIDS", "a column of the CSV format");
-}
-
-std::string_view meaning_of(std::string_view condition) {
-  for (const auto& [name, meaning] : kMeanings) {
-    if (name == condition) return meaning;
-  }
-  return "";
 }
 
 std::string dataset_description(const Design& design, const Release& release) {

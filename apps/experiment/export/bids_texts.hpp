@@ -35,7 +35,5 @@ std::string channels_tsv(const recording::Recording& rows);
 /// Meaning and unit of every column of the plain tables (export/tables.hpp), and their README.
 std::string columns_json(const Design& design);
 std::string tables_readme(const Folder& folder, const DataSet& set, const Release& release);
-/// What a condition is.
-std::string_view meaning_of(std::string_view condition);
 
 }  // namespace stillhand::experiment

@@ -11,7 +11,6 @@
 #include "apps/experiment/sealed_assignment.hpp"
 #include "apps/measurement/session.hpp"
 #include "apps/measurement/session_trials.hpp"
-#include "apps/study/conditions.hpp"
 #include "apps/study/recorded/recorded_session.hpp"
 #include "apps/study/study.hpp"
 #include "services/contract/config_error.hpp"
@@ -88,11 +87,11 @@ void add_metrics(ExportedParticipant& participant, std::int64_t session,
     for (ExportedTrial& trial : participant.trials) {
       if (trial.session != session || trial.trial.number != each.number) continue;
       trial.metrics = each.tracked.metrics;
-      if (study::condition_word(each.condition) == trial.condition) continue;
+      if (name_of(each.condition) == trial.condition) continue;
       // C, C' and C+ differ in the model that the motor used.
       throw ConfigError(
           fmt::format("{}, session {:02}, trial {}", participant.code, session, each.number),
-          "condition " + study::condition_word(each.condition) + " in the recording",
+          std::string("condition ") + name_of(each.condition) + " in the recording",
           trial.condition + ", as journal and assignment say");
     }
   }

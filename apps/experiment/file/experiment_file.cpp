@@ -121,7 +121,7 @@ std::string yaml_of(const Design& design) {
       "first\n"
       "# participant, and not after. `stillhand experiment` notices a change by its SHA-256.\n";
   text += plain.text();
-  text += fmt::format("# {}\nconditions: {}\n", kLiveConditions, list_of(design.conditions));
+  text += fmt::format("# {}\nconditions: {}\n", live_conditions(), list_of(design.conditions));
   text += fmt::format("# order of the conditions: random, latin or williams\norder: {}\n",
                       name_of(design.order));
   text += fmt::format("# lines on the tracking screen before the first trial\ninstructions: {}\n",

@@ -13,13 +13,13 @@ namespace {
 Response response_of(const SubjectResult& result) {
   Response out;
   std::size_t at = 0;
-  for (const char condition : {'A', 'B', 'C'}) {
+  for (const Condition condition : kPaperConditions) {
     const auto& metrics = result.trials.at(condition).metrics;
     for (const auto& metric : session::kMetrics) out.metrics[at++] = metric.of(metrics);
   }
-  const TrackedTrial& cancelled = result.trials.at('C');
+  const TrackedTrial& cancelled = result.trials.at(kC);
   out.observed = {cancelled.counterforce_delay_s, cancelled.cancelled_share,
-                  cancelled.feedthrough_rms_n / result.trials.at('B').feedthrough_rms_n,
+                  cancelled.feedthrough_rms_n / result.trials.at(kB).feedthrough_rms_n,
                   result.identification.paper.heldout.free_run_vaf_percent};
   return out;
 }

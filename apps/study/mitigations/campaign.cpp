@@ -37,13 +37,13 @@ std::vector<CellKey> all_cells(const CampaignOptions& options) {
   std::vector<CellKey> out;
   for (const TrialTask task : options.tasks) {
     for (const TrialMotion motion : options.motions) {
-      for (const std::size_t i : options.mitigations) {
-        if (!mitigation_kinds()[i].needs_model) {
-          out.push_back({i, ModelOf::kNone, task, motion});
+      for (const Condition each : options.mitigations) {
+        if (!needs_model(each)) {
+          out.push_back({each, ModelOf::kNone, task, motion});
           continue;
         }
         for (const ModelOf of : {ModelOf::kOwn, ModelOf::kAverage, ModelOf::kOther}) {
-          out.push_back({i, of, task, motion});
+          out.push_back({each, of, task, motion});
         }
       }
     }
@@ -58,7 +58,7 @@ void check(const CampaignOptions& options) {
                       "2 to 1000 with --mitigations: another's model needs another person");
   }
   session::ProtocolOptions protocol;
-  protocol.conditions = {session::Condition::kMoving};
+  protocol.conditions = {session::Condition::kB};
   protocol.trial_s = options.trial_s;
   protocol.identify_s = options.identify_s;
   session::plan(protocol);  // checks the lengths
@@ -144,10 +144,9 @@ class Running {
         moves = trial_motion(cell.motion, scene.duration_ticks, scene.ramp_ticks, scene.rig_seed);
       }
       scene.motion = moves;
-      const MitigationKind& kind = mitigation_kinds()[cell.mitigation];
       const mitigation::Recipe recipe =
-          kind.recipe({models_for(at, cell.model), chosen, hand, cell.task});
-      figures.push_back(run_mitigated(scene, recipe, kind.arm_rest));
+          recipe_of(cell.mitigation, {models_for(at, cell.model), chosen, hand, cell.task});
+      figures.push_back(run_mitigated(scene, recipe, row_of(cell.mitigation).arm_rest));
     }
   }
 
@@ -167,7 +166,7 @@ class Running {
       people.reserve(figures.size());
       for (const auto& person : figures) people.push_back(person[c]);
       // "none" is the first of each task and motion.
-      if (cells[c].mitigation == 0) {
+      if (cells[c].mitigation == kB) {
         none_mm.clear();
         for (const TrialFigures& one : people) none_mm.push_back(one.error_mm);
       }

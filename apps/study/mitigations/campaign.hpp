@@ -19,7 +19,7 @@ struct CampaignOptions {
   double trial_s = 60.0;  ///< its first third does not count
   double identify_s = 120.0;
   population::Population population;
-  std::vector<std::size_t> mitigations;  ///< of mitigation_kinds(), the first is none
+  std::vector<Condition> mitigations;  ///< B among them
   std::vector<TrialTask> tasks{kTrialTasks.begin(), kTrialTasks.end()};
   std::vector<TrialMotion> motions{kTrialMotions.begin(), kTrialMotions.end()};
   unsigned threads = 0;  ///< 0: one per core
@@ -27,7 +27,7 @@ struct CampaignOptions {
 
 /// One cell of the table.
 struct CellKey {
-  std::size_t mitigation = 0;  ///< of mitigation_kinds()
+  Condition mitigation = kB;
   ModelOf model = ModelOf::kNone;
   TrialTask task = TrialTask::kTrack;
   TrialMotion motion = TrialMotion::kBand;

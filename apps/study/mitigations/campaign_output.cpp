@@ -10,7 +10,7 @@
 namespace stillhand::study {
 namespace {
 
-const char* name_of(const CellKey& key) { return mitigation_kinds()[key.mitigation].name; }
+std::string name_of(const CellKey& key) { return mitigation_name(key.mitigation); }
 const char* model_of(const CellKey& key) {
   return kModelOfNames[static_cast<std::size_t>(key.model)];
 }
@@ -97,7 +97,7 @@ void print_campaign(const Campaign& campaign) {
       kTrialTaskNames[static_cast<std::size_t>(task)], "mitigation", "model", "motion",
       "mean [95 %]", "median [95 %]", "worst", "harmed [95 %]", "motor", "effort");
   for (const CellFigures& cell : campaign.cells) {
-    if (cell.key.task != task || cell.key.mitigation == 0) continue;
+    if (cell.key.task != task || cell.key.mitigation == kB) continue;
     const auto& mean = cell.restored_mean;
     const auto percent = [](double share) { return 100.0 * share; };
     fmt::print(

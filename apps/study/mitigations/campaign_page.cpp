@@ -33,7 +33,7 @@ void add_series(report::Panel& panel, const Campaign& campaign, TrialTask task, 
   for (const CellFigures& cell : campaign.cells) {
     const CellKey& key = cell.key;
     if (key.task != task || key.motion != motion || key.model != kModels[model]) continue;
-    if (key.mitigation == 0) continue;
+    if (key.mitigation == kB) continue;
     std::size_t row = 0;
     while (wanted[row] != key.mitigation) ++row;
     const double aside = key.model == ModelOf::kOwn     ? 0.22
@@ -76,7 +76,7 @@ report::Figure figure_of(const Campaign& campaign, TrialTask task) {
     panel.y.high = static_cast<double>(wanted.size()) - 0.4;
     for (std::size_t row = 1; row < wanted.size(); ++row) {
       panel.y.ticks.push_back(
-          {static_cast<double>(wanted.size() - row), mitigation_kinds()[wanted[row]].name});
+          {static_cast<double>(wanted.size() - row), mitigation_name(wanted[row])});
     }
     for (std::size_t model = 0; model < kModels.size(); ++model) {
       add_series(panel, campaign, task, motion, model);
@@ -104,11 +104,12 @@ report::Table table_of(const Campaign& campaign, TrialTask task, TrialMotion mot
   };
   for (const CellFigures& cell : campaign.cells) {
     if (cell.key.task != task || cell.key.motion != motion) continue;
-    const MitigationKind& kind = mitigation_kinds()[cell.key.mitigation];
-    std::vector<Cell> row{
-        kind.name, kind.needs_model ? kModelOfNames[static_cast<std::size_t>(cell.key.model)] : "",
-        number(cell.error_mm, 1)};
-    if (cell.key.mitigation > 0) {
+    std::vector<Cell> row{mitigation_name(cell.key.mitigation),
+                          needs_model(cell.key.mitigation)
+                              ? kModelOfNames[static_cast<std::size_t>(cell.key.model)]
+                              : "",
+                          number(cell.error_mm, 1)};
+    if (cell.key.mitigation != kB) {
       const auto& mean = cell.restored_mean;
       row.emplace_back(mean ? interval(mean->ratio, mean->low, mean->high) : "");
       const auto& median = cell.restored_median;
@@ -133,8 +134,8 @@ report::Table kinds_table(const Campaign& campaign) {
   table.caption = "What each mitigation does.";
   table.header = {"mitigation", "what it does"};
   table.align = {report::Align::kLeft, report::Align::kLeft};
-  for (const std::size_t i : campaign.options.mitigations) {
-    table.rows.push_back({mitigation_kinds()[i].name, mitigation_kinds()[i].words});
+  for (const Condition each : campaign.options.mitigations) {
+    table.rows.push_back({mitigation_name(each), row_of(each).meaning});
   }
   return table;
 }

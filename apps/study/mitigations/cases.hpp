@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "apps/study/conditions.hpp"
 #include "apps/study/mitigations/person_models.hpp"
 #include "services/mitigation/design.hpp"
 #include "services/mitigation/mitigation.hpp"
@@ -50,21 +50,13 @@ struct Ingredients {
   TrialTask task;                             ///< known to `task-force` alone
 };
 
-/// One mitigation.
-struct MitigationKind {
-  const char* name;  ///< as on the command line
-  const char* words;
-  bool needs_model;
-  bool arm_rest;
-  std::function<mitigation::Recipe(const Ingredients&)> recipe;
-};
+/// A condition as a recipe, its numbers and models from the ingredients.
+mitigation::Recipe recipe_of(Condition condition, const Ingredients& from);
+bool needs_model(Condition condition);
 
-/// All, in the order of the table; the first is "none".
-const std::vector<MitigationKind>& mitigation_kinds();
-
-/// Indices into mitigation_kinds() in their order, "none" always among them.
+/// In the order of the table of conditions; B, "none", is always among them.
 /// @param names  "all", or a list of names with commas
 /// @throws ConfigError for an unknown or repeated name
-std::vector<std::size_t> mitigations_named(const std::string& names);
+std::vector<Condition> mitigations_named(const std::string& names);
 
 }  // namespace stillhand::study

@@ -22,11 +22,8 @@ constexpr double kNotch_hz = 1.2;  // the middle of 0.7 to 2 Hz on a logarithmic
 constexpr std::array kDamping_n_s_m{10.0, 20.0, 40.0, 60.0, 90.0};
 constexpr std::array kSteps{0.002, 0.005, 0.01, 0.02, 0.05};
 
-bool wants(const CampaignOptions& options, std::initializer_list<const char*> names) {
-  return std::ranges::any_of(options.mitigations, [&](std::size_t i) {
-    const std::string name = mitigation_kinds()[i].name;
-    return std::ranges::find(names, name) != names.end();
-  });
+bool wants(const CampaignOptions& options, std::initializer_list<Condition> any) {
+  return std::ranges::find_first_of(options.mitigations, any) != options.mitigations.end();
 }
 
 // Trials of one parameter's values on all tutors.
@@ -155,9 +152,9 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
       "arm, {:.2f} times the force for the target, passive to {:.0f} Hz",
       shaped.stiffness_n_m, shaped.damping_n_s_m, shaped.mass_kg, 100.0 * out.impedance.worst,
       out.impedance.effort, out.impedance.passive_hz));
-  const bool filters = wants(options, {"low-pass", "notch"});
-  const bool damps = wants(options, {"damping", "damping+force"});
-  const bool learns = wants(options, {"lms-signal", "lms-force"});
+  const bool filters = wants(options, {kLowPass, kNotch});
+  const bool damps = wants(options, {kDamping, kDampingForce});
+  const bool learns = wants(options, {kLmsSignal, kLmsForce});
   if (!filters && !damps && !learns) return out;
   const Trying trying(options, tutors, seed, threads);
   if (filters) {

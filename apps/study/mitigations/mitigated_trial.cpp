@@ -147,7 +147,7 @@ motion::MotionTrajectory trial_motion(TrialMotion motion, Tick duration_ticks, T
                     : motion == TrialMotion::kRoad ? session::Motion::kRoad
                                                    : session::Motion::kRide;
   motion::MotionProfile profile =
-      motion_profile(tracking_trial(protocol, session::Condition::kMoving, 1));
+      motion_profile(tracking_trial(protocol, session::Condition::kB, 1));
   profile.road_class = protocol.road_class;
   profile.road_speed_m_s = protocol.road_speed_m_s;
   if (motion == TrialMotion::kRide) {

@@ -28,7 +28,7 @@ std::string path_of(const std::vector<SessionFile>& files, const std::string& pa
 }
 
 const RecordedTrial* last_of(const RecordedSource& source, const std::string& code,
-                             char condition) {
+                             Condition condition) {
   const RecordedTrial* out = nullptr;
   for (const RecordedTrial& trial : source.trials) {
     if (trial.participant == code && trial.condition == condition) out = &trial;
@@ -48,10 +48,10 @@ RecordedOptions recordings_of(const std::vector<SessionFile>& files, const Recor
     if (pegged.participant != code) continue;
     add(pegged.session, pegged.number, out.pegged, out.pegged_trials);
   }
-  if (const RecordedTrial* moving = last_of(source, code, 'B')) {
+  if (const RecordedTrial* moving = last_of(source, code, kB)) {
     add(moving->session, moving->number, out.moving, out.moving_trials);
   }
-  for (const char condition : {'C', kFollowing, kAugmented}) {
+  for (const Condition condition : kCancelling) {
     const RecordedTrial* trial = last_of(source, code, condition);
     if (trial == nullptr) continue;
     add(trial->session, trial->number, out.cancelled, out.cancelled_trials);

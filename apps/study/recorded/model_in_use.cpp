@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "apps/study/conditions.hpp"
 #include "services/cancellation/codec.hpp"
 
 namespace stillhand::study {
@@ -81,14 +80,15 @@ std::string name_of(std::int32_t model) {
 
 }  // namespace
 
-char condition_in(const SessionRecording& recorded, const SessionTrial& trial, std::uint32_t rig) {
+std::optional<Condition> condition_in(const SessionRecording& recorded, const SessionTrial& trial,
+                                      std::uint32_t rig) {
   if (!trial.named.empty()) {
-    const char mitigated = session::letter_of(trial.named);
-    return mitigated == '\0' ? '?' : mitigated;
+    const auto named = session::condition_named(trial.named);
+    return named && is_mitigation(*named) ? named : std::nullopt;
   }
-  if (trial.letter != 'C') return trial.letter;
+  if (trial.letter != 'C') return session::condition_named(std::string_view(&trial.letter, 1));
   const auto* control = in_force(recorded, trial.trial.start_tick, rig).control;
-  if (control == nullptr) return 'C';
+  if (control == nullptr) return kC;
   const cancellation::ControlModel model = cancellation::from_idl(*control);
   const bool plain = model.inputs.size() == 1 && model.inputs[0].map.values.empty() &&
                      !model.loop && model.output.values.empty() && model.paths.empty() &&
@@ -97,8 +97,8 @@ char condition_in(const SessionRecording& recorded, const SessionTrial& trial, s
                      return each.control_numerator() == model.inputs[0].numerator &&
                             each.control_denominator() == model.denominator;
                    });
-  if (!own) return kAugmented;
-  return model.adapts ? kFollowing : 'C';
+  if (!own) return kCPlus;
+  return model.adapts ? kCPrime : kC;
 }
 
 std::string other_model_in(const SessionRecording& recorded, const SessionTrial& trial,

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "apps/measurement/session_trials.hpp"
 #include "apps/session/session_recording.hpp"
+#include "apps/study/conditions.hpp"
 
 /// Which model the motor had in a recorded trial, and which one it should have had.  A model counts
 /// from the tick that it names itself; the newest one is in force.
@@ -14,8 +16,8 @@ namespace stillhand::study {
 /// Which of C, C' and C+ a trial with cancellation is (conditions.hpp), by the model in force when
 /// it began; of a mitigation its letter, or '?' for one that this program does not know; of any
 /// other trial its letter.
-char condition_in(const session::SessionRecording& recorded, const measurement::SessionTrial& trial,
-                  std::uint32_t rig);
+std::optional<Condition> condition_in(const session::SessionRecording& recorded,
+                                      const measurement::SessionTrial& trial, std::uint32_t rig);
 
 /// Why a trial with cancellation was not what its condition says: the motor ran another model than
 /// the one in force in more than 1 % of the recorded commands, for example because the canceller

@@ -114,7 +114,6 @@ TrackedTrial tracked_from(const SessionRecording& recorded, const SessionTrial& 
   signals.motor_n = of(recorded.rig_truths, [](const auto& m) { return m.motor_force_n(); });
   session::PlannedTrial planned{};
   planned.trial = found.trial;
-  planned.label = found.letter;
   planned.cancellation = found.letter == 'C';
   return evaluated(signals, planned);
 }
@@ -180,8 +179,8 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
     const std::string where =
         fmt::format("{}, session {}, trial {}", file.participant, file.session, trial.name());
     if (trial.trial.phase == TrialPhase::kFree) continue;  // an identification
-    const char condition = condition_in(recorded, trial, trials.rig);
-    std::string why = condition == '?' ? "has no condition" : incomplete(trial, least_share);
+    const std::optional<Condition> condition = condition_in(recorded, trial, trials.rig);
+    std::string why = !condition ? "has no condition" : incomplete(trial, least_share);
     if (why.empty()) {
       why = other_model_in(recorded, trial, trials.rig);
       if (!why.empty()) out.other_model.insert(trial.trial.number);
@@ -198,7 +197,7 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
         out.pegged.push_back({file.participant, file.session, trial.trial.number});
       } else {
         (practised ? out.practice : out.trials)
-            .push_back({file.participant, file.session, trial.trial.number, 0, condition,
+            .push_back({file.participant, file.session, trial.trial.number, 0, *condition,
                         tracked_from(recorded, trial, least_share), lost_share(trial), plan.block,
                         plan.place});
       }

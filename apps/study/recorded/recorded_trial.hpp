@@ -20,7 +20,7 @@ struct RecordedTrial {
   std::string session;      ///< number or name of the session
   std::int64_t number = 0;  ///< in its session
   std::int64_t place = 0;   ///< counted from 1 over all complete tracking trials of the participant
-  char condition = '?';     ///< conditions.hpp
+  Condition condition = kA;
   TrackedTrial tracked;
   double lost_share = 0.0;  ///< [-] of its samples
   std::int64_t block = 0;   ///< of an experiment, from 1; 0: not announced

@@ -29,12 +29,12 @@ std::optional<Registration> registration_of(const std::vector<std::filesystem::p
     out->design = design;
     out->folder = folder;
     for (const std::string& condition : design.conditions) {
-      out->conditions.push_back(condition_of(condition));
+      out->conditions.push_back(named(condition));
     }
     for (const std::string& text : design.comparisons) {
       // Design's own check has refused what is no pair.
       const auto pair = experiment::compared_by(text, design.conditions).value();
-      out->comparisons.emplace_back(condition_of(pair.first), condition_of(pair.second));
+      out->comparisons.emplace_back(named(pair.first), named(pair.second));
     }
   }
   return out;

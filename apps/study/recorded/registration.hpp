@@ -15,12 +15,12 @@ namespace stillhand::study {
 /// What an experiment registered for its analysis before the first participant.
 struct Registration {
   experiment::Exclusion rules;
-  std::int64_t trials_a_condition = 1;             ///< planned for each participant
-  std::vector<char> conditions;                    ///< planned
-  std::vector<std::pair<char, char>> comparisons;  ///< first, second
-  double alpha = 0.05;                             ///< of all comparisons together
-  experiment::Design design;                       ///< the whole of it
-  std::filesystem::path folder;                    ///< of the experiment
+  std::int64_t trials_a_condition = 1;                       ///< planned for each participant
+  std::vector<Condition> conditions;                         ///< planned
+  std::vector<std::pair<Condition, Condition>> comparisons;  ///< first, second
+  double alpha = 0.05;                                       ///< of all comparisons together
+  experiment::Design design;                                 ///< the whole of it
+  std::filesystem::path folder;                              ///< of the experiment
 };
 
 /// The registration of the one folder with an experiment.yaml among `folders`; none without one.

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
 
 #include "apps/study/recorded/average.hpp"
 #include "services/statistics/descriptive.hpp"
@@ -16,25 +17,26 @@ namespace stillhand::study {
 namespace {
 
 // The conditions that most people have.
-std::string wanted_conditions(const std::vector<Person>& people) {
-  std::map<char, std::size_t> count;
+std::vector<Condition> wanted_conditions(const std::vector<Person>& people) {
+  std::map<Condition, std::size_t> count;
   for (const Person& person : people) {
-    std::set<char> own;
+    std::set<Condition> own;
     for (const RecordedTrial& trial : person.trials) own.insert(trial.condition);
-    for (const char condition : own) ++count[condition];
+    for (const Condition condition : own) ++count[condition];
   }
-  std::string out;
+  std::vector<Condition> out;
   for (const auto& [condition, number] : count) {
-    if (2 * number > people.size()) out += condition;
+    if (2 * number > people.size()) out.push_back(condition);
   }
   return out;
 }
 
 // Eq. SU-14: of the trials of one place of the plan, the last one.
-std::vector<const RecordedTrial*> counted(const Person& person, const std::string& conditions) {
+std::vector<const RecordedTrial*> counted(const Person& person,
+                                          std::span<const Condition> conditions) {
   std::vector<const RecordedTrial*> out;
   for (const RecordedTrial& trial : person.trials) {
-    if (conditions.find(trial.condition) == std::string::npos) continue;
+    if (std::ranges::find(conditions, trial.condition) == conditions.end()) continue;
     std::erase_if(out, [&](const RecordedTrial* earlier) {
       return trial.step > 0 && earlier->step == trial.step;
     });
@@ -43,14 +45,14 @@ std::vector<const RecordedTrial*> counted(const Person& person, const std::strin
   return out;
 }
 
-SubjectResult result_of(const Person& person, const std::string& conditions,
+SubjectResult result_of(const Person& person, std::span<const Condition> conditions,
                         std::set<TrialId>& used) {
   SubjectResult out;
   out.identification = *person.identification;
-  std::map<char, std::vector<const TrackedTrial*>> trials;
+  std::map<Condition, std::vector<const TrackedTrial*>> trials;
   for (const RecordedTrial* trial : counted(person, conditions)) {
     used.insert(id_of(*trial));
-    if (trials[trial->condition].empty()) out.order += trial->condition;
+    if (trials[trial->condition].empty()) out.order.push_back(trial->condition);
     trials[trial->condition].push_back(&trial->tracked);
   }
   for (const auto& [condition, each] : trials) out.trials[condition] = averaged(each);
@@ -59,16 +61,16 @@ SubjectResult result_of(const Person& person, const std::string& conditions,
 
 // Conditions that too few people have.
 std::vector<std::string> rare_conditions(const std::vector<Person>& people,
-                                         const std::string& wanted) {
-  std::map<char, std::set<std::string>> owners;
+                                         std::span<const Condition> wanted) {
+  std::map<Condition, std::set<std::string>> owners;
   for (const Person& person : people) {
     for (const RecordedTrial& trial : person.trials) owners[trial.condition].insert(person.code);
   }
   std::vector<std::string> out;
   for (const auto& [condition, codes] : owners) {
-    if (wanted.find(condition) != std::string::npos) continue;
+    if (std::ranges::find(wanted, condition) != wanted.end()) continue;
     out.push_back(fmt::format("condition {}: only {} of {} participants have it ({})",
-                              condition_word(condition), codes.size(), people.size(),
+                              name_of(condition), codes.size(), people.size(),
                               fmt::join(codes, ", ")));
   }
   return out;
@@ -77,14 +79,14 @@ std::vector<std::string> rare_conditions(const std::vector<Person>& people,
 // Who has fewer trials of a condition than is usual: the mean is over what is there.
 std::vector<std::string> short_of_trials(const std::vector<Person>& people,
                                          const std::vector<std::string>& selected,
-                                         const std::string& conditions) {
+                                         std::span<const Condition> conditions) {
   std::vector<std::string> out;
-  for (const char condition : conditions) {
+  for (const Condition condition : conditions) {
     std::map<std::string, std::ptrdiff_t> own;
     std::map<std::ptrdiff_t, std::size_t> people_with;
     for (const Person& person : people) {
       if (std::ranges::find(selected, person.code) == selected.end()) continue;
-      own[person.code] = std::ssize(counted(person, std::string(1, condition)));
+      own[person.code] = std::ssize(counted(person, {&condition, 1}));
       ++people_with[own[person.code]];
     }
     if (people_with.size() < 2) continue;
@@ -95,19 +97,19 @@ std::vector<std::string> short_of_trials(const std::vector<Person>& people,
     for (const auto& [code, count] : own) {
       if (count >= usual->first) continue;
       out.push_back(fmt::format("{}: {} of the usual {} trials of condition {}; their mean counts",
-                                code, count, usual->first, condition_word(condition)));
+                                code, count, usual->first, name_of(condition)));
     }
   }
   return out;
 }
 
 // Why a person cannot be in the tables, or empty.
-std::string lacking(const Person& person, const std::string& conditions) {
+std::string lacking(const Person& person, std::span<const Condition> conditions) {
   if (!person.identification) return "no complete pegged trial";
-  for (const char condition : conditions) {
+  for (const Condition condition : conditions) {
     if (std::ranges::find(person.trials, condition, &RecordedTrial::condition) ==
         person.trials.end()) {
-      return fmt::format("no complete trial of condition {}", condition_word(condition));
+      return fmt::format("no complete trial of condition {}", name_of(condition));
     }
   }
   return "";
@@ -116,8 +118,8 @@ std::string lacking(const Person& person, const std::string& conditions) {
 // Completed share of the planned trials; a repetition does not stand for another condition.
 double completed_share(const Person& person, const Registration& registration) {
   std::int64_t done = 0;
-  for (const char condition : registration.conditions) {
-    const auto own = std::ssize(counted(person, std::string(1, condition)));
+  for (const Condition condition : registration.conditions) {
+    const auto own = std::ssize(counted(person, {&condition, 1}));
     done += std::min<std::int64_t>(own, registration.trials_a_condition);
   }
   const auto planned = static_cast<double>(registration.conditions.size()) *
@@ -127,7 +129,7 @@ double completed_share(const Person& person, const Registration& registration) {
 
 std::optional<double> dwell_ratio_a(const Person& person) {
   std::vector<double> ratios;
-  for (const RecordedTrial* trial : counted(person, "A")) {
+  for (const RecordedTrial* trial : counted(person, std::array{kA})) {
     ratios.push_back(trial->tracked.metrics.dwell_ratio);
   }
   if (ratios.empty()) return std::nullopt;
@@ -172,7 +174,7 @@ std::map<std::string, std::string> outliers(const std::vector<Person>& people, d
       out.emplace(all.participants[i],
                   fmt::format("RMS error {:.4g} mm in {}, {:.3g} standard deviations from the "
                               "mean, more than most_rms_deviations {:.4g}",
-                              errors_mm[i], condition_word(condition), deviations, most));
+                              errors_mm[i], name_of(condition), deviations, most));
     }
   }
   return out;
@@ -182,7 +184,7 @@ std::map<std::string, std::string> outliers(const std::vector<Person>& people, d
 
 Selection select(const std::vector<Person>& people) {
   Selection out;
-  const std::string conditions = wanted_conditions(people);
+  const std::vector<Condition> conditions = wanted_conditions(people);
   for (const Person& person : people) {
     const std::string why = conditions.empty() ? "no tracking trial" : lacking(person, conditions);
     if (!why.empty()) {

@@ -86,7 +86,7 @@ class SimulatedPerson {
       std::vector<const TrackedTrial*> each;
       for (const TrackedTrial& trial : trials) each.push_back(&trial);
       out.trials[condition] = averaged(each);
-      out.order += condition;
+      out.order.push_back(condition);
     }
     return out;
   }
@@ -108,24 +108,23 @@ class SimulatedPerson {
   }
 
   // As a session chooses it (apps/experiment/session_script.cpp).
-  void choose_model(session::InProcessLoop& loop, char condition) const {
+  void choose_model(session::InProcessLoop& loop, Condition condition) const {
     if (!chooses_models_ || !cancels(condition)) return;
-    if (condition == kAugmented) {
+    if (condition == kCPlus) {
       const std::string file = (registration_.folder / design_.control_model).string();
       use(loop,
           cancellation::parse_control_model(recording::read_file(file), file, experiment::kRig));
       return;
     }
     auto model = cancellation::control_model(identification_.control.model);
-    if (condition == kFollowing) model.adapts = close_the_loop::average_hand();
+    if (condition == kCPrime) model.adapts = close_the_loop::average_hand();
     use(loop, model);
   }
 
   void track(session::InProcessLoop& loop, const RecordedTrial& trial, bool used) {
     const experiment::Step seeds = experiment::trial_at_place(design_, index_, trial.step);
-    const char letter = cancels(trial.condition) ? 'C' : trial.condition;
     PlannedTrial planned =
-        session::tracking_trial(protocol_, static_cast<session::Condition>(letter), trial.step);
+        session::tracking_trial(protocol_, planned_as(trial.condition), trial.step);
     planned.motion_seed = seeds.motion_seed;
     planned.reference_seed = seeds.target_seed;
     planned.trial.number = trial.number;
@@ -140,7 +139,7 @@ class SimulatedPerson {
   session::ProtocolOptions protocol_;
   bool chooses_models_ = false;
   Identification identification_;
-  std::map<char, std::vector<TrackedTrial>> trials_;
+  std::map<Condition, std::vector<TrackedTrial>> trials_;
 };
 
 SubjectResult simulate_person(const RecordedSource& source, const std::string& code) {

@@ -16,7 +16,7 @@ namespace stillhand::study {
 
 /// One condition and metric of the same people, recorded and simulated: recorded - simulated.
 struct PairedCheck {
-  char condition = '?';
+  Condition condition = kA;
   std::size_t metric = 0;  ///< index of session::kMetrics
   std::size_t n = 0;       ///< people in whom both were found
   double mean_difference = 0.0;

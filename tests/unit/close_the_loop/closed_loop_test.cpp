@@ -20,7 +20,7 @@ class NotedSession final : public Session {
  public:
   TrialRun run(const session::PlannedTrial& planned, const std::string& label) override {
     labels.push_back(label);
-    EXPECT_EQ(label.front(), planned.label);
+    EXPECT_EQ(label.substr(0, 1), session::name_of(planned.label));
     TrialRun run;
     run.label = label;
     run.number = planned.trial.number;

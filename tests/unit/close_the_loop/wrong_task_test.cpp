@@ -41,9 +41,9 @@ Outcome run(const rig::BodyConfig& tracking_hand, double model_gain) {
   for (const session::PlannedTrial& planned : session::plan(protocol)) {
     if (planned.trial.phase == TrialPhase::kPegged) continue;
     const auto error_mm = [&] { return session.run(planned, "").metrics.rms_error_mm; };
-    if (planned.label == 'A') out.still = error_mm();
-    if (planned.label == 'B') out.moving = error_mm();
-    if (planned.label != 'C') continue;
+    if (planned.label == session::Condition::kA) out.still = error_mm();
+    if (planned.label == session::Condition::kB) out.moving = error_mm();
+    if (planned.label != session::Condition::kC) continue;
     EXPECT_EQ(session.use(model), "");
     out.paper = error_mm();
     cancellation::ControlModel followed = model;

@@ -9,7 +9,6 @@
 
 #include "apps/experiment/export/bids_texts.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "services/contract/config_error.hpp"
 
 namespace stillhand::experiment {
@@ -137,16 +136,6 @@ TEST(ExperimentFileTest, APlannedComparisonNamesTwoOfTheConditions) {
   EXPECT_EQ(compared_by("damping+force-B", conditions), std::pair(conditions[2], conditions[0]));
   for (const char* text : {"", "B", "B-", "-B", "B-B", "low-pass", "B-low", "B-C"}) {
     EXPECT_FALSE(compared_by(text, conditions)) << text;
-  }
-}
-
-// The session's own list; `scheduled` needs the arms of each participant.
-TEST(ExperimentFileTest, EveryMitigationOfASessionButTheScheduledIsACondition) {
-  for (const session::LiveMitigation& each : session::live_mitigations()) {
-    EXPECT_EQ(is_mitigation(each.name), std::string(each.name) != "scheduled") << each.name;
-    const bool offered = std::string(kLiveConditions).find(each.name) != std::string::npos;
-    EXPECT_EQ(offered, std::string(each.name) != "scheduled") << each.name;
-    EXPECT_EQ(meaning_of(each.name).empty(), std::string(each.name) == "scheduled") << each.name;
   }
 }
 

@@ -167,8 +167,8 @@ TEST_F(SessionScriptTest, AMitigationRunsWithItsPartsBehindItsIdentification) {
   FakeTrials trials;
   ASSERT_TRUE(run(trials));
   ASSERT_EQ(trials.ran.size(), 5u);
-  EXPECT_EQ(trials.ran[0].label, session::kIdentification);
-  EXPECT_EQ(trials.ran[1].label, session::kFreeIdentification);
+  EXPECT_EQ(trials.ran[0].label, session::Condition::kIdentification);
+  EXPECT_EQ(trials.ran[1].label, session::Condition::kFreeIdentification);
   EXPECT_NE(trials.ran[0].motion_seed, trials.ran[1].motion_seed);
   EXPECT_EQ(trials.models, 0);  // the canceller keeps the session's own
   std::set<std::size_t> parts;

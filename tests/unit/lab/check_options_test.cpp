@@ -97,8 +97,7 @@ TEST_F(CheckOptionsTest, AMouseNeedsAWindow) {
 TEST_F(CheckOptionsTest, AVehicleIsRefusedWithAMitigation) {
   options_.vehicle = "first_order";
   EXPECT_EQ(refusal(), "taken");
-  options_.protocol.conditions = session::parse_conditions("A,B,signal", session::kLabConditions,
-                                                           session::Named::kMitigationsToo);
+  options_.protocol.conditions = session::parse_conditions("A,B,signal");
   EXPECT_THAT(refusal(), AllOf(StartsWith("--vehicle: got first_order with signal, want"),
                                HasSubstr("raw stick")));
   // Those of an experiment too.
@@ -112,8 +111,7 @@ TEST_F(CheckOptionsTest, AVehicleIsRefusedWithAMitigation) {
 // The process of cancellation would refuse it at the trial, after the identification.
 TEST_F(CheckOptionsTest, AMitigationThatTheCancellerCannotRunIsRefusedBeforeAnythingStarts) {
   const auto conditions = [&](const char* names) {
-    options_.protocol.conditions =
-        session::parse_conditions(names, session::kLabConditions, session::Named::kMitigationsToo);
+    options_.protocol.conditions = session::parse_conditions(names);
   };
   conditions("A,B,adaptive");
   EXPECT_EQ(refusal(), "taken");

@@ -146,7 +146,7 @@ TEST(LabCodecTest, TheAssignmentHoldsTheBlindedPart) {
 
 TEST(LabCodecTest, PartsOfAnAssignmentComeBackAsTheyWereSent) {
   session::PlannedTrial planned{};
-  planned.label = static_cast<char>(session::Condition::kDampingForce);
+  planned.label = session::Condition::kDampingForce;
   planned.parts = {{mitigation::PartKind::kForce, {}},
                    {mitigation::PartKind::kImpedance, {1.5, 2.5, 3.5}}};
   const auto message = assignment_of(planned);

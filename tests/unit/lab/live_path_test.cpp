@@ -8,7 +8,6 @@
 #include <iostream>
 
 #include "apps/lab/codec.hpp"
-#include "apps/session/live_mitigation.hpp"
 #include "apps/study/mitigations/hand_stand.hpp"
 #include "apps/study/mitigations/mitigated_trial.hpp"
 #include "services/cancellation/codec.hpp"
@@ -115,16 +114,16 @@ TEST(LivePathTest, TheBusCostsATickOfTheCommandAndNothingOfTheForce) {
     const mitigation::Recipe recipe = over_the_bus(condition);
     const double live_mm = live_error_mm(trial, recipe);
     const double study_mm = run_mitigated(trial, recipe, false).error_mm;
-    std::cout << session::condition_name(condition) << ": " << live_mm << " mm, in the study "
-              << study_mm << ", without " << without_mm << '\n';
-    EXPECT_NEAR(live_mm, study_mm, 0.02 * without_mm) << session::condition_name(condition);
+    std::cout << name_of(condition) << ": " << live_mm << " mm, in the study " << study_mm
+              << ", without " << without_mm << '\n';
+    EXPECT_NEAR(live_mm, study_mm, 0.02 * without_mm) << name_of(condition);
   }
   // A force is used in the tick of its sample: to the bit.
   for (const Condition condition : {Condition::kAdaptive, Condition::kLmsForce, Condition::kDamping,
                                     Condition::kDampingForce}) {
     const mitigation::Recipe recipe = over_the_bus(condition);
     EXPECT_DOUBLE_EQ(live_error_mm(trial, recipe), run_mitigated(trial, recipe, false).error_mm)
-        << session::condition_name(condition);
+        << name_of(condition);
   }
 }
 

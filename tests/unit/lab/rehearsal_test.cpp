@@ -58,7 +58,8 @@ motion::RideRecord sine(double m_s2, double hz, double seconds) {
 TEST_F(RehearsalTest, EveryTrialThatMovesIsAskedForAndNoOther) {
   const AskedMotions sut = rehearse(session::plan(options), options, {}, config);
   for (const session::PlannedTrial& trial : trials()) {
-    EXPECT_EQ(sut.count(trial.trial.number), trial.moving ? 1u : 0u) << trial.label;
+    EXPECT_EQ(sut.count(trial.trial.number), trial.moving ? 1u : 0u)
+        << session::name_of(trial.label);
   }
   for (const session::PlannedTrial& trial : trials()) {
     if (!trial.moving) continue;

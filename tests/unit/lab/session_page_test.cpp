@@ -7,10 +7,12 @@
 namespace stillhand::lab {
 namespace {
 
+using session::Condition;
+
 using testing::HasSubstr;
 using testing::Not;
 
-session::TrialResult trial(char label, double rms_error_mm) {
+session::TrialResult trial(Condition label, double rms_error_mm) {
   session::TrialResult result{};
   result.label = label;
   result.metrics.rms_error_mm = rms_error_mm;
@@ -19,7 +21,8 @@ session::TrialResult trial(char label, double rms_error_mm) {
 
 TEST(SessionPageTest, TheSessionsFiguresStandNextToThePapers) {
   session::SessionResult result;
-  result.trials = {trial('A', 20.0), trial('B', 50.0), trial('C', 35.0)};
+  result.trials = {trial(Condition::kA, 20.0), trial(Condition::kB, 50.0),
+                   trial(Condition::kC, 35.0)};
   const std::string sut = session_page(result, {}).html();
   for (const char* figure : {"20.00", "50.00", "35.00", "50 %", "4.04", "9.62", "7.01", "47 %"}) {
     EXPECT_THAT(sut, HasSubstr(figure));
@@ -29,7 +32,7 @@ TEST(SessionPageTest, TheSessionsFiguresStandNextToThePapers) {
 
 TEST(SessionPageTest, AConditionThatDidNotRunHasNoFigure) {
   session::SessionResult result;
-  result.trials = {trial('A', 20.0)};
+  result.trials = {trial(Condition::kA, 20.0)};
   const std::string sut = session_page(result, {}).html();
   EXPECT_THAT(sut, HasSubstr("20.00"));
   EXPECT_THAT(sut, Not(HasSubstr("nan")));

@@ -12,12 +12,15 @@
 namespace stillhand::lab {
 namespace {
 
+using session::Condition;
+
 using nlohmann::ordered_json;
 using testing::ElementsAre;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-session::TrialResult trial(char label, double rms_error_mm, double dwell, double crossover_hz) {
+session::TrialResult trial(Condition label, double rms_error_mm, double dwell,
+                           double crossover_hz) {
   session::TrialResult result{};
   result.label = label;
   result.metrics.rms_error_mm = rms_error_mm;
@@ -30,9 +33,11 @@ session::TrialResult trial(char label, double rms_error_mm, double dwell, double
 /// The means of the paper's Table I.
 session::SessionResult papers_session() {
   session::SessionResult result;
-  for (const char label : {'A', 'B', 'C'}) {
+  for (const Condition label : session::kPaperConditions) {
     const auto of = [label](const session::Metric& metric) {
-      return label == 'A' ? metric.paper_a : label == 'B' ? metric.paper_b : metric.paper_c;
+      return label == Condition::kA   ? metric.paper_a
+             : label == Condition::kB ? metric.paper_b
+                                      : metric.paper_c;
     };
     result.trials.push_back(
         trial(label, of(session::kMetrics[0]), of(session::kMetrics[1]), of(session::kMetrics[2])));
@@ -40,7 +45,7 @@ session::SessionResult papers_session() {
   return result;
 }
 
-session::TrialOutcome outcome(std::int64_t number, char label) {
+session::TrialOutcome outcome(std::int64_t number, Condition label) {
   session::TrialOutcome outcome{};
   outcome.planned.trial = {number, TrialPhase::kTracking, 3100, 5000, 2000};
   outcome.planned.label = label;
@@ -72,8 +77,7 @@ TEST(SummaryJsonTest, AMitigationStandsNextToTheLettersWithTheStudysShare) {
   result.trials[0].settled_rms_error_mm = 10.0;
   result.trials[1].settled_rms_error_mm = 50.0;
   result.trials[2].settled_rms_error_mm = 20.0;
-  session::TrialResult damped =
-      trial(static_cast<char>(session::Condition::kDampingForce), 6.83, 0.4, 0.2);
+  session::TrialResult damped = trial(session::Condition::kDampingForce, 6.83, 0.4, 0.2);
   damped.settled_rms_error_mm = 18.0;
   damped.forces.motor_n = 6.5;
   damped.models.force = 1000;
@@ -159,12 +163,12 @@ TEST(SummaryJsonTest, ANumberThatCouldNotBeComputedIsNull) {
 }
 
 TEST(SummaryJsonTest, ATrialHasItsTicksMissesAndMarks) {
-  session::TrialOutcome marked = outcome(2, 'C');
+  session::TrialOutcome marked = outcome(2, Condition::kC);
   marked.completed = false;
   marked.aborted = "rig: \"peer gone\"\n";
   marked.misses = {1, 2, 3};
   marked.marks = {{"deadline missed", "rig", "stillhand/sensed", "sensing", "late", 4000, 7, 12.5}};
-  const auto json = json_of({}, {outcome(1, 'A'), marked})["trials"];
+  const auto json = json_of({}, {outcome(1, Condition::kA), marked})["trials"];
   ASSERT_EQ(json.size(), 2u);
   EXPECT_TRUE(json[0]["aborted"].is_null());
   EXPECT_EQ(json[0]["condition"], "A");
@@ -190,7 +194,7 @@ TEST(SummaryJsonTest, AMotionSaysWhatItsKindNeeds) {
   options.protocol.road_class = "D";
   options.protocol.road_speed_m_s = 12.5;
   const auto motion_of = [&](session::Motion kind) {
-    session::TrialOutcome moving = outcome(1, 'B');
+    session::TrialOutcome moving = outcome(1, Condition::kB);
     moving.planned.motion = kind;
     moving.asked = motion::MotionReport{};
     moving.asked->rms_m_s2 = 1.25;

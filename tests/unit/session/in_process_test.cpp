@@ -23,8 +23,8 @@ double rms(const std::vector<double>& values) {
 }
 
 struct Session {
-  std::map<char, identification::TrackingMetrics> metrics;
-  std::map<char, TrialSignals> signals;
+  std::map<Condition, identification::TrackingMetrics> metrics;
+  std::map<Condition, TrialSignals> signals;
   identification::FeedthroughModel model;
 };
 
@@ -76,12 +76,12 @@ class InProcessLoopTest : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(InProcessLoopTest, MotionDisturbsAndCancellationRestoresInAllThreeMetrics) {
   const auto m = run_session(GetParam()).metrics;
-  EXPECT_GT(m.at('B').rms_error_mm, m.at('A').rms_error_mm);
-  EXPECT_LT(m.at('C').rms_error_mm, m.at('B').rms_error_mm);
-  EXPECT_LT(m.at('B').dwell_ratio, m.at('A').dwell_ratio);
-  EXPECT_GT(m.at('C').dwell_ratio, m.at('B').dwell_ratio);
-  EXPECT_LT(m.at('B').crossover_hz, m.at('A').crossover_hz);
-  EXPECT_GT(m.at('C').crossover_hz, m.at('B').crossover_hz);
+  EXPECT_GT(m.at(Condition::kB).rms_error_mm, m.at(Condition::kA).rms_error_mm);
+  EXPECT_LT(m.at(Condition::kC).rms_error_mm, m.at(Condition::kB).rms_error_mm);
+  EXPECT_LT(m.at(Condition::kB).dwell_ratio, m.at(Condition::kA).dwell_ratio);
+  EXPECT_GT(m.at(Condition::kC).dwell_ratio, m.at(Condition::kB).dwell_ratio);
+  EXPECT_LT(m.at(Condition::kB).crossover_hz, m.at(Condition::kA).crossover_hz);
+  EXPECT_GT(m.at(Condition::kC).crossover_hz, m.at(Condition::kB).crossover_hz);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, InProcessLoopTest, testing::Values(1, 2, 3, 4, 5));
@@ -89,18 +89,19 @@ INSTANTIATE_TEST_SUITE_P(Seeds, InProcessLoopTest, testing::Values(1, 2, 3, 4, 5
 TEST(InProcessLoopTest, TheSameSeedGivesTheSameBits) {
   const Session first = run_session(3);
   const Session again = run_session(3);
-  EXPECT_EQ(first.signals.at('C').tracking.cursor_m, again.signals.at('C').tracking.cursor_m);
+  EXPECT_EQ(first.signals.at(Condition::kC).tracking.cursor_m,
+            again.signals.at(Condition::kC).tracking.cursor_m);
   EXPECT_EQ(first.model.control.numerator, again.model.control.numerator);
-  EXPECT_NE(first.signals.at('C').tracking.cursor_m,
-            run_session(4).signals.at('C').tracking.cursor_m);
+  EXPECT_NE(first.signals.at(Condition::kC).tracking.cursor_m,
+            run_session(4).signals.at(Condition::kC).tracking.cursor_m);
 }
 
 TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
   const Session session = run_session(1);
-  EXPECT_EQ(rms(session.signals.at('I').motor_n), 0.0);
-  EXPECT_EQ(rms(session.signals.at('A').motor_n), 0.0);
-  EXPECT_EQ(rms(session.signals.at('B').motor_n), 0.0);
-  EXPECT_GT(rms(session.signals.at('C').motor_n), 1.0);
+  EXPECT_EQ(rms(session.signals.at(Condition::kIdentification).motor_n), 0.0);
+  EXPECT_EQ(rms(session.signals.at(Condition::kA).motor_n), 0.0);
+  EXPECT_EQ(rms(session.signals.at(Condition::kB).motor_n), 0.0);
+  EXPECT_GT(rms(session.signals.at(Condition::kC).motor_n), 1.0);
 }
 
 // What the model cannot know, services/rig/METHOD.md: the arm that tracks is stiffer than the idle
@@ -108,7 +109,7 @@ TEST(InProcessLoopTest, TheMotorIsOffExceptInC) {
 // up to 10 %; together 34 % in RMS.  The delay of two ticks and the motor's lag add less than 3 %.
 // More than 0.8 cancelled would mean that something knows too much.
 TEST(InProcessLoopTest, CancelsWhatTheIdleArmCanTellOfTheTrackingOne) {
-  const TrialSignals signals = run_session(1).signals.at('C');
+  const TrialSignals signals = run_session(1).signals.at(Condition::kC);
   const double cancelled = cancelled_share(signals.feedthrough_n, signals.motor_n);
   EXPECT_GT(cancelled, 0.55);
   EXPECT_LT(cancelled, 0.80);

@@ -32,13 +32,13 @@ inline std::string file_of(const std::vector<std::byte>& bytes) {
 }
 
 /// Tracking trial of five seconds from a tick on.
-inline TrialOutcome outcome_of(std::int64_t number, char label, Tick start_tick) {
+inline TrialOutcome outcome_of(std::int64_t number, Condition label, Tick start_tick) {
   TrialOutcome outcome;
   outcome.planned = PlannedTrial{};
   outcome.planned.trial = {number, TrialPhase::kTracking, start_tick, kTrial_ticks, 100};
   outcome.planned.label = label;
-  outcome.planned.moving = label != 'A';
-  outcome.planned.cancellation = label == 'C';
+  outcome.planned.moving = label != Condition::kA;
+  outcome.planned.cancellation = label == Condition::kC;
   outcome.completed = true;
   return outcome;
 }

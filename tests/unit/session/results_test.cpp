@@ -30,10 +30,10 @@ TEST(EvaluateTest, ACursorThatIsOffByTheSameEverywhereHasThatError) {
   for (const double off_m : {0.0, 0.010, -0.014, 0.016}) {
     Tape tape;
     tape.whole_tracking(kStart, kEnd, off_m);
-    const auto sut = evaluate(tape.close(), {outcome_of(2, 'A', kStart)});
+    const auto sut = evaluate(tape.close(), {outcome_of(2, Condition::kA, kStart)});
     ASSERT_EQ(sut.trials.size(), 1u);
     EXPECT_EQ(sut.trials[0].number, 2);
-    EXPECT_EQ(sut.trials[0].label, 'A');
+    EXPECT_EQ(sut.trials[0].label, Condition::kA);
     // Target and cursor are below 0.05 m: their difference is exact to 1e-17 m.
     EXPECT_NEAR(sut.trials[0].metrics.rms_error_mm, 1000.0 * std::abs(off_m), 1e-11);
     EXPECT_EQ(sut.trials[0].metrics.dwell_ratio, std::abs(off_m) < 0.015 ? 1.0 : 0.0);
@@ -49,14 +49,14 @@ TEST(EvaluateTest, ATrialThatTheRecordingLacksDoesNotCount) {
       for (Tick tick = kStart; tick < kEnd; ++tick) {
         if (tick < from || tick >= from + lost) tape.tracking(tick, 0.0, 0.0);
       }
-      const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+      const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
       EXPECT_EQ(sut.trials.size(), lost == 1000 ? 1u : 0u) << from;
       EXPECT_EQ(sut.unrecorded.size(), lost == 1000 ? 0u : 1u) << from;
     }
   }
   Tape nothing;
   nothing.tracking(kEnd + 1'000'000, 0.0, 0.0);
-  const auto sut = evaluate(nothing.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(nothing.close(), {outcome_of(1, Condition::kA, kStart)});
   EXPECT_EQ(sut.unrecorded.at(1), "the recording lacks 5000 of its 5000 ticks in one piece");
 }
 
@@ -66,7 +66,7 @@ TEST(EvaluateTest, OnlyTheMeasuredTicksCount) {
   for (Tick tick = kStart - 100; tick < kStart; ++tick) tape.tracking(tick, 1.0, 0.0);
   tape.whole_tracking(kStart, kEnd, 0.010);
   for (Tick tick = kEnd; tick < kEnd + 100; ++tick) tape.tracking(tick, 1.0, 0.0);
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
   EXPECT_NEAR(sut.trials.at(0).metrics.rms_error_mm, 10.0, 1e-11);
 }
 
@@ -77,7 +77,7 @@ TEST(EvaluateTest, TheSettledErrorLeavesOutTheFirstThird) {
   for (Tick tick = kStart; tick < kEnd; ++tick) {
     tape.tracking(tick, tick < kStart + kThird ? 0.020 : 0.006, 0.0);
   }
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
   EXPECT_NEAR(sut.trials.at(0).settled_rms_error_mm, 6.0, 1e-11);
   EXPECT_GT(sut.trials.at(0).metrics.rms_error_mm, 12.0);
 }
@@ -91,7 +91,7 @@ TEST(EvaluateTest, AModelOfAFreeStickIsNotTheSessionsModel) {
     model.to_position(to_position);
     tape.file.add(topics::kFeedthroughModel, model);
   }
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
   ASSERT_TRUE(sut.model);
   EXPECT_EQ(sut.model->model(), 0);
 }
@@ -127,17 +127,17 @@ TEST(EvaluateTest, TheModelsOfAMitigationAreThoseOfItsTrial) {
     tape.file.add(topics::kMotorCommand, command);
   }
   const std::string path = tape.close();
-  const auto models = [&](const std::vector<mitigation::Part>& parts, char label) {
+  const auto models = [&](const std::vector<mitigation::Part>& parts, Condition label) {
     TrialOutcome outcome = outcome_of(4, label, kStart);
     outcome.planned.parts = parts;
     return evaluate(path, {outcome}).trials.at(0).models;
   };
-  EXPECT_EQ(models({{PartKind::kSignal}}, 's').position, 2);
-  EXPECT_EQ(models({{PartKind::kSignal}}, 's').force, std::nullopt);
-  EXPECT_EQ(models({{PartKind::kPredictedSignal}}, 'm').force, 1000);
-  EXPECT_EQ(models({{PartKind::kPredictedSignal}}, 'm').position, std::nullopt);
-  EXPECT_EQ(models({}, 'C').force, 1000);
-  EXPECT_EQ(models({{PartKind::kImpedance}}, 'd').force, std::nullopt);
+  EXPECT_EQ(models({{PartKind::kSignal}}, Condition::kSignal).position, 2);
+  EXPECT_EQ(models({{PartKind::kSignal}}, Condition::kSignal).force, std::nullopt);
+  EXPECT_EQ(models({{PartKind::kPredictedSignal}}, Condition::kModelFilter).force, 1000);
+  EXPECT_EQ(models({{PartKind::kPredictedSignal}}, Condition::kModelFilter).position, std::nullopt);
+  EXPECT_EQ(models({}, Condition::kC).force, 1000);
+  EXPECT_EQ(models({{PartKind::kImpedance}}, Condition::kDamping).force, std::nullopt);
 }
 
 // The sample before is held: 500 ticks of the error 0, then 20 lost ones that hold it, then 12 mm.
@@ -148,7 +148,7 @@ TEST(EvaluateTest, ALostSampleHoldsTheOneBeforeAndIsCounted) {
     if (n >= 500 && n < 520) continue;
     tape.tracking(tick, n < 500 ? 0.0 : 0.012, 0.0);
   }
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
   EXPECT_EQ(sut.trials.at(0).missing_ticks, 20);
   EXPECT_NEAR(sut.trials[0].metrics.rms_error_mm, 12.0 * std::sqrt(4480.0 / 5000.0), 1e-11);
   EXPECT_EQ(sut.lost_ticks.at(std::string(topics::kTrackingSample.name)), 20);
@@ -157,7 +157,7 @@ TEST(EvaluateTest, ALostSampleHoldsTheOneBeforeAndIsCounted) {
 TEST(EvaluateTest, SamplesMissingAtBothEndsAreCountedToo) {
   Tape tape;
   tape.whole_tracking(kStart + 30, kEnd - 7, 0.0);
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
   EXPECT_EQ(sut.trials.at(0).missing_ticks, 37);
 }
 
@@ -167,7 +167,7 @@ TEST(EvaluateTest, ASampleThatComesTwiceCountsOnce) {
     tape.tracking(tick, 0.010, 0.0);
     if (tick % 3 == 0) tape.tracking(tick, 0.010, 0.0);
   }
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'A', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kA, kStart)});
   EXPECT_EQ(sut.trials.at(0).missing_ticks, 0);
   EXPECT_NEAR(sut.trials[0].metrics.rms_error_mm, 10.0, 1e-11);
 }
@@ -175,8 +175,9 @@ TEST(EvaluateTest, ASampleThatComesTwiceCountsOnce) {
 TEST(EvaluateTest, OnlyCompletedTrackingTrialsAreEvaluated) {
   Tape tape;
   tape.whole_tracking(kStart, kStart + 2 * kTrial_ticks, 0.0);
-  std::vector<TrialOutcome> outcomes{outcome_of(0, 'I', kStart), outcome_of(1, 'A', kStart),
-                                     outcome_of(2, 'A', kEnd)};
+  std::vector<TrialOutcome> outcomes{outcome_of(0, Condition::kIdentification, kStart),
+                                     outcome_of(1, Condition::kA, kStart),
+                                     outcome_of(2, Condition::kA, kEnd)};
   outcomes[0].planned.trial.phase = TrialPhase::kPegged;
   outcomes[1].completed = false;
   outcomes[1].aborted = "stopped";
@@ -203,7 +204,7 @@ TEST(EvaluateTest, OnlyACounterforceHasADelay) {
   force(tape, 0.8, 3);
   const std::string path = tape.close();
   const auto delays = [&](const std::vector<mitigation::Part>& parts) {
-    TrialOutcome outcome = outcome_of(1, 'f', kStart);
+    TrialOutcome outcome = outcome_of(1, Condition::kDampingForce, kStart);
     outcome.planned.parts = parts;
     return evaluate(path, {outcome}).trials.at(0).counterforce_delay_s.has_value();
   };
@@ -219,7 +220,7 @@ TEST(EvaluateTest, TheCancelledShareIsThePartThatTheMotorRemoves) {
     Tape tape;
     tape.whole_tracking(kStart, kEnd, 0.0);
     force(tape, share, 0);
-    const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+    const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
     EXPECT_NEAR(sut.trials.at(0).cancelled_share.value(), 1.0 - std::abs(1.0 - share), 1e-12);
   }
 }
@@ -229,7 +230,7 @@ TEST(EvaluateTest, AMotorThatComesLateCancelsLessAndItsDelayIsFound) {
   Tape tape;
   tape.whole_tracking(kStart, kEnd, 0.0);
   force(tape, 1.0, 10);
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   const double left = 2.0 * std::sin(std::numbers::pi * 2.0 * 0.010);
   // 10 whole cycles a trial: the RMS of both is exact but for rounding.
   EXPECT_NEAR(sut.trials.at(0).cancelled_share.value(), 1.0 - left, 1e-9);
@@ -241,9 +242,9 @@ TEST(EvaluateTest, ATrialThatDoesNotMoveHasNoShareAndOneThatDoesNotCancelHasNoDe
   tape.whole_tracking(kStart, kEnd, 0.0);
   force(tape, 0.0, 0);
   const std::string path = tape.close();
-  const auto still = evaluate(path, {outcome_of(1, 'A', kStart)});
+  const auto still = evaluate(path, {outcome_of(1, Condition::kA, kStart)});
   EXPECT_FALSE(still.trials.at(0).cancelled_share.has_value());
-  const auto moving = evaluate(path, {outcome_of(1, 'B', kStart)});
+  const auto moving = evaluate(path, {outcome_of(1, Condition::kB, kStart)});
   EXPECT_NEAR(moving.trials.at(0).cancelled_share.value(), 0.0, 1e-12);
   EXPECT_FALSE(moving.trials[0].counterforce_delay_s.has_value());
   EXPECT_FALSE(moving.trials[0].sensor_to_command.has_value());
@@ -262,7 +263,7 @@ TEST(EvaluateTest, LatenciesAreQuantilesOverTheTrialsCommands) {
   }
   tape.motor(kStart, 0, 999'000'000);
   tape.motor(kEnd, 1'000'000, 999'000'000);
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   const auto latency = sut.trials.at(0).sensor_to_command.value();
   EXPECT_NEAR(latency.p50_us, 2500.0, 1.0);
   EXPECT_NEAR(latency.p99_us, 4950.0, 1.0);
@@ -280,7 +281,8 @@ TEST(EvaluateTest, TheUseOfACommandIsTheFirstStepThatNamesIt) {
     const bool missed = tick % 4 == 3;
     tape.used(tick, at_ns, missed ? tick - 1 : tick, at_ns + 200'000);
   }
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart), outcome_of(1, 'B', kStart)});
+  const auto sut = evaluate(
+      tape.close(), {outcome_of(1, Condition::kC, kStart), outcome_of(1, Condition::kB, kStart)});
   EXPECT_DOUBLE_EQ(sut.trials.at(0).same_tick_share.value(), 0.75);
   EXPECT_DOUBLE_EQ(sut.trials[0].sensor_to_force.value().p50_us, 200.0);
   EXPECT_DOUBLE_EQ(sut.trials[0].sensor_to_force.value().max_us, 200.0);
@@ -299,7 +301,7 @@ TEST(EvaluateTest, StampsOfOtherHostsAreTakenOverToOneClock) {
     const std::int64_t at_ns = 1'000'000'000 + 1'000'000 * tick;
     tape.motor(tick, at_ns + 5'000'000, at_ns + 300'000 - 2'000'000);
   }
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   const auto latency = sut.trials.at(0).sensor_to_command.value();
   EXPECT_DOUBLE_EQ(latency.p50_us, 300.0);
   EXPECT_DOUBLE_EQ(latency.max_us, 300.0);
@@ -328,7 +330,7 @@ TEST(EvaluateTest, TheCostOfAHoldIsTheErrorOfTheHeldFiftyHertzModel) {
   force(tape, 0.0, 0);
   for (Tick tick = kStart; tick < kEnd; ++tick) tape.sensed(tick, acceleration_m_s2(tick));
   tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   double left = 0.0;
   double all = 0.0;
   for (Tick n = 2000; n < kTrial_ticks; ++n) {
@@ -348,7 +350,7 @@ TEST(EvaluateTest, TheNewestModelIsTakenAndAnUnusableOneIsNotJudged) {
   force(tape, 0.0, 0);
   tape.file.add(topics::kFeedthroughModel, static_model(-3.2, true));
   tape.file.add(topics::kFeedthroughModel, static_model(-1.0, false));
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'C', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kC, kStart)});
   ASSERT_TRUE(sut.model.has_value());
   EXPECT_FALSE(sut.model->usable());
   EXPECT_FALSE(sut.conversion.has_value());
@@ -358,7 +360,7 @@ TEST(EvaluateTest, WithoutAModelThereIsNoneAndNoCost) {
   Tape tape;
   tape.whole_tracking(kStart, kEnd, 0.0);
   force(tape, 0.0, 0);
-  const auto sut = evaluate(tape.close(), {outcome_of(1, 'B', kStart)});
+  const auto sut = evaluate(tape.close(), {outcome_of(1, Condition::kB, kStart)});
   EXPECT_FALSE(sut.model.has_value());
   EXPECT_FALSE(sut.conversion.has_value());
 }

@@ -34,9 +34,9 @@ std::vector<SubjectResult> with_crossovers(const std::vector<std::array<double, 
   std::vector<SubjectResult> results;
   for (const auto& row : rows) {
     SubjectResult result;
-    result.trials['A'] = trial_of(20.0 + row[0], 0.5 - row[0], row[0]);
-    result.trials['B'] = trial_of(50.0 + row[1], 0.2 + row[1], row[1]);
-    result.trials['C'] = trial_of(30.0 + row[2], 0.3 + row[2], row[2]);
+    result.trials[kA] = trial_of(20.0 + row[0], 0.5 - row[0], row[0]);
+    result.trials[kB] = trial_of(50.0 + row[1], 0.2 + row[1], row[1]);
+    result.trials[kC] = trial_of(30.0 + row[2], 0.3 + row[2], row[2]);
     results.push_back(result);
   }
   return results;
@@ -97,54 +97,54 @@ TEST(SummarisedTest, TheOrderOfSubjectsDoesNotMoveTheBox) {
 // Eq. SU-5 by hand: (B - C) / (B - A) of the means.
 TEST(AnalyseTest, RestorationIsTheShareOfTheLossThatComesBack) {
   const Analysis sut = analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration.at('C')[kCrossover].share.value(), (0.1 - 0.15) / (0.1 - 0.25),
+  EXPECT_NEAR(sut.restoration.at(kC)[kCrossover].share.value(), (0.1 - 0.15) / (0.1 - 0.25),
               kRounding);
-  EXPECT_NEAR(sut.restoration.at('C')[kError].share.value(), (50.1 - 30.15) / (50.1 - 20.25),
+  EXPECT_NEAR(sut.restoration.at(kC)[kError].share.value(), (50.1 - 30.15) / (50.1 - 20.25),
               kRounding);
 }
 
 TEST(AnalyseTest, ASubjectWhoseCrossoverIsMissingInOneConditionIsLeftOutOfItsRestoration) {
   const Analysis sut =
       analyse(with_crossovers({{0.30, 0.10, 0.15}, {0.20, kNan, 0.50}, {0.20, 0.10, 0.15}}));
-  EXPECT_NEAR(sut.restoration.at('C')[kCrossover].share.value(), (0.1 - 0.15) / (0.1 - 0.25),
+  EXPECT_NEAR(sut.restoration.at(kC)[kCrossover].share.value(), (0.1 - 0.15) / (0.1 - 0.25),
               kRounding);
-  EXPECT_EQ(sut.conditions.at('B')[kCrossover].known, 2u);
+  EXPECT_EQ(sut.conditions.at(kB)[kCrossover].known, 2u);
 }
 
 TEST(AnalyseTest, WithoutALossThereIsNoRestoration) {
   const Analysis same = analyse(with_crossovers({{0.25, 0.25, 0.5}, {0.5, 0.5, 0.5}}));
-  EXPECT_FALSE(same.restoration.at('C')[kCrossover].share.has_value());
+  EXPECT_FALSE(same.restoration.at(kC)[kCrossover].share.has_value());
   const Analysis unknown = analyse(with_crossovers({{kNan, 0.25, 0.5}, {0.5, kNan, 0.5}}));
-  EXPECT_FALSE(unknown.restoration.at('C')[kCrossover].share.has_value());
+  EXPECT_FALSE(unknown.restoration.at(kC)[kCrossover].share.has_value());
 }
 
 TEST(AnalyseTest, CPrimeAndCPlusAreComparedWithBAndWithTheCancellerBeforeThem) {
   auto results = random_results(6, "ABC", 9);
   for (SubjectResult& result : results) {
-    result.trials[kFollowing] = result.trials['A'];
-    result.trials[kAugmented] = result.trials['B'];
+    result.trials[kCPrime] = result.trials[kA];
+    result.trials[kCPlus] = result.trials[kB];
   }
   const Analysis sut = analyse(results);
   std::vector<std::string> pairs;
   for (const Comparison& each : sut.comparisons) pairs.push_back(pair_word(each.from, each.to));
   EXPECT_THAT(pairs, ElementsAre("A-B", "B-C", "B-C'", "B-C+", "C-C'", "C'-C+", "C-C+"));
-  EXPECT_NEAR(sut.restoration.at(kFollowing)[kError].share.value(), 1.0, 1e-9);
-  EXPECT_NEAR(sut.restoration.at(kAugmented)[kError].share.value(), 0.0, 1e-9);
-  EXPECT_TRUE(sut.cancelled_share.contains(kAugmented));
+  EXPECT_NEAR(sut.restoration.at(kCPrime)[kError].share.value(), 1.0, 1e-9);
+  EXPECT_NEAR(sut.restoration.at(kCPlus)[kError].share.value(), 0.0, 1e-9);
+  EXPECT_TRUE(sut.cancelled_share.contains(kCPlus));
 }
 
 // C as good as A is 1, C as bad as B is 0, whatever the numbers.
 TEST(AnalyseTest, RestorationIsOneForConditionAAgainAndZeroForConditionBAgain) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     auto results = random_results(5, "ABC", seed);
-    for (SubjectResult& result : results) result.trials['C'] = result.trials['A'];
+    for (SubjectResult& result : results) result.trials[kC] = result.trials[kA];
     // A copy: the analysis lives until the end of the statement.
-    const Restoration whole = analyse(results).restoration.at('C');
+    const Restoration whole = analyse(results).restoration.at(kC);
     for (const auto& restored : whole) {
       ASSERT_NEAR(restored.share.value(), 1.0, 1e-9);
     }
-    for (SubjectResult& result : results) result.trials['C'] = result.trials['B'];
-    const Restoration none = analyse(results).restoration.at('C');
+    for (SubjectResult& result : results) result.trials[kC] = result.trials[kB];
+    const Restoration none = analyse(results).restoration.at(kC);
     for (const auto& restored : none) {
       ASSERT_NEAR(restored.share.value(), 0.0, 1e-9);
     }
@@ -176,7 +176,7 @@ TEST(AnalyseTest, AComparisonIsTheSecondConditionMinusTheFirst) {
 std::vector<std::string> compared(const std::string& conditions) {
   std::vector<std::string> names;
   for (const Comparison& each : analyse(random_results(4, conditions, 1)).comparisons) {
-    names.push_back({each.from, '-', each.to});
+    names.push_back(pair_word(each.from, each.to));
   }
   return names;
 }
@@ -193,7 +193,7 @@ TEST(AnalyseTest, ACrossoverThatOneSubjectLacksLeavesTheOtherMetricsTheirTests) 
       analyse(with_crossovers({{0.3, 0.1, 0.2}, {0.2, 0.15, 0.1}, {0.4, 0.1, 0.3}}));
   EXPECT_TRUE(sut.comparisons[0].tests[kCrossover].has_value());
   auto results = random_results(5, "ABC", 4);
-  results[2].trials['B'].metrics.crossover_hz = kNan;
+  results[2].trials[kB].metrics.crossover_hz = kNan;
   const Analysis lacking = analyse(results);
   for (const Comparison& comparison : lacking.comparisons) {
     EXPECT_TRUE(comparison.tests[kError].has_value());
@@ -206,8 +206,8 @@ TEST(AnalyseTest, ACrossoverThatOneSubjectLacksLeavesTheOtherMetricsTheirTests) 
 TEST(AnalyseTest, EqualDifferencesHaveNoTest) {
   auto results = random_results(3, "AB", 5);
   for (SubjectResult& result : results) {
-    result.trials['A'].metrics.rms_error_mm = 20.0;
-    result.trials['B'].metrics.rms_error_mm = 45.0;
+    result.trials[kA].metrics.rms_error_mm = 20.0;
+    result.trials[kB].metrics.rms_error_mm = 45.0;
   }
   EXPECT_FALSE(analyse(results).comparisons.front().tests[kError].has_value());
 }
@@ -238,10 +238,11 @@ TEST(AnalyseTest, TheThirdsOfATrialAreReplicatesOfItsCell) {
 TEST(AnalyseTest, OtherConditionsThanThePapersHaveTestsOverAllOfThem) {
   EXPECT_FALSE(analyse(random_results(6, "ABC", 7)).all_main_effects);
   EXPECT_FALSE(analyse(random_results(6, "A", 7)).all_main_effects);
+  const std::vector<Condition> all{kA, kB, kC, kCPrime, kCPlus};
   for (const auto& [conditions, words] :
-       {std::pair{"ABCcp", "A, B, C, C', C+"}, {"BCp", "B, C, C+"}, {"AB", "A, B"}}) {
+       {std::pair{all, "A, B, C, C', C+"}, {{kB, kC, kCPlus}, "B, C, C+"}, {{kA, kB}, "A, B"}}) {
     const Analysis sut = analyse(random_results(6, conditions, 7));
-    const auto count = static_cast<double>(std::string_view(conditions).size());
+    const auto count = static_cast<double>(conditions.size());
     EXPECT_EQ(words_of_conditions(sut), words);
     ASSERT_TRUE(sut.all_main_effects && sut.all_main_effects->manova) << words;
     EXPECT_EQ(sut.all_main_effects->manova->error_df, 5.0 * (count - 1.0));
@@ -249,7 +250,7 @@ TEST(AnalyseTest, OtherConditionsThanThePapersHaveTestsOverAllOfThem) {
     EXPECT_EQ(sut.all_thirds->manova->error_df, 6.0 * count * 2.0);
   }
   const Analysis paper = analyse(random_results(6, "ABC", 7));
-  EXPECT_EQ(analyse(random_results(6, "ABCcp", 7)).main_effects.manova->error_df,
+  EXPECT_EQ(analyse(random_results(6, all, 7)).main_effects.manova->error_df,
             paper.main_effects.manova->error_df);
 }
 
@@ -268,7 +269,7 @@ TEST(AnalyseTest, AThirdIsMadeOfWindowsThatDoNotOverlap) {
     }
   }
   EXPECT_EQ(analyse(results).thirds.manova->condition.wilks_lambda, lambda);
-  results[0].trials['B'].metrics.moving_rms_mm[50] += 5.0;
+  results[0].trials[kB].metrics.moving_rms_mm[50] += 5.0;
   EXPECT_NE(analyse(results).thirds.manova->condition.wilks_lambda, lambda);
 }
 
@@ -292,9 +293,9 @@ TEST(AnalyseTest, TrialsTooShortForThirdsSayWhichLengthIsNeeded) {
 // together (5/4) / (3/4).  The paper's number is the mean of 0 dB and 20 log 3.
 TEST(AnalyseTest, ThePooledOpenLoopIsTheQuotientOfTheMeans) {
   auto results = random_results(2, "B", 10);
-  results[0].trials['B'].metrics.lines[4].gain = 1.0;
-  results[1].trials['B'].metrics.lines[4].gain = 3.0;
-  const PooledLine sut = analyse(results).open_loop.at('B')[4];
+  results[0].trials[kB].metrics.lines[4].gain = 1.0;
+  results[1].trials[kB].metrics.lines[4].gain = 3.0;
+  const PooledLine sut = analyse(results).open_loop.at(kB)[4];
   EXPECT_NEAR(sut.reference_db, 20.0 * std::log10(5.0 / 3.0), 1e-12);
   EXPECT_NEAR(sut.paper_db, 10.0 * std::log10(3.0), 1e-12);
 }
@@ -305,8 +306,8 @@ TEST(AnalyseTest, SubjectsWhoAgreeHaveTheSameOpenLoopByBothEstimates) {
   auto results = random_results(5, "A", 11);
   for (int i = 0; i < 50; ++i) {
     const std::complex<double> gain(any(engine), any(engine));
-    for (SubjectResult& result : results) result.trials['A'].metrics.lines[0].gain = gain;
-    const PooledLine sut = analyse(results).open_loop.at('A')[0];
+    for (SubjectResult& result : results) result.trials[kA].metrics.lines[0].gain = gain;
+    const PooledLine sut = analyse(results).open_loop.at(kA)[0];
     ASSERT_NEAR(sut.paper_db, 20.0 * std::log10(std::abs(gain)), 1e-11);
     // 1 + G may be small: its relative rounding error grows to 1e-16 / |1 + G|.
     ASSERT_NEAR(sut.reference_db, sut.paper_db, 1e-12 / std::abs(1.0 + gain) + 1e-11);
@@ -316,10 +317,10 @@ TEST(AnalyseTest, SubjectsWhoAgreeHaveTheSameOpenLoopByBothEstimates) {
 TEST(AnalyseTest, TheRemnantsShareIsTheMedianAndNeverAboveOne) {
   auto results = random_results(3, "A", 12);
   const auto set = [&](double a, double b, double c) {
-    results[0].trials['A'].metrics.lines[7].error_snr = a;
-    results[1].trials['A'].metrics.lines[7].error_snr = b;
-    results[2].trials['A'].metrics.lines[7].error_snr = c;
-    return analyse(results).open_loop.at('A')[7].remnant_share;
+    results[0].trials[kA].metrics.lines[7].error_snr = a;
+    results[1].trials[kA].metrics.lines[7].error_snr = b;
+    results[2].trials[kA].metrics.lines[7].error_snr = c;
+    return analyse(results).open_loop.at(kA)[7].remnant_share;
   };
   EXPECT_EQ(set(2.0, 4.0, 8.0), 0.25);
   EXPECT_EQ(set(0.1, 0.5, 8.0), 1.0);
@@ -330,8 +331,8 @@ TEST(AnalyseTest, TheRemnantsShareIsTheMedianAndNeverAboveOne) {
 TEST(AnalyseTest, TheSurvivingShareIsOfTheOwnModelsGain) {
   auto results = random_results(3, "BC", 13);
   const auto set = [&](std::size_t i, double b, double own, double wrong) {
-    results[i].trials['B'].metrics.rms_error_mm = b;
-    results[i].trials['C'].metrics.rms_error_mm = own;
+    results[i].trials[kB].metrics.rms_error_mm = b;
+    results[i].trials[kC].metrics.rms_error_mm = own;
     results[i].wrong['O'] = trial_of(wrong, 0.3, 0.2);
   };
   set(0, 50.0, 30.0, 35.0);
@@ -351,8 +352,8 @@ TEST(AnalyseTest, OnlyConditionCHasACancelledShare) {
   const Analysis sut = analyse(results);
   ASSERT_EQ(sut.cancelled_share.size(), 1u);
   double sum = 0.0;
-  for (const SubjectResult& result : results) sum += result.trials.at('C').cancelled_share;
-  EXPECT_NEAR(sut.cancelled_share.at('C').mean, sum / 4.0, kRounding);
+  for (const SubjectResult& result : results) sum += result.trials.at(kC).cancelled_share;
+  EXPECT_NEAR(sut.cancelled_share.at(kC).mean, sum / 4.0, kRounding);
   EXPECT_TRUE(analyse(random_results(4, "ABD", 14)).cancelled_share.empty());
 }
 

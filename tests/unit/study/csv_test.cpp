@@ -86,7 +86,7 @@ TEST_F(CsvFilesTest, ANumberIsReadBackBitForBit) {
   const std::size_t force = column_of(rows, "feedthrough rms [N]");
   for (std::size_t r = 1; r < rows.size(); ++r) {
     const auto& result = record_.results.at(std::stoul(rows[r][0]) - 1);
-    const TrackedTrial& trial = result.trials.at(rows[r][1].at(0));
+    const TrackedTrial& trial = result.trials.at(named(rows[r][1]));
     EXPECT_EQ(std::stod(rows[r].at(error)), trial.metrics.rms_error_mm);
     EXPECT_EQ(std::stod(rows[r].at(force)), trial.feedthrough_rms_n);
   }
@@ -119,7 +119,7 @@ TEST_F(CsvFilesTest, TheRowOfAModelHoldsItsRateAndEveryCoefficient) {
 TEST_F(CsvFilesTest, GainAndPhaseAreThoseOfTheOpenLoop) {
   const Rows& rows = sut_.at("open_loop.csv");
   for (std::size_t r = 1; r < rows.size(); ++r) {
-    const auto& trial = record_.results.at(std::stoul(rows[r][0]) - 1).trials.at(rows[r][1].at(0));
+    const auto& trial = record_.results.at(std::stoul(rows[r][0]) - 1).trials.at(named(rows[r][1]));
     const auto& line = trial.metrics.lines.at((r - 1) % signal::kReferenceLines);
     ASSERT_EQ(std::stod(rows[r][2]), line.frequency_hz);
     const auto gain = std::polar(std::stod(rows[r][3]), std::stod(rows[r][4]));
@@ -133,13 +133,13 @@ TEST_F(CsvFilesTest, AWindowIsNamedByTheSecondItStartsAt) {
   EXPECT_THAT(std::vector<std::string>(rows[1].begin(), rows[1].begin() + 3),
               ElementsAre("1", "A", "0"));
   EXPECT_EQ(rows[51][2], "50");
-  EXPECT_EQ(std::stod(rows[51][3]), record_.results[0].trials.at('A').metrics.moving_rms_mm[50]);
+  EXPECT_EQ(std::stod(rows[51][3]), record_.results[0].trials.at(kA).metrics.moving_rms_mm[50]);
 }
 
 TEST(CsvFileTest, ANumberThatIsNotFiniteIsAnEmptyCell) {
   auto results = made::random_results(1, "B", 62);
-  results[0].trials['B'].metrics.crossover_hz = kNan;
-  results[0].trials['B'].metrics.dwell_ratio = std::numeric_limits<double>::infinity();
+  results[0].trials[kB].metrics.crossover_hz = kNan;
+  results[0].trials[kB].metrics.dwell_ratio = std::numeric_limits<double>::infinity();
   const auto tables = tables_of(made::record_of(results));
   const Rows& rows = tables.at("metrics.csv");
   EXPECT_EQ(rows[1].at(column_of(rows, "crossover [Hz]")), "");
@@ -149,7 +149,7 @@ TEST(CsvFileTest, ANumberThatIsNotFiniteIsAnEmptyCell) {
 
 TEST(CsvFileTest, ARemnantLargerThanTheErrorIsAllOfIt) {
   auto results = made::random_results(1, "B", 63);
-  results[0].trials['B'].metrics.lines[2].error_snr = 0.25;
+  results[0].trials[kB].metrics.lines[2].error_snr = 0.25;
   const auto tables = tables_of(made::record_of(results));
   EXPECT_EQ(tables.at("open_loop.csv")[3].at(5), "1");
 }

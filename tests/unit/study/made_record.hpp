@@ -64,7 +64,8 @@ inline Identification identification_of(std::uint64_t seed) {
 }
 
 /// Subjects with random metrics, and all that an analysis reads.
-inline std::vector<SubjectResult> random_results(std::size_t subjects, const std::string& order,
+inline std::vector<SubjectResult> random_results(std::size_t subjects,
+                                                 const std::vector<Condition>& order,
                                                  std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> error_mm(20.0, 60.0);
@@ -73,11 +74,11 @@ inline std::vector<SubjectResult> random_results(std::size_t subjects, const std
   for (std::size_t i = 0; i < subjects; ++i) {
     results[i].order = order;
     results[i].identification = identification_of(seed + i);
-    std::string sorted = order;
+    std::vector<Condition> sorted = order;
     std::ranges::sort(sorted);
-    for (const char condition : sorted) {
+    for (const Condition condition : sorted) {
       TrackedTrial trial = trial_of(error_mm(engine), share(engine), share(engine));
-      trial.cancelled_share = condition == 'C' ? share(engine) : 0.0;
+      trial.cancelled_share = condition == kC ? share(engine) : 0.0;
       trial.feedthrough_rms_n = error_mm(engine);
       for (int s = 0; s <= 50; ++s) {  // windows of 10 s that start 0 to 50 s into a minute
         trial.metrics.moving_rms_mm.push_back(error_mm(engine));
@@ -87,6 +88,14 @@ inline std::vector<SubjectResult> random_results(std::size_t subjects, const std
     }
   }
   return results;
+}
+
+/// @param order  "BCA"
+inline std::vector<SubjectResult> random_results(std::size_t subjects, const std::string& order,
+                                                 std::uint64_t seed) {
+  std::vector<Condition> conditions;
+  for (const char letter : order) conditions.push_back(named(std::string(1, letter)));
+  return random_results(subjects, conditions, seed);
 }
 
 inline StudyRecord record_of(std::vector<SubjectResult> results) {

@@ -95,7 +95,7 @@ TEST_F(ModelInUseTest, ATrialWithoutCancellationHasNoModelToLack) {
   run(0, 1000, 2000);
   trial_.letter = 'B';
   EXPECT_EQ(other(), "");
-  EXPECT_EQ(condition_in(recorded_, trial_, 0), 'B');
+  EXPECT_EQ(condition_in(recorded_, trial_, 0), kB);
 }
 
 TEST_F(ModelInUseTest, ARecordingWithoutModelsIsJudgedByTheCommands) {
@@ -110,7 +110,7 @@ TEST_F(ModelInUseTest, ATrialWithAMitigationIsJudgedByTheTrialThatItsCommandsNam
   trial_.letter = '?';
   trial_.named = "signal";
   trial_.trial.number = 4;
-  EXPECT_EQ(condition_in(recorded_, trial_, 0), 's');
+  EXPECT_EQ(condition_in(recorded_, trial_, 0), kSignal);
   EXPECT_THAT(other(), HasSubstr("has no motor command"));
   run(0, 1000, 2000);
   for (auto& command : recorded_.motor_commands) {
@@ -121,7 +121,9 @@ TEST_F(ModelInUseTest, ATrialWithAMitigationIsJudgedByTheTrialThatItsCommandsNam
   for (std::size_t i = 0; i < 300; ++i) recorded_.motor_commands[i].mitigated_trial(3);
   EXPECT_EQ(other(), "ran without signal in 30 % of it");
   trial_.named = "of another program";
-  EXPECT_EQ(condition_in(recorded_, trial_, 0), '?');
+  EXPECT_EQ(condition_in(recorded_, trial_, 0), std::nullopt);
+  trial_.named = "C";
+  EXPECT_EQ(condition_in(recorded_, trial_, 0), std::nullopt);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using testing::IsEmpty;
 RecordedSource source_of(const std::vector<std::string>& codes) {
   RecordedSource out;
   for (const std::string& code : codes) {
-    out.trials.push_back({code, "01", 1, 1, 'A', made::trial_of(20.0, 0.5, 0.2), 0.0});
+    out.trials.push_back({code, "01", 1, 1, kA, made::trial_of(20.0, 0.5, 0.2), 0.0});
   }
   return out;
 }
@@ -92,13 +92,13 @@ TEST_F(PairedChecksTest, TheSamePeopleWithoutADifferenceHaveNoTest) {
 TEST_F(PairedChecksTest, PeopleAreFoundByTheirCodesAndAMissingOneHasNoSay) {
   auto made_again = recorded_;
   made_again.erase(made_again.begin() + 1);  // P02 could not be simulated
-  made_again[0].trials['B'].metrics.rms_error_mm -= 1.0;
-  made_again[1].trials['B'].metrics.rms_error_mm -= 2.0;
-  made_again[2].trials['B'].metrics.rms_error_mm -= 6.0;
+  made_again[0].trials[kB].metrics.rms_error_mm -= 1.0;
+  made_again[1].trials[kB].metrics.rms_error_mm -= 2.0;
+  made_again[2].trials[kB].metrics.rms_error_mm -= 6.0;
   const auto sut =
       paired_checks(codes_, analyse(recorded_), {"P01", "P03", "P04"}, analyse(made_again));
   const PairedCheck& b = sut[kMetricCount];
-  EXPECT_EQ(b.condition, 'B');
+  EXPECT_EQ(b.condition, kB);
   EXPECT_EQ(b.n, 3u);
   EXPECT_NEAR(b.mean_difference, 3.0, 1e-12);
   ASSERT_TRUE(b.test.has_value());
@@ -108,7 +108,7 @@ TEST_F(PairedChecksTest, PeopleAreFoundByTheirCodesAndAMissingOneHasNoSay) {
 
 TEST_F(PairedChecksTest, MoreThanChanceIsWhatHolmLeavesBelowTheLevel) {
   SimulatedSide sut;
-  sut.paired = {{.condition = 'A', .p_holm = 0.04}, {.condition = 'B', .p_holm = 0.06}, {}};
+  sut.paired = {{.condition = kA, .p_holm = 0.04}, {.condition = kB, .p_holm = 0.06}, {}};
   EXPECT_EQ(sut.more_than_chance(), 1u);
 }
 
@@ -117,7 +117,7 @@ TEST(ChanceSentenceTest, WhereNobodyWasComparedNothingIsSaidOfADifference) {
   EXPECT_THAT(chance_sentence(sut), HasSubstr("nobody was both"));
   sut.paired = {{}};  // a metric that nobody has
   EXPECT_THAT(chance_sentence(sut), HasSubstr("nobody was both"));
-  sut.paired.push_back({.condition = 'A', .n = 2});
+  sut.paired.push_back({.condition = kA, .n = 2});
   EXPECT_THAT(chance_sentence(sut), HasSubstr("do not differ at all"));
 }
 

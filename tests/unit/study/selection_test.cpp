@@ -26,17 +26,17 @@ Person person_of(const std::string& code, double rms_error_b_mm = 50.0, double d
   out.code = code;
   out.identification = made::identification_of(1);
   std::int64_t place = 0;
-  for (const char condition : {'A', 'B', 'C'}) {
+  for (const Condition condition : kPaperConditions) {
     ++place;
-    const double error_mm = condition == 'B' ? rms_error_b_mm : 20.0 + 0.1 * rms_error_b_mm;
+    const double error_mm = condition == kB ? rms_error_b_mm : 20.0 + 0.1 * rms_error_b_mm;
     out.trials.push_back({code, "01", place, place, condition,
-                          made::trial_of(error_mm, condition == 'A' ? dwell_a : 0.2, 0.2), 0.0});
+                          made::trial_of(error_mm, condition == kA ? dwell_a : 0.2, 0.2), 0.0});
   }
   return out;
 }
 
 Registration registration_of(const experiment::Exclusion& rules) {
-  return {rules, 1, {'A', 'B', 'C'}, {{'A', 'B'}}, 0.05, {}, {}};
+  return {rules, 1, {kA, kB, kC}, {{kA, kB}}, 0.05, {}, {}};
 }
 
 std::vector<std::string> codes_of(const std::vector<Person>& people) {
@@ -77,7 +77,7 @@ TEST_F(SelectionTest, ATrialThatLostMoreThanTheRuleAllowsGoesAndOneAtTheLimitSta
 }
 
 TEST_F(SelectionTest, ARepetitionDoesNotStandForAMissingTrial) {
-  people_[0].trials[2].condition = 'A';  // A, B, A
+  people_[0].trials[2].condition = kA;  // A, B, A
   const auto lines = apply({});
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("P01: 0.6667 of the planned trials"));
@@ -126,10 +126,10 @@ TEST_F(SelectionTest, SeveralTrialsOfAConditionAreAveraged) {
   again.tracked.metrics.crossover_hz = made::kNan;
   people_[0].trials.push_back(again);
   const Selection sut = select(people_);
-  const auto& metrics = sut.results[0].trials.at('B').metrics;
+  const auto& metrics = sut.results[0].trials.at(kB).metrics;
   EXPECT_EQ(metrics.rms_error_mm, 46.0);
   EXPECT_EQ(metrics.crossover_hz, 0.2);  // of the trial where it was found
-  EXPECT_EQ(sut.results[0].order, "ABC");
+  EXPECT_THAT(sut.results[0].order, testing::ElementsAre(kA, kB, kC));
   EXPECT_EQ(sut.used.size(), 10u);
 }
 
@@ -140,7 +140,7 @@ TEST_F(SelectionTest, OfTheTrialsOfOnePlaceOfThePlanTheLastCounts) {
   again.tracked.metrics.rms_error_mm = 44.0;
   people_[0].trials.push_back(again);
   const Selection sut = select(people_);
-  EXPECT_EQ(sut.results[0].trials.at('B').metrics.rms_error_mm, 44.0);
+  EXPECT_EQ(sut.results[0].trials.at(kB).metrics.rms_error_mm, 44.0);
   EXPECT_EQ(sut.used.size(), 9u);
   EXPECT_FALSE(sut.used.contains({"P01", "01", 2}));
   EXPECT_THAT(apply({}), IsEmpty());  // every place of the plan has a trial
@@ -155,11 +155,11 @@ TEST_F(SelectionTest, ATrialThatARuleTakesAwayHasNoSayInTheMean) {
   people_[0].trials.push_back(again);
   EXPECT_EQ(apply({}).size(), 1u);
   // The repetition lost too many samples: the trial before it counts again.
-  EXPECT_EQ(select(people_).results[0].trials.at('B').metrics.rms_error_mm, 48.0);
+  EXPECT_EQ(select(people_).results[0].trials.at(kB).metrics.rms_error_mm, 48.0);
 }
 
 TEST_F(SelectionTest, AConditionThatOnePersonHasAndAPersonWithFewerTrialsAreNamed) {
-  people_[0].trials[2].condition = kAugmented;  // C of P01
+  people_[0].trials[2].condition = kCPlus;  // C of P01
   people_.push_back(person_of("P04", 51.0));
   for (std::size_t i = 1; i < people_.size(); ++i) {
     if (i == 2) continue;

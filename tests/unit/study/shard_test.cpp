@@ -32,9 +32,9 @@ constexpr std::int64_t kSubjects = 5;
 // Chosen numbers; those that JSON text would lose are among them.
 std::vector<SubjectResult> chosen() {
   auto results = made::random_results(kSubjects, "CAB", 7);
-  results[0].trials['B'].metrics.crossover_hz = made::kNan;
-  results[1].trials['A'].metrics.lines[3].error_snr = std::numeric_limits<double>::infinity();
-  results[2].trials['A'].cancelled_share = -0.0;
+  results[0].trials[kB].metrics.crossover_hz = made::kNan;
+  results[1].trials[kA].metrics.lines[3].error_snr = std::numeric_limits<double>::infinity();
+  results[2].trials[kA].cancelled_share = -0.0;
   results[3].identification.control.peak_gain = std::numeric_limits<double>::denorm_min();
   results[3].identification.paper.heldout.samples = std::numeric_limits<std::size_t>::max();
   results[4].identification.paper_unusable = "unstable: pole 1.02, \"x\"";
@@ -109,7 +109,7 @@ TEST_F(ShardTest, ShardsInAnyOrderGiveTheResultsOfOneRunBitForBit) {
   }
   // Both as a single shard: the text holds every bit of every number.
   EXPECT_EQ(shard_file(sut, {1, 1}), shard_file(one, {1, 1}));
-  EXPECT_TRUE(std::signbit(sut.results[2].trials.at('A').cancelled_share));
+  EXPECT_TRUE(std::signbit(sut.results[2].trials.at(kA).cancelled_share));
   StudyRecord analysed = sut;
   analysed.analysis = analyse(analysed.results);
   one.analysis = analyse(one.results);

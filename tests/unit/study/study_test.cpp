@@ -49,8 +49,8 @@ Analysis* PaperStudyTest::analysis_ = nullptr;
 TEST_F(PaperStudyTest, ConditionsAAndBAreThoseOfTableI) {
   const PaperTables paper = paper_tables(kPaperUnit_mm);
   for (std::size_t k = 0; k < kMetricCount; ++k) {
-    const double a = analysis_->conditions.at('A')[k].mean;
-    const double b = analysis_->conditions.at('B')[k].mean;
+    const double a = analysis_->conditions.at(kA)[k].mean;
+    const double b = analysis_->conditions.at(kB)[k].mean;
     const auto mean_a = static_cast<Eigen::Index>(k);
     const auto b_less_a = static_cast<Eigen::Index>(kMetricCount + k);
     const double bound = 2.0 * std::sqrt(2.0);
@@ -74,7 +74,7 @@ TEST_F(PaperStudyTest, EverySignificanceOfThePaperIsFoundBelowOnePercent) {
 
 // C is a prediction: bounded only by what any cancellation must do, on both sides.
 TEST_F(PaperStudyTest, CancellationRestoresPartOfWhatMotionTook) {
-  for (const auto& restored : analysis_->restoration.at('C')) {
+  for (const auto& restored : analysis_->restoration.at(kC)) {
     ASSERT_TRUE(restored.share.has_value());
     EXPECT_GT(*restored.share, 0.2);
     EXPECT_LT(*restored.share, 1.0);
@@ -102,7 +102,7 @@ TEST_F(PaperStudyTest, TheIdentifiedModelsHaveTheShapeOfThePapersFigureSix) {
 }
 
 TEST_F(PaperStudyTest, TheEstimateThroughTheReferenceAgreesWhereTheRemnantIsSmall) {
-  const auto& lines = analysis_->open_loop.at('A');
+  const auto& lines = analysis_->open_loop.at(kA);
   for (std::size_t k = 0; k < 8; ++k) {
     EXPECT_NEAR(lines[k].paper_db, lines[k].reference_db, 1.5) << lines[k].frequency_hz << " Hz";
   }
@@ -130,11 +130,11 @@ TEST(StudyTest, TheSameSeedGivesTheSameBitsWhateverTheNumberOfThreads) {
 TEST(StudyTest, MoreSubjectsLeaveTheFirstOnesAsTheyWere) {
   const auto few = run_study(study_of(2, 20.0, 20.0), kNoProgress);
   const auto more = run_study(study_of(3, 20.0, 20.0), kNoProgress);
-  EXPECT_EQ(few[1].trials.at('C').cursor_m, more[1].trials.at('C').cursor_m);
+  EXPECT_EQ(few[1].trials.at(kC).cursor_m, more[1].trials.at(kC).cursor_m);
 }
 
 TEST(StudyTest, TheOrderOfConditionsIsShuffledBySubject) {
-  std::set<std::string> orders;
+  std::set<std::vector<Condition>> orders;
   for (const SubjectResult& result : run_study(study_of(8, 5.0, 10.0), kNoProgress)) {
     orders.insert(result.order);
   }
@@ -146,8 +146,8 @@ TEST(StudyTest, EveryMitigationHelpsAgainstMotionAlone) {
   StudyOptions options = study_of(4, 60.0, 40.0);
   options.protocol.conditions = session::parse_conditions("B,D,F", session::kStudyConditions);
   const Analysis analysis = analyse(run_study(options, kNoProgress));
-  for (const char condition : {'D', 'F'}) {
-    EXPECT_LT(analysis.conditions.at(condition)[0].mean, analysis.conditions.at('B')[0].mean);
+  for (const Condition condition : {kD, kF}) {
+    EXPECT_LT(analysis.conditions.at(condition)[0].mean, analysis.conditions.at(kB)[0].mean);
   }
 }
 
@@ -159,7 +159,7 @@ TEST(StudyTest, TheShortestTrialsThereAreGiveAStudy) {
 
 TEST(StudyTest, OneSubjectGivesMeansAndNoTests) {
   const Analysis analysis = analyse(run_study(study_of(1, 20.0, 20.0), kNoProgress));
-  EXPECT_FALSE(analysis.conditions.at('A')[0].standard_deviation.has_value());
+  EXPECT_FALSE(analysis.conditions.at(kA)[0].standard_deviation.has_value());
   EXPECT_FALSE(analysis.comparisons.front().tests[0].has_value());
   EXPECT_FALSE(analysis.main_effects.manova.has_value());
   EXPECT_NE(analysis.main_effects.reason, "");

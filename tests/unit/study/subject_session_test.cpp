@@ -53,19 +53,17 @@ TEST(StudyOptionsTest, AreCalibratedWithTheirDefaultsAndThePapersLengthsOnly) {
 
 TEST(SubjectSessionTest, EveryConditionRunsOnceInTheOrderThatIsReported) {
   const SubjectResult sut = run_subject(short_study("A,B,C,D,E,F"), 0);
-  std::string order = sut.order;
-  std::ranges::sort(order);
-  EXPECT_EQ(order, "ABCDEF");
+  EXPECT_THAT(sut.order, testing::UnorderedElementsAre(kA, kB, kC, kD, kE, kF));
   EXPECT_EQ(sut.trials.size(), 6u);
   for (const auto& [condition, trial] : sut.trials) {
-    EXPECT_TRUE(std::isfinite(trial.metrics.rms_error_mm)) << condition;
+    EXPECT_TRUE(std::isfinite(trial.metrics.rms_error_mm)) << name_of(condition);
     // Five seconds at 20 Hz; the paper's excerpt of twenty is longer than the trial.
-    EXPECT_EQ(trial.target_m.size(), 100u) << condition;
-    EXPECT_EQ(trial.cursor_m.size(), 100u) << condition;
-    EXPECT_EQ(trial.cancelled_share != 0.0, condition == 'C') << condition;
+    EXPECT_EQ(trial.target_m.size(), 100u) << name_of(condition);
+    EXPECT_EQ(trial.cursor_m.size(), 100u) << name_of(condition);
+    EXPECT_EQ(trial.cancelled_share != 0.0, condition == kC) << name_of(condition);
   }
   // On a still platform the hand's own involuntary force is left.
-  EXPECT_LT(sut.trials.at('A').feedthrough_rms_n, 0.2 * sut.trials.at('B').feedthrough_rms_n);
+  EXPECT_LT(sut.trials.at(kA).feedthrough_rms_n, 0.2 * sut.trials.at(kB).feedthrough_rms_n);
 }
 
 // Conditions differ in what is added only: with nothing added, E and F have the rig of B, and the
@@ -73,14 +71,14 @@ TEST(SubjectSessionTest, EveryConditionRunsOnceInTheOrderThatIsReported) {
 TEST(SubjectSessionTest, AStickWithoutAddedDampingAndAnArmWithoutARestAreThoseOfB) {
   StudyOptions options = short_study("B");
   options.population = linear_hand();
-  const double b = run_subject(options, 1).trials.at('B').feedthrough_rms_n;
+  const double b = run_subject(options, 1).trials.at(kB).feedthrough_rms_n;
   options.damped_stick_n_s_m = 0.0;
   options.protocol.conditions = session::parse_conditions("E", session::kStudyConditions);
-  const double plain = run_subject(options, 1).trials.at('E').feedthrough_rms_n;
+  const double plain = run_subject(options, 1).trials.at(kE).feedthrough_rms_n;
   // The own rig of E has no pegged trial behind it: noise and start differ, the motion does not.
   EXPECT_NEAR(plain / b, 1.0, 0.05);
   options.damped_stick_n_s_m = 40.0;
-  const TrackedTrial damped = run_subject(options, 1).trials.at('E');
+  const TrackedTrial damped = run_subject(options, 1).trials.at(kE);
   EXPECT_NE(damped.metrics.rms_error_mm, 0.0);
   EXPECT_NEAR(damped.feedthrough_rms_n / b, 1.0, 0.05);  // a force with the stick held: no say
 }
@@ -89,18 +87,18 @@ TEST(SubjectSessionTest, AnotherModelMeetsTheSameMotionAndTarget) {
   const StudyOptions options = short_study("C");
   const SubjectResult own = run_subject(options, 0);
   const TrackedTrial sut = run_with_model(options, own, 0, used_model(own.identification));
-  EXPECT_EQ(sut.target_m, own.trials.at('C').target_m);
-  EXPECT_NEAR(sut.feedthrough_rms_n / own.trials.at('C').feedthrough_rms_n, 1.0, 0.05);
-  EXPECT_NEAR(sut.cancelled_share, own.trials.at('C').cancelled_share, 0.05);
+  EXPECT_EQ(sut.target_m, own.trials.at(kC).target_m);
+  EXPECT_NEAR(sut.feedthrough_rms_n / own.trials.at(kC).feedthrough_rms_n, 1.0, 0.05);
+  EXPECT_NEAR(sut.cancelled_share, own.trials.at(kC).cancelled_share, 0.05);
   EXPECT_EQ(sut.cursor_m, run_with_model(options, own, 0, used_model(own.identification)).cursor_m);
 }
 
 // Cancellation, Eq. CC-16: 51 ms of the low-pass, 20 ms of one sample, 10 ms of the hold.
 TEST(SubjectSessionTest, ThePapersCancellerIsLateByItsChain) {
   StudyOptions options = short_study("C");
-  const TrackedTrial now = run_subject(options, 0).trials.at('C');
+  const TrackedTrial now = run_subject(options, 0).trials.at(kC);
   options.canceller = "paper";
-  const TrackedTrial sut = run_subject(options, 0).trials.at('C');
+  const TrackedTrial sut = run_subject(options, 0).trials.at(kC);
   EXPECT_EQ(sut.target_m, now.target_m);
   EXPECT_NEAR(sut.counterforce_delay_s - now.counterforce_delay_s, 0.0815, 0.005);
   EXPECT_LT(sut.cancelled_share, now.cancelled_share - 0.1);
@@ -140,8 +138,8 @@ TEST(SubjectSessionTest, TheUndeclaredEffectIsOneForAllSubjectsOfASeed) {
   EXPECT_EQ(text(options), sut);
   options.undeclared_effect = 6;
   EXPECT_NE(text(options), sut);
-  const double plain = run_subject(short_study("B"), 0).trials.at('B').metrics.rms_error_mm;
-  const double changed = run_subject(options, 0).trials.at('B').metrics.rms_error_mm;
+  const double plain = run_subject(short_study("B"), 0).trials.at(kB).metrics.rms_error_mm;
+  const double changed = run_subject(options, 0).trials.at(kB).metrics.rms_error_mm;
   EXPECT_NE(plain, changed);
 }
 

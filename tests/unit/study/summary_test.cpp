@@ -57,16 +57,16 @@ TEST(SummaryTest, EveryNumberIsReadBackBitForBit) {
   const json& b = sut.at("conditions").at("B").at("rms_error_mm");
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(b.at("per_subject")[i].get<double>(),
-              record.results[i].trials.at('B').metrics.rms_error_mm);
+              record.results[i].trials.at(kB).metrics.rms_error_mm);
   }
-  EXPECT_EQ(b.at("mean").get<double>(), record.analysis.conditions.at('B')[0].mean);
+  EXPECT_EQ(b.at("mean").get<double>(), record.analysis.conditions.at(kB)[0].mean);
   EXPECT_EQ(sut.at("restoration").at("dwell_ratio").get<double>(),
-            record.analysis.restoration.at('C')[1].share.value());
+            record.analysis.restoration.at(kC)[1].share.value());
 }
 
 TEST(SummaryTest, AValueThatCouldNotBeComputedIsNullAndKeepsItsPlace) {
   auto results = made::random_results(3, "ABC", 73);
-  results[1].trials['B'].metrics.crossover_hz = kNan;
+  results[1].trials[kB].metrics.crossover_hz = kNan;
   const json sut = summary_of(made::record_of(results));
   const json& crossover = sut.at("conditions").at("B").at("crossover_hz");
   EXPECT_TRUE(crossover.at("per_subject")[0].is_number());
@@ -79,7 +79,7 @@ TEST(SummaryTest, AValueThatCouldNotBeComputedIsNullAndKeepsItsPlace) {
 
 TEST(SummaryTest, AConditionWithoutAnyCrossoverHasANullMean) {
   auto results = made::random_results(2, "AB", 74);
-  for (SubjectResult& result : results) result.trials['B'].metrics.crossover_hz = kNan;
+  for (SubjectResult& result : results) result.trials[kB].metrics.crossover_hz = kNan;
   const json sut = summary_of(made::record_of(results));
   EXPECT_TRUE(sut.at("conditions").at("B").at("crossover_hz").at("mean").is_null());
   EXPECT_TRUE(sut.at("conditions").at("B").at("crossover_hz").at("std").is_null());
@@ -102,12 +102,12 @@ TEST(SummaryTest, OnlyConditionCHasACancelledShare) {
 TEST(SummaryTest, AWrongModelIsNamedByItsOwner) {
   auto results = made::random_results(2, "ABC", 77);
   for (SubjectResult& result : results) {
-    result.trials['B'].metrics.rms_error_mm = 50.0;
-    result.trials['C'].metrics.rms_error_mm = 30.0;
+    result.trials[kB].metrics.rms_error_mm = 50.0;
+    result.trials[kC].metrics.rms_error_mm = 30.0;
     result.wrong['O'] = made::trial_of(45.0, 0.3, 0.2);
     result.wrong['M'] = made::trial_of(35.0, 0.4, 0.2);
   }
-  results[1].trials['C'].metrics.rms_error_mm = 50.0;
+  results[1].trials[kC].metrics.rms_error_mm = 50.0;
   const json sut = summary_of(made::record_of(results)).at("wrong_models");
   EXPECT_DOUBLE_EQ(sut.at("other_subject").at("surviving_share")[0].get<double>(), 0.25);
   EXPECT_DOUBLE_EQ(sut.at("mean_of_others").at("surviving_share")[0].get<double>(), 0.75);
