@@ -26,7 +26,7 @@ struct CoreConfigs {
   sensing::Config sensing;
   motion::MotionGenerator::Config motion;
   cancellation::Config cancellation;
-  cancellation::CommandFilterConfig command_filter;
+  cancellation::HandCompliance command_filter = cancellation::kAverageHand;
   display::TrackingDisplay::Config display;
   human_operator::CrossoverConfig human_operator;
   identification::Config identification;

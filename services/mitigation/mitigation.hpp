@@ -32,7 +32,7 @@ struct Recipe {
   std::optional<LmsConfig> lms_force = {};
   std::optional<SignalConfig> signal = {};
   /// Given: `force` drives no motor, and CC-5 takes it off the command.
-  std::optional<cancellation::CommandFilterConfig> predicted_signal = {};
+  std::optional<cancellation::HandCompliance> predicted_signal = {};
   std::optional<LmsConfig> lms_signal = {};
   std::optional<ShapingConfig> shaping = {};
   cancellation::Config canceller = {};  ///< its limits bound the sum of all forces

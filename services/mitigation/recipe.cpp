@@ -32,16 +32,8 @@ void require(const Part& part, std::size_t count) {
   }
 }
 
-// CC-4's bounds of a hand.  A force of nothing carries it through the check of a model.
-bool within_bounds(const cancellation::HandCompliance& hand) {
-  cancellation::ControlModel carrier = cancellation::control_model({kControlRateHz, {0.0}, {1.0}});
-  carrier.adapts = hand;
-  return cancellation::check_model(carrier, {.max_gain_n_s2_m = 1.0, .max_path_force_n = 1.0})
-             .refusal == cancellation::Refusal::kNone;
-}
-
 void require_hand(const Part& part, const cancellation::HandCompliance& hand) {
-  if (within_bounds(hand)) return;
+  if (cancellation::is_hand(hand)) return;
   std::ostringstream got;
   got << "a hand of " << hand.mass_kg << " kg, " << hand.damping_n_s_m << " N s/m, "
       << hand.stiffness_n_m << " N/m, lever " << hand.lever_m << " m";
@@ -112,9 +104,7 @@ void add_schedule(const Part& part, Recipe& recipe) {
 void add_predicted_signal(const Part& part, const SessionModels& models, Recipe& recipe) {
   require(part, 4);
   recipe.force = force_of(models);
-  const cancellation::HandCompliance feels = hand(part);
-  recipe.predicted_signal = cancellation::CommandFilterConfig{feels.mass_kg, feels.damping_n_s_m,
-                                                              feels.stiffness_n_m, feels.lever_m};
+  recipe.predicted_signal = hand(part);
 }
 
 // The checks of CC-4, with a bound in metres: 1 m/s^2 moves a free stick to its stop at most.  The

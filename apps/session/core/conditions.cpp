@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "services/cancellation/core/command_filter.hpp"
-#include "services/mitigation/core/lms_filter.hpp"
 
 namespace stillhand::session {
 namespace {
@@ -22,16 +21,14 @@ constexpr double kDamping_n_s_m = 90.0;
 constexpr double kShapedStiffness_n_m = 200.0;
 constexpr double kShapedDamping_n_s_m = 60.0;
 constexpr double kStep = 0.01;  // of both LMS
+constexpr const cancellation::HandCompliance& kHand = cancellation::kAverageHand;
 
 Part hand(PartKind kind) {
-  const cancellation::CommandFilterConfig average;
-  return {kind, {average.mass_kg, average.damping_n_s_m, average.stiffness_n_m, average.lever_m}};
+  return {kind, {kHand.mass_kg, kHand.damping_n_s_m, kHand.stiffness_n_m, kHand.lever_m}};
 }
 
 Part lms_force() {
-  const mitigation::SecondaryPath average;
-  return {PartKind::kLmsForce,
-          {kStep, average.mass_kg, average.damping_n_s_m, average.stiffness_n_m}};
+  return {PartKind::kLmsForce, {kStep, kHand.mass_kg, kHand.damping_n_s_m, kHand.stiffness_n_m}};
 }
 
 ConditionRow row(const char* name, const char* alias, const char* title, unsigned where,

@@ -39,8 +39,7 @@ void add(const mitigation::Part& part, const Ingredients& from, Recipe& recipe) 
       return;
     case PartKind::kPredictedSignal:
       recipe.force = cancellation::control_model(from.models.pegged);
-      recipe.predicted_signal = cancellation::CommandFilterConfig{hand.mass_kg, hand.damping_n_s_m,
-                                                                  hand.stiffness_n_m, hand.lever_m};
+      recipe.predicted_signal = hand;
       return;
     case PartKind::kLmsSignal:
       recipe.lms_signal = mitigation::LmsConfig{chosen.lms_signal_step, {}};

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "services/cancellation/core/control_model.hpp"
 #include "services/signal/second_order_lag.hpp"
 
 namespace stillhand::cancellation {
 
-/// Stick with a tracking arm on it, stated at the hand: M x'' + B x' + K x = f.
-struct CommandFilterConfig {
-  double mass_kg = 1.394;
-  double damping_n_s_m = 11.18;
-  double stiffness_n_m = 1136.0;
-  double lever_m = 0.10;  ///< r, hand to pivot; paper II
-};
+/// Of the population's mean subject; lever: paper II.
+inline constexpr HandCompliance kAverageHand{1.394, 11.18, 1136.0, 0.10};
 
 /// Takes the predicted feedthrough off the command instead of off the hand, METHOD Eq. CC-5:
 ///
@@ -24,7 +20,7 @@ struct CommandFilterConfig {
 class CommandFilter {
  public:
   /// @throws stillhand::ConfigError unless M, K and r are positive and 0 < B < 2 sqrt(K M).
-  explicit CommandFilter(const CommandFilterConfig& config);
+  explicit CommandFilter(const HandCompliance& hand);
 
   /// @param theta_rad          stick angle, + right
   /// @param predicted_force_n  f_hat of the canceller at this tick, + right

@@ -141,17 +141,6 @@ std::int64_t lag_settle_ticks(const ControlModel& model) {
   return static_cast<std::int64_t>(std::min(ticks, static_cast<double>(kMaxSettle_ticks)));
 }
 
-// At least a hundredth of critical damping: what still has a third of its swing after 16 periods is
-// no arm, and a damping ratio that underflows to 0 is no oscillator that signal::SecondOrderLag can
-// step.
-bool is_hand(const HandCompliance& hand) {
-  constexpr double kLeastRatio = 0.01;
-  const double critical = 2.0 * std::sqrt(hand.mass_kg * hand.stiffness_n_m);
-  return hand.mass_kg >= 0.1 && hand.mass_kg <= 10.0 && hand.stiffness_n_m >= 50.0 &&
-         hand.stiffness_n_m <= 10'000.0 && hand.damping_n_s_m >= kLeastRatio * critical &&
-         hand.damping_n_s_m < critical && hand.lever_m >= 0.02 && hand.lever_m <= 0.5;
-}
-
 ModelCheck checked(const ControlModel& model, const ModelBounds& bounds) {
   const auto refused = [](Refusal why) { return ModelCheck{why, 0}; };
   if (!fits(model)) return refused(Refusal::kTooMany);
@@ -180,6 +169,17 @@ ModelCheck checked(const ControlModel& model, const ModelBounds& bounds) {
 }
 
 }  // namespace
+
+// At least a hundredth of critical damping: what still has a third of its swing after 16 periods is
+// no arm, and a damping ratio that underflows to 0 is no oscillator that signal::SecondOrderLag can
+// step.
+bool is_hand(const HandCompliance& hand) noexcept {
+  constexpr double kLeastRatio = 0.01;
+  const double critical = 2.0 * std::sqrt(hand.mass_kg * hand.stiffness_n_m);
+  return hand.mass_kg >= 0.1 && hand.mass_kg <= 10.0 && hand.stiffness_n_m >= 50.0 &&
+         hand.stiffness_n_m <= 10'000.0 && hand.damping_n_s_m >= kLeastRatio * critical &&
+         hand.damping_n_s_m < critical && hand.lever_m >= 0.02 && hand.lever_m <= 0.5;
+}
 
 std::string_view describe(Refusal refusal) noexcept {
   switch (refusal) {

@@ -54,6 +54,9 @@ struct ModelCheck {
 /// where that is too long, or never.
 std::int64_t settle_ticks(const signal::DifferenceModel& model);
 
+/// Whether mass, damping, stiffness and lever are those of an arm on a stick, CC-14.
+bool is_hand(const HandCompliance& hand) noexcept;
+
 /// Checks a control model, METHOD Eq. CC-4 and CC-14.  Stability is judged by the reflection
 /// coefficients (services/signal, Eq. SG-13) and by the poles, which fail differently when
 /// coefficients are ill conditioned; both must agree.  The gain is judged at 0 Hz, at 500 Hz, on

@@ -16,7 +16,7 @@ namespace {
 // A force held still moves the command by f / (K r).  After 5 s the free oscillation,
 // exp(-B/(2M) t) = exp(-3.44 t), is 3e-8 of it.
 TEST(CommandFilterTest, AConstantForceMovesTheCommandByItsStaticDeflection) {
-  const CommandFilterConfig config;
+  const HandCompliance& config = kAverageHand;
   CommandFilter sut(config);
   double theta_rad = 0.0;
   for (int n = 0; n < 5000; ++n) theta_rad = sut.step(0.2, 3.0);
@@ -26,7 +26,7 @@ TEST(CommandFilterTest, AConstantForceMovesTheCommandByItsStaticDeflection) {
 
 // Oracle: 1 / (K - M w^2 + j B w) at 1.5 Hz.  The held input lags by half a tick, w dt / 2 = 0.5 %.
 TEST(CommandFilterTest, AToneIsPredictedWithTheGainOfMassSpringAndDamper) {
-  const CommandFilterConfig config;
+  const HandCompliance& config = kAverageHand;
   CommandFilter sut(config);
   const double w = 2.0 * std::numbers::pi * 1.5;
   const double real = config.stiffness_n_m - config.mass_kg * w * w;
@@ -41,15 +41,15 @@ TEST(CommandFilterTest, AToneIsPredictedWithTheGainOfMassSpringAndDamper) {
 }
 
 TEST(CommandFilterTest, WithoutAForceTheCommandPassesUnchanged) {
-  CommandFilter sut{CommandFilterConfig{}};
+  CommandFilter sut{kAverageHand};
   EXPECT_EQ(sut.step(0.123, 0.0), 0.123);
 }
 
 TEST(CommandFilterTest, RefusesWhatIsNoMassOnASpring) {
-  CommandFilterConfig config;
+  HandCompliance config = kAverageHand;
   config.stiffness_n_m = -1.0;
   EXPECT_THROW(CommandFilter{config}, ConfigError);
-  config = {};
+  config = kAverageHand;
   config.damping_n_s_m = 100.0;  // above critical
   EXPECT_THROW(CommandFilter{config}, ConfigError);
 }

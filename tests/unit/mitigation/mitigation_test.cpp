@@ -225,7 +225,7 @@ TEST(MitigationTest, WhatTheMotorMovesIsTakenOffTheCommand) {
 TEST(MitigationTest, ThePredictedSignalMovesNoMotor) {
   Recipe recipe;
   recipe.force = cancellation::control_model(model());
-  recipe.predicted_signal = cancellation::CommandFilterConfig{};
+  recipe.predicted_signal = cancellation::kAverageHand;
   const Left sut = left_of(recipe, admittance::mean_arm());
   EXPECT_NEAR(sut.stick, 1.0, 1e-9);
   EXPECT_GT(std::abs(sut.command - 1.0), 0.1);
