@@ -68,7 +68,7 @@ ordered_json clocks_json(const session::SessionResult& result) {
 ordered_json disturbances_json(const session::SessionResult& result) {
   ordered_json list = ordered_json::array();
   for (const auto& [label, miss] : result.disturbances) {
-    list.push_back(ordered_json{{"condition", session::condition_label(label)},
+    list.push_back(ordered_json{{"condition", session::name_of(label)},
                                 {"time_s", miss.time_s},
                                 {"process", miss.process},
                                 {"late_s", miss.late_s},
@@ -254,7 +254,7 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   std::vector<std::string> lines;
   for (const auto& [label, miss] : worst) {
     if (lines.size() == kMost) break;
-    lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::condition_label(label),
+    lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::name_of(label),
                                 miss.time_s, session::what_happened(miss)));
   }
   if (worst.size() > kMost) {

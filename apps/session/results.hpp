@@ -76,7 +76,7 @@ struct RateConversionCost {
 /// A process was late while a trial that counts was measured, by more than a force command may be
 /// old: the force went down, and the trial's figures hold what that did.
 struct Disturbance {
-  char label;  ///< of the trial
+  Condition label;  ///< of the trial
   Miss miss;
 };
 

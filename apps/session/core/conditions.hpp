@@ -73,7 +73,7 @@ struct ConditionRow {
   const char* title;  ///< a word or two behind a letter; empty: the name says it
   unsigned where;     ///< of Where
   Means means;
-  /// With the numbers that the study chose on other people (apps/study/README.md, SU-18, seed
+  /// With the numbers that the study chose on other people (apps/study/METHOD.md, SU-18, seed
   /// 20261125) and the average hand of CC-5: no trial of a session changes them.  They say which
   /// models it needs.  Those of `scheduled` are the person's own, ProtocolOptions::arms.
   std::vector<mitigation::Part> parts;
