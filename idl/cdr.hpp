@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
-#include <fastcdr/exceptions/Exception.h>
-
 #include <cstddef>
 #include <span>
 #include <string_view>
 #include <vector>
+
+#include "fast_dds/cdr.hpp"
 
 namespace stillhand_msgs {
 class MotorCommand;
@@ -59,6 +57,17 @@ inline bool has_earlier_form(std::string_view type) noexcept {
          type == "stillhand_msgs::AugmentedModel" || type == "stillhand_msgs::Event";
 }
 
+/// A message as it is sent and recorded: CDR with the 4-byte encapsulation header.
+template <typename Message>
+std::vector<std::byte> to_cdr(const Message& message) {
+  eprosima::fastcdr::FastBuffer buffer;
+  fast_cdr::PlainCdr cdr(buffer);
+  cdr.serialize_encapsulation();
+  fast_cdr::write(cdr, message);
+  const auto* begin = reinterpret_cast<const std::byte*>(buffer.getBuffer());
+  return {begin, begin + cdr.length()};
+}
+
 /// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.  A
 /// message of the earlier form has zeros in the fields that were added since.
 /// @return false if the bytes are another message; `message` is then unspecified.
@@ -66,12 +75,10 @@ template <typename Message>
 bool from_cdr(std::span<const std::byte> bytes, Message& message) {
   const auto decoded = [&message](std::byte* begin, std::size_t size) {
     eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(begin), size);
-    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                               eprosima::fastcdr::Cdr::DDS_CDR);
+    fast_cdr::PlainCdr cdr(buffer);
     try {
       cdr.read_encapsulation();
-      message.deserialize(cdr);
-      return true;
+      return fast_cdr::read(cdr, size, message);
     } catch (const eprosima::fastcdr::exception::Exception&) {
       return false;
     }

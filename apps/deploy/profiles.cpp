@@ -164,6 +164,11 @@ std::string LabProfiles::of_server(const Inventory& inventory) const {
   const Host& host = inventory.hosts.front();
   add_note(document, inventory, host);
   set_transport(parts, inventory, host);
+  // Fast DDS's own server reads the file, and a name differs between versions of Fast DDS.
+  XMLElement* profiles = document.RootElement()->FirstChildElement("profiles");
+  for (const char* kind : {"data_writer", "data_reader"}) {
+    while (XMLElement* each = profiles->FirstChildElement(kind)) profiles->DeleteChild(each);
+  }
   set(parts.rtps, "prefix", kServerPrefix);
   set(parts.discovery, "discoveryProtocol", "SERVER");
   add_locator(parts.builtin->InsertNewChildElement("metatrafficUnicastLocatorList"), host.address,

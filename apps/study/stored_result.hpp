@@ -144,6 +144,7 @@ Json to_json(const Type& value) {
 }
 
 /// @throws nlohmann::json::exception for a missing name or a value of another type.
+// Called by its namespace: nlohmann has functions of this name, too.
 template <typename Type>
 void from_json(const Json& json, Type& value) {
   if constexpr (kPlain<Type>) {
@@ -153,12 +154,12 @@ void from_json(const Json& json, Type& value) {
   } else if constexpr (std::same_as<Type, std::complex<double>>) {
     value = {json.at(0).get<double>(), json.at(1).get<double>()};
   } else if constexpr (std::same_as<Type, std::map<Condition, TrackedTrial>>) {
-    for (const auto& [name, each] : json.items()) from_json(each, value[named(name)]);
+    for (const auto& [name, each] : json.items()) stored::from_json(each, value[named(name)]);
   } else if constexpr (List<Type>) {
     if constexpr (requires { value.resize(1); }) value.resize(json.size());
-    for (std::size_t i = 0; i < value.size(); ++i) from_json(json.at(i), value[i]);
+    for (std::size_t i = 0; i < value.size(); ++i) stored::from_json(json.at(i), value[i]);
   } else {
-    parts([&](const char* name, auto& part) { from_json(json.at(name), part); }, value);
+    parts([&](const char* name, auto& part) { stored::from_json(json.at(name), part); }, value);
   }
 }
 

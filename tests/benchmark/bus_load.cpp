@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/idl_text.hpp"
 #include "places.hpp"
@@ -22,7 +23,6 @@
 #include "services/recording/qos_texts.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/process/real_time.hpp"
-#include "tests/support/idl_fields.hpp"
 #include "tests/support/wait.hpp"
 
 namespace {
@@ -34,7 +34,7 @@ constexpr std::size_t kTopics = 10;
 constexpr std::int64_t kSlot_ns = 200'000;  // what is due in a slot is sent at its beginning
 constexpr const char* kType = "stillhand_msgs::RigTruth";
 
-std::size_t message_bytes() { return tests::cdr_of(Message{}).size() + 4; }
+std::size_t message_bytes() { return to_cdr(Message{}).size(); }
 
 int write_file(const std::string& path, std::int64_t rate, std::int64_t seconds) {
   recording::FileSink file(path);
@@ -47,17 +47,14 @@ int write_file(const std::string& path, std::int64_t rate, std::int64_t seconds)
     channels[i] = writer.add_channel("load/" + std::to_string(i), schema,
                                      recording::kMessageEncoding, recording::qos_texts(qos));
   }
-  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
   Message message;
   message.rig(1);
   for (std::int64_t n = 0; n < rate * seconds; ++n) {
     message.tick(n / static_cast<std::int64_t>(kTopics));
-    bytes.resize(4);
-    for (const char c : tests::cdr_of(message)) bytes.push_back(static_cast<std::byte>(c));
     const auto at_ns = static_cast<std::uint64_t>(n * runtime::kNsPerSecond / rate);
     const recording::Status status =
         writer.write(channels[static_cast<std::size_t>(n) % kTopics], static_cast<std::uint32_t>(n),
-                     at_ns, at_ns, bytes);
+                     at_ns, at_ns, to_cdr(message));
     if (!status.ok()) throw std::runtime_error(status.text);
   }
   if (const auto status = writer.close(); !status.ok()) throw std::runtime_error(status.text);

@@ -22,9 +22,11 @@
 #include <string>
 #include <vector>
 
+#include "fast_dds/names.hpp"
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/topics.hpp"
 #include "places.hpp"
+#include "services/runtime/bus/participant.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/real_time.hpp"
 #include "services/runtime/process/stop.hpp"
@@ -35,9 +37,9 @@
 namespace {
 
 using namespace stillhand;  // NOLINT(google-build-using-namespace): a program of one file
-namespace edds = eprosima::fastdds::dds;
-using eprosima::fastrtps::types::ReturnCode_t;
+namespace edds = runtime::edds;
 using runtime::monotonic_ns;
+using runtime::ok;
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 constexpr std::int64_t kWait_ns = 900'000;  // of the rig for its answer, from the tick on
@@ -47,10 +49,8 @@ constexpr const char* kProfile = "stream_1khz";
 class Participant {
  public:
   Participant(std::uint32_t domain, const std::string& profiles) {
+    runtime::load_profiles(profiles);
     auto* factory = edds::DomainParticipantFactory::get_instance();
-    if (factory->load_XML_profiles_file(profiles) != ReturnCode_t::RETCODE_OK) {
-      throw std::runtime_error("Fast DDS cannot read " + profiles);
-    }
     participant_ = factory->create_participant_with_profile(domain, "stillhand_participant");
     if (participant_ == nullptr) throw std::runtime_error("Fast DDS created no participant");
   }
@@ -86,7 +86,7 @@ struct OnSample final : edds::DataReaderListener {
   explicit OnSample(Call then) : call(std::move(then)) {}
   void on_data_available(edds::DataReader* reader) override {
     edds::SampleInfo info;
-    while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+    while (ok(reader->take_next_sample(&message, &info))) {
       if (info.valid_data) call(message);
     }
   }

@@ -64,7 +64,7 @@ void compare(Output replayed, const Output& recorded, Tick tick, Replay& replay)
   replayed.rig(recorded.rig());
   replayed.stamp_ns(recorded.stamp_ns());
   ++replay.compared;
-  if (tests::cdr_of(replayed) == tests::cdr_of(recorded)) return;
+  if (to_cdr(replayed) == to_cdr(recorded)) return;
   if (replay.different++ > 0) return;
   replay.first_difference_tick = tick;
   replay.first_difference =

@@ -4,15 +4,16 @@
 // on Fast CDR, as every process calls it.
 #include <array>
 #include <map>
+#include <span>
 #include <string>
 
+#include "idl/cdr.hpp"
 #include "idl/clock.h"
 #include "idl/control_loop.h"
 #include "idl/idl_text.hpp"
 #include "idl/model.h"
 #include "idl/recording.h"
 #include "idl/session.h"
-#include "tests/fuzz/read_cdr.hpp"
 #include "tests/fuzz/read_types.hpp"
 
 namespace {
@@ -22,12 +23,13 @@ using namespace stillhand_msgs;
 
 struct TopicType {
   const char* name;
-  void (*read)(std::vector<char>& bytes);
+  void (*read)(std::span<const std::byte> bytes);
 };
 
 template <typename Message>
-void read(std::vector<char>& bytes) {
-  fuzz::read_cdr<Message>(bytes);
+void read(std::span<const std::byte> bytes) {
+  Message message;
+  from_cdr(bytes, message);
 }
 
 // New ones at the end: seeds.cpp counts on the places.
@@ -63,12 +65,12 @@ constexpr std::array kTypes{TopicType{"MotorCommand", read<MotorCommand>},
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return 0;
   const TopicType& type = kTypes[bytes[0] % kTypes.size()];
-  std::vector<char> message(bytes + 1, bytes + size);
+  const auto message = std::as_bytes(std::span(bytes + 1, size - 1));
   const std::string name = std::string("stillhand_msgs::") + type.name;
   static std::map<std::string, recording::IdlSchema> schemas;
   const auto [schema, is_new] = schemas.try_emplace(name);
   if (is_new) schema->second = recording::parse_idl(topics::idl_of(name), "catalogue");
-  fuzz::read_message(schema->second, *schema->second.find(name), std::as_bytes(std::span(message)));
+  fuzz::read_message(schema->second, *schema->second.find(name), message);
   type.read(message);
   return 0;
 }

@@ -5,10 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
+#include "idl/cdr.hpp"
 #include "services/cancellation/codec.hpp"
 #include "services/cancellation/core/canceller.hpp"
-#include "tests/fuzz/read_cdr.hpp"
 
 namespace {
 
@@ -42,13 +43,15 @@ void drive(const cancellation::ControlModel& model) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return 0;
-  std::vector<char> message(bytes + 1, bytes + size);
+  const auto message = std::as_bytes(std::span(bytes + 1, size - 1));
   if (bytes[0] % 2 == 0) {
-    const auto model = fuzz::read_cdr<stillhand_msgs::AugmentedModel>(message);
-    if (model) drive(cancellation::from_idl(*model));
+    stillhand_msgs::AugmentedModel model;
+    if (from_cdr(message, model)) drive(cancellation::from_idl(model));
   } else {
-    const auto model = fuzz::read_cdr<stillhand_msgs::FeedthroughModel>(message);
-    if (model) drive(cancellation::control_model(cancellation::from_idl(*model)));
+    stillhand_msgs::FeedthroughModel model;
+    if (from_cdr(message, model)) {
+      drive(cancellation::control_model(cancellation::from_idl(model)));
+    }
   }
   return 0;
 }

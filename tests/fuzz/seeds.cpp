@@ -53,7 +53,7 @@ std::string text_of(std::span<const std::byte> bytes) {
 // As fuzz_cdr.cpp and fuzz_model.cpp read it: the place of the type, then the message.
 template <typename Message>
 std::string cdr_of(char place, const Message& message) {
-  return place + text_of(tests::cdr_of(message));
+  return place + text_of(to_cdr(message));
 }
 
 // The definition of sensor_msgs/msg/Imu, and one message of it.

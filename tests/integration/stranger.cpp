@@ -41,10 +41,9 @@
 
 namespace {
 
-namespace edds = eprosima::fastdds::dds;
 namespace runtime = stillhand::runtime;
+namespace edds = runtime::edds;
 namespace topics = stillhand::topics;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 std::atomic<long> received{0};
 std::atomic<long> readers{0};
@@ -57,7 +56,7 @@ struct Reading final : edds::DataReaderListener {
   Reading& operator=(const Reading&) = delete;
   void on_data_available(edds::DataReader* reader) override {
     edds::SampleInfo info;
-    while (reader->take_next_sample(data, &info) == ReturnCode_t::RETCODE_OK) {
+    while (runtime::ok(reader->take_next_sample(data, &info))) {
       if (!info.valid_data) continue;
       ++received;
       if (type.get_type_name() == topics::kRawSample.type) {

@@ -23,7 +23,6 @@
 namespace stillhand::runtime {
 namespace {
 
-namespace edds = eprosima::fastdds::dds;
 using stillhand_msgs::MotorCommand;
 using support::eventually;
 
@@ -56,10 +55,9 @@ class Writer : public edds::DataWriterListener {
     command.rig(1);
     command.tick(tick);
     const std::int64_t stamp_ns = system_ns() + ahead_ns;
-    writer_->write_w_timestamp(
-        &command, edds::HANDLE_NIL,
-        eprosima::fastrtps::Time_t(static_cast<std::int32_t>(stamp_ns / kNsPerSecond),
-                                   static_cast<std::uint32_t>(stamp_ns % kNsPerSecond)));
+    writer_->write_w_timestamp(&command, edds::HANDLE_NIL,
+                               edds::Time_t(static_cast<std::int32_t>(stamp_ns / kNsPerSecond),
+                                            static_cast<std::uint32_t>(stamp_ns % kNsPerSecond)));
   }
 
  private:

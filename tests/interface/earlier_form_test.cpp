@@ -19,12 +19,11 @@ template <typename... Fields>
 std::vector<std::byte> bytes_of(const Fields&... fields) {
   std::vector<char> room(512);
   eprosima::fastcdr::FastBuffer buffer(room.data(), room.size());
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
+  fast_cdr::PlainCdr cdr(buffer);
   cdr.serialize_encapsulation();
   (cdr << ... << fields);
   const auto* begin = reinterpret_cast<const std::byte*>(room.data());
-  return {begin, begin + cdr.getSerializedDataLength()};
+  return {begin, begin + cdr.length()};
 }
 
 std::vector<std::byte> filled_up(std::vector<std::byte> bytes) {

@@ -19,6 +19,7 @@
 #include "idl/session.h"
 #include "places.hpp"
 #include "services/runtime/bus/bus.hpp"
+#include "services/runtime/bus/participant.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
@@ -110,7 +111,7 @@ TEST(LabProfilesTest, ParticipantsFindEachOtherThroughTheServer) {
   if (server == 0) {
     using namespace eprosima::fastdds::dds;
     auto* factory = DomainParticipantFactory::get_instance();
-    factory->load_XML_profiles_file(lab.folder.path() / "pc" / "discovery_server.xml");
+    runtime::load_profiles(lab.folder.path() / "pc" / "discovery_server.xml");
     factory->create_participant_with_profile(lab.inventory.domain, "stillhand_participant");
     pause();
   }

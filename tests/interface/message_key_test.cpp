@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "fast_dds/types.hpp"
 #include "idl/clockPubSubTypes.h"
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/sessionPubSubTypes.h"
@@ -16,21 +17,19 @@
 namespace stillhand::runtime {
 namespace {
 
-using eprosima::fastrtps::rtps::InstanceHandle_t;
-
 template <typename Message>
-InstanceHandle_t key_of(Message message, bool force_md5 = false) {
-  InstanceHandle_t handle;
+ertps::InstanceHandle_t key_of(Message message, bool force_md5 = false) {
+  ertps::InstanceHandle_t handle;
   auto support = type_tag<Message>().support;
-  EXPECT_TRUE(support->getKey(&message, &handle, force_md5));
+  EXPECT_TRUE(runtime::key_of(*support, &message, handle, force_md5));
   return handle;
 }
 
 template <typename Generated>
-InstanceHandle_t generated_key_of(typename Generated::type message, bool force_md5 = false) {
-  InstanceHandle_t handle;
+ertps::InstanceHandle_t generated_key_of(typename Generated::type message, bool force_md5 = false) {
+  ertps::InstanceHandle_t handle;
   Generated generated;
-  EXPECT_TRUE(generated.getKey(&message, &handle, force_md5));
+  EXPECT_TRUE(runtime::key_of(generated, &message, handle, force_md5));
   return handle;
 }
 
@@ -67,7 +66,7 @@ TEST(MessageKeyTest, IsTheSameWhileOtherThreadsAskForOthers) {
   for (std::size_t i = 0; i < services.size(); ++i) {
     threads.emplace_back([&, i] {
       const auto status = status_of(services[i]);
-      const InstanceHandle_t right =
+      const ertps::InstanceHandle_t right =
           generated_key_of<stillhand_msgs::ServiceStatusPubSubType>(status);
       for (int n = 0; n < kTimes; ++n) wrong[i] += key_of(status) == right ? 0 : 1;
     });

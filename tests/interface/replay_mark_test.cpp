@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "places.hpp"
@@ -12,7 +13,6 @@
 #include "services/runtime/bus/playback.hpp"
 #include "services/runtime/bus/tap.hpp"
 #include "tests/support/bus_options.hpp"
-#include "tests/support/idl_fields.hpp"
 #include "tests/support/own_domain.hpp"
 #include "tests/support/wait.hpp"
 
@@ -33,9 +33,7 @@ std::vector<std::byte> command_bytes(Tick tick) {
   stillhand_msgs::MotorCommand command;
   command.rig(1);
   command.tick(tick);
-  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
-  for (const char c : tests::cdr_of(command)) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
+  return to_cdr(command);
 }
 
 /// Counts the motor commands that come to a process of the session.
@@ -144,6 +142,13 @@ TEST_F(ReplayMarkTest, NobodyCountsAsAliveWhileAReplayIsThereAndAgainOnceItLeft)
     sign();
     return !rig.peers_alive();
   }));
+}
+
+// Fast DDS 3 returns 0 for a sample that it took, where Fast DDS 2 returned true.
+TEST_F(ReplayMarkTest, ASampleThatDdsTookIsNotCountedAsRefused) {
+  const std::size_t writer = replay.add_writer("stillhand/motor_command",
+                                               "stillhand_msgs::MotorCommand", stream_qos(replay));
+  EXPECT_TRUE(replay.write(writer, command_bytes(1)));
 }
 
 TEST_F(ReplayMarkTest, BytesThatAreNoMessageAreRefusedOrPassedOnAndHarmNobody) {

@@ -3,8 +3,6 @@
 // before the bus opens, and what a service may do.  Strangers: strangers_test.cpp.
 #include "services/runtime/bus/security.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +10,7 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
+#include "fast_dds/names.hpp"
 #include "idl/recording.h"
 #include "idl/session.h"
 #include "places.hpp"
@@ -30,7 +29,6 @@ using support::reissue;
 using support::SecurityFolders;
 using testing::AllOf;
 using testing::HasSubstr;
-namespace edds = eprosima::fastdds::dds;
 namespace fs = std::filesystem;
 
 constexpr long kDay_s = 86400;
@@ -163,14 +161,14 @@ TEST(IdentityTest, IsThatOfTheServiceOfADashboardOrElseTheTap) {
   EXPECT_EQ(Identity::of(lab(), "record-17").name, "tap");
 }
 
-using Builtin = eprosima::fastrtps::rtps::BuiltinAttributes;
+using Builtin = ertps::BuiltinAttributes;
 
 /// What secure() says of a participant with this transport, multicast as the standard has it but
 /// for what `change` says.
 std::string refused_discovery(
     const std::vector<std::string>& addresses, bool shared_memory,
     const std::function<void(Builtin&)>& change = [](Builtin&) {}) {
-  const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  const auto udp = std::make_shared<ertps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses;
   edds::DomainParticipantQos qos;
   qos.transport().use_builtin_transports = shared_memory;
@@ -193,11 +191,11 @@ TEST(SecurityTest, DiscoveryByMulticastOnTheNetworkIsRefused) {
 // As in a profile with metatrafficMulticastLocatorList: two threads, whatever else the profile has.
 TEST(SecurityTest, AGroupBesideUnicastIsRefusedAndUnicastAloneIsNot) {
   const auto unicast = [](Builtin& builtin) {
-    builtin.metatrafficUnicastLocatorList.push_back(eprosima::fastrtps::rtps::Locator_t());
+    builtin.metatrafficUnicastLocatorList.push_back(ertps::Locator_t());
   };
   const auto group = [](Builtin& builtin) {
-    eprosima::fastrtps::rtps::Locator_t locator;
-    eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, "239.255.0.1");
+    ertps::Locator_t locator;
+    ertps::IPLocator::setIPv4(locator, "239.255.0.1");
     builtin.metatrafficMulticastLocatorList.push_back(locator);
   };
   EXPECT_EQ(refused_discovery({"192.0.2.1"}, false, unicast), "");

@@ -15,6 +15,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
+#include "fast_dds/names.hpp"
 #include "places.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/bus/participant.hpp"
@@ -33,7 +34,6 @@ using support::eventually;
 using support::MotionAndRig;
 using support::reissue;
 using support::SecurityFolders;
-namespace edds = eprosima::fastdds::dds;
 namespace fs = std::filesystem;
 
 constexpr long kDay_s = 86400;
@@ -90,8 +90,7 @@ class Stranger : public edds::DataWriterListener {
     if (writes()) writer_->write(&command);
     PlatformCommand taken;
     edds::SampleInfo info;
-    while (reads() && reader_->take_next_sample(&taken, &info) ==
-                          eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    while (reads() && ok(reader_->take_next_sample(&taken, &info))) {
       if (info.valid_data) ++received_;
     }
   }

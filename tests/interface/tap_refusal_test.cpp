@@ -9,6 +9,7 @@
 #include <iterator>
 #include <string>
 
+#include "fast_dds/names.hpp"
 #include "places.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/bus/tap.hpp"
@@ -46,8 +47,7 @@ TEST(TapTest, RefusedForAProfileItLeavesNoParticipant) {
   }
   std::filesystem::remove(file);
   EXPECT_THAT(refusal, testing::HasSubstr("record_reliable"));
-  EXPECT_EQ(eprosima::fastdds::dds::DomainParticipantFactory::get_instance()->lookup_participant(
-                options.domain),
+  EXPECT_EQ(edds::DomainParticipantFactory::get_instance()->lookup_participant(options.domain),
             nullptr);
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cxxabi.h>
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "idl/cdr.hpp"
 #include "idl/idl_text.hpp"
 
 namespace stillhand::tests {
@@ -24,17 +23,6 @@ namespace stillhand::tests {
 /// A message's fields in the order of the IDL: name and value.  Doubles are written with so many
 /// digits that any two of them differ in their text.
 using Fields = std::vector<std::pair<std::string, std::string>>;
-
-/// CDR bytes without encapsulation header; padding is zero, so equal bytes are equal messages.
-template <typename Message>
-std::vector<char> cdr_of(const Message& message) {
-  std::vector<char> bytes(Message::getCdrSerializedSize(message));
-  eprosima::fastcdr::FastBuffer buffer(bytes.data(), bytes.size());
-  eprosima::fastcdr::Cdr cdr(buffer);
-  message.serialize(cdr);
-  bytes.resize(cdr.getSerializedDataLength());
-  return bytes;
-}
 
 namespace detail {
 
@@ -80,9 +68,10 @@ inline std::string next_value(eprosima::fastcdr::Cdr& cdr, const std::string& ty
 /// Every field that the IDL gives to this message; a field added there appears here by itself.
 template <typename Message>
 Fields fields_of(const Message& message) {
-  std::vector<char> bytes = cdr_of(message);
-  eprosima::fastcdr::FastBuffer buffer(bytes.data(), bytes.size());
-  eprosima::fastcdr::Cdr cdr(buffer);
+  auto bytes = to_cdr(message);
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(bytes.data()), bytes.size());
+  fast_cdr::PlainCdr cdr(buffer);
+  cdr.read_encapsulation();
   Fields fields;
   std::istringstream lines(detail::idl_struct(detail::idl_name<Message>()));
   for (std::string line; std::getline(lines, line);) {

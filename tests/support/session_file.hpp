@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/session.h"
 #include "idl/topics.hpp"
@@ -20,19 +18,6 @@
 #include "services/recording/core/mcap/memory_bytes.hpp"
 
 namespace stillhand::tests {
-
-/// A message's bytes as recorded: CDR with its encapsulation header.
-template <typename Message>
-std::vector<std::byte> cdr_of(const Message& message) {
-  constexpr std::size_t kHeader_bytes = 4;
-  std::vector<std::byte> bytes(kHeader_bytes + Message::getCdrSerializedSize(message));
-  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(bytes.data()), bytes.size());
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  return bytes;
-}
 
 /// A session's recording in memory, message by message, 1 ms apart.
 class SessionFile {
@@ -55,7 +40,7 @@ class SessionFile {
       channel->second = writer_.add_channel(std::string(topic.name), schema, "cdr", texts);
     }
     time_ns_ += 1'000'000;
-    ok_ = ok_ && writer_.write(channel->second, 0, time_ns_, time_ns_, cdr_of(message)).ok();
+    ok_ = ok_ && writer_.write(channel->second, 0, time_ns_, time_ns_, to_cdr(message)).ok();
   }
 
   /// The DDS writer of what is added from now on, as the recorder notes it; empty: none.

@@ -79,10 +79,9 @@ std::vector<Size> Asymmetry::sizes(const SizeCase& at) const {
   }
   const double slope = std::copysign(1.0, output_over_argument(at)) *
                        (quadratic(effect) ? 2.0 * largest_argument(at) : 1.0);
-  return {stiffness_ratio(at, slope, -slope,
-                          std::string("where the output is positive, over that where it is "
-                                      "negative") +
-                              (quadratic(effect) ? ", at the largest motion seen" : ""))};
+  std::string where = "where the output is positive, over that where it is negative";
+  if (quadratic(effect)) where += ", at the largest motion seen";
+  return {stiffness_ratio(at, slope, -slope, where)};
 }
 
 std::vector<Proposal> Asymmetry::proposed(const Screening& screening) const {

@@ -10,19 +10,16 @@
 #include <mutex>
 #include <set>
 
+#include "fast_dds/types.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/time_difference.hpp"
 #include "services/runtime/bus/endpoint.hpp"
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/participant.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
-#include "services/runtime/bus/serialized_type.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
-
-using eprosima::fastrtps::types::ReturnCode_t;
-namespace edds = eprosima::fastdds::dds;
 
 struct Bus::Impl {
   explicit Impl(const Bus::Options& options)
@@ -133,7 +130,7 @@ edds::Topic* topic_of(edds::DomainParticipant& participant,
 detail::Endpoint* Bus::add_writer(const topics::Topic& topic, const TypeTag& type) {
   const std::string profile(topics::profile_of(topic.pattern));
   edds::DataWriterQos qos;
-  if (impl_->publisher->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+  if (!ok(impl_->publisher->get_datawriter_qos_from_profile(profile, qos))) {
     throw missing_profile(options_.profiles, "data_writer", profile);
   }
   if (options_.answers_replay) qos.user_data().data_vec(replay_mark());
@@ -189,7 +186,7 @@ void Bus::Impl::open_reader(const Bus::Options& options, const topics::Topic& to
                             const edds::TypeSupport& type, const std::string& profile,
                             std::shared_ptr<void> sample, detail::Deliver deliver) {
   edds::DataReaderQos qos;
-  if (subscriber->get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+  if (!ok(subscriber->get_datareader_qos_from_profile(profile, qos))) {
     throw missing_profile(options.profiles, "data_reader", profile);
   }
   edds::Topic* dds_topic = topic_of(*participant, topics, topic, type);

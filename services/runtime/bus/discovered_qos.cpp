@@ -7,20 +7,16 @@
 
 namespace stillhand::runtime {
 
-namespace edds = eprosima::fastdds::dds;
-using eprosima::fastrtps::c_TimeInfinite;
-using eprosima::fastrtps::Duration_t;
-
 namespace {
 
-std::int64_t ns_of(const Duration_t& duration) {
-  if (duration == c_TimeInfinite) return kForever_ns;
+std::int64_t ns_of(const edds::Duration_t& duration) {
+  if (duration == edds::c_TimeInfinite) return kForever_ns;
   return duration.seconds * kNsPerSecond + duration.nanosec;
 }
 
 // A recording may hold a duration that DDS's 32 bits of seconds do not: 68 years are for ever.
-Duration_t duration_of(std::int64_t ns) {
-  if (ns / kNsPerSecond >= INT32_MAX) return c_TimeInfinite;
+edds::Duration_t duration_of(std::int64_t ns) {
+  if (ns / kNsPerSecond >= INT32_MAX) return edds::c_TimeInfinite;
   return {static_cast<std::int32_t>(ns / kNsPerSecond),
           static_cast<std::uint32_t>(ns % kNsPerSecond)};
 }
@@ -44,8 +40,7 @@ WriterQos discovered_qos(const edds::WriterQos& told) {
 
 std::optional<WriterQos> profile_qos(const edds::Publisher& publisher, const std::string& name) {
   edds::DataWriterQos profile;
-  if (publisher.get_datawriter_qos_from_profile(name, profile) !=
-      eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+  if (!ok(publisher.get_datawriter_qos_from_profile(name, profile))) {
     return std::nullopt;
   }
   WriterQos qos = discovered_qos(profile.get_writerqos({}, {}));
@@ -63,7 +58,7 @@ edds::DataWriterQos offered_qos(const WriterQos& wanted) {
                               : edds::TRANSIENT_LOCAL_DURABILITY_QOS;
   qos.liveliness().kind = static_cast<edds::LivelinessQosPolicyKind>(wanted.liveliness);
   qos.liveliness().lease_duration = duration_of(wanted.lease_ns);
-  if (qos.liveliness().lease_duration != c_TimeInfinite) {
+  if (qos.liveliness().lease_duration != edds::c_TimeInfinite) {
     qos.liveliness().announcement_period = duration_of(wanted.lease_ns * 3 / 10);
   }
   qos.ownership().kind =
@@ -85,9 +80,8 @@ edds::DataWriterQos offered_qos(const WriterQos& wanted) {
         depth <= INT32_MAX / kInstances ? depth * kInstances : edds::LENGTH_UNLIMITED;
   }
   qos.data_sharing().off();
-  qos.endpoint().history_memory_policy =
-      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = duration_of(kNsPerSecond / 10);
+  qos.endpoint().history_memory_policy = ertps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  heartbeat_period(qos) = duration_of(kNsPerSecond / 10);
   return qos;
 }
 

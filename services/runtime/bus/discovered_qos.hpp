@@ -7,18 +7,18 @@
 #include <optional>
 #include <string>
 
+#include "fast_dds/names.hpp"
 #include "services/runtime/bus/writer_qos.hpp"
 
 namespace stillhand::runtime {
 
 /// The QoS of a writer, as announced by discovery.
-WriterQos discovered_qos(const eprosima::fastdds::dds::WriterQos& told);
+WriterQos discovered_qos(const edds::WriterQos& told);
 
 /// A writer that offers the same; resource limits as for KEEP_LAST of its depth.
-eprosima::fastdds::dds::DataWriterQos offered_qos(const WriterQos& wanted);
+edds::DataWriterQos offered_qos(const WriterQos& wanted);
 
 /// The QoS of a profile of the loaded file; nothing when it is missing.
-std::optional<WriterQos> profile_qos(const eprosima::fastdds::dds::Publisher& publisher,
-                                     const std::string& name);
+std::optional<WriterQos> profile_qos(const edds::Publisher& publisher, const std::string& name);
 
 }  // namespace stillhand::runtime

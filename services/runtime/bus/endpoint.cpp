@@ -6,14 +6,11 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "services/contract/time_difference.hpp"
-#include "services/runtime/bus/serialized_type.hpp"
+#include "services/runtime/bus/serialized_sample.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime::detail {
 namespace {
-
-using eprosima::fastrtps::types::ReturnCode_t;
-namespace edds = eprosima::fastdds::dds;
 
 const char* policy_name(std::uint32_t policy) {
   switch (policy) {
@@ -66,7 +63,7 @@ std::uint32_t Endpoint::matched_count() const {
   return static_cast<std::uint32_t>(matched_.size());
 }
 
-void Endpoint::note_match(const eprosima::fastrtps::rtps::InstanceHandle_t& peer, int change) {
+void Endpoint::note_match(const ertps::InstanceHandle_t& peer, int change) {
   const std::lock_guard lock(mutex_);
   if (change > 0) {
     matched_.insert(peer);
@@ -87,11 +84,14 @@ void Endpoint::tell(BusIncident::Kind kind, const std::string& peer, double by_u
   options_.on_incident(incident);
 }
 
-bool WriterEndpoint::write(void* message) {
+void WriterEndpoint::write(void* message) {
   samples_.fetch_add(1, std::memory_order_relaxed);
-  if (serializer == nullptr) return writer->write(message);
+  if (serializer == nullptr) {
+    writer->write(message);
+    return;
+  }
   SerializedSample bytes = to_bytes(serializer->support, message);
-  return writer->write(&bytes);
+  writer->write(&bytes);
 }
 
 EndpointReport WriterEndpoint::report() {
@@ -109,8 +109,8 @@ void WriterEndpoint::on_publication_matched(edds::DataWriter* /*writer*/,
   note_match(status.last_subscription_handle, status.current_count_change);
 }
 
-void WriterEndpoint::on_offered_deadline_missed(
-    edds::DataWriter* /*writer*/, const eprosima::fastrtps::OfferedDeadlineMissedStatus& status) {
+void WriterEndpoint::on_offered_deadline_missed(edds::DataWriter* /*writer*/,
+                                                const edds::OfferedDeadlineMissedStatus& status) {
   if (!supervising_.load(std::memory_order_relaxed)) return;
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
 }
@@ -138,7 +138,7 @@ void ReaderEndpoint::close_reader(edds::Subscriber& owner) {
 
 void ReaderEndpoint::on_data_available(edds::DataReader* source) {
   edds::SampleInfo info;
-  while (source->take_next_sample(sample_.get(), &info) == ReturnCode_t::RETCODE_OK) {
+  while (ok(source->take_next_sample(sample_.get(), &info))) {
     if (!info.valid_data || peers_.refuses(info.publication_handle)) continue;
     Arrival arrival{monotonic_ns(), info.source_timestamp.to_ns(), system_ns(),
                     static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long())};
@@ -212,7 +212,7 @@ void ReaderEndpoint::on_subscription_matched(edds::DataReader* /*reader*/,
 }
 
 void ReaderEndpoint::on_requested_deadline_missed(
-    edds::DataReader* /*reader*/, const eprosima::fastrtps::RequestedDeadlineMissedStatus& status) {
+    edds::DataReader* /*reader*/, const edds::RequestedDeadlineMissedStatus& status) {
   // The timer goes on after its writer died; that is liveliness's business.
   if (!supervising_.load(std::memory_order_relaxed) || !has_living_writer()) return;
   deadline_misses_.fetch_add(status.total_count_change, std::memory_order_relaxed);
@@ -227,8 +227,8 @@ bool ReaderEndpoint::has_living_writer() const noexcept {
          alive_writers_.load(std::memory_order_relaxed) > 0;
 }
 
-void ReaderEndpoint::on_liveliness_changed(
-    edds::DataReader* /*reader*/, const eprosima::fastrtps::LivelinessChangedStatus& status) {
+void ReaderEndpoint::on_liveliness_changed(edds::DataReader* /*reader*/,
+                                           const edds::LivelinessChangedStatus& status) {
   // Not the status's own count, which stays one too low after a lost first change.
   const int change = status.alive_count_change;
   int alive_before = alive_writers_.load(std::memory_order_relaxed);

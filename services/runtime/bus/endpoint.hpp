@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 
+#include "fast_dds/names.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/peers.hpp"
@@ -32,11 +33,11 @@ class Endpoint {
   Endpoint(const Endpoint&) = delete;
   Endpoint& operator=(const Endpoint&) = delete;
 
-  virtual bool write(void* /*message*/) { return false; }
+  virtual void write(void* /*message*/) {}
   /// @returns false when DDS refuses, as for a topic that is not this service's on a secured bus.
   [[nodiscard]] virtual bool enable() = 0;
   /// Deletes a reader, once its running callback has returned; nothing for a writer.
-  virtual void close_reader(eprosima::fastdds::dds::Subscriber& /*owner*/) {}
+  virtual void close_reader(edds::Subscriber& /*owner*/) {}
   /// By how much the writer's monotonic clock is ahead of this process's [ns].
   virtual void set_clock_ahead(std::int64_t /*ahead_ns*/) noexcept {}
   virtual EndpointReport report() = 0;
@@ -48,7 +49,7 @@ class Endpoint {
   [[nodiscard]] virtual bool writes() const noexcept = 0;
 
  protected:
-  void note_match(const eprosima::fastrtps::rtps::InstanceHandle_t& peer, int change);
+  void note_match(const ertps::InstanceHandle_t& peer, int change);
   void note_incompatible(std::uint32_t policy);
   void tell(BusIncident::Kind kind, const std::string& peer, double by_us,
             const char* policy = "") const;
@@ -61,41 +62,36 @@ class Endpoint {
 
  private:
   mutable std::mutex mutex_;
-  std::set<eprosima::fastrtps::rtps::InstanceHandle_t> matched_;
+  std::set<ertps::InstanceHandle_t> matched_;
 };
 
-class WriterEndpoint final : public Endpoint, public eprosima::fastdds::dds::DataWriterListener {
+class WriterEndpoint final : public Endpoint, public edds::DataWriterListener {
  public:
   using Endpoint::Endpoint;
 
-  bool write(void* message) override;
-  bool enable() override {
-    return writer->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
-  }
+  void write(void* message) override;
+  bool enable() override { return ok(writer->enable()); }
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return true; }
 
   // Set once, before enable().
-  eprosima::fastdds::dds::DataWriter* writer = nullptr;
+  edds::DataWriter* writer = nullptr;
   const TypeTag* serializer = nullptr;  // real type of a topic carried as bytes
 
  private:
-  void on_publication_matched(
-      eprosima::fastdds::dds::DataWriter*,
-      const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+  void on_publication_matched(edds::DataWriter*,
+                              const edds::PublicationMatchedStatus& status) override;
   // Fast DDS 2.9.1 crashes on a missed offered deadline when the writer has no listener of its own.
-  void on_offered_deadline_missed(
-      eprosima::fastdds::dds::DataWriter*,
-      const eprosima::fastrtps::OfferedDeadlineMissedStatus& status) override;
-  void on_offered_incompatible_qos(
-      eprosima::fastdds::dds::DataWriter*,
-      const eprosima::fastdds::dds::OfferedIncompatibleQosStatus& status) override;
+  void on_offered_deadline_missed(edds::DataWriter*,
+                                  const edds::OfferedDeadlineMissedStatus& status) override;
+  void on_offered_incompatible_qos(edds::DataWriter*,
+                                   const edds::OfferedIncompatibleQosStatus& status) override;
 
   std::atomic<std::uint64_t> samples_{0};
   std::atomic<std::uint64_t> deadline_misses_{0};
 };
 
-class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::DataReaderListener {
+class ReaderEndpoint final : public Endpoint, public edds::DataReaderListener {
  public:
   /// @param sample  storage that each sample is taken into  @param deliver  called with it
   /// @param writers  where `deliver` hears of the writer, or nullptr
@@ -103,10 +99,8 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
                  const std::atomic<bool>& supervising, std::shared_ptr<void> sample,
                  Deliver deliver, FoundWriters* writers);
 
-  bool enable() override {
-    return reader->enable() == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
-  }
-  void close_reader(eprosima::fastdds::dds::Subscriber& owner) override;
+  bool enable() override { return ok(reader->enable()); }
+  void close_reader(edds::Subscriber& owner) override;
   EndpointReport report() override;
   [[nodiscard]] bool writes() const noexcept override { return false; }
   void set_clock_ahead(std::int64_t ahead_ns) noexcept override {
@@ -114,22 +108,19 @@ class ReaderEndpoint final : public Endpoint, public eprosima::fastdds::dds::Dat
   }
 
   // Set once, before enable().
-  eprosima::fastdds::dds::DataReader* reader = nullptr;
+  edds::DataReader* reader = nullptr;
   Sources* sources = nullptr;  // nullptr: every writer's samples are taken
 
  private:
-  void on_data_available(eprosima::fastdds::dds::DataReader*) override;
-  void on_subscription_matched(
-      eprosima::fastdds::dds::DataReader*,
-      const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
-  void on_requested_deadline_missed(
-      eprosima::fastdds::dds::DataReader*,
-      const eprosima::fastrtps::RequestedDeadlineMissedStatus& status) override;
-  void on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
-                             const eprosima::fastrtps::LivelinessChangedStatus& status) override;
-  void on_requested_incompatible_qos(
-      eprosima::fastdds::dds::DataReader*,
-      const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
+  void on_data_available(edds::DataReader*) override;
+  void on_subscription_matched(edds::DataReader*,
+                               const edds::SubscriptionMatchedStatus& status) override;
+  void on_requested_deadline_missed(edds::DataReader*,
+                                    const edds::RequestedDeadlineMissedStatus& status) override;
+  void on_liveliness_changed(edds::DataReader*,
+                             const edds::LivelinessChangedStatus& status) override;
+  void on_requested_incompatible_qos(edds::DataReader*,
+                                     const edds::RequestedIncompatibleQosStatus& status) override;
   void supervise(Tick tick, std::int64_t sent_ns, std::int64_t arrived_ns);
   [[nodiscard]] bool has_living_writer() const noexcept;
 

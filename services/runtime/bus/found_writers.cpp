@@ -12,11 +12,7 @@
 
 namespace stillhand::runtime {
 
-using eprosima::fastrtps::rtps::GuidPrefix_t;
-using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
-using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
-
-void FoundWriters::learn_depths(const eprosima::fastdds::dds::Publisher& publisher,
+void FoundWriters::learn_depths(const edds::Publisher& publisher,
                                 const std::filesystem::path& profiles) {
   const std::lock_guard lock(mutex_);
   for (const topics::Topic* row : topics::kCatalogue) {
@@ -27,51 +23,47 @@ void FoundWriters::learn_depths(const eprosima::fastdds::dds::Publisher& publish
   }
 }
 
-void FoundWriters::note_participant(const GuidPrefix_t& prefix, const std::string& name) {
+void FoundWriters::note_participant(const ertps::GuidPrefix_t& prefix, const std::string& name) {
   const std::lock_guard lock(mutex_);
   participants_[prefix] = name;
   for (const auto& [handle, number] : by_handle_) {
-    if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix == prefix) {
+    if (ertps::iHandle2GUID(handle).guidPrefix == prefix) {
       writers_.at(number).writer.participant = name;
     }
   }
 }
 
-void FoundWriters::note_participant(const ParticipantDiscoveryInfo& info) {
-  const GuidPrefix_t prefix = info.info.m_guid.guidPrefix;
-  if (info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
-      info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
-    return note_participant(prefix, info.info.m_participantName.to_string());
-  }
+void FoundWriters::note_participant(const AnnouncedParticipant& announced) {
+  if (announced.here) return note_participant(announced.prefix, announced.name);
   const std::lock_guard lock(mutex_);
-  participants_.erase(prefix);
+  participants_.erase(announced.prefix);
   for (const auto& [handle, number] : by_handle_) {
-    if (eprosima::fastrtps::rtps::iHandle2GUID(handle).guidPrefix == prefix) {
+    if (ertps::iHandle2GUID(handle).guidPrefix == announced.prefix) {
       writers_.at(number).writer.present = false;
     }
   }
 }
 
-std::optional<std::size_t> FoundWriters::note_writer(const WriterDiscoveryInfo& info, bool wanted) {
-  const auto& data = info.info;
-  const Handle handle(data.guid());
+std::optional<std::size_t> FoundWriters::note_writer(const AnnouncedWriter& announced,
+                                                     bool wanted) {
+  const Handle handle(announced.guid);
   const std::lock_guard lock(mutex_);
   const auto known = by_handle_.find(handle);
-  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
+  if (!announced.here) {
     if (known != by_handle_.end()) writers_.at(known->second).writer.present = false;
     return std::nullopt;
   }
   if (known != by_handle_.end() || !make_room()) return std::nullopt;
   FoundWriter writer;
-  writer.topic = data.topicName().to_string();
-  writer.type = data.typeName().to_string();
+  writer.topic = announced.topic;
+  writer.type = announced.type;
   std::ostringstream id;
-  id << data.guid();
+  id << announced.guid;
   writer.id = id.str();
-  const auto name = participants_.find(data.guid().guidPrefix);
+  const auto name = participants_.find(announced.guid.guidPrefix);
   if (name != participants_.end()) writer.participant = name->second;
-  writer.qos = discovered_qos(data.m_qos);
-  writer.replayed = is_replay_mark(data.m_qos.m_userData.data_vec());
+  writer.qos = discovered_qos(announced.qos);
+  writer.replayed = is_replay_mark(announced.qos.m_userData.data_vec());
   writer.type_known = find_type(writer.type) != nullptr;
   writer.wanted = wanted;
   if (const topics::Topic* row = topics::find(writer.topic); row != nullptr) {

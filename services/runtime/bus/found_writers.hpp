@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <filesystem>
 #include <map>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "services/runtime/bus/announced.hpp"
 #include "services/runtime/bus/found_writer.hpp"
 
 namespace stillhand::runtime {
@@ -22,19 +22,16 @@ namespace stillhand::runtime {
 class FoundWriters {
  public:
   static constexpr std::size_t kMost = 65535;  ///< what one recording can hold (MCAP)
-  using Handle = eprosima::fastrtps::rtps::InstanceHandle_t;
+  using Handle = ertps::InstanceHandle_t;
 
   /// Discovery does not carry HISTORY, so the depth is that of the catalogue's profiles.  Before
   /// the first reader.  @throws ConfigError when `profiles` lacks one
-  void learn_depths(const eprosima::fastdds::dds::Publisher& publisher,
-                    const std::filesystem::path& profiles);
+  void learn_depths(const edds::Publisher& publisher, const std::filesystem::path& profiles);
 
-  void note_participant(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix,
-                        const std::string& name);
-  void note_participant(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
+  void note_participant(const ertps::GuidPrefix_t& prefix, const std::string& name);
+  void note_participant(const AnnouncedParticipant& announced);
   /// @param wanted  whether its topic is wanted  @returns its number when it is new
-  std::optional<std::size_t> note_writer(const eprosima::fastrtps::rtps::WriterDiscoveryInfo& info,
-                                         bool wanted = true);
+  std::optional<std::size_t> note_writer(const AnnouncedWriter& announced, bool wanted = true);
 
   /// Number of the writer of a sample.
   std::optional<std::size_t> find(const Handle& writer);
@@ -55,7 +52,7 @@ class FoundWriters {
   std::map<std::size_t, Entry> writers_;  // by number
   std::size_t next_ = 0;
   std::map<Handle, std::size_t> by_handle_;
-  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> participants_;
+  std::map<ertps::GuidPrefix_t, std::string> participants_;
   std::map<std::string, std::int32_t> depth_of_;  // by profile
 };
 

@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
-#include <fastcdr/exceptions/Exception.h>
-#include <fastrtps/utils/md5.h>
-
-#include <algorithm>
 #include <array>
-#include <iterator>
-#include <span>
 
-#include "idl/cdr.hpp"
+#include "fast_dds/types.hpp"
 #include "idl/clockPubSubTypes.h"
 #include "idl/control_loopPubSubTypes.h"
 #include "idl/modelPubSubTypes.h"
@@ -20,58 +12,12 @@
 
 namespace stillhand::runtime {
 
-namespace {
-
-/// What the generated types do that a process of several threads cannot stand.
-template <typename Generated>
-struct Guarded final : Generated {
-  // They let through what Fast CDR throws at bytes that are no message: one such sample would end
-  // the process that reads it.
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
-    try {
-      if (Generated::deserialize(payload, data)) return true;
-    } catch (const eprosima::fastcdr::exception::Exception&) {
-    }
-    // A replay of an earlier version's recording.
-    using Message = typename Generated::type;
-    if (!kEarlierForm<Message>.fits(payload->length)) return false;
-    return from_cdr(std::as_bytes(std::span(payload->data, payload->length)),
-                    *static_cast<Message*>(data));
-  }
-
-  // They serialise the key into a member, while one object serves every writer and reader of the
-  // process: two threads at once would both get a mixture.  The same on the stack.
-  bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle,
-              bool force_md5) override {
-    using Message = typename Generated::type;
-    constexpr std::size_t kHashBytes = 16;  // RTPS 2.2, 9.6.3.3
-    std::array<char, 256> bytes{};
-    if (!this->m_isGetKeyDefined || Message::getKeyMaxCdrSerializedSize() > bytes.size()) {
-      return false;
-    }
-    eprosima::fastcdr::FastBuffer buffer(bytes.data(), bytes.size());
-    eprosima::fastcdr::Cdr key(buffer, eprosima::fastcdr::Cdr::BIG_ENDIANNESS);
-    static_cast<const Message*>(data)->serializeKey(key);
-    if (!force_md5 && Message::getKeyMaxCdrSerializedSize() <= kHashBytes) {
-      std::copy_n(bytes.begin(), kHashBytes, &handle->value[0]);
-      return true;
-    }
-    MD5 hash;
-    hash.update(bytes.data(), static_cast<unsigned int>(key.getSerializedDataLength()));
-    hash.finalize();
-    std::copy_n(std::begin(hash.digest), kHashBytes, &handle->value[0]);
-    return true;
-  }
-};
-
-}  // namespace
-
-#define STILLHAND_MESSAGE(Name)                                                                \
-  template <>                                                                                  \
-  const TypeTag& type_tag<stillhand_msgs::Name>() {                                            \
-    static const TypeTag tag{                                                                  \
-        eprosima::fastdds::dds::TypeSupport(new Guarded<stillhand_msgs::Name##PubSubType>())}; \
-    return tag;                                                                                \
+#define STILLHAND_MESSAGE(Name)                                                 \
+  template <>                                                                   \
+  const TypeTag& type_tag<stillhand_msgs::Name>() {                             \
+    static const TypeTag tag{                                                   \
+        edds::TypeSupport(new SharedType<stillhand_msgs::Name##PubSubType>())}; \
+    return tag;                                                                 \
   }
 
 STILLHAND_MESSAGE(PlatformCommand)

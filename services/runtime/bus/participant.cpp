@@ -3,18 +3,18 @@
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <set>
 
+#include "fast_dds/profiles.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
 #include "services/runtime/bus/security.hpp"
 #include "services/runtime/process/domain.hpp"
 
 namespace stillhand::runtime {
-
-using eprosima::fastrtps::types::ReturnCode_t;
-namespace edds = eprosima::fastdds::dds;
 
 // The factory keeps profiles for the whole process and refuses a file it has already read.
 void load_profiles(const std::filesystem::path& file) {
@@ -26,8 +26,10 @@ void load_profiles(const std::filesystem::path& file) {
   }
   const std::string path = std::filesystem::canonical(file).string();
   if (loaded.count(path) != 0) return;
-  if (edds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(path) !=
-      ReturnCode_t::RETCODE_OK) {
+  std::ifstream in(path);
+  const std::string text = readable_profiles({std::istreambuf_iterator(in), {}});
+  if (!ok(edds::DomainParticipantFactory::get_instance()->load_XML_profiles_string(text.data(),
+                                                                                   text.size()))) {
     throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
                       "an XML file such as qos/profiles.xml");
   }
@@ -53,8 +55,7 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   load_profiles(profiles);
   auto* factory = edds::DomainParticipantFactory::get_instance();
   edds::DomainParticipantQos qos;
-  if (factory->get_participant_qos_from_profile("stillhand_participant", qos) !=
-      ReturnCode_t::RETCODE_OK) {
+  if (!ok(factory->get_participant_qos_from_profile("stillhand_participant", qos))) {
     throw missing_profile(profiles, "participant", "stillhand_participant");
   }
   qos.name(name);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "fast_dds/names.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/bus/identity.hpp"
 
@@ -16,17 +17,18 @@ namespace stillhand::runtime {
 void load_profiles(const std::filesystem::path& file);
 
 /// Changes the QoS of a participant before it is created.
-using AdaptQos = std::function<void(eprosima::fastdds::dds::DomainParticipantQos&)>;
+using AdaptQos = std::function<void(edds::DomainParticipantQos&)>;
 
 /// A participant of the profile "stillhand_participant".
 /// @param marked  it carries the replay's mark
 /// @param adapt   optional; not called with an identity
 /// @throws ConfigError for a bad domain, missing profile or a fault of the identity, BusError when
 /// DDS refuses or runs without the requested security.
-eprosima::fastdds::dds::DomainParticipant* create_participant(
-    const std::filesystem::path& profiles, std::uint32_t domain, const std::string& name,
-    bool marked, const Identity& identity,
-    eprosima::fastdds::dds::DomainParticipantListener* listener, const AdaptQos& adapt = {});
+edds::DomainParticipant* create_participant(const std::filesystem::path& profiles,
+                                            std::uint32_t domain, const std::string& name,
+                                            bool marked, const Identity& identity,
+                                            edds::DomainParticipantListener* listener,
+                                            const AdaptQos& adapt = {});
 
 /// The error of a profile file that lacks one.
 ConfigError missing_profile(const std::filesystem::path& profiles, const char* kind,

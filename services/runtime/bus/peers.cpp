@@ -8,12 +8,6 @@
 
 namespace stillhand::runtime {
 
-using eprosima::fastrtps::rtps::GuidPrefix_t;
-using eprosima::fastrtps::rtps::InstanceHandle_t;
-using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
-using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
-using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
-
 Peers::Peers(std::string self, std::uint32_t rig, bool answers_replay, FoundWriters* writers,
              bool secured, Sources* sources)
     : self_(std::move(self)),
@@ -31,69 +25,60 @@ std::string Peers::participant_name(std::uint32_t rig, const std::string& servic
   return "stillhand/" + std::to_string(rig) + "/" + service;
 }
 
-void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
-                                     ParticipantDiscoveryInfo&& info) {
-  if (writers_ != nullptr) writers_->note_participant(info);
-  const std::string name = info.info.m_participantName.to_string();
-  const bool here = info.status == ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
-                    info.status == ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT;
+void Peers::on_participant(const AnnouncedParticipant& announced) {
+  const auto& [participant, name, user_data, here] = announced;
+  if (writers_ != nullptr) writers_->note_participant(announced);
   if (sources_ != nullptr) {
     // A mark comes first: a replay is not a second writer.
-    const auto& participant = info.info.m_guid.guidPrefix;
-    if (here && is_replay_mark(info.info.m_userData.data_vec())) sources_->note_replay(participant);
+    if (here && is_replay_mark(user_data)) sources_->note_replay(participant);
     if (here) sources_->note_participant(participant, name);
     if (!here) sources_->forget_participant(participant);
   }
   const std::lock_guard lock(mutex_);
   if (here) {
-    if (name.starts_with(prefix_)) {
-      services_[info.info.m_guid.guidPrefix] = name.substr(prefix_.size());
-    }
-    if (is_replay_mark(info.info.m_userData.data_vec())) mark(info.info.m_guid.guidPrefix);
+    if (name.starts_with(prefix_)) services_[participant] = name.substr(prefix_.size());
+    if (is_replay_mark(user_data)) mark(participant);
   } else {
-    services_.erase(info.info.m_guid.guidPrefix);
-    std::erase_if(heard_, [&](const InstanceHandle_t& writer) {
-      return eprosima::fastrtps::rtps::iHandle2GUID(writer).guidPrefix ==
-             info.info.m_guid.guidPrefix;
+    services_.erase(participant);
+    std::erase_if(heard_, [&](const ertps::InstanceHandle_t& writer) {
+      return ertps::iHandle2GUID(writer).guidPrefix == participant;
     });
-    marked_now_.erase(info.info.m_guid.guidPrefix);
-    authenticated_.erase(info.info.m_guid.guidPrefix);
+    marked_now_.erase(participant);
+    authenticated_.erase(participant);
     refresh_replay();
     refresh();
   }
 }
 
-void Peers::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
-                                        ParticipantAuthenticationInfo&& info) {
-  if (info.status != ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) return;
+void Peers::onParticipantAuthentication(edds::DomainParticipant* /*participant*/,
+                                        ertps::ParticipantAuthenticationInfo&& info) {
+  if (info.status != ertps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) return;
   const std::lock_guard lock(mutex_);
   authenticated_.insert(info.guid.guidPrefix);
   refresh_replay();
 }
 
-bool Peers::counts(const GuidPrefix_t& participant) const {
+bool Peers::counts(const ertps::GuidPrefix_t& participant) const {
   return !secured_ || authenticated_.count(participant) != 0;
 }
 
 // Comes before the writer is matched, unlike the discovery of its participant, which Fast DDS tells
 // after it has begun to match (PDPListener::onNewCacheChangeAdded).
-void Peers::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
-                                   WriterDiscoveryInfo&& info) {
-  if (writers_ != nullptr) writers_->note_writer(info);
-  const bool marked = is_replay_mark(info.info.m_qos.m_userData.data_vec());
-  const bool here = info.status != WriterDiscoveryInfo::REMOVED_WRITER;
+void Peers::on_writer(const AnnouncedWriter& announced) {
+  if (writers_ != nullptr) writers_->note_writer(announced);
+  const bool marked = is_replay_mark(announced.qos.m_userData.data_vec());
   if (sources_ != nullptr) {
-    const InstanceHandle_t writer(info.info.guid());
-    if (here && marked) sources_->note_replay(info.info.guid().guidPrefix);
-    if (here) sources_->note_writer(writer, info.info.topicName().to_string());
-    if (!here) sources_->forget_writer(writer);
+    const ertps::InstanceHandle_t writer(announced.guid);
+    if (announced.here && marked) sources_->note_replay(announced.guid.guidPrefix);
+    if (announced.here) sources_->note_writer(writer, announced.topic);
+    if (!announced.here) sources_->forget_writer(writer);
   }
-  if (!here || !marked) return;
+  if (!announced.here || !marked) return;
   const std::lock_guard lock(mutex_);
-  mark(info.info.guid().guidPrefix);
+  mark(announced.guid.guidPrefix);
 }
 
-void Peers::mark(const GuidPrefix_t& participant) {
+void Peers::mark(const ertps::GuidPrefix_t& participant) {
   marked_now_.insert(participant);
   ever_marked_.insert(participant);
   replay_seen_.store(true, std::memory_order_release);
@@ -103,37 +88,37 @@ void Peers::mark(const GuidPrefix_t& participant) {
 void Peers::refresh_replay() {
   const bool present =
       std::any_of(marked_now_.begin(), marked_now_.end(),
-                  [this](const GuidPrefix_t& participant) { return counts(participant); });
+                  [this](const ertps::GuidPrefix_t& participant) { return counts(participant); });
   replay_present_.store(present, std::memory_order_release);
 }
 
-bool Peers::refuses(const InstanceHandle_t& writer) const {
+bool Peers::refuses(const ertps::InstanceHandle_t& writer) const {
   if (answers_replay_ || !replay_seen()) return false;
-  const auto guid = eprosima::fastrtps::rtps::iHandle2GUID(writer);
+  const auto guid = ertps::iHandle2GUID(writer);
   const std::lock_guard lock(mutex_);
   return ever_marked_.count(guid.guidPrefix) != 0;
 }
 
-std::string Peers::service_of(const InstanceHandle_t& endpoint) const {
-  const auto guid = eprosima::fastrtps::rtps::iHandle2GUID(endpoint);
+std::string Peers::service_of(const ertps::InstanceHandle_t& endpoint) const {
+  const auto guid = ertps::iHandle2GUID(endpoint);
   const std::lock_guard lock(mutex_);
   const auto found = services_.find(guid.guidPrefix);
   return found == services_.end() ? "" : found->second;
 }
 
-bool Peers::set_alive(const InstanceHandle_t& writer, bool alive) {
+bool Peers::set_alive(const ertps::InstanceHandle_t& writer, bool alive) {
   const std::lock_guard lock(mutex_);
   return count_alive(writer, alive);
 }
 
-bool Peers::note_sample(const InstanceHandle_t& writer) {
+bool Peers::note_sample(const ertps::InstanceHandle_t& writer) {
   if (all_alive_.load(std::memory_order_acquire)) return false;
   const std::lock_guard lock(mutex_);
   return heard_.count(writer) == 0 && count_alive(writer, true);
 }
 
-bool Peers::count_alive(const InstanceHandle_t& writer, bool alive) {
-  const auto found = services_.find(eprosima::fastrtps::rtps::iHandle2GUID(writer).guidPrefix);
+bool Peers::count_alive(const ertps::InstanceHandle_t& writer, bool alive) {
+  const auto found = services_.find(ertps::iHandle2GUID(writer).guidPrefix);
   const std::string service = found == services_.end() ? "" : found->second;
   bool changed = false;
   if (!service.empty()) heard_.insert(writer);
@@ -164,7 +149,7 @@ void Peers::refresh() {
 }
 
 // A stranger's life sign, under whatever name, hides no loss.
-bool Peers::is_of(std::size_t service, const InstanceHandle_t& writer) const noexcept {
+bool Peers::is_of(std::size_t service, const ertps::InstanceHandle_t& writer) const noexcept {
   return sources_ == nullptr || !sources_->named() || sources_->admits(service, writer);
 }
 

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/rtps/common/InstanceHandle.h>
-
 #include <atomic>
 #include <cstddef>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "fast_dds/discovery.hpp"
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/sources.hpp"
 
@@ -23,7 +21,7 @@ namespace stillhand::runtime {
 /// DDS announces a writer's user data before it matches the writer, so a reader knows the mark
 /// before the first sample.  Called from DDS's threads and the owner's; every call locks, none
 /// is made in the control path except alive(), replay_seen() and replay_present().
-class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
+class Peers final : public DiscoveryListener {
  public:
   /// @param answers_replay  this process accepts samples of a replay, and is marked itself
   /// @param writers  notified of every writer, or nullptr
@@ -34,26 +32,20 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
 
   static std::string participant_name(std::uint32_t rig, const std::string& service);
 
-  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-
-  void onParticipantAuthentication(
-      eprosima::fastdds::dds::DomainParticipant* participant,
-      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+  void on_participant(const AnnouncedParticipant& announced) override;
+  void on_writer(const AnnouncedWriter& announced) override;
+  void onParticipantAuthentication(edds::DomainParticipant* participant,
+                                   ertps::ParticipantAuthenticationInfo&& info) override;
 
   /// Service of this rig that owns an endpoint, or "" for a stranger or another rig's.
-  [[nodiscard]] std::string service_of(
-      const eprosima::fastrtps::rtps::InstanceHandle_t& endpoint) const;
+  [[nodiscard]] std::string service_of(const ertps::InstanceHandle_t& endpoint) const;
   /// A status writer came alive or stopped being so.  @return true when that changed anything.
-  bool set_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
+  bool set_alive(const ertps::InstanceHandle_t& writer, bool alive);
   /// A sample of a status writer came.  Shows that the writer lives if set_alive() never counted
   /// for it: Fast DDS 2.9.1 loses the first change of liveliness when it comes while a reader is
   /// made, and it may come before the participant's name.  Locks until all services are alive.
   /// @return true when that changed anything.
-  bool note_sample(const eprosima::fastrtps::rtps::InstanceHandle_t& writer);
+  bool note_sample(const ertps::InstanceHandle_t& writer);
 
   /// The participant of each service of this rig, if there is exactly one; `own` is this one's.
   [[nodiscard]] std::vector<Source> sources_found(const ParticipantId& own) const;
@@ -81,37 +73,37 @@ class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
     return replay_seen_.load(std::memory_order_acquire);
   }
   /// The writer of a sample is marked, and this process does not answer replays.
-  [[nodiscard]] bool refuses(const eprosima::fastrtps::rtps::InstanceHandle_t& writer) const;
+  [[nodiscard]] bool refuses(const ertps::InstanceHandle_t& writer) const;
   [[nodiscard]] std::vector<std::string> lost() const;
   [[nodiscard]] std::vector<std::string> duplicates() const;
 
  private:
   // The next three need the lock.
-  bool count_alive(const eprosima::fastrtps::rtps::InstanceHandle_t& writer, bool alive);
+  bool count_alive(const ertps::InstanceHandle_t& writer, bool alive);
   void refresh();
   [[nodiscard]] bool is_of(std::size_t service,
-                           const eprosima::fastrtps::rtps::InstanceHandle_t& writer) const noexcept;
+                           const ertps::InstanceHandle_t& writer) const noexcept;
   void refresh_replay();
-  [[nodiscard]] bool counts(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;
-  void mark(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);
+  [[nodiscard]] bool counts(const ertps::GuidPrefix_t& participant) const;
+  void mark(const ertps::GuidPrefix_t& participant);
 
   std::string self_;
   std::string prefix_;
   mutable std::mutex mutex_;
-  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> services_;  // by participant
-  std::map<eprosima::fastrtps::rtps::InstanceHandle_t, std::string> alive_writers_;
+  std::map<ertps::GuidPrefix_t, std::string> services_;  // by participant
+  std::map<ertps::InstanceHandle_t, std::string> alive_writers_;
   std::set<std::string> ever_alive_;
   // Status writers of services whose liveliness was heard of: from then on samples prove nothing,
   // since the last of them may arrive after the writer's death.
-  std::set<eprosima::fastrtps::rtps::InstanceHandle_t> heard_;
+  std::set<ertps::InstanceHandle_t> heard_;
   bool answers_replay_;
   FoundWriters* writers_;
   bool secured_;
   Sources* sources_;
-  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> authenticated_;
-  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> marked_now_;
+  std::set<ertps::GuidPrefix_t> authenticated_;
+  std::set<ertps::GuidPrefix_t> marked_now_;
   // Never forgotten: a sample may outlive its writer in a reader's history.
-  std::set<eprosima::fastrtps::rtps::GuidPrefix_t> ever_marked_;
+  std::set<ertps::GuidPrefix_t> ever_marked_;
   std::vector<std::string> missing_lines_;  // one for each of topics::kServices
   std::atomic<bool> all_alive_{false};
   std::atomic<std::size_t> newest_missing_{0};  // place in missing_lines_

@@ -10,17 +10,14 @@
 #include <map>
 #include <vector>
 
+#include "fast_dds/types.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/discovered_qos.hpp"
 #include "services/runtime/bus/participant.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
-#include "services/runtime/bus/serialized_type.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
-
-using eprosima::fastrtps::types::ReturnCode_t;
-namespace edds = eprosima::fastdds::dds;
 
 namespace {
 
@@ -30,9 +27,8 @@ struct Writer final : edds::DataWriterListener {
                               const edds::PublicationMatchedStatus& status) override {
     matched.store(static_cast<std::uint32_t>(status.current_count), std::memory_order_relaxed);
   }
-  void on_offered_deadline_missed(
-      edds::DataWriter* /*writer*/,
-      const eprosima::fastrtps::OfferedDeadlineMissedStatus& /*status*/) override {}
+  void on_offered_deadline_missed(edds::DataWriter* /*writer*/,
+                                  const edds::OfferedDeadlineMissedStatus& /*status*/) override {}
 
   edds::DataWriter* writer = nullptr;
   std::atomic<std::uint32_t> matched{0};
@@ -93,7 +89,7 @@ std::size_t Playback::add_writer(const std::string& topic, const std::string& ty
 
 bool Playback::write(std::size_t writer, std::span<const std::byte> bytes) {
   impl_->sample.assign(bytes.begin(), bytes.end());
-  return impl_->writers[writer]->writer->write(&impl_->sample);
+  return ok(impl_->writers[writer]->writer->write(&impl_->sample));
 }
 
 std::uint32_t Playback::matched(std::size_t writer) const {
@@ -104,9 +100,9 @@ bool Playback::wait_for_acknowledgments(std::int64_t limit_ns) {
   const std::int64_t end_ns = monotonic_ns() + limit_ns;
   return std::all_of(impl_->writers.begin(), impl_->writers.end(), [&](const auto& writer) {
     const std::int64_t left_ns = std::max<std::int64_t>(end_ns - monotonic_ns(), 0);
-    return writer->writer->wait_for_acknowledgments(
-               {static_cast<std::int32_t>(left_ns / kNsPerSecond),
-                static_cast<std::uint32_t>(left_ns % kNsPerSecond)}) == ReturnCode_t::RETCODE_OK;
+    return ok(writer->writer->wait_for_acknowledgments(
+        {static_cast<std::int32_t>(left_ns / kNsPerSecond),
+         static_cast<std::uint32_t>(left_ns % kNsPerSecond)}));
   });
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/bus/security.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -11,21 +8,20 @@
 #include <memory>
 #include <optional>
 
+#include "fast_dds/names.hpp"
 #include "services/contract/config_error.hpp"
 
 namespace stillhand::runtime {
 namespace {
 
 namespace fs = std::filesystem;
-namespace edds = eprosima::fastdds::dds;
 
 /// The only address by which a participant of this profile hears others, "" for that of any
 /// interface; nothing where there may be several, each with a thread of its own.
 std::optional<std::string> only_address(const edds::DomainParticipantQos& qos) {
-  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
   const auto& transports = qos.transport().user_transports;
   if (qos.transport().use_builtin_transports || transports.size() != 1) return std::nullopt;
-  const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transports.front());
+  const auto udp = std::dynamic_pointer_cast<ertps::UDPv4TransportDescriptor>(transports.front());
   if (udp == nullptr || udp->interfaceWhiteList.size() > 1) return std::nullopt;
   return udp->interfaceWhiteList.empty() ? "" : udp->interfaceWhiteList.front();
 }
@@ -36,8 +32,6 @@ std::optional<std::string> only_address(const edds::DomainParticipantQos& qos) {
 // participants, with which no handshake ever comes to an end (qos/README.md, "What security
 // costs").  So only one thread may hear.
 void discover_in_one_thread(edds::DomainParticipantQos& qos) {
-  using eprosima::fastrtps::rtps::IPLocator;
-  using eprosima::fastrtps::rtps::Locator_t;
   constexpr const char* kLoopback = "127.0.0.1";
   const std::optional<std::string> address = only_address(qos);
   if (!address) {
@@ -54,18 +48,18 @@ void discover_in_one_thread(edds::DomainParticipantQos& qos) {
         "only initial peers and a metatrafficUnicastLocatorList, as `stillhand deploy "
         "generate` writes them");
   }
-  builtin.metatrafficUnicastLocatorList.push_back(Locator_t());  // the port that the standard names
-  Locator_t peers;  // of the first maxInitialPeersRange participants
-  IPLocator::setIPv4(peers, kLoopback);
+  builtin.metatrafficUnicastLocatorList.push_back(
+      ertps::Locator_t());  // the port that the standard names
+  ertps::Locator_t peers;   // of the first maxInitialPeersRange participants
+  ertps::IPLocator::setIPv4(peers, kLoopback);
   builtin.initialPeersList.push_back(peers);
 }
 
 }  // namespace
 
 void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
-  using eprosima::fastrtps::rtps::DiscoveryProtocol_t;
-  const bool server_in_profile =
-      qos.wire_protocol().builtin.discovery_config.discoveryProtocol != DiscoveryProtocol_t::SIMPLE;
+  const bool server_in_profile = qos.wire_protocol().builtin.discovery_config.discoveryProtocol !=
+                                 ertps::DiscoveryProtocol::SIMPLE;
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing here sets a variable
   if (server_in_profile || std::getenv("ROS_DISCOVERY_SERVER") != nullptr) {
     throw ConfigError("security",
@@ -96,7 +90,7 @@ void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
 
 bool is_secured(const edds::DomainParticipant& participant, const Identity& identity) {
   const auto expected = guid_start(identity);
-  const eprosima::fastrtps::rtps::GUID_t& guid = participant.guid();
+  const ertps::GUID_t& guid = participant.guid();
   return std::equal(expected.begin(), expected.end(), std::begin(guid.guidPrefix.value));
 }
 

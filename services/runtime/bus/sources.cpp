@@ -9,8 +9,6 @@
 
 namespace stillhand::runtime {
 
-namespace rtps = eprosima::fastrtps::rtps;
-
 namespace {
 
 constexpr std::size_t kFront = 8;  // bytes of a participant in Named::front; the rest is in back
@@ -18,7 +16,7 @@ constexpr std::size_t kMostLines = 200;
 constexpr const char* kContested = "two experiments name the session's sources";
 constexpr const char* kManyMore = "more second writers than are named";
 
-ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
+ParticipantId id_of(const ertps::GuidPrefix_t& prefix) {
   ParticipantId id{};
   std::copy(std::begin(prefix.value), std::end(prefix.value), id.begin());
   return id;
@@ -146,7 +144,7 @@ bool Sources::admits(std::size_t service, const Handle& writer) const noexcept {
     return topics::kServices[service] == "experiment" && !options_.experiment && !this->named() &&
            !contested();
   }
-  return is(named, static_cast<const rtps::octet*>(writer.value));
+  return is(named, static_cast<const ertps::octet*>(writer.value));
 }
 
 bool Sources::speaks_for(std::string_view service,
@@ -182,7 +180,7 @@ void Sources::forget_participant(const Prefix& participant) {
     names_.erase(participant);
     replays_.erase(participant);
     std::erase_if(writers_, [&](const auto& entry) {
-      return rtps::iHandle2GUID(entry.first).guidPrefix == participant;
+      return ertps::iHandle2GUID(entry.first).guidPrefix == participant;
     });
     if (std::erase_if(announced_,
                       [&](const auto& entry) { return entry.first == id_of(participant); }) > 0) {
@@ -239,7 +237,7 @@ bool Sources::of_another_rig(const std::string& name, const topics::Topic& topic
 bool Sources::is_second(const Handle& handle, const Writer& writer) const {
   const bool anybodys = writer_of(*writer.topic) == kAnybody;
   if (!named() || (!anybodys && admits(writer_of(*writer.topic), handle))) return false;
-  const Prefix prefix = rtps::iHandle2GUID(handle).guidPrefix;
+  const Prefix prefix = ertps::iHandle2GUID(handle).guidPrefix;
   if (replays_.count(prefix) != 0) return false;
   if (writer.refused || anybodys) return writer.refused;
   // DDS announces a writer before the name of its participant.
@@ -255,7 +253,7 @@ const char* Sources::kept(std::string line) {
 }
 
 Sources::Second Sources::second_of(const Handle& handle, const Writer& writer) {
-  const Prefix prefix = rtps::iHandle2GUID(handle).guidPrefix;
+  const Prefix prefix = ertps::iHandle2GUID(handle).guidPrefix;
   const auto found = names_.find(prefix);
   const std::string name = printable(found == names_.end() ? "" : found->second);
   if (writer_of(*writer.topic) != kAnybody) {

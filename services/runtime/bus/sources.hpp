@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/rtps/common/InstanceHandle.h>
-
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -16,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "fast_dds/names.hpp"
 #include "idl/topics.hpp"
 #include "services/runtime/bus/source.hpp"
 
@@ -26,8 +25,8 @@ namespace stillhand::runtime {
 /// speaks_for(), named(), sound() and why_not() are wait-free, the rest locks.
 class Sources {
  public:
-  using Prefix = eprosima::fastrtps::rtps::GuidPrefix_t;
-  using Handle = eprosima::fastrtps::rtps::InstanceHandle_t;
+  using Prefix = ertps::GuidPrefix_t;
+  using Handle = ertps::InstanceHandle_t;
   /// First bytes of the GUID of each of topics::kServices, as security makes them; empty: no keys.
   using Identities = std::vector<std::array<std::uint8_t, 6>>;
 

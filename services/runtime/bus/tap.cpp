@@ -17,20 +17,16 @@
 #include <set>
 #include <thread>
 
+#include "fast_dds/discovery.hpp"
+#include "fast_dds/types.hpp"
 #include "idl/topics.hpp"
 #include "services/runtime/bus/batched/batched_reader.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/participant.hpp"
-#include "services/runtime/bus/serialized_type.hpp"
 #include "services/runtime/bus/type_tag.hpp"
 
 namespace stillhand::runtime {
-
-using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
-using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
-using eprosima::fastrtps::types::ReturnCode_t;
-namespace edds = eprosima::fastdds::dds;
 
 namespace {
 
@@ -57,7 +53,7 @@ const char* profile_of(ReaderClass reader_class) {
 
 }  // namespace
 
-struct Tap::Impl final : edds::DomainParticipantListener {
+struct Tap::Impl final : DiscoveryListener {
   using ReaderKey = std::pair<std::string, ReaderClass>;
   struct Reader;
 
@@ -73,10 +69,10 @@ struct Tap::Impl final : edds::DomainParticipantListener {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  void on_participant_discovery(edds::DomainParticipant* participant,
-                                ParticipantDiscoveryInfo&& info) override;
-  void on_publisher_discovery(edds::DomainParticipant* participant,
-                              WriterDiscoveryInfo&& info) override;
+  void on_participant(const AnnouncedParticipant& announced) override {
+    writers.note_participant(announced);
+  }
+  void on_writer(const AnnouncedWriter& announced) override;
   void open_readers(const std::stop_token& stop);
   void open_reader(const ReaderKey& key, const std::string& type);
   void tell(std::string line);
@@ -105,7 +101,7 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
 
   void on_data_available(edds::DataReader* source) override {
     edds::SampleInfo info;
-    while (source->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK) {
+    while (ok(source->take_next_sample(&sample, &info))) {
       if (!info.valid_data) continue;
       const SampleWriters::Entry* entry = writer_of.of(info.publication_handle);
       if (entry == nullptr) owner.unattributed.fetch_add(1, std::memory_order_relaxed);
@@ -136,18 +132,12 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
   SampleWriters writer_of;
 };
 
-void Tap::Impl::on_participant_discovery(edds::DomainParticipant* /*participant*/,
-                                         ParticipantDiscoveryInfo&& info) {
-  writers.note_participant(info);
-}
-
-void Tap::Impl::on_publisher_discovery(edds::DomainParticipant* /*participant*/,
-                                       WriterDiscoveryInfo&& info) {
-  const auto number = writers.note_writer(info, options.wanted(info.info.topicName().to_string()));
+void Tap::Impl::on_writer(const AnnouncedWriter& announced) {
+  const auto number = writers.note_writer(announced, options.wanted(announced.topic));
   if (!number) return;
   const FoundWriter writer = writers.at(*number);
   if (!writer.wanted) return;
-  const auto& partitions = info.info.m_qos.m_partition.names();
+  const auto& partitions = announced.qos.m_partition.names();
   const ReaderKey key{writer.topic, class_of(writer.qos)};
   const std::lock_guard lock(mutex);
   if (!partitions.empty()) {
@@ -185,8 +175,7 @@ void Tap::Impl::open_reader(const ReaderKey& key, const std::string& type) {
     return tell(name + ": the topic has two types; " + type + " is not recorded");
   }
   edds::DataReaderQos qos;
-  if (subscriber->get_datareader_qos_from_profile(profile_of(key.second), qos) !=
-      ReturnCode_t::RETCODE_OK) {
+  if (!ok(subscriber->get_datareader_qos_from_profile(profile_of(key.second), qos))) {
     return tell(name + ": no data_reader profile \"" + profile_of(key.second) + "\" in " +
                 options.profiles.string());
   }
@@ -220,8 +209,7 @@ Tap::Tap(Options options) : impl_(std::make_unique<Impl>(std::move(options))) {
   for (const auto each :
        {ReaderClass::kBestEffort, ReaderClass::kReliable, ReaderClass::kReliableLatched}) {
     edds::DataReaderQos qos;
-    if (impl_->subscriber->get_datareader_qos_from_profile(profile_of(each), qos) !=
-        ReturnCode_t::RETCODE_OK) {
+    if (!ok(impl_->subscriber->get_datareader_qos_from_profile(profile_of(each), qos))) {
       throw missing_profile(impl_->options.profiles, "data_reader", profile_of(each));
     }
   }

@@ -3,11 +3,13 @@
 
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include "fast_dds/names.hpp"
+
 namespace stillhand::runtime {
 
 /// The content of TypeTag; only the .cpp files of this folder see it.
 struct TypeTag {
-  eprosima::fastdds::dds::TypeSupport support;
+  edds::TypeSupport support;
 };
 
 /// Type support by DDS type name, for the recorder; nullptr when idl/ does not define it.

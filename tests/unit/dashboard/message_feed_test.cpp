@@ -26,7 +26,7 @@ class MessageFeedTest : public ::testing::Test {
   std::uint32_t add(const topics::Topic& topic) { return add(topic, sut_); }
   template <typename Message_>
   void take(MessageFeed& feed, std::uint32_t source, const Message_& message, std::int64_t at_ms) {
-    const auto bytes = tests::cdr_of(message);
+    const auto bytes = to_cdr(message);
     feed.take({source, ++sequence_, kBegin + at_ms * kMs, kBegin + at_ms * kMs, bytes});
   }
   void control(MessageFeed& feed, stillhand_msgs::Phase phase, Tick start_tick) {
@@ -281,7 +281,7 @@ TEST_F(MessageFeedTest, AnotherHostsClockIsTakenOffItsLatencies) {
   take(sut_, add(topics::kClockOffset), offset, 0);
   stillhand_msgs::Sensed sensed;
   sensed.rig(1);
-  const auto bytes = tests::cdr_of(sensed);
+  const auto bytes = to_cdr(sensed);
   sut_.take({add(topics::kSensed), 1, kBegin + 5 * kMs, kBegin + kMs, bytes});
   EXPECT_EQ(sut_.health().topics().at(1).report(kBegin).latency.max_ns, kMs);
 }

@@ -58,7 +58,7 @@ std::vector<Recorded> session() {
   control.phase(stillhand_msgs::PHASE_PEGGED);
   control.start_tick(5000);
   control.duration_ticks(10'000);
-  all.push_back({2, 1, kBegin, kBegin, tests::cdr_of(control)});
+  all.push_back({2, 1, kBegin, kBegin, to_cdr(control)});
   for (Tick tick = 0; tick < kTicks; ++tick) {
     for (const std::size_t source : {std::size_t{0}, std::size_t{1}}) {
       if (source == 0 && tick % 7000 == 3) continue;               // lost
@@ -74,7 +74,7 @@ std::vector<Recorded> session() {
     event.rig(1);
     event.kind(stillhand_msgs::EVENT_LIVELINESS_LOST);
     event.source("sensing");
-    all.push_back({3, 1, kBegin + tick * kMs, kBegin + tick * kMs + 700'000, tests::cdr_of(event)});
+    all.push_back({3, 1, kBegin + tick * kMs, kBegin + tick * kMs + 700'000, to_cdr(event)});
   }
   return all;
 }

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
-#include "tests/support/idl_fields.hpp"
 
 namespace stillhand::dashboard {
 namespace {
@@ -17,9 +17,7 @@ std::vector<std::byte> sample(std::uint32_t rig, Tick tick) {
   message.rig(rig);
   message.tick(tick);
   message.stamp_ns(tick * kPeriod_ns);
-  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
-  for (const char c : tests::cdr_of(message)) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
+  return to_cdr(message);
 }
 
 class RigsTest : public ::testing::Test {

@@ -26,7 +26,7 @@ class SnapshotJsonTest : public ::testing::Test {
   }
   template <typename Message_>
   void take(std::uint32_t source, const Message_& message, std::int64_t at_ms) {
-    const auto bytes = tests::cdr_of(message);
+    const auto bytes = to_cdr(message);
     sut_.take({source, ++sequences_[source], kBegin + at_ms * kMs, kBegin + at_ms * kMs, bytes});
   }
   void control(stillhand_msgs::SessionState state, stillhand_msgs::Phase phase) {

@@ -34,7 +34,7 @@ class GraphJsonTest : public ::testing::Test {
   void take(const topics::Topic& topic, const Message_& message, std::int64_t at_ms) {
     const auto source = sut_.add(
         {std::string(topic.name), std::string(topic.type), "stillhand/1/cancellation", false});
-    const auto bytes = tests::cdr_of(message);
+    const auto bytes = to_cdr(message);
     sut_.take({source, ++sequence_, at_ms * kMs, at_ms * kMs, bytes});
   }
   Json edge(const std::string& topic, const std::string& service) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/motion/ride_file.hpp"
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
@@ -29,19 +28,6 @@ std::string file_of(const std::string& name, const std::string& bytes) {
   return path;
 }
 
-// As recorded: CDR with its encapsulation header.
-std::vector<std::byte> cdr_of(const stillhand_msgs::Sensed& message) {
-  constexpr std::size_t kHeader_bytes = 4;
-  std::vector<std::byte> bytes(kHeader_bytes +
-                               stillhand_msgs::Sensed::getCdrSerializedSize(message));
-  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(bytes.data()), bytes.size());
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  return bytes;
-}
-
 // A session's recording that holds these ticks; the lateral acceleration of each is its number.
 std::string recording_of(const std::string& name, const std::vector<std::int64_t>& ticks) {
   recording::MemorySink sink;
@@ -52,7 +38,7 @@ std::string recording_of(const std::string& name, const std::vector<std::int64_t
     stillhand_msgs::Sensed message;
     message.tick(tick);
     message.accel_y_m_s2(static_cast<double>(tick));
-    EXPECT_TRUE(writer.write(channel, 0, 0, 0, cdr_of(message)).ok());
+    EXPECT_TRUE(writer.write(channel, 0, 0, 0, to_cdr(message)).ok());
   }
   EXPECT_TRUE(writer.close().ok());
   const auto bytes = sink.bytes();

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "idl/cdr.hpp"
 #include "idl/control_loop.h"
 #include "services/contract/config_error.hpp"
-#include "tests/support/idl_fields.hpp"
 
 namespace stillhand::record {
 namespace {
@@ -34,8 +34,7 @@ TEST(FieldTriggerTest, ReadsTheFieldFromTheBytesOfItsTopicOnly) {
   FieldTrigger sut("stillhand/sensed.theta_rad>0.2");
   stillhand_msgs::Sensed message;
   message.theta_rad(0.3);
-  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
-  for (const char c : tests::cdr_of(message)) bytes.push_back(static_cast<std::byte>(c));
+  const auto bytes = to_cdr(message);
   runtime::FoundWriter writer;
   writer.topic = "stillhand/other";
   writer.type = "stillhand_msgs::Sensed";
@@ -49,8 +48,7 @@ TEST(FieldTriggerTest, ReadsTheFieldFromTheBytesOfItsTopicOnly) {
 template <typename Message>
 bool step(FieldTrigger& sut, const std::string& topic, const std::string& type,
           const Message& message) {
-  std::vector<std::byte> bytes{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
-  for (const char c : tests::cdr_of(message)) bytes.push_back(static_cast<std::byte>(c));
+  const auto bytes = to_cdr(message);
   runtime::FoundWriter writer;
   writer.topic = topic;
   writer.type = type;

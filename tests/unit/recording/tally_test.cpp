@@ -36,7 +36,7 @@ std::vector<std::byte> sensed(Tick tick) {
   message.rig(7);
   message.tick(tick);
   message.stamp_ns(tick * 1'000'000 + 3);
-  return tests::cdr_of(message);
+  return to_cdr(message);
 }
 
 TEST(SampleHeadTest, ItIsTheFirstThreeFieldsOfEvery1kHzMessage) {
@@ -124,7 +124,7 @@ TEST_F(TallyTest, TicksOfATopicThatIsNoStreamAreNoLoss) {
   std::int64_t sequence = 0;
   for (const Tick tick : {10, 5000, 90}) {
     event.tick(tick);
-    take(writer, 3, ++sequence, tests::cdr_of(event));
+    take(writer, 3, ++sequence, to_cdr(event));
   }
   EXPECT_EQ(sut_->topics({}).at("stillhand/event").lost, 0u);
   EXPECT_THAT(sut_->heard(), ElementsAre("stillhand/event"));
@@ -165,7 +165,7 @@ std::vector<std::byte> control(std::int32_t trial, stillhand_msgs::Phase phase) 
   message.start_tick(3000 + trial);
   message.duration_ticks(10'000);
   message.reference_seed(UINT64_MAX);
-  return tests::cdr_of(message);
+  return to_cdr(message);
 }
 
 void announce(TrialLog& log, std::span<const std::byte> bytes) {

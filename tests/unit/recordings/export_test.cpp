@@ -221,7 +221,7 @@ TEST_F(ExportTest, ATopicOfTheCatalogueIsReadWithoutItsSchema) {
     recording::FileSink sink(path("a.mcap"));
     recording::McapWriter writer(sink);
     const auto channel = writer.add_channel("stillhand/sensed", 0, "cdr");
-    ASSERT_TRUE(writer.write(channel, 0, 5, 5, tests::cdr_of(sample(3))).ok());
+    ASSERT_TRUE(writer.write(channel, 0, 5, 5, to_cdr(sample(3))).ok());
     ASSERT_TRUE(writer.close().ok());
   }
   const Exported sut = export_recording(path("a.mcap"), {path("out"), {}, {}, {}});

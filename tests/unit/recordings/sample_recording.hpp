@@ -78,10 +78,10 @@ inline void write_sample(const std::string& path, bool close = true) {
     const auto time_ns = kSampleStart_ns + 1'000'000 * static_cast<std::uint64_t>(n);
     const auto number = static_cast<std::uint32_t>(n);
     const std::int64_t tick = n < 50 ? n : n + 2;
-    ok = ok && writer.write(sensed, number, time_ns, time_ns - 5, tests::cdr_of(sample(tick))).ok();
+    ok = ok && writer.write(sensed, number, time_ns, time_ns - 5, to_cdr(sample(tick))).ok();
     if (n % 50 != 0) continue;
     const std::string text = n == 0 ? "plain" : "a \"quoted\", split\ntext";
-    ok = ok && writer.write(events, number / 50, time_ns, time_ns, tests::cdr_of(event(text))).ok();
+    ok = ok && writer.write(events, number / 50, time_ns, time_ns, to_cdr(event(text))).ok();
   }
   ok = ok && (close ? writer.close() : writer.flush_chunk()).ok();
   ASSERT_TRUE(ok);
@@ -102,7 +102,7 @@ inline void write_two_writers(const std::string& path,
   std::uint64_t time_ns = kSampleStart_ns;
   for (const std::int64_t tick : {0, 1, 3}) {
     for (const auto channel : {first, second}) {
-      ok = ok && writer.write(channel, 0, time_ns, time_ns, tests::cdr_of(sample(tick))).ok();
+      ok = ok && writer.write(channel, 0, time_ns, time_ns, to_cdr(sample(tick))).ok();
       time_ns += 500'000;
     }
   }

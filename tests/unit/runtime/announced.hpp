@@ -3,75 +3,48 @@
 #pragma once
 
 #include <cstdint>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <string>
 #include <vector>
 
+#include "services/runtime/bus/announced.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
 
 namespace stillhand::runtime::announced {
 
-namespace rtps = eprosima::fastrtps::rtps;
-
-inline rtps::GuidPrefix_t prefix_of(std::uint8_t number) {
-  rtps::GuidPrefix_t prefix;
+inline ertps::GuidPrefix_t prefix_of(std::uint8_t number) {
+  ertps::GuidPrefix_t prefix;
   prefix.value[0] = number;
   prefix.value[11] = 0xa0;
   return prefix;
 }
 
 /// Writer number `writer` of a participant.
-inline rtps::GUID_t guid_of(std::uint8_t participant, std::uint8_t writer = 1) {
+inline ertps::GUID_t guid_of(std::uint8_t participant, std::uint8_t writer = 1) {
   return {prefix_of(participant), std::uint32_t{writer} << 8 | 0x02};
 }
 
-inline rtps::InstanceHandle_t handle_of(std::uint8_t participant, std::uint8_t writer = 1) {
-  return rtps::InstanceHandle_t(guid_of(participant, writer));
+inline ertps::InstanceHandle_t handle_of(std::uint8_t participant, std::uint8_t writer = 1) {
+  return ertps::InstanceHandle_t(guid_of(participant, writer));
 }
 
-/// A participant's announcement; valid as long as this lives.
-class Participant {
- public:
-  Participant(std::uint8_t number, const std::string& name, bool marked = false)
-      : data_(rtps::RTPSParticipantAllocationAttributes{}) {
-    data_.m_guid = {prefix_of(number), rtps::c_EntityId_RTPSParticipant};
-    data_.m_participantName = name;
-    if (marked) data_.m_userData.data_vec(replay_mark());
-  }
-  [[nodiscard]] rtps::ParticipantDiscoveryInfo info(
-      rtps::ParticipantDiscoveryInfo::DISCOVERY_STATUS status =
-          rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) const {
-    rtps::ParticipantDiscoveryInfo info(data_);
-    info.status = status;
-    return info;
-  }
+inline AnnouncedParticipant participant(std::uint8_t number, const std::string& name,
+                                        bool marked = false) {
+  return {prefix_of(number), name, marked ? replay_mark() : std::vector<std::uint8_t>{}};
+}
 
- private:
-  rtps::ParticipantProxyData data_;
-};
+inline AnnouncedWriter writer(std::uint8_t participant, std::uint8_t number,
+                              const std::string& topic, const std::string& type,
+                              const std::vector<std::uint8_t>& user_data = {}) {
+  AnnouncedWriter writer{guid_of(participant, number), topic, type, {}};
+  writer.qos.m_userData.data_vec(user_data);
+  return writer;
+}
 
-/// A writer's announcement; valid as long as this lives.
-class Writer {
- public:
-  Writer(std::uint8_t participant, std::uint8_t number, const std::string& topic,
-         const std::string& type, const std::vector<std::uint8_t>& user_data = {})
-      : data_(4, 1) {
-    data_.guid(guid_of(participant, number));
-    data_.topicName(topic.c_str());
-    data_.typeName(type.c_str());
-    data_.m_qos.m_userData.data_vec(user_data);
-  }
-  [[nodiscard]] rtps::WriterDiscoveryInfo info(
-      rtps::WriterDiscoveryInfo::DISCOVERY_STATUS status =
-          rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) const {
-    rtps::WriterDiscoveryInfo info(data_);
-    info.status = status;
-    return info;
-  }
-  rtps::WriterProxyData& data() { return data_; }
-
- private:
-  rtps::WriterProxyData data_;
-};
+/// What is announced when it leaves.
+template <typename Announced>
+Announced gone(Announced announced) {
+  announced.here = false;
+  return announced;
+}
 
 }  // namespace stillhand::runtime::announced

@@ -2,7 +2,6 @@
 #include "services/runtime/bus/batched/batched_udp.hpp"
 
 #include <arpa/inet.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -16,10 +15,7 @@
 namespace stillhand::runtime {
 namespace {
 
-using eprosima::fastrtps::rtps::IPLocator;
-using eprosima::fastrtps::rtps::octet;
 using Locator = BatchedUdp::Locator;
-namespace rtps = eprosima::fastdds::rtps;
 
 /// A port of the loopback that was free a moment ago.
 class FreePort {
@@ -40,8 +36,8 @@ class FreePort {
   [[nodiscard]] Locator locator() const {
     Locator locator;
     locator.kind = LOCATOR_KIND_UDPv4;
-    IPLocator::setIPv4(locator, "127.0.0.1");
-    IPLocator::setPhysicalPort(locator, ntohs(address_.sin_port));
+    ertps::IPLocator::setIPv4(locator, "127.0.0.1");
+    ertps::IPLocator::setPhysicalPort(locator, ntohs(address_.sin_port));
     return locator;
   }
   void send(char byte) const {
@@ -53,15 +49,16 @@ class FreePort {
   sockaddr_in address_{};
 };
 
-struct Ignoring final : rtps::TransportReceiverInterface {
-  void OnDataReceived(const octet*, std::uint32_t, const Locator&, const Locator&) override {}
+struct Ignoring final : ertps::TransportReceiverInterface {
+  void OnDataReceived(const ertps::octet*, std::uint32_t, const Locator&, const Locator&) override {
+  }
 };
 
 // Taking one takes longer than sending one: every batch of the flooded port is full.
 TEST(BatchedUdpTest, AFloodedPortKeepsNeitherTheOthersNorItsOwnEndWaiting) {
   const FreePort flooded, other;
   std::atomic<std::uint64_t> flood{0}, heard{0};
-  const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+  const auto udp = std::make_shared<ertps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = {"127.0.0.1"};
   const BatchedUdpDescriptor descriptor(udp, [&](std::span<const std::byte> datagram, auto) {
     if (datagram.front() == std::byte{'f'}) {
@@ -73,7 +70,7 @@ TEST(BatchedUdpTest, AFloodedPortKeepsNeitherTheOthersNorItsOwnEndWaiting) {
     return true;
   });
   Ignoring receiver;
-  const std::unique_ptr<rtps::TransportInterface> sut(descriptor.create_transport());
+  const std::unique_ptr<ertps::TransportInterface> sut(descriptor.create_transport());
   ASSERT_TRUE(sut->init());
   ASSERT_TRUE(sut->OpenInputChannel(flooded.locator(), &receiver, 65000));
   ASSERT_TRUE(sut->OpenInputChannel(other.locator(), &receiver, 65000));

@@ -9,8 +9,6 @@
 namespace stillhand::runtime {
 namespace {
 
-namespace edds = eprosima::fastdds::dds;
-
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 /// What discovery would announce of a writer that offers this.

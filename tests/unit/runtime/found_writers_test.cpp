@@ -9,24 +9,22 @@
 namespace stillhand::runtime {
 namespace {
 
+using announced::gone;
 using announced::handle_of;
-using announced::Participant;
+using announced::participant;
 using announced::prefix_of;
-using announced::Writer;
-using announced::rtps::ParticipantDiscoveryInfo;
-using announced::rtps::WriterDiscoveryInfo;
+using announced::writer;
 
-Writer sensed(std::uint8_t participant, std::uint8_t number = 1) {
-  return {participant, number, "stillhand/sensed", "stillhand_msgs::Sensed"};
+AnnouncedWriter sensed(std::uint8_t participant, std::uint8_t number = 1) {
+  return announced::writer(participant, number, "stillhand/sensed", "stillhand_msgs::Sensed");
 }
 
 TEST(FoundWritersTest, WritersAreNumberedInTheOrderOfDiscoveryAndKeepTheirNumber) {
   FoundWriters sut;
-  EXPECT_EQ(sut.note_writer(sensed(7).info()), 0u);
-  EXPECT_EQ(sut.note_writer(sensed(3).info()), 1u);
-  EXPECT_EQ(sut.note_writer(sensed(7, 2).info()), 2u);
-  EXPECT_EQ(sut.note_writer(sensed(7).info()), std::nullopt);  // known
-  EXPECT_EQ(sut.note_writer(sensed(3).info(WriterDiscoveryInfo::CHANGED_QOS_WRITER)), std::nullopt);
+  EXPECT_EQ(sut.note_writer(sensed(7)), 0u);
+  EXPECT_EQ(sut.note_writer(sensed(3)), 1u);
+  EXPECT_EQ(sut.note_writer(sensed(7, 2)), 2u);
+  EXPECT_EQ(sut.note_writer(sensed(7)), std::nullopt);  // known
   EXPECT_EQ(sut.all().size(), 3u);
   EXPECT_EQ(sut.find(handle_of(3)), 1u);
   EXPECT_EQ(sut.find(handle_of(7, 2)), 2u);
@@ -35,9 +33,9 @@ TEST(FoundWritersTest, WritersAreNumberedInTheOrderOfDiscoveryAndKeepTheirNumber
 
 TEST(FoundWritersTest, AWriterIsDescribedAsItWasAnnounced) {
   FoundWriters sut;
-  Writer writer(7, 1, "stillhand/sensed", "stillhand_msgs::Sensed", replay_mark());
-  writer.data().m_qos.m_reliability.kind = eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS;
-  sut.note_writer(writer.info(), false);
+  auto reliable = writer(7, 1, "stillhand/sensed", "stillhand_msgs::Sensed", replay_mark());
+  reliable.qos.m_reliability.kind = edds::RELIABLE_RELIABILITY_QOS;
+  sut.note_writer(reliable, false);
   const FoundWriter found = sut.at(0);
   EXPECT_EQ(found.topic, "stillhand/sensed");
   EXPECT_EQ(found.type, "stillhand_msgs::Sensed");
@@ -52,7 +50,7 @@ TEST(FoundWritersTest, AWriterIsDescribedAsItWasAnnounced) {
 
 TEST(FoundWritersTest, AStrangersTopicHasNoProfileAndItsTypeIsNotKnown) {
   FoundWriters sut;
-  sut.note_writer(Writer(7, 1, "chatter", "std_msgs::String", {1, 2, 3}).info());
+  sut.note_writer(writer(7, 1, "chatter", "std_msgs::String", {1, 2, 3}));
   EXPECT_EQ(sut.at(0).profile, "");
   EXPECT_FALSE(sut.at(0).type_known);
   EXPECT_FALSE(sut.at(0).replayed);
@@ -62,14 +60,14 @@ TEST(FoundWritersTest, AStrangersTopicHasNoProfileAndItsTypeIsNotKnown) {
 // Each comes with a writer of its own, and leaves.
 TEST(FoundWritersTest, StrangersThatComeAndGoFillNoMemoryAndTakeNobodysPlace) {
   FoundWriters sut;
-  sut.note_writer(sensed(9).info());
+  sut.note_writer(sensed(9));
   sut.find(handle_of(9));  // a sample came
-  sut.note_writer(sensed(9).info(WriterDiscoveryInfo::REMOVED_WRITER));
-  Writer stranger(7, 1, "chatter", "std_msgs::String");
+  sut.note_writer(gone(sensed(9)));
+  AnnouncedWriter stranger = writer(7, 1, "chatter", "std_msgs::String");
   for (std::uint32_t i = 0; i < FoundWriters::kMost + 100; ++i) {
-    stranger.data().guid({prefix_of(7), i << 8 | 0x02});
-    ASSERT_NE(sut.note_writer(stranger.info()), std::nullopt) << i;
-    sut.note_writer(stranger.info(WriterDiscoveryInfo::REMOVED_WRITER));
+    stranger.guid = {prefix_of(7), i << 8 | 0x02};
+    ASSERT_NE(sut.note_writer(stranger), std::nullopt) << i;
+    sut.note_writer(gone(stranger));
   }
   EXPECT_EQ(sut.all().size(), FoundWriters::kMost);
   EXPECT_EQ(sut.find(handle_of(9)), 0u);
@@ -80,7 +78,7 @@ TEST(FoundWritersTest, EveryWriterHasAnIdOfItsOwn) {
   std::set<std::string> ids;
   for (std::uint8_t participant = 1; participant <= 20; ++participant) {
     for (std::uint8_t number = 1; number <= 3; ++number) {
-      sut.note_writer(sensed(participant, number).info());
+      sut.note_writer(sensed(participant, number));
     }
   }
   for (const FoundWriter& writer : sut.all()) ids.insert(writer.id);
@@ -90,13 +88,13 @@ TEST(FoundWritersTest, EveryWriterHasAnIdOfItsOwn) {
 // DDS announces the two in either order.
 TEST(FoundWritersTest, TheParticipantsNameReachesItsWritersBeforeAndAfterThem) {
   FoundWriters sut;
-  sut.note_writer(sensed(7).info());
-  sut.note_writer(sensed(8).info());
+  sut.note_writer(sensed(7));
+  sut.note_writer(sensed(8));
   EXPECT_EQ(sut.at(0).participant, "");
-  sut.note_participant(Participant(7, "stillhand/1/sensing").info());
+  sut.note_participant(participant(7, "stillhand/1/sensing"));
   EXPECT_EQ(sut.at(0).participant, "stillhand/1/sensing");
   EXPECT_EQ(sut.at(1).participant, "");
-  sut.note_writer(sensed(7, 2).info());
+  sut.note_writer(sensed(7, 2));
   EXPECT_EQ(sut.at(2).participant, "stillhand/1/sensing");
   sut.note_participant(prefix_of(8), "renamed");
   EXPECT_EQ(sut.at(1).participant, "renamed");
@@ -104,28 +102,25 @@ TEST(FoundWritersTest, TheParticipantsNameReachesItsWritersBeforeAndAfterThem) {
 
 TEST(FoundWritersTest, AWriterThatLeftStaysWithItsNumberAndIsNotPresent) {
   FoundWriters sut;
-  sut.note_writer(sensed(7).info());
-  sut.note_writer(sensed(8).info());
-  EXPECT_EQ(sut.note_writer(sensed(7).info(WriterDiscoveryInfo::REMOVED_WRITER)), std::nullopt);
+  sut.note_writer(sensed(7));
+  sut.note_writer(sensed(8));
+  EXPECT_EQ(sut.note_writer(gone(sensed(7))), std::nullopt);
   EXPECT_FALSE(sut.at(0).present);
   EXPECT_TRUE(sut.at(1).present);
   EXPECT_EQ(sut.find(handle_of(7)), 0u);
-  EXPECT_EQ(sut.note_writer(sensed(9).info(WriterDiscoveryInfo::REMOVED_WRITER)), std::nullopt);
+  EXPECT_EQ(sut.note_writer(gone(sensed(9))), std::nullopt);
   EXPECT_EQ(sut.all().size(), 2u);  // the end of a writer that was never found adds none
 }
 
 TEST(FoundWritersTest, AParticipantThatLeavesTakesItsWritersAlong) {
-  for (const auto how : {ParticipantDiscoveryInfo::REMOVED_PARTICIPANT,
-                         ParticipantDiscoveryInfo::DROPPED_PARTICIPANT}) {
-    FoundWriters sut;
-    sut.note_writer(sensed(7, 1).info());
-    sut.note_writer(sensed(7, 2).info());
-    sut.note_writer(sensed(8).info());
-    sut.note_participant(Participant(7, "").info(how));
-    EXPECT_FALSE(sut.at(0).present);
-    EXPECT_FALSE(sut.at(1).present);
-    EXPECT_TRUE(sut.at(2).present);
-  }
+  FoundWriters sut;
+  sut.note_writer(sensed(7, 1));
+  sut.note_writer(sensed(7, 2));
+  sut.note_writer(sensed(8));
+  sut.note_participant(gone(participant(7, "")));
+  EXPECT_FALSE(sut.at(0).present);
+  EXPECT_FALSE(sut.at(1).present);
+  EXPECT_TRUE(sut.at(2).present);
 }
 
 TEST(FoundWritersTest, ANumberThatWasNotGivenIsRefused) {
@@ -137,8 +132,8 @@ TEST(SampleWritersTest, AnEntryIsTheWriterOfTheSampleAndStaysWhereItIs) {
   FoundWriters all;
   SampleWriters sut(all);
   EXPECT_EQ(sut.of(handle_of(7)), nullptr);
-  all.note_writer(sensed(7).info());
-  all.note_writer(sensed(8).info());
+  all.note_writer(sensed(7));
+  all.note_writer(sensed(8));
   const SampleWriters::Entry* seven = sut.of(handle_of(7));
   ASSERT_NE(seven, nullptr);
   EXPECT_EQ(seven->number, 0u);

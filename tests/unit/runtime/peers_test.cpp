@@ -13,12 +13,10 @@
 namespace stillhand::runtime {
 namespace {
 
+using announced::gone;
 using announced::handle_of;
-using announced::Participant;
-using announced::Writer;
-using announced::rtps::ParticipantAuthenticationInfo;
-using announced::rtps::ParticipantDiscoveryInfo;
-using announced::rtps::WriterDiscoveryInfo;
+using announced::participant;
+using announced::writer;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -28,12 +26,10 @@ constexpr std::uint8_t kReplay = 99;
 class PeersTest : public testing::Test {
  protected:
   static void join(Peers& sut, std::uint8_t number, const std::string& name, bool marked = false) {
-    sut.on_participant_discovery(nullptr, Participant(number, name, marked).info());
+    sut.on_participant(participant(number, name, marked));
   }
-  static void leave(Peers& sut, std::uint8_t number,
-                    ParticipantDiscoveryInfo::DISCOVERY_STATUS how =
-                        ParticipantDiscoveryInfo::REMOVED_PARTICIPANT) {
-    sut.on_participant_discovery(nullptr, Participant(number, "").info(how));
+  static void leave(Peers& sut, std::uint8_t number) {
+    sut.on_participant(gone(participant(number, "")));
   }
   /// Number of a service's participant.
   static std::uint8_t number_of(std::string_view service) {
@@ -52,9 +48,9 @@ class PeersTest : public testing::Test {
     }
   }
   static void authenticate(Peers& sut, std::uint8_t number) {
-    ParticipantAuthenticationInfo info;
+    ertps::ParticipantAuthenticationInfo info;
     info.guid = announced::guid_of(number);
-    info.status = ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT;
+    info.status = ertps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT;
     sut.onParticipantAuthentication(nullptr, std::move(info));
   }
 
@@ -192,15 +188,13 @@ TEST_F(PeersTest, AServiceThatIsThereTwiceIsNamedAlsoIfItIsOneself) {
   join(sut_, 62, Peers::participant_name(kRig + 1, "display"));
   EXPECT_THAT(sut_.duplicates(), ElementsAre("motion", "rig"));
   leave(sut_, 61);
-  leave(sut_, 60, ParticipantDiscoveryInfo::DROPPED_PARTICIPANT);
+  leave(sut_, 60);
   EXPECT_THAT(sut_.duplicates(), IsEmpty());
 }
 
 TEST_F(PeersTest, AnnouncedAgainAParticipantIsStillOne) {
   all_live(sut_);
-  const Participant again(number_of("motion"), Peers::participant_name(kRig, "motion"));
-  sut_.on_participant_discovery(nullptr,
-                                again.info(ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT));
+  sut_.on_participant(participant(number_of("motion"), Peers::participant_name(kRig, "motion")));
   EXPECT_THAT(sut_.duplicates(), IsEmpty());
 }
 
@@ -218,9 +212,8 @@ TEST_F(PeersTest, WhileAReplayIsThereNobodyCountsAsAlive) {
 // DDS announces a writer before its participant, and its last samples may come after its end.
 TEST_F(PeersTest, AMarkedWritersSamplesAreRefusedForGood) {
   EXPECT_FALSE(sut_.refuses(handle_of(kReplay)));
-  sut_.on_publisher_discovery(nullptr, Writer(kReplay, 1, "stillhand/motor_command",
-                                              "stillhand_msgs::MotorCommand", replay_mark())
-                                           .info());
+  sut_.on_writer(
+      writer(kReplay, 1, "stillhand/motor_command", "stillhand_msgs::MotorCommand", replay_mark()));
   EXPECT_TRUE(sut_.replay_present());
   EXPECT_TRUE(sut_.refuses(handle_of(kReplay, 1)));
   EXPECT_TRUE(sut_.refuses(handle_of(kReplay, 2)));  // any writer of that participant
@@ -230,8 +223,7 @@ TEST_F(PeersTest, AMarkedWritersSamplesAreRefusedForGood) {
 }
 
 TEST_F(PeersTest, TheEndOfAMarkedWriterAloneMarksNobody) {
-  const Writer writer(kReplay, 1, "t", "T", replay_mark());
-  sut_.on_publisher_discovery(nullptr, writer.info(WriterDiscoveryInfo::REMOVED_WRITER));
+  sut_.on_writer(gone(writer(kReplay, 1, "t", "T", replay_mark())));
   EXPECT_FALSE(sut_.replay_seen());
 }
 
@@ -254,7 +246,7 @@ TEST_F(PeersTest, OnASecuredBusOnlyAnAuthenticatedParticipantCounts) {
   EXPECT_FALSE(sut.replay_present());
   EXPECT_TRUE(sut.alive());
   EXPECT_THAT(sut.duplicates(), IsEmpty());
-  ParticipantAuthenticationInfo refused;
+  ertps::ParticipantAuthenticationInfo refused;
   refused.guid = announced::guid_of(kReplay);
   sut.onParticipantAuthentication(nullptr, std::move(refused));
   EXPECT_FALSE(sut.replay_present());

@@ -26,7 +26,7 @@ Event event_of(EventKind kind, const char* source, const char* topic, const char
 
 TEST(MarkTest, EveryKindOfEventHasANameOfItsOwn) {
   std::set<std::string> names;
-  for (std::uint32_t kind = 0; kind <= std::uint32_t{EVENT_SECOND_WRITER}; ++kind) {
+  for (std::uint32_t kind = 0; kind <= static_cast<std::uint32_t>(EVENT_SECOND_WRITER); ++kind) {
     names.insert(mark_of(event_of(static_cast<EventKind>(kind), "rig", "", "", 0.0)).what);
   }
   EXPECT_EQ(names.size(), static_cast<std::size_t>(EVENT_SECOND_WRITER) + 1);

@@ -11,22 +11,18 @@
 
 namespace stillhand::runtime {
 
-using eprosima::fastrtps::rtps::GuidPrefix_t;
-using eprosima::fastrtps::rtps::octet;
-
-void BatchedReader::install(eprosima::fastdds::dds::DomainParticipantQos& qos) {
-  using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+void BatchedReader::install(edds::DomainParticipantQos& qos) {
   const auto take = [this](auto datagram, auto arrived_ns) {
     return this->take(datagram, arrived_ns);
   };
   for (auto& transport : qos.transport().user_transports) {
-    if (auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport)) {
+    if (auto udp = std::dynamic_pointer_cast<ertps::UDPv4TransportDescriptor>(transport)) {
       transport = std::make_shared<BatchedUdpDescriptor>(std::move(udp), take);
     }
   }
 }
 
-void BatchedReader::start(const eprosima::fastdds::dds::DomainParticipant& participant) {
+void BatchedReader::start(const edds::DomainParticipant& participant) {
   const std::lock_guard lock(mutex_);
   own_ = participant.guid().guidPrefix;
   listening_ = true;
@@ -53,20 +49,21 @@ bool BatchedReader::take(std::span<const std::byte> datagram, std::int64_t arriv
   if (!sample) return false;
   const std::lock_guard lock(mutex_);
   if (!listening_) return false;
-  const auto* destination = reinterpret_cast<const octet*>(sample->destination.data());
-  if (std::memcmp(destination, own_.value, GuidPrefix_t::size) != 0 &&
+  const auto* destination = reinterpret_cast<const ertps::octet*>(sample->destination.data());
+  if (std::memcmp(destination, own_.value, ertps::GuidPrefix_t::size) != 0 &&
       sample->destination != RtpsSample{}.destination) {
     return false;
   }
   FoundWriters::Handle handle;
-  std::memcpy(static_cast<octet*>(handle.value), sample->writer.data(), sample->writer.size());
+  std::memcpy(static_cast<ertps::octet*>(handle.value), sample->writer.data(),
+              sample->writer.size());
   Heard* heard = heard_of(handle);
   if (heard == nullptr) return false;
   // A duplicate by another address, or overtaken by a newer sample.
   if (sample->sequence <= heard->newest) return true;
   heard->newest = sample->sequence;
   samples_.fetch_add(1, std::memory_order_relaxed);
-  eprosima::fastrtps::rtps::Time_t sent;
+  ertps::Time_t sent;
   sent.seconds(sample->sent_s);
   sent.fraction(sample->sent_fraction);
   on_sample_(heard->writer->writer, {heard->writer->number, sample->sequence, sent.to_ns(),

@@ -30,8 +30,8 @@ class BatchedReader {
       : writer_of_(writers), on_sample_(std::move(on_sample)) {}
 
   /// Replaces UDPv4 of a participant's QoS by BatchedUdp.
-  void install(eprosima::fastdds::dds::DomainParticipantQos& qos);
-  void start(const eprosima::fastdds::dds::DomainParticipant& participant);
+  void install(edds::DomainParticipantQos& qos);
+  void start(const edds::DomainParticipant& participant);
   /// No on_sample() runs after this returns.
   void stop();
   [[nodiscard]] std::uint64_t samples() const { return samples_.load(std::memory_order_relaxed); }
@@ -47,7 +47,7 @@ class BatchedReader {
 
   std::mutex mutex_;
   bool listening_ = false;
-  eprosima::fastrtps::rtps::GuidPrefix_t own_;
+  ertps::GuidPrefix_t own_;
   SampleWriters writer_of_;
   OnSample on_sample_;
   std::map<FoundWriters::Handle, Heard> heard_;

@@ -2,7 +2,6 @@
 #include "services/runtime/bus/batched/batched_udp.hpp"
 
 #include <arpa/inet.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -17,10 +16,6 @@
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::runtime {
-
-using eprosima::fastrtps::rtps::IPLocator;
-using eprosima::fastrtps::rtps::octet;
-namespace rtps = eprosima::fastdds::rtps;
 
 namespace {
 
@@ -115,8 +110,9 @@ class BatchedUdp::Slots {
   [[nodiscard]] Locator sender(std::size_t i) const {
     Locator locator;
     locator.kind = LOCATOR_KIND_UDPv4;
-    IPLocator::setIPv4(locator, reinterpret_cast<const octet*>(&senders_[i].sin_addr.s_addr));
-    IPLocator::setPhysicalPort(locator, ntohs(senders_[i].sin_port));
+    ertps::IPLocator::setIPv4(locator,
+                              reinterpret_cast<const ertps::octet*>(&senders_[i].sin_addr.s_addr));
+    ertps::IPLocator::setPhysicalPort(locator, ntohs(senders_[i].sin_port));
     return locator;
   }
 
@@ -128,27 +124,28 @@ class BatchedUdp::Slots {
   alignas(cmsghdr) std::array<std::array<std::byte, 64>, kSlots> controls_{};
 };
 
-rtps::TransportInterface* BatchedUdpDescriptor::create_transport() const {
+ertps::TransportInterface* BatchedUdpDescriptor::create_transport() const {
   return new BatchedUdp(*this);
 }
 
 BatchedUdp::BatchedUdp(const BatchedUdpDescriptor& descriptor)
-    : ChainingTransport(descriptor), descriptor_(descriptor) {}
+    : SendingAsBelow(descriptor), descriptor_(descriptor) {}
 
 BatchedUdp::~BatchedUdp() = default;  // the thread is the last member: it ends first
 
-rtps::TransportDescriptorInterface* BatchedUdp::get_configuration() { return &descriptor_; }
+ertps::TransportDescriptorInterface* BatchedUdp::get_configuration() { return &descriptor_; }
 
 bool BatchedUdp::IsInputChannelOpen(const Locator& locator) const {
-  if (IPLocator::isMulticast(locator)) return ChainingTransport::IsInputChannelOpen(locator);
+  if (ertps::IPLocator::isMulticast(locator)) return ChainingTransport::IsInputChannelOpen(locator);
   const std::lock_guard lock(mutex_);
   return std::ranges::any_of(channels_, [&](const auto& channel) {
-    return IPLocator::getPhysicalPort(channel->local) == IPLocator::getPhysicalPort(locator);
+    return ertps::IPLocator::getPhysicalPort(channel->local) ==
+           ertps::IPLocator::getPhysicalPort(locator);
   });
 }
 
 bool BatchedUdp::OpenInputChannel(const Locator& locator, Receiver* receiver, std::uint32_t most) {
-  if (IPLocator::isMulticast(locator)) {
+  if (ertps::IPLocator::isMulticast(locator)) {
     return ChainingTransport::OpenInputChannel(locator, receiver, most);
   }
   if (!is_locator_allowed(locator) || IsInputChannelOpen(locator)) return false;
@@ -159,7 +156,7 @@ bool BatchedUdp::OpenInputChannel(const Locator& locator, Receiver* receiver, st
   if (addresses.empty()) addresses.emplace_back("0.0.0.0");
   try {
     for (const std::string& address : addresses) {
-      channel->sockets.emplace_back(address, IPLocator::getPhysicalPort(locator),
+      channel->sockets.emplace_back(address, ertps::IPLocator::getPhysicalPort(locator),
                                     descriptor_.udp->receiveBufferSize);
     }
   } catch (const std::system_error&) {
@@ -174,12 +171,13 @@ bool BatchedUdp::OpenInputChannel(const Locator& locator, Receiver* receiver, st
 }
 
 bool BatchedUdp::CloseInputChannel(const Locator& locator) {
-  if (IPLocator::isMulticast(locator)) return ChainingTransport::CloseInputChannel(locator);
+  if (ertps::IPLocator::isMulticast(locator)) return ChainingTransport::CloseInputChannel(locator);
   std::shared_ptr<Channel> closed;
   {
     const std::lock_guard lock(mutex_);
     const auto found = std::ranges::find_if(channels_, [&](const auto& channel) {
-      return IPLocator::getPhysicalPort(channel->local) == IPLocator::getPhysicalPort(locator);
+      return ertps::IPLocator::getPhysicalPort(channel->local) ==
+             ertps::IPLocator::getPhysicalPort(locator);
     });
     if (found == channels_.end()) return false;
     closed = std::move(*found);
@@ -190,14 +188,7 @@ bool BatchedUdp::CloseInputChannel(const Locator& locator) {
   return true;
 }
 
-bool BatchedUdp::send(eprosima::fastrtps::rtps::SenderResource* sender, const octet* bytes,
-                      std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
-                      eprosima::fastrtps::rtps::LocatorsIterator* end,
-                      const std::chrono::steady_clock::time_point& timeout) {
-  return sender->send(bytes, size, begin, end, timeout);
-}
-
-void BatchedUdp::receive(Receiver* next, const octet* bytes, std::uint32_t size,
+void BatchedUdp::receive(Receiver* next, const ertps::octet* bytes, std::uint32_t size,
                          const Locator& local, const Locator& remote) {
   next->OnDataReceived(bytes, size, local, remote);
 }
@@ -207,7 +198,7 @@ std::size_t BatchedUdp::take_batch(const Channel& channel, int socket, Slots& sl
   for (std::size_t i = 0; i < got; ++i) {
     const auto datagram = slots.datagram(i);
     if (descriptor_.take(datagram, slots.arrived_ns(i))) continue;
-    channel.receiver->OnDataReceived(reinterpret_cast<const octet*>(datagram.data()),
+    channel.receiver->OnDataReceived(reinterpret_cast<const ertps::octet*>(datagram.data()),
                                      static_cast<std::uint32_t>(datagram.size()), channel.local,
                                      slots.sender(i));
   }

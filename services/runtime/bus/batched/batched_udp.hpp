@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,6 +9,8 @@
 #include <span>
 #include <thread>
 #include <vector>
+
+#include "fast_dds/transport.hpp"
 
 namespace stillhand::runtime {
 
@@ -26,36 +24,30 @@ using TakeDatagram =
 /// call.  Fast DDS's own transport sleeps in a call for each datagram, and every *sender* pays for
 /// waking it (README, "Batched UDP").  The kernel's stamp says when a datagram arrived, so the wait
 /// does not appear in a latency.  Sending and multicast groups stay Fast DDS's.
-struct BatchedUdpDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
-  BatchedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_,
-                       TakeDatagram take_)
+struct BatchedUdpDescriptor final : ertps::ChainingTransportDescriptor {
+  BatchedUdpDescriptor(std::shared_ptr<ertps::UDPv4TransportDescriptor> udp_, TakeDatagram take_)
       : ChainingTransportDescriptor(udp_), udp(std::move(udp_)), take(std::move(take_)) {}
 
-  [[nodiscard]] eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
+  [[nodiscard]] ertps::TransportInterface* create_transport() const override;
 
-  std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp;
+  std::shared_ptr<ertps::UDPv4TransportDescriptor> udp;
   TakeDatagram take;
 };
 
-class BatchedUdp final : public eprosima::fastdds::rtps::ChainingTransport {
+class BatchedUdp final : public SendingAsBelow {
  public:
-  using Locator = eprosima::fastrtps::rtps::Locator_t;
-  using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
+  using Locator = ertps::Locator_t;
+  using Receiver = ertps::TransportReceiverInterface;
 
   explicit BatchedUdp(const BatchedUdpDescriptor& descriptor);
   ~BatchedUdp() override;
 
-  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override;
+  ertps::TransportDescriptorInterface* get_configuration() override;
   bool IsInputChannelOpen(const Locator& locator) const override;
   bool OpenInputChannel(const Locator& locator, Receiver* receiver, std::uint32_t most) override;
   bool CloseInputChannel(const Locator& locator) override;
-  bool send(eprosima::fastrtps::rtps::SenderResource* sender,
-            const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
-            eprosima::fastrtps::rtps::LocatorsIterator* begin,
-            eprosima::fastrtps::rtps::LocatorsIterator* end,
-            const std::chrono::steady_clock::time_point& timeout) override;
-  void receive(Receiver* next, const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
-               const Locator& local, const Locator& remote) override;
+  void receive(Receiver* next, const ertps::octet* bytes, std::uint32_t size, const Locator& local,
+               const Locator& remote) override;
 
  private:
   struct Channel;

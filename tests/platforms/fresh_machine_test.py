@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The README's two commands on a fresh machine: a minimal root of each Debian release, made by debootstrap.
+
+The sources of this tree, as committed, are cloned into the root. Everything else comes from Debian, so that a name
+missing in deploy/packages.txt shows. A root has its own processes, /dev/shm and /tmp: what a command leaves is seen.
+
+Usage: fresh_machine_test.py [--short] [--release NAME]...
+  --short    configure, build, the unit tests and one session, in place of both commands as the README states them
+Needs root, debootstrap and a Debian mirror; it is skipped (exit status 77) without one of them.
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+RELEASES = ("trixie", "bookworm")
+SESSION = ("build/bin/stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out demo")
+SHORT = ("deploy/setup.sh", "deploy/build.sh tests", "ctest --test-dir build -L unit -j 2 --output-on-failure", SESSION)
+BOTH = ("deploy/demo.sh", "tests/run.sh", "cpack -G DEB --config build/CPackConfig.cmake")
+# $1 root, $2 command. The command's processes end with it: it is the first of its own namespace.
+INSIDE = r"""
+set -e
+mount --make-rprivate /
+mount -t proc proc "$1/proc"
+mount --rbind /sys "$1/sys"
+mount --rbind /dev "$1/dev"
+mount -t tmpfs shm "$1/dev/shm"
+cp -L /etc/resolv.conf "$1/etc/resolv.conf"
+exec chroot "$1" env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c '
+  cd /stillhand && sh -c "$0"; status=$?
+  left=$(ls -A /dev/shm; for each in /proc/[0-9]*; do
+    [ "$each" = "/proc/$$" ] || readlink "$each/exe" | grep -s stillhand; done)
+  [ -z "$left" ] || { echo "left behind: $left" >&2; status=1; }
+  exit $status' "$2"
+"""
+
+
+def skip(reason):
+    print(f"skipped: {reason}")
+    sys.exit(77)
+
+
+def inside(root, command):
+    """One command in the root; its seconds. @throws AssertionError with its last lines"""
+    begin = time.monotonic()
+    done = subprocess.run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "bash", "-c", INSIDE, "bash", root,
+                           command], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        raise AssertionError(f"{command}: exit status {done.returncode}\n{(done.stdout + done.stderr)[-4000:]}")
+    return time.monotonic() - begin
+
+
+def make_root(release, root):
+    made = subprocess.run(["debootstrap", "--variant=minbase", release, root], capture_output=True, text=True,
+                          check=False)
+    if made.returncode != 0 and "Release" in made.stdout + made.stderr:
+        skip(f"no Debian mirror: {(made.stdout + made.stderr).strip().splitlines()[-1]}")
+    if made.returncode != 0:
+        raise AssertionError(f"debootstrap {release}\n{(made.stdout + made.stderr)[-2000:]}")
+    subprocess.run(["git", "clone", "--quiet", "--no-hardlinks", SOURCE, f"{root}/stillhand"], check=True)
+
+
+def check_results(root, short):
+    summary = json.loads((root / "stillhand/demo/summary.json").read_text())
+    assert set(summary["conditions"]) >= {"A", "B", "C"}, sorted(summary["conditions"])
+    wanted = ["demo/session.mcap", "demo/model.json", "demo/session.png"]
+    if not short:
+        wanted += ["demo/closed-loop/summary.json"]
+        assert len(list((root / "stillhand").glob("build/packages/*.deb"))) == 2
+    for name in wanted:
+        assert (root / "stillhand" / name).stat().st_size > 0, name
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--short", action="store_true")
+    parser.add_argument("--release", action="append", choices=RELEASES)
+    options = parser.parse_args()
+    if os.geteuid() != 0:
+        skip("not root: no root of another release")
+    if shutil.which("debootstrap") is None:
+        skip("no debootstrap")
+    for release in options.release or RELEASES:
+        with tempfile.TemporaryDirectory(prefix=f"stillhand-{release}-") as folder:
+            root = pathlib.Path(folder)
+            make_root(release, root)
+            for command in SHORT if options.short else BOTH:
+                print(f"{release}: {command}: {inside(root, command):.0f} s", flush=True)
+            check_results(root, options.short)
+        print(f"{release}: good", flush=True)
+
+
+if __name__ == "__main__":
+    main()
