@@ -114,8 +114,9 @@ TEST(EarlierFormTest, AModelOfAForceIsRead) {
 
 TEST(EarlierFormTest, AnEventWithoutACodeIsRead) {
   for (const std::string text : {"", "a", "ab", "abc", "abcd"}) {
-    const auto old = bytes_of(U32{1}, I64{2}, I64{3}, U32{stillhand_msgs::EVENT_INTERLOCK_OPENED},
-                              std::string("rig"), std::string(), std::string(), 4.5, text);
+    const auto old =
+        bytes_of(U32{1}, I64{2}, I64{3}, static_cast<U32>(stillhand_msgs::EVENT_INTERLOCK_OPENED),
+                 std::string("rig"), std::string(), std::string(), 4.5, text);
     for (const auto& bytes : {old, filled_up(old)}) {
       stillhand_msgs::Event message;
       message.code(stillhand_msgs::CODE_EMERGENCY_STOP);

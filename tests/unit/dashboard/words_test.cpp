@@ -13,7 +13,8 @@ namespace {
 
 TEST(WordsTest, EveryKindOfEventHasANameOfItsOwn) {
   std::set<std::string> names;
-  for (std::uint32_t kind = 0; kind <= stillhand_msgs::EVENT_SECOND_WRITER; ++kind) {
+  for (std::uint32_t kind = 0;
+       kind <= static_cast<std::uint32_t>(stillhand_msgs::EVENT_SECOND_WRITER); ++kind) {
     const std::string name = word(static_cast<stillhand_msgs::EventKind>(kind));
     EXPECT_NE(name, "unknown") << kind;
     EXPECT_TRUE(names.insert(name).second) << name;
@@ -22,8 +23,8 @@ TEST(WordsTest, EveryKindOfEventHasANameOfItsOwn) {
 
 // The number comes from the bus.
 TEST(WordsTest, AKindThatTheIdlDoesNotDefineIsUnknownAndHealthy) {
-  for (const unsigned kind :
-       {std::uint32_t{stillhand_msgs::EVENT_SECOND_WRITER} + 1u, 1000u, 0x7FFF'FFFFu, UINT32_MAX}) {
+  for (const unsigned kind : {static_cast<std::uint32_t>(stillhand_msgs::EVENT_SECOND_WRITER) + 1,
+                              1000u, 0x7FFF'FFFFu, UINT32_MAX}) {
     const auto strange = static_cast<stillhand_msgs::EventKind>(kind);
     EXPECT_STREQ(word(strange), "unknown") << kind;
     EXPECT_EQ(level_of(strange), Level::kHealthy) << kind;
