@@ -208,9 +208,11 @@ TEST_F(ProgressTest, PracticeEndsWithTheCriterionOrAfterTheMostTrials) {
 }
 
 TEST_F(ProgressTest, AJournalThatWasChangedByHandIsRefused) {
-  EXPECT_THROW(progress({session(2)}), ConfigError);  // a session is missing
-  EXPECT_THROW(progress({{.kind = EntryKind::kBreakOver, .step = 0}}), ConfigError);
-  EXPECT_THROW(progress({{.kind = EntryKind::kRepeatAsked, .step = 99}}), ConfigError);
+  EXPECT_THROW(static_cast<void>(progress({session(2)})), ConfigError);  // a session is missing
+  EXPECT_THROW(static_cast<void>(progress({{.kind = EntryKind::kBreakOver, .step = 0}})),
+               ConfigError);
+  EXPECT_THROW(static_cast<void>(progress({{.kind = EntryKind::kRepeatAsked, .step = 99}})),
+               ConfigError);
   for (const std::string line : {"{}", "{\"time\":\"t\",\"what\":\"dance\"}", "x",
                                  "{\"time\":\"t\",\"what\":\"note\",\"name\":\"Ann\"}",
                                  "{\"time\":\"t\",\"what\":\"note\",\"step\":1.5}",
