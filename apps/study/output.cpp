@@ -11,7 +11,6 @@
 #include "apps/study/participants.hpp"
 #include "apps/study/report_cells.hpp"
 #include "apps/study/report_sections.hpp"
-#include "apps/study/shard.hpp"
 #include "apps/study/study_report.hpp"
 #include "services/rig/sealed_file.hpp"
 
@@ -20,11 +19,11 @@ namespace {
 
 // Names of all files that a study can write.
 std::vector<std::string> every_name(const report::StagedFolder& folder) {
-  std::vector<std::string> names{"report.html",        "summary.json", "metrics.csv",
-                                 "subjects.csv",       "models.csv",   "moving_averages.csv",
-                                 "open_loop.csv",      "trials.csv",   rig::kSealedFile,
-                                 rig::kCommitmentFile, kShardFile,     "diagnoses.csv",
-                                 "findings.csv",       "simulated.csv"};
+  std::vector<std::string> names{"report.html",        "summary.json",  "metrics.csv",
+                                 "subjects.csv",       "models.csv",    "moving_averages.csv",
+                                 "open_loop.csv",      "trials.csv",    rig::kSealedFile,
+                                 rig::kCommitmentFile, "diagnoses.csv", "findings.csv",
+                                 "simulated.csv"};
   for (const char* figure : kFigureNames) {
     for (const char* ending : {".svg", ".png"}) names.push_back(std::string(figure) + ending);
   }
@@ -148,11 +147,6 @@ void write_study(const StudyRecord& record, report::StagedFolder& folder) {
     folder.write(rig::kCommitmentFile, rig::digest_line(record.sealed, rig::kSealedFile));
     folder.write(rig::kSealedFile, record.sealed);
   }
-  folder.publish(every_name(folder));
-}
-
-void write_shard(const StudyRecord& record, const Shard& shard, report::StagedFolder& folder) {
-  folder.write(kShardFile, shard_file(record, shard));
   folder.publish(every_name(folder));
 }
 

@@ -45,49 +45,34 @@ void check_wrong_models(const StudyOptions& options) {
   }
 }
 
-void run_for_all(const StudyOptions& options, std::size_t count, const auto& job,
-                 const OnProgress& on_progress) {
-  const auto threads =
-      options.threads > 0 ? static_cast<unsigned>(options.threads) : runtime::core_count();
-  const auto on_done = [&](std::size_t done) {
-    return on_progress(static_cast<std::int64_t>(done), static_cast<std::int64_t>(count));
-  };
-  if (!runtime::run_jobs(count, threads, job, on_done)) throw Interrupted();
-}
-
 }  // namespace
 
-std::vector<SubjectResult> run_subjects(const StudyOptions& options, std::int64_t first,
-                                        std::int64_t end, const OnProgress& on_progress) {
+std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgress& on_progress) {
   if (options.subjects < 1 || options.subjects > kMaxSubjects) {
     throw ConfigError("--subjects", std::to_string(options.subjects),
                       "1 to " + std::to_string(kMaxSubjects));
   }
   check_wrong_models(options);
   session::plan(options.protocol);  // checks the lengths
-  for (std::int64_t index = first; index < end; ++index) check_subject(options, index);
-  std::vector<SubjectResult> results(static_cast<std::size_t>(end - first));
-  const auto job = [&](std::size_t at) {
-    results[at] = run_subject(options, first + static_cast<std::int64_t>(at));
-  };
-  run_for_all(options, results.size(), job, on_progress);
-  return results;
-}
-
-void run_wrong_models(const StudyOptions& options, std::vector<SubjectResult>& results,
-                      const OnProgress& on_progress) {
-  if (!options.wrong_models) return;
-  const auto job = [&](std::size_t index) { run_wrong(options, results, index); };
-  run_for_all(options, results.size(), job, on_progress);
-}
-
-std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgress& on_progress) {
   const std::int64_t count = options.subjects;
+  for (std::int64_t index = 0; index < count; ++index) check_subject(options, index);
+  std::vector<SubjectResult> results(static_cast<std::size_t>(count));
   const std::int64_t all = options.wrong_models ? 2 * count : count;
-  auto results = run_subjects(
-      options, 0, count, [&](std::int64_t done, std::int64_t) { return on_progress(done, all); });
-  run_wrong_models(options, results,
-                   [&](std::int64_t done, std::int64_t) { return on_progress(count + done, all); });
+  const auto run_for_all = [&](std::int64_t done_before, const auto& job) {
+    const auto threads =
+        options.threads > 0 ? static_cast<unsigned>(options.threads) : runtime::core_count();
+    const auto on_done = [&](std::size_t done) {
+      return on_progress(done_before + static_cast<std::int64_t>(done), all);
+    };
+    if (!runtime::run_jobs(results.size(), threads, job, on_done)) throw Interrupted();
+  };
+  run_for_all(0, [&](std::size_t at) {
+    results[at] = run_subject(options, static_cast<std::int64_t>(at));
+  });
+  // They need the models of all.
+  if (options.wrong_models) {
+    run_for_all(count, [&](std::size_t at) { run_wrong(options, results, at); });
+  }
   return results;
 }
 

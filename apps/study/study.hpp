@@ -18,13 +18,6 @@ using OnProgress = std::function<bool(std::int64_t done, std::int64_t all)>;
 ///         fails; Interrupted when on_progress returned false.
 std::vector<SubjectResult> run_study(const StudyOptions& options, const OnProgress& on_progress);
 
-/// Its two parts.  The first runs subjects `first` to `end` - 1 alone; the second, which needs all
-/// of them, runs the wrong models where the options ask for them.
-std::vector<SubjectResult> run_subjects(const StudyOptions& options, std::int64_t first,
-                                        std::int64_t end, const OnProgress& on_progress);
-void run_wrong_models(const StudyOptions& options, std::vector<SubjectResult>& results,
-                      const OnProgress& on_progress);
-
 /// A study that was stopped before its end.
 struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("stopped before the end; nothing was written") {}

@@ -34,8 +34,6 @@ struct Words {
   std::string conditions = "A,B,C";
   std::filesystem::path population;
   std::filesystem::path out;
-  std::string shard;
-  std::vector<std::filesystem::path> merge;
   std::vector<std::filesystem::path> sessions;
   bool explain_paper = false;
   bool calibrate = false;
@@ -147,15 +145,8 @@ void add_subject_options(CLI::App& study, StudyOptions& options, Words& words) {
       ->check(session::check_seed);
 }
 
-// A study in parts.
-void add_parts_options(CLI::App& study, Words& words) {
-  study.add_option(
-      "--shard", words.shard,
-      "K/N: run the K-th of N equal parts of the subjects, and write what --merge needs");
-  CLI::Option* merge =
-      study.add_option("--merge", words.merge,
-                       "folders of all N shards of a study: the results of the whole study, the "
-                       "same as of one run; all other settings are in the shards");
+// The study of recorded people.
+void add_sessions_option(CLI::App& study, Words& words) {
   CLI::Option* sessions = study.add_option(
       "--sessions", words.sessions,
       "folders of recorded sessions or of experiments: the study of the people in them, from "
@@ -165,12 +156,6 @@ void add_parts_options(CLI::App& study, Words& words) {
     constexpr std::array kWithSessions{"--out", "--sessions", "--threads", "--population",
                                        "--help"};
     if (std::ranges::find(kWithSessions, name) == kWithSessions.end()) sessions->excludes(name);
-    if (name == "--sessions") continue;
-    if (name == "--explain-paper" || name == "--calibrate" || name == "--mitigations") {
-      study.get_option(name)->excludes("--shard")->excludes("--merge");
-    } else if (name != "--out" && name != "--threads" && name != "--merge" && name != "--help") {
-      merge->excludes(name);
-    }
   }
 }
 
@@ -226,7 +211,7 @@ void add_study_command(CLI::App& cli, int& status) {
         "--answer-wait", "--undeclared-effect", "--explain-paper", "--calibrate"}) {
     mitigations->excludes(name);
   }
-  add_parts_options(*study, *words);
+  add_sessions_option(*study, *words);
   add_plan_options(*study, record->plan_dz);
   add_people_options(*study, *record);
   for (const char* name : {"--plan", "--plan-effect", "--diagnose", "--simulated"}) {
@@ -237,7 +222,6 @@ void add_study_command(CLI::App& cli, int& status) {
                       "--canceller", "--wrong-models", "--undeclared-effect"});
   settings::in_group(*study, "Recorded people",
                      {"--sessions", "--plan", "--plan-effect", "--diagnose", "--simulated"});
-  settings::in_group(*study, "Several machines", {"--shard", "--merge"});
   settings::in_group(*study, "Research", {"--explain-paper", "--calibrate", "--mitigations"});
   study->callback([record, words, &status, study] {
     record->options.protocol.conditions =
@@ -260,16 +244,12 @@ void add_study_command(CLI::App& cli, int& status) {
     const bool subjects_given = study->count("--subjects") > 0;
     words->campaign.subjects_given = subjects_given;
     words->campaign.trial_given = study->count("--trial-seconds") > 0;
-    status =
-        !words->campaign.mitigations.empty()
-            ? run_campaign_command(*record, words->campaign, words->out)
-        : words->explain_paper     ? explain(*record, *words, subjects_given)
-        : words->calibrate         ? run_calibration(*record, *words, subjects_given)
-        : !words->sessions.empty() ? run_recorded(*record, words->sessions, words->out)
-        : !words->merge.empty()    ? run_merge(*record, words->merge, words->out)
-        : !words->shard.empty()
-            ? run_shard(*record, parse_shard(words->shard, record->options.subjects), words->out)
-            : run_whole(*record, words->out);
+    status = !words->campaign.mitigations.empty()
+                 ? run_campaign_command(*record, words->campaign, words->out)
+             : words->explain_paper     ? explain(*record, *words, subjects_given)
+             : words->calibrate         ? run_calibration(*record, *words, subjects_given)
+             : !words->sessions.empty() ? run_recorded(*record, words->sessions, words->out)
+                                        : run_whole(*record, words->out);
   });
 }
 

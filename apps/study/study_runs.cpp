@@ -103,12 +103,12 @@ SimulatedSide simulated_next_to(const StudyRecord& record, const OnProgress& on_
   return simulate_population(options, on_progress);
 }
 
-// Results must not replace the files that they are made of.
-void check_place(const std::vector<fs::path>& inputs, const fs::path& out, const char* what) {
-  for (const fs::path& input : inputs) {
+// Results must not replace the recordings that they are made of.
+void check_place(const std::vector<fs::path>& recordings, const fs::path& out) {
+  for (const fs::path& folder : recordings) {
     std::error_code missing;
-    if (fs::equivalent(input, out, missing)) {
-      throw ConfigError("--out", out.string() + ", the folder of " + what, "another folder");
+    if (fs::equivalent(folder, out, missing)) {
+      throw ConfigError("--out", out.string() + ", the folder of a recording", "another folder");
     }
   }
 }
@@ -127,43 +127,12 @@ int run_whole(StudyRecord& record, const fs::path& out) {
   return 0;
 }
 
-int run_shard(StudyRecord& record, const Shard& shard, const fs::path& out) {
-  runtime::Stop stop;
-  report::StagedFolder folder(out);
-  seal(record);
-  const std::int64_t first = shard.first(record.options.subjects);
-  const std::int64_t end = shard.end(record.options.subjects);
-  timed(record, stop, "subjects", [&](const OnProgress& on_progress) {
-    record.results = run_subjects(record.options, first, end, on_progress);
-  });
-  write_shard(record, shard, folder);
-  fmt::print("shard {}/{}: subjects {} to {} in {}\n", shard.number, shard.of, first + 1, end,
-             (out / kShardFile).string());
-  return 0;
-}
-
-int run_merge(StudyRecord& record, const std::vector<fs::path>& shards, const fs::path& out) {
-  check_place(shards, out, "a shard");
-  runtime::Stop stop;
-  report::StagedFolder folder(out);
-  report::require_gnuplot();
-  StudyRecord whole = merged(shards);
-  whole.options.threads = record.options.threads;
-  whole.command_line = std::move(record.command_line);
-  record = std::move(whole);
-  timed(record, stop, "subjects", [&](const OnProgress& on_progress) {
-    run_wrong_models(record.options, record.results, on_progress);
-  });
-  conclude(record, folder, stop, out);
-  return 0;
-}
-
 int run_recorded(StudyRecord& record, const std::vector<fs::path>& folders, const fs::path& out) {
   const std::vector<SessionFile> files = find_sessions(folders);
   const auto registration = registration_of(folders, files.front().digest);
   std::vector<fs::path> inputs = folders;
   for (const SessionFile& file : files) inputs.push_back(file.path.parent_path());
-  check_place(inputs, out, "a recording");
+  check_place(inputs, out);
   runtime::Stop stop;
   report::StagedFolder folder(out);
   report::require_gnuplot();

@@ -5,20 +5,12 @@
 #include <vector>
 
 #include "apps/study/output.hpp"
-#include "apps/study/shard.hpp"
 
 /// What `stillhand study` does, for each form of a study: run, write into `out`, print.  They
 /// return the exit status.  @throws ConfigError, Interrupted and as write_study().
 namespace stillhand::study {
 
 int run_whole(StudyRecord& record, const std::filesystem::path& out);
-
-/// One part of the subjects, for run_merge().
-int run_shard(StudyRecord& record, const Shard& shard, const std::filesystem::path& out);
-
-/// Of `record`, only the command line and the number of threads are used.
-int run_merge(StudyRecord& record, const std::vector<std::filesystem::path>& shards,
-              const std::filesystem::path& out);
 
 /// The participants of recordings; `folders` as find_sessions().  Of `record`, only the command
 /// line and the plan are used.

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/../.."
 seconds=${1:-60}
 shift || true
 readers=("$@")
-[ ${#readers[@]} -gt 0 ] || readers=(csv table mcap bag idl ros2msg cdr model device yaml inventory experiment json shard http)
+[ ${#readers[@]} -gt 0 ] || readers=(csv table mcap bag idl ros2msg cdr model device yaml inventory experiment json http)
 
 cmake --preset fuzz >/dev/null
 cmake --build build-fuzz --target fuzz_seeds "${readers[@]/#/fuzz_}"

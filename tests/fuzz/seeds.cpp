@@ -8,7 +8,6 @@
 #include "apps/experiment/file/experiment_file.hpp"
 #include "apps/experiment/journal.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
-#include "apps/study/shard.hpp"
 #include "idl/model.h"
 #include "services/cancellation/codec.hpp"
 #include "services/cancellation/control_model_file.hpp"
@@ -18,7 +17,6 @@
 #include "services/recording/core/messages/schema_types.hpp"
 #include "tests/support/cdr_bytes.hpp"
 #include "tests/support/session_file.hpp"
-#include "tests/unit/study/made_record.hpp"
 
 namespace {
 
@@ -141,17 +139,6 @@ cancellation::ControlModel every_part() {
   return model;
 }
 
-// One subject, whose digest the fuzzer adds.
-std::string shard() {
-  study::StudyRecord record;
-  record.options.subjects = 1;
-  record.options.protocol.conditions = stillhand::session::parse_conditions("A,B,C");
-  record.results = study::made::random_results(1, "ABC", 1);
-  std::string bytes = study::shard_file(record, {1, 1});
-  bytes.resize(bytes.size() - study::kShardDigestBytes);
-  return bytes;
-}
-
 identification::FeedthroughModel linear() {
   identification::FeedthroughModel model;
   model.fit = {50.0, {3.0, 0.1, 0.2, 0.1, 0.0}, {1.0, -0.5, 0.1, 0.0, 0.0}};
@@ -216,7 +203,6 @@ int main(int argc, char** argv) {
   write(out / "experiment/design", design());
   write(out / "experiment/journal", journal());
   write(out / "experiment/sealed", experiment::sealed_text(424242));
-  write(out / "shard/one", shard());
   write(out / "device/line", "rcv 100 2404000a005000000170ff230d181400 *19\nOK\n");
   return 0;
 }

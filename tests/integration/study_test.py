@@ -192,36 +192,6 @@ class StudyTest(unittest.TestCase):
             self.assertEqual(path.read_text(), (second / path.name).read_text(), path.name)
         self.assertEqual((first / "summary.json").read_text(), (second / "summary.json").read_text())
 
-    def test_shards_merged_are_one_run_bit_for_bit(self):
-        settings = [*SHORT, "--subjects", "4", "--canceller", "paper", "--wrong-models"]
-        whole = self.folder / "whole"
-        self.assertEqual(study(*settings, "--out", str(whole)).returncode, 0)
-        for number in (1, 2, 3):
-            run = study(*settings, "--shard", f"{number}/3", "--out", str(self.folder / f"part{number}"))
-            self.assertEqual(run.returncode, 0, run.stderr)
-        parts = [str(self.folder / f"part{number}") for number in (3, 1, 2)]
-        merged = self.folder / "merged"
-        run = study("--merge", *parts, "--out", str(merged))
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual({path.name for path in merged.iterdir()}, {path.name for path in whole.iterdir()})
-        own = re.compile(rb"<dt>(computed in|command line)</dt><dd>.*?</dd>")  # facts of the run itself
-        for path in whole.iterdir():
-            one, other = path.read_bytes(), (merged / path.name).read_bytes()
-            if path.name == "report.html":
-                one, other = own.sub(b"", one), own.sub(b"", other)
-            self.assertEqual(one, other, path.name)
-        before = {path.name: path.read_bytes() for path in merged.iterdir()}
-        for arguments, words in ((["--merge", *parts[:2]], "no shard 2 of 3"),
-                                 (["--merge", *parts, "--seed", "5"], "--seed"),
-                                 (["--merge", *parts, "--out", parts[0]], "--out"),
-                                 (["--shard", "1/2", "--calibrate"], "--shard"),
-                                 (["--shard", "3/2"], "K/N")):
-            run = study(*arguments, *([] if "--out" in arguments else ["--out", str(merged)]))
-            self.assertEqual(run.returncode, 2, run.stderr)
-            self.assertIn(words, run.stderr)
-            self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
-        self.assertEqual({path.name: path.read_bytes() for path in merged.iterdir()}, before)
-
     def refused(self, arguments, words, status=2):
         before = sorted(self.folder.rglob("*"))
         run = study(*arguments)
