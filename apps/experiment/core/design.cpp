@@ -121,7 +121,8 @@ std::string live_conditions() {
   std::string plain, mitigations;
   for (const session::Condition each : session::conditions_of(session::kExperimentConditions)) {
     std::string& list = is_mitigation(each) ? mitigations : plain;
-    list += (list.empty() ? "" : ", ") + std::string(name_of(each));
+    const bool last = each == session::Condition::kCPlus;  // of what is no mitigation
+    list += (list.empty() ? "" : last ? " or " : ", ") + std::string(name_of(each));
   }
   return plain + "; or A, B, C and mitigations: " + mitigations;
 }
