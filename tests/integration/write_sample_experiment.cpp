@@ -116,7 +116,7 @@ class SampleSession {
     const experiment::Step& at = plan[step];
     const std::string& condition = folder_.design().conditions[at.condition];
     PlannedTrial planned = session::tracking_trial(
-        protocol_, static_cast<session::Condition>(condition.front()), at.place);
+        protocol_, planned_as(experiment::condition_of(condition)), at.place);
     planned.motion_seed = at.motion_seed;
     planned.reference_seed = at.target_seed;
     planned.trial.number = ++trials_;
