@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -17,11 +16,13 @@
 #include "places.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/runtime/process/real_time.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
 namespace {
 
+using support::text_of;
 using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
@@ -43,11 +44,6 @@ std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
   return names;
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// A unit's settings; of a key that stands several times the values, one a line.
@@ -95,9 +91,8 @@ TEST(GenerateTest, TheExperimentHasNoUnitSinceAPersonStartsIt) {
 TEST(GenerateTest, EachStartOfTheRecorderHasAFileOfItsOwn) {
   const SampleFolder folder;
   generate(example(), profiles(), folder.path());
-  std::ifstream unit(folder.path() / "desk" / "stillhand-recorder@1.service");
-  const std::string text{std::istreambuf_iterator<char>(unit), {}};
-  EXPECT_THAT(text, HasSubstr("_$$INVOCATION_ID.mcap"));
+  EXPECT_THAT(text_of(folder.path() / "desk" / "stillhand-recorder@1.service"),
+              HasSubstr("_$$INVOCATION_ID.mcap"));
 }
 
 TEST(GenerateTest, TheSameInventoryGivesTheSameFiles) {
@@ -295,12 +290,12 @@ TEST(HostFilesTest, TheKernelHasRoomForTheProfilesBuffers) {
 }
 
 TEST(GenerateTest, AFolderInTheWayOfOneHostLeavesTheOthersToo) {
-  const fs::path out = fs::temp_directory_path() / ("stillhand-way-" + std::to_string(getpid()));
+  const SampleFolder folder;
+  const fs::path& out = folder.path();
   const Inventory inventory = example();
   fs::create_directories(out / inventory.hosts.back().name / "profiles.xml");
   EXPECT_THROW(generate(inventory, profiles(), out), ConfigError);
   EXPECT_EQ(names_in(out), std::set<std::string>{inventory.hosts.back().name});
-  fs::remove_all(out);
 }
 
 TEST(GenerateTest, ANameWithDashesEndsNoXmlComment) {

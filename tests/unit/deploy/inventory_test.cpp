@@ -7,7 +7,7 @@
 #include <string>
 
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::deploy {
@@ -105,14 +105,9 @@ TEST_P(InventoryRefusalTest, SaysWhereAndWhatWouldBeRight) {
   text.replace(at, each.line.size(), each.broken);
   const SampleFolder folder;
   const std::filesystem::path file = folder.file(text);
-  try {
-    read_inventory(file);
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(),
-                AllOf(StartsWith(file.string() + each.place + ": got "), HasSubstr(each.got),
-                      HasSubstr(", want "), HasSubstr(each.want)));
-  }
+  EXPECT_THAT(support::refusal([&] { read_inventory(file); }),
+              AllOf(StartsWith(file.string() + each.place + ": got "), HasSubstr(each.got),
+                    HasSubstr(", want "), HasSubstr(each.want)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -199,12 +194,8 @@ TEST(InventoryTest, AServiceThatOneOfTwoRigsLacksIsNamedWithTheRig) {
   std::string text = two_rigs();
   const std::string last = ", {service: experiment, rig: right}";
   text.erase(text.find(last), last.size());
-  try {
-    sample_inventory(text);
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no host that runs experiment for rig right"));
-  }
+  EXPECT_THAT(support::refusal([&] { sample_inventory(text); }),
+              HasSubstr("no host that runs experiment for rig right"));
 }
 
 TEST(InventoryTest, MoreServicesThanADomainHasPortsForAreRefused) {
@@ -217,14 +208,13 @@ TEST(InventoryTest, MoreServicesThanADomainHasPortsForAreRefused) {
                   ", rig: r" + number + "}";
     }
   }
-  try {
-    sample_inventory("lab: many\ndomain: 3\nrigs: [" + rigs +
-                     "]\nhosts:\n  - name: one\n    address: 192.168.7.10\n    services: [" +
-                     services + "]\n");
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("hosts[0].services: got 117 services, want at most 113"));
-  }
+  EXPECT_THAT(
+      support::refusal([&] {
+        sample_inventory("lab: many\ndomain: 3\nrigs: [" + rigs +
+                         "]\nhosts:\n  - name: one\n    address: 192.168.7.10\n    services: [" +
+                         services + "]\n");
+      }),
+      HasSubstr("hosts[0].services: got 117 services, want at most 113"));
 }
 
 TEST(InventoryTest, SeveralMachinesHaveKeysOrSayThatTheyHaveNone) {
@@ -243,12 +233,8 @@ TEST(InventoryTest, SeveralMachinesHaveKeysOrSayThatTheyHaveNone) {
 }
 
 TEST(InventoryTest, AFileThatIsNotThereIsNamed) {
-  try {
-    read_inventory("nowhere/inventory.yaml");
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), StartsWith("nowhere/inventory.yaml: got no such file"));
-  }
+  EXPECT_THAT(support::refusal([&] { read_inventory("nowhere/inventory.yaml"); }),
+              StartsWith("nowhere/inventory.yaml: got no such file"));
 }
 
 }  // namespace

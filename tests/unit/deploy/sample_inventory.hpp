@@ -2,14 +2,13 @@
 // Inventories for tests, in folders that go with them.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 
 #include "apps/deploy/inventory.hpp"
 #include "idl/topics.hpp"
+#include "tests/support/folder.hpp"
 
 namespace stillhand::deploy {
 
@@ -18,30 +17,14 @@ inline const std::string kAllServices =
     "experiment";
 
 /// A folder of its own for a test.
-class SampleFolder {
+class SampleFolder : public support::Folder {
  public:
-  SampleFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "stillhand-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name);
-    path_ = name;
-  }
-  ~SampleFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  SampleFolder(const SampleFolder&) = delete;
-  SampleFolder& operator=(const SampleFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// An inventory of that text.
   [[nodiscard]] std::filesystem::path file(const std::string& text) const {
-    std::filesystem::path file = path_ / "inventory.yaml";
+    std::filesystem::path file = path() / "inventory.yaml";
     std::ofstream(file) << text;
     return file;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline Inventory sample_inventory(const std::string& text) {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/admittance/core/arm_fit.hpp"
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -28,12 +28,7 @@ std::filesystem::path file_of(const std::string& name, const nlohmann::json& jso
 }
 
 std::string refusal(const std::vector<std::filesystem::path>& files) {
-  try {
-    (void)schedule_values(files);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)schedule_values(files); });
 }
 
 TEST(ArmsFileTest, TheRelaxedArmComesFirst) {

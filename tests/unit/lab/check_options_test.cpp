@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "places.hpp"
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::lab {
@@ -28,12 +28,7 @@ class CheckOptionsTest : public testing::Test {
     options_.config = STILLHAND_SOURCE "/deploy/config";
   }
   [[nodiscard]] std::string refusal() const {
-    try {
-      check_options(options_);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "taken";
+    return support::refusal([&] { check_options(options_); });
   }
   /// A ride of one sine: 1 m/s^2 at 2 Hz.
   std::string ride(double seconds) {
@@ -57,7 +52,7 @@ TEST_F(CheckOptionsTest, TheDefaultsAreTakenAndEveryMovingTrialIsRehearsed) {
 
 TEST_F(CheckOptionsTest, ARigOfDevicesIsReadBeforeAnythingStarts) {
   options_.devices = options_.config / "devices.yaml";
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   options_.undeclared_effect = 3;
   EXPECT_THAT(refusal(), StartsWith("--undeclared-effect: got it with --rig devices"));
   options_.undeclared_effect = 0;
@@ -80,14 +75,14 @@ TEST_F(CheckOptionsTest, ARideAndItsMotionGoTogether) {
 TEST_F(CheckOptionsTest, ARideAsLongAsTheTrialIsTakenAndAShorterOneIsNot) {
   options_.protocol.motion = session::Motion::kRide;
   options_.ride = ride(5.5);
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   options_.ride = ride(4.5);
   EXPECT_THAT(refusal(), AllOf(HasSubstr("ride.csv: got 4.5"), HasSubstr("--trial-seconds 5")));
 }
 
 TEST_F(CheckOptionsTest, AMouseNeedsAWindow) {
   options_.who = Operator::kMouse;
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   options_.headless = true;
   EXPECT_THAT(refusal(), AllOf(StartsWith("--operator: got mouse"), HasSubstr("--headless")));
 }
@@ -96,7 +91,7 @@ TEST_F(CheckOptionsTest, AMouseNeedsAWindow) {
 // platform.
 TEST_F(CheckOptionsTest, AVehicleIsRefusedWithAMitigation) {
   options_.vehicle = "first_order";
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   options_.protocol.conditions = session::parse_conditions("A,B,signal");
   EXPECT_THAT(refusal(), AllOf(StartsWith("--vehicle: got first_order with signal, want"),
                                HasSubstr("raw stick")));
@@ -105,7 +100,7 @@ TEST_F(CheckOptionsTest, AVehicleIsRefusedWithAMitigation) {
   options_.protocol.conditions = session::parse_conditions("A,B");
   EXPECT_THAT(refusal(), StartsWith("--vehicle: got first_order with signal"));
   options_.vehicle.clear();
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
 }
 
 // The process of cancellation would refuse it at the trial, after the identification.
@@ -114,21 +109,21 @@ TEST_F(CheckOptionsTest, AMitigationThatTheCancellerCannotRunIsRefusedBeforeAnyt
     options_.protocol.conditions = session::parse_conditions(names);
   };
   conditions("A,B,adaptive");
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   options_.canceller = "paper";
   EXPECT_THAT(refusal(), AllOf(StartsWith("--conditions: got adaptive with --canceller paper, "),
                                HasSubstr("1000 Hz"), testing::Not(HasSubstr("\n"))));
   // The rest runs behind the paper's chain.
   conditions(
       "low-pass,notch,model-filter,signal,lms-signal,lms-force,damping,impedance,damping+force");
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   // The settings say the same as the word.
   options_.canceller = "now";
   options_.config = folder_.path() / "config";
   std::filesystem::copy(STILLHAND_SOURCE "/deploy/config", options_.config);
   std::ofstream(options_.config / "cancellation.yaml", std::ios::app)
       << "\nsampling:\n  model_ticks: 20\n";
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   conditions("adaptive,damping");
   EXPECT_THAT(refusal(), StartsWith("--conditions: got adaptive, want"));
 }
@@ -136,7 +131,7 @@ TEST_F(CheckOptionsTest, AMitigationThatTheCancellerCannotRunIsRefusedBeforeAnyt
 // They are arguments of services that run already.
 TEST_F(CheckOptionsTest, ArgumentsOfTheServicesAreRefusedWhereTheyRunAlready) {
   options_.attach = true;
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   const LabOptions good = options_;
   options_.undeclared_effect = 7;
   EXPECT_THAT(refusal(), StartsWith("--attach: "));
@@ -153,7 +148,7 @@ TEST_F(CheckOptionsTest, ArgumentsOfTheServicesAreRefusedWhereTheyRunAlready) {
 
 TEST_F(CheckOptionsTest, ADomainHasPortsUpTo232) {
   options_.domain = 232;
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   options_.domain = 233;
   EXPECT_THAT(refusal(), AllOf(StartsWith("--domain: got 233"), HasSubstr("232")));
 }
@@ -161,7 +156,7 @@ TEST_F(CheckOptionsTest, ADomainHasPortsUpTo232) {
 TEST_F(CheckOptionsTest, ThePatienceIsPositiveAndAtMostAnHour) {
   for (const double good_s : {1e-3, 3600.0}) {
     options_.match_s = good_s;
-    EXPECT_EQ(refusal(), "taken") << good_s;
+    EXPECT_EQ(refusal(), "accepted") << good_s;
   }
   for (const double bad_s : {0.0, -1.0, 3600.1, std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity()}) {

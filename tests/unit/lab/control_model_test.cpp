@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "services/cancellation/control_model_file.hpp"
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::lab {
@@ -33,12 +33,7 @@ class LabControlModelTest : public testing::Test {
     std::ofstream(folder_.path() / name) << text;
   }
   [[nodiscard]] std::string refusal(std::uint32_t rig = 1) const {
-    try {
-      control_model(folder_.path() / "m.json", rig, folder_.path());
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "taken";
+    return support::refusal([&] { control_model(folder_.path() / "m.json", rig, folder_.path()); });
   }
 
   deploy::SampleFolder folder_;
@@ -53,7 +48,7 @@ TEST_F(LabControlModelTest, AModelIsTakenAsItsFileHasIt) {
 TEST_F(LabControlModelTest, AModelOfAnotherRigsHandIsRefusedWithItsFile) {
   write("m.json", cancellation::control_model_json(papers_gain(), 2));
   EXPECT_THAT(refusal(), AllOf(HasSubstr("m.json"), HasSubstr("rig")));
-  EXPECT_EQ(refusal(2), "taken");
+  EXPECT_EQ(refusal(2), "accepted");
 }
 
 // The bounds are those of the canceller's own settings: 60 unless the file says otherwise.
@@ -61,12 +56,12 @@ TEST_F(LabControlModelTest, AModelBeyondTheCancellersBoundsIsRefusedWithItsFile)
   auto model = papers_gain();
   model.inputs[0].numerator = {59.0};
   write("m.json", cancellation::control_model_json(model, 1));
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   model.inputs[0].numerator = {61.0};
   write("m.json", cancellation::control_model_json(model, 1));
   EXPECT_THAT(refusal(), AllOf(HasSubstr("m.json: got "), HasSubstr("gain")));
   write("cancellation.yaml", "max_model_gain_n_s2_m: 100\n");
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
 }
 
 TEST_F(LabControlModelTest, AFileThatIsMissingOrNoModelIsNamed) {

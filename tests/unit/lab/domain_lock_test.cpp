@@ -9,9 +9,9 @@
 
 #include <string>
 
-#include "services/contract/config_error.hpp"
 #include "services/runtime/process/domain.hpp"
 #include "tests/support/own_domain.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -21,12 +21,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string refusal(std::uint32_t domain, std::uint32_t rig) {
-  try {
-    const DomainLock sut(domain, rig);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "admitted";
+  return support::refusal([&] { const DomainLock sut(domain, rig); });
 }
 
 TEST(DomainLockTest, OneLabIsAdmittedForADomainAndRigUntilItEnds) {
@@ -35,10 +30,10 @@ TEST(DomainLockTest, OneLabIsAdmittedForADomainAndRigUntilItEnds) {
     const DomainLock first(domain, 1);
     EXPECT_THAT(refusal(domain, 1),
                 AllOf(StartsWith("--domain: got " + std::to_string(domain)), HasSubstr("--rig")));
-    EXPECT_EQ(refusal(domain, 2), "admitted");
-    EXPECT_EQ(refusal(domain, 11), "admitted");
+    EXPECT_EQ(refusal(domain, 2), "accepted");
+    EXPECT_EQ(refusal(domain, 11), "accepted");
   }
-  EXPECT_EQ(refusal(domain, 1), "admitted");
+  EXPECT_EQ(refusal(domain, 1), "accepted");
 }
 
 /// A UDP socket on the port where the participants of a domain look for one another.
@@ -68,13 +63,13 @@ TEST(DomainLockTest, APortThatAnotherProgramHoldsForItselfIsNamed) {
                 AllOf(StartsWith("--domain: got " + std::to_string(domain)),
                       HasSubstr(std::to_string(runtime::first_port_of(domain)))));
   }
-  EXPECT_EQ(refusal(domain, 1), "admitted");  // a refused lab keeps no lock either
+  EXPECT_EQ(refusal(domain, 1), "accepted");  // a refused lab keeps no lock either
 }
 
 TEST(DomainLockTest, AParticipantOnThePortIsNoHindrance) {
   const std::uint32_t domain = support::own_domain();
   const Holder participant(domain, true);
-  EXPECT_EQ(refusal(domain, 1), "admitted");
+  EXPECT_EQ(refusal(domain, 1), "accepted");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "apps/deploy/machine.hpp"
 #include "apps/lab/lab_options.hpp"
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
 namespace stillhand::lab {
@@ -46,12 +46,7 @@ class HostsTest : public testing::Test {
   }
   void inventory(const std::string& text) { options_.inventory = folder_.file(text); }
   [[nodiscard]] std::string refusal() const {
-    try {
-      const Hosts sut(options_);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "taken";
+    return support::refusal([&] { const Hosts sut(options_); });
   }
 
   const std::string screen_here_ =
@@ -77,7 +72,7 @@ TEST_F(HostsTest, WithoutAnInventoryEverythingIsOfThisMachine) {
 TEST_F(HostsTest, TheInventoryNamesTheDomain) {
   if (!on_a_network()) return;
   inventory(two_hosts("motion, rig, sensing", screen_here_));
-  ASSERT_EQ(refusal(), "taken");
+  ASSERT_EQ(refusal(), "accepted");
   EXPECT_EQ(Hosts(options_).domain(), 7u);
 }
 
@@ -106,7 +101,7 @@ TEST_F(HostsTest, ASealedEffectDoesNotTravelOverANetwork) {
   inventory(two_hosts("motion, rig, sensing", screen_here_));
   EXPECT_THAT(refusal(), AllOf(StartsWith("--undeclared-effect: "), HasSubstr("rig-pc")));
   inventory(two_hosts("motion, sensing", "rig, " + screen_here_));
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
 }
 
 TEST_F(HostsTest, ARideIsAFileOfThisMachine) {
@@ -115,21 +110,21 @@ TEST_F(HostsTest, ARideIsAFileOfThisMachine) {
   inventory(two_hosts("motion, rig, sensing", screen_here_));
   EXPECT_THAT(refusal(), AllOf(StartsWith("--ride: "), HasSubstr("motion"), HasSubstr("rig-pc")));
   inventory(two_hosts("rig, sensing", "motion, " + screen_here_));
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
 }
 
 TEST_F(HostsTest, AMouseNeedsDisplayAndOperatorOnOneHost) {
   if (!on_a_network()) return;
   options_.who = Operator::kMouse;
   inventory(two_hosts("motion, rig, sensing", screen_here_));
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
   inventory(two_hosts("motion, rig, sensing, display",
                       "cancellation, human_operator, identification, recorder, experiment"));
   EXPECT_THAT(refusal(),
               AllOf(StartsWith("--operator: "), HasSubstr("display"), HasSubstr("human_operator")));
   inventory(two_hosts("motion, rig, sensing, display, human_operator",
                       "cancellation, identification, recorder, experiment"));
-  EXPECT_EQ(refusal(), "taken");
+  EXPECT_EQ(refusal(), "accepted");
 }
 
 TEST_F(HostsTest, AnInventoryThatIsMissingOrWrongIsNamed) {

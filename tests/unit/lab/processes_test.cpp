@@ -9,7 +9,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/wait.hpp"
 #include "tests/unit/deploy/sample_inventory.hpp"
 
@@ -17,6 +18,7 @@ namespace stillhand::lab {
 namespace {
 
 using deploy::SampleFolder;
+using support::text_of;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -37,10 +39,6 @@ class ProcessesTest : public testing::Test {
     std::optional<Ended> ended;
     EXPECT_TRUE(support::eventually([&] { return (ended = sut_.reap()).has_value(); }));
     return ended.value_or(Ended{});
-  }
-  static std::string text_of(const fs::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
   }
   /// Waits until a script has reported its process number in this file.
   static pid_t pid_in(const fs::path& file) {
@@ -87,12 +85,8 @@ TEST_F(ProcessesTest, AProcessOfAnotherHostIsNamedWithIt) {
 TEST_F(ProcessesTest, AMissingProgramIsNamedBeforeItIsStarted) {
   Launch launch = shell("rig", "");
   launch.executable = "/no/such/stillhand-rig";
-  try {
-    sut_.start(launch);
-    FAIL();
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("rig"), HasSubstr("/no/such/stillhand-rig")));
-  }
+  EXPECT_THAT(support::refusal([&] { sut_.start(launch); }),
+              AllOf(HasSubstr("rig"), HasSubstr("/no/such/stillhand-rig")));
   EXPECT_FALSE(sut_.reap().has_value());
 }
 

@@ -10,40 +10,28 @@
 #include <csignal>
 #include <filesystem>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/recorded_file.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::recording {
 namespace {
 
 namespace fs = std::filesystem;
+using support::refusal;
 using testing::HasSubstr;
 
 // A folder of its own, gone afterwards.
 class FileIoTest : public testing::Test {
  protected:
-  FileIoTest() { fs::create_directories(folder_); }
-  ~FileIoTest() override { fs::remove_all(folder_); }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] std::size_t file_count() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
-  }
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) / ("stillhand-file-io-" + std::to_string(::getpid()));
+  [[nodiscard]] std::size_t file_count() const { return files_.entries(); }
+
+  const support::Folder files_;
+  const fs::path& folder_ = files_.path();
 };
 
 std::span<const std::byte> bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
-
-template <typename Action>
-std::string error_of(Action action) {
-  try {
-    action();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST_F(FileIoTest, ARecordingGoesThroughAFile) {
   {
@@ -61,14 +49,14 @@ TEST_F(FileIoTest, ARecordingGoesThroughAFile) {
 
 TEST_F(FileIoTest, ARecordingIsNotOverwrittenUnlessWanted) {
   { FileSink first(path("a")); }
-  EXPECT_THAT(error_of([&] { FileSink sut(path("a")); }), HasSubstr("File exists"));
-  EXPECT_EQ(error_of([&] { FileSink sut(path("a"), Existing::kReplace); }), "no error");
+  EXPECT_THAT(refusal([&] { FileSink sut(path("a")); }), HasSubstr("File exists"));
+  EXPECT_EQ(refusal([&] { FileSink sut(path("a"), Existing::kReplace); }), "accepted");
 }
 
 TEST_F(FileIoTest, FilesThatCannotBeOpenedAreNamed) {
-  EXPECT_THAT(error_of([&] { FileSink sut(path("none/a")); }), HasSubstr("none/a: got No such"));
-  EXPECT_THAT(error_of([&] { FileSource sut(path("none")); }), HasSubstr("none: got No such file"));
-  EXPECT_THAT(error_of([&] { FileSource sut(folder_.string()); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(refusal([&] { FileSink sut(path("none/a")); }), HasSubstr("none/a: got No such"));
+  EXPECT_THAT(refusal([&] { FileSource sut(path("none")); }), HasSubstr("none: got No such file"));
+  EXPECT_THAT(refusal([&] { FileSource sut(folder_.string()); }), HasSubstr("not a regular file"));
 }
 
 TEST_F(FileIoTest, AFullDeviceIsAStatusWithItsReason) {
@@ -137,7 +125,7 @@ TEST_F(FileIoTest, CsvGoesThroughAFileAndErrorsNameIt) {
   ASSERT_TRUE(write_csv(path("a.csv"), recording).ok());
   EXPECT_EQ(read_csv(path("a.csv")).find("f")->values, recording.columns[0].values);
   ASSERT_TRUE(write_file_atomically(path("b.csv"), "t [s],f [N]\n0,x\n").ok());
-  EXPECT_THAT(error_of([&] { (void)read_csv(path("b.csv")); }), HasSubstr("b.csv:2:3: got 'x'"));
+  EXPECT_THAT(refusal([&] { (void)read_csv(path("b.csv")); }), HasSubstr("b.csv:2:3: got 'x'"));
 }
 
 }  // namespace

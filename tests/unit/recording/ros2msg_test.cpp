@@ -8,6 +8,7 @@
 #include "services/recording/core/messages/message_columns.hpp"
 #include "services/recording/core/messages/schema_types.hpp"
 #include "tests/support/cdr_bytes.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::recording {
 namespace {
@@ -15,12 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string error_of(const std::string& text) {
-  try {
-    (void)parse_ros2msg(text, "pkg/msg/M", "bag");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal([&] { (void)parse_ros2msg(text, "pkg/msg/M", "bag"); });
 }
 
 std::vector<std::string> names_of(const MessageColumns& columns) {

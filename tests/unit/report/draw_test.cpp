@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "apps/report/plot/gnuplot_script.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::report {
@@ -174,12 +175,10 @@ TEST(DrawTest, RenderWritesBothFilesOfEachFigureAndNothingElse) {
 
 TEST(DrawTest, AFolderThatIsNotThereIsNamedInTheError) {
   const Figure figure = one_line({1, 2});
-  try {
-    render({&figure, 1}, "/nonexistent/folder");
-    ADD_FAILURE() << "no error";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("/nonexistent/folder/one_line.svg"));
-  }
+  EXPECT_THAT(support::refusal<std::runtime_error>([&] {
+                render({&figure, 1}, "/nonexistent/folder");
+              }),
+              HasSubstr("/nonexistent/folder/one_line.svg"));
 }
 
 TEST(DrawTest, NoFiguresNeedNoGnuplot) { EXPECT_TRUE(draw({}).empty()); }

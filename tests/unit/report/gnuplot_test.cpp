@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/unit/report/sample_figures.hpp"
 
 namespace stillhand::report {
@@ -38,12 +39,7 @@ GnuplotJob printing(const std::string& text) {
 }
 
 std::string message_of(const GnuplotJob& job) {
-  try {
-    run_gnuplot({&job, 1});
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "no error";
+  return support::refusal<std::runtime_error>([&] { run_gnuplot({&job, 1}); });
 }
 
 TEST(GnuplotTest, EachJobGetsItsOutputsBack) {

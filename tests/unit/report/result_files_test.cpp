@@ -7,29 +7,20 @@
 
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::report {
 namespace {
 
 namespace fs = std::filesystem;
+using support::text_of;
 using testing::HasSubstr;
 
 class ResultFilesTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
   [[nodiscard]] fs::path at(const std::string& name) const { return folder_ / name; }
-  static std::string text_of(const fs::path& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> out;
     for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -39,15 +30,10 @@ class ResultFilesTest : public testing::Test {
   }
   static std::string error_of(const std::vector<ResultFile>& files,
                               const std::vector<fs::path>& inputs = {}) {
-    try {
-      const ResultFiles sut(files, inputs);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "no error";
+    return support::refusal([&] { const ResultFiles sut(files, inputs); });
   }
 
-  fs::path folder_;
+  const support::Folder folder_;
 };
 
 TEST_F(ResultFilesTest, FilesAppearWhenTheyArePublishedAndNotBefore) {
@@ -96,7 +82,8 @@ TEST_F(ResultFilesTest, ADeviceIsWrittenToAndStaysADevice) {
 }
 
 TEST_F(ResultFilesTest, PlacesThatCannotBeAreRefused) {
-  EXPECT_THAT(error_of({{"--save", folder_}}), HasSubstr("a folder, want the name of a file"));
+  EXPECT_THAT(error_of({{"--save", folder_.path()}}),
+              HasSubstr("a folder, want the name of a file"));
   EXPECT_THAT(error_of({{"--save", at("no") / "a"}}), HasSubstr("a folder that exists"));
   EXPECT_THAT(error_of({{"--save", at("a")}, {"--json", folder_ / "." / "a"}}),
               HasSubstr("--json: got"));

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "apps/report/plot/figure.hpp"
 #include "apps/report/plot/palette.hpp"
+#include "tests/support/folder.hpp"
 
 /// Figures with known content, and judges of what was drawn.
 namespace stillhand::report::test {
@@ -87,28 +85,7 @@ inline std::vector<std::string> attributes(const std::string& text, const std::s
   return values;
 }
 
-/// A folder of its own, gone with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = std::filesystem::temp_directory_path() / "stillhand-report-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::system_error(errno, std::generic_category(), name);
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::size_t entries() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using TemporaryFolder = support::Folder;
 
 /// Whether a strict XML parser (expat, by way of Python) reads the whole text.
 inline bool well_formed(const std::string& text) {

@@ -8,24 +8,16 @@
 #include <limits>
 #include <string>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::settings {
 namespace {
 
+using support::refusal;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
 
 class JsonEntryTest : public testing::Test {
  protected:
@@ -40,7 +32,7 @@ class JsonEntryTest : public testing::Test {
 
   std::string error_of(const std::string& key,
                        const std::function<void(const JsonEntry&)>& read) const {
-    return message_of([&] { read(sut_.at(key)); });
+    return refusal([&] { read(sut_.at(key)); });
   }
 };
 
@@ -79,7 +71,7 @@ TEST_F(JsonEntryTest, AWrongTypeIsRefusedWithPathAndContent) {
 }
 
 TEST_F(JsonEntryTest, AMissingEntryAndAnEntryOfNoObjectAreNamed) {
-  EXPECT_THAT(message_of([&] { (void)sut_.at("ratte"); }), StartsWith("model.json.ratte: got "));
+  EXPECT_THAT(refusal([&] { (void)sut_.at("ratte"); }), StartsWith("model.json.ratte: got "));
   EXPECT_THAT(error_of("list", [](const JsonEntry& e) { (void)e.at("hz"); }),
               StartsWith("model.json.list: got [1,2.5,-3], want "));
 }
@@ -88,7 +80,7 @@ TEST_F(JsonEntryTest, ThePathToADeepEntryHasItsKeysAndItsIndex) {
   const auto modes = sut_.at("body").at("modes").entries(1, 4);
   EXPECT_EQ(modes.at(0).at("hz").number(), 2.5);
   EXPECT_EQ(modes.at(1).path(), "model.json.body.modes[1]");
-  EXPECT_THAT(message_of([&] { (void)modes.at(1).at("hz").number(); }),
+  EXPECT_THAT(refusal([&] { (void)modes.at(1).at("hz").number(); }),
               StartsWith("model.json.body.modes[1].hz: got \"fast\""));
 }
 
@@ -108,7 +100,7 @@ TEST_F(JsonEntryTest, AnArrayKeepsItsBoundsOnTheNumberOfEntries) {
 TEST_F(JsonEntryTest, AKeyWithoutMeaningIsRefusedAndTheMeaningfulOnesAreListed) {
   const JsonEntry body = sut_.at("body");
   EXPECT_NO_THROW(body.allow_only({"order", "modes"}));
-  EXPECT_THAT(message_of([&] {
+  EXPECT_THAT(refusal([&] {
                 body.allow_only({"order", "rate"});
               }),
               AllOf(StartsWith("model.json.body.modes: got "), HasSubstr("order, rate")));
@@ -120,7 +112,7 @@ TEST_F(JsonEntryTest, AKeyWithoutMeaningIsRefusedAndTheMeaningfulOnesAreListed) 
 TEST_F(JsonEntryTest, LongContentIsShownFromItsBeginningOnly) {
   const JsonEntry::Json json = std::vector<int>(1000, 7);
   const JsonEntry sut(json, "m");
-  const std::string message = message_of([&] { (void)sut.number(); });
+  const std::string message = refusal([&] { (void)sut.number(); });
   EXPECT_THAT(message, AllOf(StartsWith("m: got [7,7,7,"), HasSubstr("...")));
   EXPECT_LT(message.size(), 120u);
 }
@@ -128,19 +120,19 @@ TEST_F(JsonEntryTest, LongContentIsShownFromItsBeginningOnly) {
 TEST_F(JsonEntryTest, BytesThatAreNoUtf8DoNotBreakTheMessage) {
   const JsonEntry::Json json = std::string("\xff\xfe");
   const JsonEntry sut(json, "m");
-  EXPECT_THAT(message_of([&] { (void)sut.number(); }), StartsWith("m: got \""));
+  EXPECT_THAT(refusal([&] { (void)sut.number(); }), StartsWith("m: got \""));
 }
 
 TEST_F(JsonEntryTest, ANumberThatIsNotFiniteIsRefused) {
   for (const double value :
        {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     const JsonEntry::Json json = value;
-    EXPECT_THAT(message_of([&] { (void)JsonEntry(json, "m").number(); }), HasSubstr("finite"));
+    EXPECT_THAT(refusal([&] { (void)JsonEntry(json, "m").number(); }), HasSubstr("finite"));
   }
 }
 
 std::string parse_error(const std::string& text) {
-  return message_of([&] { parsed_json(text, "inventory.json", "JSON of an inventory"); });
+  return refusal([&] { parsed_json(text, "inventory.json", "JSON of an inventory"); });
 }
 
 TEST(ParsedJsonTest, ASyntaxErrorIsRefusedWithLineAndColumn) {

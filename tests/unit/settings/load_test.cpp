@@ -9,6 +9,8 @@
 #include <string>
 
 #include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::settings {
 namespace {
@@ -46,12 +48,7 @@ OuterConfig loaded(const std::string& yaml) {
 }
 
 std::string message_of(const std::string& yaml) {
-  try {
-    loaded(yaml);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal([&] { loaded(yaml); });
 }
 
 TEST(LoadTest, EveryFieldIsReadFromItsKey) {
@@ -144,32 +141,20 @@ TEST(LoadTest, ASignThatBeginsNoValueIsRefused) {
   EXPECT_THAT(message_of("mass_kg: 1\n---\n, b\n"), HasSubstr("got a second document"));
 }
 
-class LoadFileTest : public testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("settings_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-};
-
-TEST_F(LoadFileTest, AFileIsReadAndNamedInMessages) {
-  const auto file = folder_ / "rig.yaml";
+TEST(LoadTest, AFileIsReadAndNamedInMessages) {
+  const support::Folder folder;
+  const auto file = folder / "rig.yaml";
   std::ofstream(file) << "mass_kg: 3\n";
   EXPECT_EQ(load<OuterConfig>(file, "rig").mass_kg, 3.0);
   std::ofstream(file) << "mass_kg: 300\n";
-  try {
-    load<OuterConfig>(file, "rig");
-    ADD_FAILURE() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(file.string() + ":1:10: rig.mass_kg"));
-  }
+  EXPECT_THAT(support::refusal([&] { load<OuterConfig>(file, "rig"); }),
+              testing::StartsWith(file.string() + ":1:10: rig.mass_kg"));
 }
 
-TEST_F(LoadFileTest, AMissingFileAndAFolderAreRefused) {
-  EXPECT_THROW(load<OuterConfig>(folder_ / "absent.yaml", "rig"), ConfigError);
-  EXPECT_THROW(load<OuterConfig>(folder_, "rig"), ConfigError);
+TEST(LoadTest, AMissingFileAndAFolderAreRefused) {
+  const support::Folder folder;
+  EXPECT_THROW(load<OuterConfig>(folder / "absent.yaml", "rig"), ConfigError);
+  EXPECT_THROW(load<OuterConfig>(folder.path(), "rig"), ConfigError);
 }
 
 }  // namespace

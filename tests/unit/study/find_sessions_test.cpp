@@ -10,9 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_writer.hpp"
 #include "services/recording/file_io.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace stillhand::study {
 namespace {
@@ -22,9 +23,6 @@ using testing::HasSubstr;
 
 class FindSessionsTest : public testing::Test {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // An MCAP file without messages, in a folder of its own.
   [[nodiscard]] fs::path session(const std::string& name, const recording::TextMap& texts) const {
     const fs::path at = folder_ / name;
@@ -43,17 +41,11 @@ class FindSessionsTest : public testing::Test {
     return {{"participant", participant}, {"session", session}, {"digest", digest}};
   }
   [[nodiscard]] static std::string refusal(const std::vector<fs::path>& folders) {
-    try {
-      find_sessions(folders);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return support::refusal([&] { find_sessions(folders); });
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      (std::string("sessions_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const support::Folder made_;
+  const fs::path& folder_ = made_.path();
 };
 
 TEST_F(FindSessionsTest, ASessionWithoutAnExperimentHasTheNameOfItsFolder) {

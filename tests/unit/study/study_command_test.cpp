@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "services/contract/config_error.hpp"
+#include "tests/support/folder.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/verb.hpp"
 
 namespace stillhand::study {
@@ -24,23 +25,12 @@ using testing::StartsWith;
 
 class StudyCommandTest : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void run(std::vector<std::string> words) const {
     words.insert(words.end(), {"--out", (folder_ / "study").string()});
     support::run_verb(add_study_command, support::named("study", std::move(words)));
   }
   [[nodiscard]] std::string message_of(const std::vector<std::string>& words) const {
-    try {
-      run(words);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return support::refusal([&] { run(words); });
   }
   [[nodiscard]] std::string population(const std::string& yaml) const {
     const fs::path file = folder_ / "people.yaml";
@@ -48,9 +38,7 @@ class StudyCommandTest : public testing::Test {
     return file.string();
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      (std::string("study_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const support::Folder folder_;
 };
 
 TEST_F(StudyCommandTest, AValueOutOfAnOptionsRangeIsAUsageError) {
