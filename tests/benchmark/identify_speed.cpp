@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the paper's fit takes, on the samples that identify_speed.py and
-// identify_peers.py hand over: standard input
+// How long the paper's fit takes, on the samples that identify_peers.py hands over: standard input
 // holds the acceleration, then the force, doubles at 100 Hz.  Prints medians in ms as JSON.
 #include <algorithm>
 #include <chrono>
