@@ -156,7 +156,7 @@ class SecuredSessionTest(LabTestCase):
         request = self.folder / "request.pem"
         rig = self.keys / "rig"
         for words in (["-in", rig / "certificate.pem", "-x509toreq", "-signkey", rig / "key.pem", "-out", request],
-                      ["-req", "-in", request, "-days", "-1", "-CA", self.keys / "authority.pem", "-CAkey",
+                      ["-req", "-in", request, "-days", "0", "-CA", self.keys / "authority.pem", "-CAkey",
                        f"{self.keys}-authority/authority_key.pem", "-set_serial", "7", "-out", rig / "certificate.pem"]):
             subprocess.run(["openssl", "x509", *map(str, words)], check=True, capture_output=True)
         self.assert_refused(rig / "certificate.pem", "expired on")
