@@ -86,7 +86,7 @@ TEST(NoiseModelTest, NothingPassesFromOneStretchToTheNextOrFromASampleWithoutWei
 TEST(NoiseModelTest, AnEffectUnderSlowNoiseIsFoundBehindTheFilter) {
   planted::Spec spec;
   spec.kinds = {planted::Kind::kCoulombFriction};
-  spec.strengths = {0.15};
+  spec.strengths.assign(1, 0.15);
   spec.snr_db = 16.0;
   spec.noise = planted::NoiseShape::kLowPass;
   spec.length_s = 60.0;

@@ -24,7 +24,7 @@ constexpr int kDraws = 40;
 planted::Draft draft_of(planted::Kind kind, const std::string& variant) {
   planted::Spec spec;
   spec.kinds = {kind};
-  spec.strengths = {0.2};
+  spec.strengths.assign(1, 0.2);
   spec.snr_db = 60.0;
   spec.length_s = 60.0;
   for (std::uint64_t seed = 1;; ++seed) {
