@@ -100,7 +100,7 @@ std::vector<std::string> governors() {
 
 SerialPortState serial_port_state(const std::string& path, const std::string& key) {
   SerialPortState port{.path = path, .key = key};
-  struct stat state {};
+  struct stat state{};
   port.exists = stat(path.c_str(), &state) == 0;
   port.open_to_us = access(path.c_str(), R_OK | W_OK) == 0;
   if (!port.exists) return port;

@@ -33,8 +33,7 @@ std::string calendar(std::uint64_t time_ns) {
 
 // Texts of a file are shown without control characters, which could move a terminal's cursor.
 std::string shown(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  std::ranges::replace_if(text, [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
   return text;
 }
 

@@ -181,8 +181,8 @@ RateConversionCost conversion_cost(const SessionRecording& session,
   std::int64_t missing = 0;
   const auto truth = measured(
       session.rig_truths, trial, [](const auto& t) { return t.feedthrough_force_n(); }, missing);
-  const auto accel = measured(
-      session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing);
+  const auto accel =
+      measured(session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing);
   const double ratio = kControlRateHz / model.fit.rate_hz;
   // Any message may be in a recording: a rate that is no rate has no cost.
   if (!(ratio >= 1.0 && ratio <= kControlRateHz)) return {NAN, NAN};
@@ -207,8 +207,7 @@ SensedMotion sensed_motion(const SessionRecording& session, const Trial& trial) 
   std::int64_t missing = 0;
   return {measured(
               session.sensed, trial, [](const auto& s) { return s.accel_y_m_s2(); }, missing),
-          measured(
-              session.sensed, trial, [](const auto& s) { return s.theta_rad(); }, missing)};
+          measured(session.sensed, trial, [](const auto& s) { return s.theta_rad(); }, missing)};
 }
 
 void judge_by_senses(const SessionRecording& session, const std::vector<TrialOutcome>& outcomes,

@@ -20,7 +20,7 @@ using session::kMetrics;
 
 // Tables I and II of the paper: two conditions, their difference, its significance.
 report::Table paper_table(const Analysis& analysis, Condition from, Condition to, const char* title,
-                          double session::Metric::*paper_p) {
+                          double session::Metric::* paper_p) {
   report::Table table;
   table.caption = title;
   table.header = {"metric",

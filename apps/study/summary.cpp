@@ -134,8 +134,7 @@ std::string restoration_key(Condition condition) {
   if (condition == kCPrime) return "restoration_c_prime";
   if (condition == kCPlus) return "restoration_c_plus";
   std::string word = name_of(condition);
-  std::ranges::replace_if(
-      word, [](char c) { return c == '-' || c == '+'; }, '_');
+  std::ranges::replace_if(word, [](char c) { return c == '-' || c == '+'; }, '_');
   return "restoration_" + word;
 }
 

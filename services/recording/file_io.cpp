@@ -74,7 +74,7 @@ FileSource::FileSource(const std::string& path)
     // Without O_NONBLOCK, a pipe without a writer would block, and every signal is masked.
     : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   if (descriptor_ < 0) throw ConfigError(path, reason(errno), "a file that can be read");
-  struct stat facts {};
+  struct stat facts{};
   if (::fstat(descriptor_, &facts) != 0 || !S_ISREG(facts.st_mode)) {
     ::close(descriptor_);
     throw ConfigError(path, "not a regular file", "a file");
@@ -85,7 +85,7 @@ FileSource::FileSource(const std::string& path)
 FileSource::~FileSource() { ::close(descriptor_); }
 
 bool FileSource::being_written() const {
-  struct stat facts {};
+  struct stat facts{};
   if (::fstat(descriptor_, &facts) == 0 && static_cast<std::uint64_t>(facts.st_size) > size_) {
     return true;
   }

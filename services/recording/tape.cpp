@@ -23,7 +23,7 @@ constexpr std::size_t kMaxWindowBytes = std::size_t{1} << 30;
 
 /// Free bytes on the disk of `path`; UINT64_MAX if the system does not report them.
 std::uint64_t free_bytes_at(const std::string& path) {
-  struct statvfs facts {};
+  struct statvfs facts{};
   std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (folder.empty()) folder = ".";
   if (::statvfs(folder.c_str(), &facts) != 0) return UINT64_MAX;

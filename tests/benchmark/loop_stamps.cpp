@@ -68,7 +68,7 @@ std::map<Tick, Stamps> stamps_of(const session::SessionRecording& session) {
   for (const auto& raw : session.raw_samples) {
     if (judged(raw.tick())) by_tick[raw.tick()].raw_ns = raw.stamp_ns();
   }
-  const auto put = [&](Tick tick, std::int64_t Stamps::*which, std::int64_t stamp_ns) {
+  const auto put = [&](Tick tick, std::int64_t Stamps::* which, std::int64_t stamp_ns) {
     const auto found = by_tick.find(tick);
     if (found != by_tick.end() && found->second.*which == 0) found->second.*which = stamp_ns;
   };

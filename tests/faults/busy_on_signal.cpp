@@ -15,7 +15,7 @@ extern "C" void spin(int /*signal*/) {
 
 // Before main(), so that no thread exists without the action.
 const bool installed = [] {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = spin;
   action.sa_flags = SA_RESTART;
   return sigaction(SIGRTMIN + kAfterFirst, &action, nullptr) == 0;

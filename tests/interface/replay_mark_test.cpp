@@ -132,7 +132,9 @@ TEST_F(ReplayMarkTest, NobodyCountsAsAliveWhileAReplayIsThereAndAgainOnceItLeft)
     sign();
     EXPECT_FALSE(rig.peers_alive());
   }
-  { const Playback left = std::move(replay); }
+  {
+    const Playback left = std::move(replay);
+  }
   ASSERT_TRUE(eventually([&] {
     sign();
     return rig.peers_alive();

@@ -187,9 +187,8 @@ TEST(StrangersTest, WithAnExpiredCertificateNothingIsHeardOrDelivered) {
   reissue(folder, "cancellation", -kDay_s, 2);
   Stranger reader({folder, "recorder"});
   Stranger writer({folder, "cancellation"});
-  ASSERT_TRUE(eventually([&] {
-    return refused({folder, "recorder"}) && refused({folder, "cancellation"});
-  }));
+  ASSERT_TRUE(eventually(
+      [&] { return refused({folder, "recorder"}) && refused({folder, "cancellation"}); }));
   MotionAndRig secured(lab());
   ASSERT_TRUE(secured.exchange(kSteps, [&] {
     reader.step();

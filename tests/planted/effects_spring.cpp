@@ -11,7 +11,7 @@ namespace {
 
 struct Site {
   const char* name;
-  Spring Body::*spring;
+  Spring Body::* spring;
   double rms_m;  ///< of its deflection in the untouched recording
 };
 

@@ -49,8 +49,7 @@ class MotionAndRig {
   }
   /// Steps until the rig has `samples` more, doing `also` at each step.  @returns whether it came
   /// to that
-  bool exchange(
-      int samples, const std::function<void()>& also = [] {}) {
+  bool exchange(int samples, const std::function<void()>& also = [] {}) {
     const int goal = received.load() + samples;
     return eventually(
         [&] {

@@ -34,7 +34,7 @@ struct Run {
   std::vector<double> left;
 };
 
-double mean_over(const std::vector<Run>& runs, const std::vector<double> Run::*of) {
+double mean_over(const std::vector<Run>& runs, const std::vector<double> Run::* of) {
   double sum = 0.0;
   double count = 0.0;
   for (const Run& run : runs) {
@@ -52,7 +52,7 @@ void set_from_blocks(Level& level) {
 }
 
 // Eq. CL-6; incomplete blocks count only if there is no interval.
-Level level_of(const std::vector<Run>& runs, const std::vector<double> Run::*of, double rate_hz) {
+Level level_of(const std::vector<Run>& runs, const std::vector<double> Run::* of, double rate_hz) {
   const double mean = mean_over(runs, of);
   const auto length = static_cast<std::size_t>(kBlock_s * rate_hz);
   Level out;

@@ -126,7 +126,7 @@ std::string Access::cookie(const Request& request) const {
 }
 
 std::string read_token(const std::string& file) {
-  struct stat about {};
+  struct stat about{};
   if (stat(file.c_str(), &about) == 0) {
     if (!S_ISREG(about.st_mode)) {
       throw ConfigError("--token-file " + file, "not a regular file", "a file with a token");

@@ -40,7 +40,7 @@ struct Points {
   Series chance;
 };
 
-Points points_of(const std::vector<Answers>& all, diagnosis::Detection Answers::*which, bool found,
+Points points_of(const std::vector<Answers>& all, diagnosis::Detection Answers::* which, bool found,
                  const char* label, report::Colour colour, double offset) {
   Series series{.label = label, .kind = Kind::kPoints, .colour = colour};
   series.point_size = found ? 1.5 : 0.7;
@@ -73,7 +73,7 @@ report::Figure figure_detections(const Evidence& evidence) {
   }
   share.x.low = chance.x.low = 0.4;
   share.x.high = chance.x.high = static_cast<double>(all.size()) + 0.6;
-  const auto add = [&](diagnosis::Detection Answers::*which, const char* label,
+  const auto add = [&](diagnosis::Detection Answers::* which, const char* label,
                        report::Colour colour, double offset) {
     for (const bool found : {true, false}) {
       Points points = points_of(all, which, found, label, colour, offset);

@@ -68,7 +68,7 @@ void write_trials(const DataSet& set, recordings::TableFile& file) {
   for (const ExportedParticipant& each : set.participants) {
     for (const ExportedTrial& trial : each.trials) {
       const std::string session = session_name(trial.session);
-      const auto metric = [&](double identification::TrackingMetrics::*of) {
+      const auto metric = [&](double identification::TrackingMetrics::* of) {
         return trial.metrics ? real_cell((*trial.metrics).*of) : Cell();
       };
       table.add({std::string_view(each.code), std::string_view(session), trial.trial.number,

@@ -156,7 +156,7 @@ class Grid {
     }
     return widest_px;
   }
-  double row_margin_px(std::size_t row, double Margins::*side) const {
+  double row_margin_px(std::size_t row, double Margins::* side) const {
     double most_px = 0.0;
     for (std::size_t k = row * columns_; k < std::min((row + 1) * columns_, panels_.size()); ++k) {
       most_px = std::max(most_px, margins_[k].*side);

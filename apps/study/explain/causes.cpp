@@ -12,8 +12,8 @@ namespace {
 
 // A cause that is a mean of the population and its coefficient of variation.  It is absent at the
 // population's own mean; its spread adds to the population's own.
-Cause personal(Cause cause, double population::Population::*mean,
-               double population::Population::*cv) {
+Cause personal(Cause cause, double population::Population::* mean,
+               double population::Population::* cv) {
   cause.personal = true;
   cause.none = population::Population{}.*mean;
   cause.apply = [mean](StudyOptions& options, double value) { options.population.*mean = value; };
@@ -138,7 +138,7 @@ std::vector<Cause> of_the_rest() {
                &P::delay_by_vibration_s3_m, &P::delay_by_vibration_cv)};
 }
 
-Calibrated mean(std::string name, double population::Population::*field, double prior_sd,
+Calibrated mean(std::string name, double population::Population::* field, double prior_sd,
                 std::string source) {
   return {
       std::move(name), prior_sd, std::move(source),

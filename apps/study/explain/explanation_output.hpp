@@ -31,7 +31,7 @@ void print_explanation(const Explanation& explanation);
 /// What an experiment could measure, by judged hypothesis: mean and deviation over subjects.
 struct Observable {
   std::string name;
-  double Observed::*value;
+  double Observed::* value;
   double scale;  ///< to the unit in the name
 };
 const std::vector<Observable>& observables();

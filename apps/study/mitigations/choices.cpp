@@ -178,18 +178,14 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
   if (learns) {
     out.lms_signal_step = least(
         trying, "step of the signal's LMS", kSteps,
-        [](double mu) {
-          return mitigation::Recipe{.lms_signal = mitigation::LmsConfig{mu, {}}};
-        },
+        [](double mu) { return mitigation::Recipe{.lms_signal = mitigation::LmsConfig{mu, {}}}; },
         out.log, on_stage);
     const auto feel = population::mean_subject(options.population).who.arm;
     const mitigation::SecondaryPath path{feel.effective_mass_kg, feel.effective_damping_n_s_m,
                                          feel.effective_stiffness_n_m};
     out.lms_force_step = least(
         trying, "step of the force's LMS", kSteps,
-        [&](double mu) {
-          return mitigation::Recipe{.lms_force = mitigation::LmsConfig{mu, path}};
-        },
+        [&](double mu) { return mitigation::Recipe{.lms_force = mitigation::LmsConfig{mu, path}}; },
         out.log, on_stage);
   }
   return out;

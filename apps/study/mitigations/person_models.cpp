@@ -122,7 +122,7 @@ std::vector<signal::DifferenceModel> by_order(const signal::DifferenceModel& hig
 
 // Records of several people, one after another.
 identification::Record joined(const std::vector<PersonModels>& people,
-                              identification::Record PersonModels::*of) {
+                              identification::Record PersonModels::* of) {
   identification::Record out;
   for (const PersonModels& one : people) {
     const identification::Record& from = one.*of;
@@ -135,7 +135,7 @@ identification::Record joined(const std::vector<PersonModels>& people,
 }
 
 admittance::ArmValues geometric_mean(const std::vector<PersonModels>& people,
-                                     admittance::ArmValues PersonModels::*of) {
+                                     admittance::ArmValues PersonModels::* of) {
   admittance::ArmValues out{};
   for (std::size_t i = 0; i < out.size(); ++i) {
     double log_sum = 0.0;
@@ -186,7 +186,7 @@ PersonModels identify_person(const population::Subject& subject, double identify
 
 PersonModels average_models(const std::vector<PersonModels>& people) {
   PersonModels out;
-  const auto refined = [&](identification::Record PersonModels::*of, int order) {
+  const auto refined = [&](identification::Record PersonModels::* of, int order) {
     const identification::Record all = joined(people, of);
     const auto start = identification::least_squares(all, order);
     return identification::to_control_rate(identification::refine_output_error(all, start).model)

@@ -27,7 +27,7 @@ double mean_of(const Trials& trials, auto value) {
 }
 
 std::vector<double> mean_series(const Trials& trials,
-                                std::vector<double> TrackingMetrics::*series) {
+                                std::vector<double> TrackingMetrics::* series) {
   std::vector<double> out((trials.front()->metrics.*series).size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = mean_of(trials, [&](const TrackedTrial& t) { return (t.metrics.*series)[i]; });
@@ -36,7 +36,7 @@ std::vector<double> mean_series(const Trials& trials,
 }
 
 // The mean of the remnant's share, as a ratio of signal to remnant again.
-double mean_snr(const Trials& trials, std::size_t line, double OpenLoopLine::*snr) {
+double mean_snr(const Trials& trials, std::size_t line, double OpenLoopLine::* snr) {
   return 1.0 / mean_of(trials, [&](const TrackedTrial& t) {
            return std::min(1.0, 1.0 / (t.metrics.lines[line].*snr));
          });

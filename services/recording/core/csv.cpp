@@ -42,8 +42,7 @@ std::string_view trimmed(std::string_view text) {
 // Control characters of a binary file would move the cursor of a terminal and split a message.
 std::string quoted(std::string_view text) {
   std::string shown(text.substr(0, kQuotedCharacters));
-  std::ranges::replace_if(
-      shown, [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  std::ranges::replace_if(shown, [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
   return "'" + shown + (text.size() <= kQuotedCharacters ? "'" : "...'");
 }
 

@@ -31,8 +31,7 @@ std::size_t place_of(std::string_view service) {
 std::string printable(const std::string& name) {
   constexpr std::size_t kMost = 31;  // BusIncident::peer
   std::string text = name.empty() ? "a participant without a name" : name.substr(0, kMost);
-  std::ranges::replace_if(
-      text, [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::ranges::replace_if(text, [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;
 }
 

@@ -167,7 +167,7 @@ TEST_F(DriveLinkTest, AnotherDriveInItsPlaceIsNotChecked) {
 
 TEST_F(DriveLinkTest, DamagedTruncatedAndSenselessAnswersAreNoSamples) {
   DriveLink sut(config_, kLimits);
-  for (bool emulators::Mischief::*kind :
+  for (bool emulators::Mischief::* kind :
        {&emulators::Mischief::garbage, &emulators::Mischief::truncated}) {
     emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = true; });
     // What was under way before comes first.
@@ -244,8 +244,8 @@ TEST_F(OdriveLinkTest, ADriveThatStartsAgainOrComesBackIsCheckedAgain) {
 TEST_F(OdriveLinkTest, AnswersThatAreSpoiltAreNoSamples) {
   DriveLink sut(config_, kLimits);
   using emulators::Mischief;
-  for (bool Mischief::*kind : {&Mischief::garbage, &Mischief::truncated, &Mischief::damaged,
-                               &Mischief::lost, &Mischief::silent}) {
+  for (bool Mischief::* kind : {&Mischief::garbage, &Mischief::truncated, &Mischief::damaged,
+                                &Mischief::lost, &Mischief::silent}) {
     emulated_.with([&](auto&, auto& serial) { serial.mischief.*kind = true; });
     // What was under way before comes first.
     std::uint64_t last = 0;

@@ -23,8 +23,8 @@ constexpr Tick kAllOver = kAgain + kLead + kRamp + 500;
 
 struct Fault {
   const char* name;
-  bool PlatformBench::Trouble::*first;
-  bool PlatformBench::Trouble::*second;
+  bool PlatformBench::Trouble::* first;
+  bool PlatformBench::Trouble::* second;
 };
 using Trouble = PlatformBench::Trouble;
 constexpr Fault kFaults[]{

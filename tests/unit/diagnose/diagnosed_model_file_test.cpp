@@ -141,9 +141,7 @@ TEST(DiagnosedModelFileTest, AWrongPartOfWhatIsCarriedIsNamed) {
               HasSubstr("proved or tested"));
   EXPECT_THAT(refused([](json& entry) { entry["effects"][0]["seen"][0]["low"] = 1.0; }),
               AllOf(HasSubstr("seen"), HasSubstr("from low on")));
-  EXPECT_THAT(refused([](json& entry) {
-                entry["body"]["denominator"] = {1.0, -2.0, 1.0};
-              }),
+  EXPECT_THAT(refused([](json& entry) { entry["body"]["denominator"] = {1.0, -2.0, 1.0}; }),
               HasSubstr("unit circle"));
   EXPECT_THAT(refused([](json& entry) { entry.erase("left_out"); }), HasSubstr("left_out"));
 }

@@ -228,9 +228,7 @@ TEST(DiagnosedModelRefusalsTest, MoreThanAModelCanHoldIsRefused) {
               HasSubstr("effects"));
   EXPECT_THAT(refusal_after([](json& file) { file["inputs"] = std::vector<std::string>(17, "u"); }),
               HasSubstr("inputs"));
-  EXPECT_THAT(refusal_after([](json& file) {
-                file["effects"][0]["channels"] = {"u", "v", "w"};
-              }),
+  EXPECT_THAT(refusal_after([](json& file) { file["effects"][0]["channels"] = {"u", "v", "w"}; }),
               HasSubstr("channels"));
 }
 

@@ -147,7 +147,9 @@ TEST_F(OutputFolderTest, TheFilesOfASessionOverSeveralMachinesAreTakenAway) {
                            "logs/ghost_rig-pc.log", "verdict.json", "report.html"}) {
     write(name);
   }
-  { const OutputFolder sut(folder, {}); }
+  {
+    const OutputFolder sut(folder, {});
+  }
   EXPECT_THAT(content(), ElementsAre("logs", "logs/ghost_rig-pc.log", "logs/host_notes.txt"));
 }
 

@@ -49,9 +49,7 @@ TEST(InChildTest, WhatTheChildPutsArrives) {
 }
 
 TEST(InChildTest, ARefusalArrivesAsItIs) {
-  EXPECT_EQ(error_of([](Wire&) {
-              throw Refused{"where", "this", "that"};
-            }),
+  EXPECT_EQ(error_of([](Wire&) { throw Refused{"where", "this", "that"}; }),
             "where: got this, want that");
 }
 
@@ -75,8 +73,7 @@ TEST(InChildTest, MoreThanExpectedIsRefused) {
 TEST(InChildTest, NothingOfTheParentIsWrittenTwice) {
   testing::internal::CaptureStdout();
   std::printf("a");
-  in_child(
-      "x", [](Wire& wire) { wire.put(0.0); }, [](Wire& wire) { (void)wire.get_number(); });
+  in_child("x", [](Wire& wire) { wire.put(0.0); }, [](Wire& wire) { (void)wire.get_number(); });
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "a");
 }
 

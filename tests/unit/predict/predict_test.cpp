@@ -168,28 +168,25 @@ TEST(PredictTest, AModelFromItsFileAnswersBitForBit) {
 TEST(PredictTest, AMissingInputIsNamed) {
   Model model = made::model_of(made::two_pole_body());
   model.inputs = {"elbow"};
-  EXPECT_THAT(message_of([&] {
-                predict(model, made::measurement_of({{"u", "V", made::white(100, 8)}}));
-              }),
-              HasSubstr("elbow"));
+  EXPECT_THAT(
+      message_of([&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 8)}})); }),
+      HasSubstr("elbow"));
 }
 
 TEST(PredictTest, AMissingChannelOfAnEffectIsNamed) {
   const Model model =
       made::model_of(made::two_pole_body(), {{"coupled_input", "static", {"grip"}, {}, {1.0}}});
-  EXPECT_THAT(message_of([&] {
-                predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}}));
-              }),
-              HasSubstr("grip"));
+  EXPECT_THAT(
+      message_of([&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}})); }),
+      HasSubstr("grip"));
 }
 
 TEST(PredictTest, AnEffectWithoutItsNumbersIsRefused) {
   const Model model =
       made::model_of(made::two_pole_body(), {{"delay", "of the input", {}, {}, {}}});
-  EXPECT_THAT(message_of([&] {
-                predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}}));
-              }),
-              StartsWith("model: got "));
+  EXPECT_THAT(
+      message_of([&] { predict(model, made::measurement_of({{"u", "V", made::white(100, 9)}})); }),
+      StartsWith("model: got "));
 }
 
 TEST(PredictTest, ARateThatIsNoMultipleOfTheModelsIsRefusedWithBoth) {
@@ -282,9 +279,7 @@ TEST(PredictTest, AStretchShorterThanASampleOfTheModelHasNoRowsAndTheNextOneKeep
 }
 
 TEST(PredictTest, ARecordingOfShortStretchesAloneIsRefused) {
-  EXPECT_THAT(message_of([] {
-                predict(static_model(1.0), in_stretches({9, 4, 7}, ramp(20)));
-              }),
+  EXPECT_THAT(message_of([] { predict(static_model(1.0), in_stretches({9, 4, 7}, ramp(20))); }),
               AllOf(StartsWith("made: got "), HasSubstr("10 samples")));
 }
 

@@ -48,7 +48,9 @@ TEST_F(FileIoTest, ARecordingGoesThroughAFile) {
 }
 
 TEST_F(FileIoTest, ARecordingIsNotOverwrittenUnlessWanted) {
-  { FileSink first(path("a")); }
+  {
+    FileSink first(path("a"));
+  }
   EXPECT_THAT(refusal([&] { FileSink sut(path("a")); }), HasSubstr("File exists"));
   EXPECT_EQ(refusal([&] { FileSink sut(path("a"), Existing::kReplace); }), "accepted");
 }
@@ -97,7 +99,9 @@ TEST_F(FileIoTest, WhatFitsBeforeTheDiskIsFullIsRecovered) {
 }
 
 TEST_F(FileIoTest, ReadingBeyondTheEndIsAStatus) {
-  { ASSERT_TRUE(write_file_atomically(path("a"), "123").ok()); }
+  {
+    ASSERT_TRUE(write_file_atomically(path("a"), "123").ok());
+  }
   FileSource sut(path("a"));
   std::array<std::byte, 4> into{};
   EXPECT_EQ(sut.read_at(0, into).kind, StatusKind::kIo);

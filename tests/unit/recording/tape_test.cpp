@@ -189,7 +189,9 @@ TEST_F(TapeTest, RotationBySizeKeepsPartsNearIt) {
 }
 
 TEST_F(TapeTest, APartThatIsThereAlreadyIsNotOverwrittenAndEndsTheTape) {
-  { const FileSink taken((folder_ / "t.0002.mcap").string()); }
+  {
+    const FileSink taken((folder_ / "t.0002.mcap").string());
+  }
   auto rotating = options();
   rotating.rotation.max_ns = 100'000'000;
   Tape sut(rotating);

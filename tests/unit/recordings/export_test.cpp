@@ -202,9 +202,7 @@ TEST_F(ExportTest, AnotherProgramsRecordingIsExportedAsFarAsItsSchemasAreKnown) 
   };
   write(false);
   EXPECT_THAT(
-      config_error_of([&] {
-        export_recording(path("ros.mcap"), {path("out"), {}, {}, {}});
-      }),
+      config_error_of([&] { export_recording(path("ros.mcap"), {path("out"), {}, {}, {}}); }),
       HasSubstr("schema 1: got a schema in 'ros2idl', want a schema in 'omgidl' or 'ros2msg')"));
   EXPECT_EQ(file_count(), 1u) << "no folder of results that never were";
   write(true);

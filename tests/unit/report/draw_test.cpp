@@ -175,10 +175,9 @@ TEST(DrawTest, RenderWritesBothFilesOfEachFigureAndNothingElse) {
 
 TEST(DrawTest, AFolderThatIsNotThereIsNamedInTheError) {
   const Figure figure = one_line({1, 2});
-  EXPECT_THAT(support::refusal<std::runtime_error>([&] {
-                render({&figure, 1}, "/nonexistent/folder");
-              }),
-              HasSubstr("/nonexistent/folder/one_line.svg"));
+  EXPECT_THAT(
+      support::refusal<std::runtime_error>([&] { render({&figure, 1}, "/nonexistent/folder"); }),
+      HasSubstr("/nonexistent/folder/one_line.svg"));
 }
 
 TEST(DrawTest, NoFiguresNeedNoGnuplot) { EXPECT_TRUE(draw({}).empty()); }

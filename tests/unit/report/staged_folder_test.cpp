@@ -120,7 +120,9 @@ TEST_F(StagedFolderTest, ASecondRunInTheSameFolderIsRefusedAndLeavesTheFirstAlon
 TEST_F(StagedFolderTest, TheHiddenFolderOfAKilledRunIsRemoved) {
   fs::create_directories(out() / ".unfinished-abc");
   std::ofstream(out() / ".unfinished-abc" / "a.txt") << "half";
-  { StagedFolder sut(out()); }
+  {
+    StagedFolder sut(out());
+  }
   EXPECT_EQ(entries(out()), 0u);
 }
 

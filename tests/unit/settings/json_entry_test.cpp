@@ -100,9 +100,7 @@ TEST_F(JsonEntryTest, AnArrayKeepsItsBoundsOnTheNumberOfEntries) {
 TEST_F(JsonEntryTest, AKeyWithoutMeaningIsRefusedAndTheMeaningfulOnesAreListed) {
   const JsonEntry body = sut_.at("body");
   EXPECT_NO_THROW(body.allow_only({"order", "modes"}));
-  EXPECT_THAT(refusal([&] {
-                body.allow_only({"order", "rate"});
-              }),
+  EXPECT_THAT(refusal([&] { body.allow_only({"order", "rate"}); }),
               AllOf(StartsWith("model.json.body.modes: got "), HasSubstr("order, rate")));
   EXPECT_THAT(error_of("name", [](const JsonEntry& e) { e.allow_only({"a"}); }),
               StartsWith("model.json.name: got \"left\""));

@@ -39,7 +39,7 @@ class EffectDraft {
   }
   /// Sets a number of the chain's effect so that Eq. RG-12 gives `wanted`, and notes both.
   /// @return the share that it gives
-  double size_chain(double ChainEffect::*number, Range range, double wanted, const char* what,
+  double size_chain(double ChainEffect::* number, Range range, double wanted, const char* what,
                     const char* unit) {
     const auto share = [&](double value) {
       ChainEffect effect = plan_.chain;

@@ -33,7 +33,7 @@ class OutsideDraw : private EffectDraft {
   // Of the pegged force. A hand's own force is 0.13 to 0.3 of it (0.9 to 2.2 N of 7 N); a verdict
   // can name what has 0.75 of the RMS of that.
   double wanted_share() { return coin() ? between(0.05, 0.25) : between(0.4, 0.8); }
-  void size(double ChainEffect::*number, Range range, const char* what, const char* unit) {
+  void size(double ChainEffect::* number, Range range, const char* what, const char* unit) {
     const double share = size_chain(number, range, wanted_share(), what, unit);
     note("force_rms", "N", share * pegged().plain_rms_n());
     note("force_beyond_linear", "N", pegged().beyond_linear_n(pegged().force_n(plan_.chain)));
