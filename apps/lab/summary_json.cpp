@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "apps/report/or_null.hpp"
+#include "apps/session/misses_json.hpp"
 #include "apps/session/paper_table.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/settings/load.hpp"
@@ -65,16 +66,10 @@ ordered_json clocks_json(const session::SessionResult& result) {
   return clocks;
 }
 
-ordered_json disturbances_json(const session::SessionResult& result) {
+ordered_json disturbed_json(const session::SessionResult& result, std::int64_t trial) {
   ordered_json list = ordered_json::array();
   for (const auto& [label, miss] : result.disturbances) {
-    list.push_back(ordered_json{{"condition", session::name_of(label)},
-                                {"time_s", miss.time_s},
-                                {"process", miss.process},
-                                {"late_s", miss.late_s},
-                                {"waited", miss.waited},
-                                {"zero_s", miss.zero_s},
-                                {"back_s", or_null(miss.back_s)}});
+    if (miss.trial == trial) list.push_back(session::json_of(miss));
   }
   return list;
 }
@@ -255,7 +250,7 @@ std::vector<std::string> disturbance_lines(const session::SessionResult& result)
   for (const auto& [label, miss] : worst) {
     if (lines.size() == kMost) break;
     lines.push_back(fmt::format("{} disturbed at {:.1f} s: {}", session::name_of(label),
-                                miss.time_s, session::what_happened(miss)));
+                                miss.trial_s, session::what_happened(miss)));
   }
   if (worst.size() > kMost) {
     lines.push_back(fmt::format("{} more times: `stillhand misses` lists them on session.mcap",
@@ -291,9 +286,9 @@ ordered_json summary_json(const LabOptions& options,
   summary["trials"] = ordered_json::array();
   for (const session::TrialOutcome& outcome : outcomes) {
     summary["trials"].push_back(trial_json(outcome, options));
+    summary["trials"].back()["disturbed"] = disturbed_json(result, outcome.planned.trial.number);
   }
   summary["lost_ticks"] = result.lost_ticks;
-  summary["disturbances"] = disturbances_json(result);
   summary["clocks"] = clocks_json(result);
   summary["recording_damage"] = result.damage;
   summary["interrupted"] = interrupted;

@@ -6,15 +6,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/report/or_null.hpp"
 #include "apps/report/plot/draw.hpp"
 #include "apps/report/result_files.hpp"
+#include "apps/session/clock_line.hpp"
 #include "apps/session/misses.hpp"
+#include "apps/session/misses_json.hpp"
 #include "apps/session/session_recording.hpp"
 #include "services/contract/config_error.hpp"
 
@@ -28,26 +30,18 @@ struct Words {
 };
 
 std::string when(const session::Miss& miss) {
-  if (miss.trial < 0) return fmt::format("at {:.3f} s", miss.time_s);
-  return fmt::format("trial {} at {:.3f} s", miss.trial, miss.time_s);
+  if (miss.trial < 0) return fmt::format("no trial, {:.3f} s", miss.from_s);
+  return fmt::format("trial {} at {:.3f} s", miss.trial, miss.trial_s);
 }
 
-std::string json_of(const Words& words, const std::vector<session::Miss>& misses) {
-  using Json = nlohmann::ordered_json;
-  Json list = Json::array();
-  for (const session::Miss& miss : misses) {
-    list.push_back(Json{{"process", miss.process},
-                        {"topic", miss.topic},
-                        {"trial", miss.trial < 0 ? Json() : Json(miss.trial)},
-                        {"time_s", miss.time_s},
-                        {"late_s", miss.late_s},
-                        {"waited", miss.waited},
-                        {"force_before_n", miss.force_before_n},
-                        {"zero_s", miss.zero_s},
-                        {"back_s", report::or_null(miss.back_s)}});
-  }
-  return Json{{"file", words.recording}, {"least_ms", words.least_ms}, {"misses", list}}.dump(2) +
-         "\n";
+std::string json_of(const std::vector<session::Miss>& misses) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const session::Miss& miss : misses) list.push_back(session::json_of(miss));
+  return list.dump(2) + "\n";
+}
+
+double seconds_from(const session::Miss& miss, std::int64_t at_ns) {
+  return 1e-9 * static_cast<double>(at_ns - miss.from_ns);
 }
 
 // The motor force around the longest one, and the time between the samples of who was late.
@@ -58,8 +52,9 @@ report::Figure figure_of(const session::SessionRecording& session,
                       .x = {.label = "time from the silence on [s]", .low = -0.5, .high = 2.0},
                       .y = {.label = "motor force [N]"}};
   report::Series acted{.label = "acted", .colour = report::Colour::kConditionC};
+  const session::ClockLine rig(session.clock_offsets, "rig");
   for (const auto& truth : session.rig_truths) {
-    const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns() - worst->from_ns);
+    const double t_s = seconds_from(*worst, rig.on_experiments_clock(truth.stamp_ns()));
     if (t_s < -0.5 || t_s > 2.0) continue;
     acted.x.push_back(t_s);
     acted.y.push_back(truth.motor_force_n());
@@ -67,8 +62,9 @@ report::Figure figure_of(const session::SessionRecording& session,
   report::Series asked{.label = "that the prediction asks for",
                        .kind = report::Kind::kDottedLine,
                        .colour = report::Colour::kTarget};
+  const session::ClockLine cancellation(session.clock_offsets, "cancellation");
   for (const auto& command : session.motor_commands) {
-    const double t_s = 1e-9 * static_cast<double>(command.stamp_ns() - worst->from_ns);
+    const double t_s = seconds_from(*worst, cancellation.on_experiments_clock(command.stamp_ns()));
     if (t_s < -0.5 || t_s > 2.0) continue;
     asked.x.push_back(t_s);
     asked.y.push_back(-command.predicted_force_n());
@@ -96,7 +92,7 @@ int run(const Words& words) {
   if (misses.empty()) {
     fmt::print("nobody was late by {} ms or more\n", words.least_ms);
   }
-  if (files.wants("--json")) files.set_json("--json", json_of(words, misses));
+  if (files.wants("--json")) files.set("--json", json_of(misses));
   if (files.wants("--picture")) {
     if (misses.empty()) throw ConfigError("--picture", "no miss to draw", "a smaller --least-ms");
     const std::vector<report::Figure> figures{figure_of(session, misses)};

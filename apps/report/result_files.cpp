@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/report/result_files.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -62,7 +64,9 @@ void write(const fs::path& path, const std::string& text) {
 // What is printed from here on goes to standard error.
 int standard_output_apart() {
   std::fflush(stdout);
-  const int descriptor = ::dup(STDOUT_FILENO);
+  // A reader that ends early is an error to report: the other files must not stay half done.
+  std::signal(SIGPIPE, SIG_IGN);
+  const int descriptor = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
   if (descriptor < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {
     throw std::runtime_error("standard output: " + reason(errno));
   }
@@ -147,13 +151,18 @@ void ResultFiles::publish() {
     staged_files.paths.push_back(staged);
     write(staged, entry.text);
   }
-  std::size_t next = 0;
+  // What cannot be taken back comes before the files that replace others.
   for (const Entry& entry : entries_) {
     if (entry.descriptor >= 0) {
       write(entry.descriptor, entry.text);
     } else if (!entry.plain) {
       write(entry.place, entry.text);
-    } else if (std::rename(staged_files.paths[next++].c_str(), entry.place.c_str()) != 0) {
+    }
+  }
+  std::size_t next = 0;
+  for (const Entry& entry : entries_) {
+    if (!entry.plain) continue;
+    if (std::rename(staged_files.paths[next++].c_str(), entry.place.c_str()) != 0) {
       throw std::runtime_error(entry.file.path.string() + ": cannot be replaced: " + reason(errno));
     }
   }

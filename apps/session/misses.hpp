@@ -17,7 +17,8 @@
 /// T [s] the tick.  The process stopped at a moment of the tick that nobody recorded, so half of it
 /// is taken off and the gap is right to T/2.  A process that waits for another one's samples is
 /// silent as long as that one is; it is late by itself if its source was not silent for half of its
-/// gap.
+/// gap.  A gap is none of the process, and is left out, if somebody answered a sample inside it
+/// that the recording lacks, or if ticks of the rig, which counts without a jump, are missing.
 namespace stillhand::session {
 
 /// One process that was late by itself.
@@ -26,14 +27,15 @@ struct Miss {
   std::string topic;
   std::int64_t from_ns = 0;         ///< [ns] when its silence began, on the experiment's clock
   double late_s = 0.0;              ///< [s] Eq. MI-1
+  double from_s = 0.0;              ///< [s] the same from the start of the recording
   std::int64_t trial = -1;          ///< in whose measured part or ramps it was; -1: in none
-  double time_s = 0.0;              ///< [s] from the first measured tick of the trial, else from
-                                    ///< the first sample of the recording
+  double trial_s = 0.0;             ///< [s] from the first measured tick of the trial
   std::vector<std::string> waited;  ///< processes behind it that were silent with it
   double force_before_n = 0.0;      ///< [N] RMS of the motor force in the second before
   double zero_s = 0.0;              ///< [s] for how long the motor force was zero then
   double back_s = 0.0;  ///< [s] from then until the force is again what the prediction asks for;
-                        ///< NaN: not before the trial's end.  0 without a force before
+                        ///< NaN: not before the trial's end.  0: the force was none, or not the
+                        ///< prediction's, as that of a mitigation
 };
 
 /// In the order of time.

@@ -261,8 +261,8 @@ void find_disturbances(const SessionRecording& session, const std::vector<TrialO
   for (Miss& miss : misses_in(session, kUnused_s)) {
     const auto hit = std::ranges::find_if(outcomes, [&](const TrialOutcome& each) {
       const Trial& trial = each.planned.trial;
-      return each.completed && trial.number == miss.trial && miss.time_s >= 0.0 &&
-             trial.measures(trial.start_tick + ticks_in(miss.time_s));
+      return each.completed && trial.number == miss.trial &&
+             trial.measures(trial.start_tick + ticks_in(miss.trial_s));
     });
     if (hit != outcomes.end()) {
       result.disturbances.push_back({hit->planned.label, std::move(miss)});

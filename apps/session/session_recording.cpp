@@ -80,10 +80,19 @@ SessionRecording read_session(const std::string& path) {
       {topics::kAnswer.name, counted<stillhand_msgs::Answer>()}};
   const recording::Status status =
       recording::for_each_session_message(reader, {}, [&](const recording::MessageView& message) {
+        const auto logged_ns = static_cast<std::int64_t>(message.log_time_ns);
+        if (session.first_log_ns == 0) session.first_log_ns = logged_ns;
+        session.first_log_ns = std::min(session.first_log_ns, logged_ns);
+        const std::size_t samples = session.raw_samples.size();
         const auto store = stores.find(message.channel.topic);
         if (store == stores.end()) return true;
         if (store->second(message.bytes)) {
           ++session.messages[message.channel.topic];
+          if (session.raw_samples.size() > samples) {
+            const std::int64_t less_ns = logged_ns - session.raw_samples.back().stamp_ns();
+            session.log_less_stamp_ns =
+                samples == 0 ? less_ns : std::min(session.log_less_stamp_ns, less_ns);
+          }
         } else {
           session.damage.push_back(
               fmt::format("a message of {} is not of its type", message.channel.topic));

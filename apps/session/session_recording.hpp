@@ -33,6 +33,9 @@ struct SessionRecording {
   std::vector<stillhand_msgs::ServiceStatus> statuses;
   std::vector<stillhand_msgs::ClockOffset> clock_offsets;
 
+  std::int64_t first_log_ns = 0;  ///< [ns] log time of the first message, on the recorder's clock
+  /// [ns] log time less the rig's stamp, the least of its samples: the same clock but for the way
+  std::int64_t log_less_stamp_ns = 0;
   std::map<std::string, std::int64_t> messages;    ///< by topic
   std::map<std::string, std::int64_t> lost_ticks;  ///< by 1 kHz topic: gaps in its tick numbers
   std::vector<std::string> damage;                 ///< parts of the file that could not be read

@@ -97,6 +97,7 @@ class Asked {
                                                        "and not all report zero force",
                                                        asked_.size()));
     }
+    if (!confirmed()) return name_ + ": force zero, but another rig may still turn up";
     // Not when: whether there was a force is the condition of a blinded trial.
     return fmt::format("{}: force zero ({:.0f} ms to reach the rig)", name_,
                        static_cast<double>(first_ns_ - began_ns) / 1e6);
@@ -163,7 +164,7 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
   }
   for (const Asked& asked : all) std::cout << asked.line(began_ns) << '\n';
   std::cerr << failures;
-  const bool confirmed = std::ranges::all_of(all, &Asked::is_zero);
+  const bool confirmed = !open();
   if (!confirmed && options.security.empty()) {
     std::cerr << "stillhand stop: a session with keys hears only a stop with --security DIR\n";
   }

@@ -43,9 +43,11 @@ bool PlatformDrive::asks_to_follow() const noexcept {
 }
 
 PlatformDrive::Output PlatformDrive::step(const Input& input) noexcept {
+  const bool was_fresh = fresh_;
   fresh_ = input.age_ticks <=
            (asks_to_follow() ? limits_.most_following_age_ticks : limits_.most_age_ticks);
   look_whether_it_stands(input);
+  moved_in_silence_ = fresh_ && !was_fresh && stands_ticks_ == 0;
   switch (stage_) {
     case SeatStage::kAbsent:
     case SeatStage::kStanding:
@@ -96,10 +98,9 @@ PlatformDrive::Output PlatformDrive::faulted(const Input& input) noexcept {
 }
 
 PlatformDrive::Output PlatformDrive::hold(const Input& input) noexcept {
-  // Taken once: a platform that stays engaged would creep after its own report.  And once more
-  // after a silence: somebody else may have moved it, and it must not jump back.
-  if (fresh_ && (!held_ || silent_)) hold_m_ = input.reply.position_m;
-  silent_ = !fresh_;
+  // Taken once: a platform that stays engaged would creep after its own report.  And again where
+  // somebody else moved it in a silence: it must not jump back.
+  if (fresh_ && (!held_ || moved_in_silence_)) hold_m_ = input.reply.position_m;
   if (fresh_) held_ = input.reply.stage == PlatformStage::kFollowing;
   if (!fresh_ && !held_) return {stage_, {.order = PlatformOrder::kRelease}, kInhibited};
   return {stage_, {.order = PlatformOrder::kHold, .position_m = hold_m_}, kInhibited};

@@ -102,12 +102,12 @@ class PlatformDrive {
   std::uint32_t fault_ = 0;
   std::int64_t blocked_trial_ = -2;
   bool fresh_ = false;
-  bool confirmed_ = false;  ///< the platform has said that it follows
-  double stood_m_ = 0.0;    ///< it is within a millimetre of this place
-  Tick stands_ticks_ = 0;   ///< for so long
-  bool held_ = false;       ///< hold_m_ is known
-  bool silent_ = false;     ///< somebody else may have moved it since
-  double hold_m_ = 0.0;     ///< set-point of a platform that stays engaged
+  bool confirmed_ = false;         ///< the platform has said that it follows
+  double stood_m_ = 0.0;           ///< it is within a millimetre of this place
+  Tick stands_ticks_ = 0;          ///< for so long
+  bool held_ = false;              ///< hold_m_ is known
+  bool moved_in_silence_ = false;  ///< it is back in this tick, and not where it was
+  double hold_m_ = 0.0;            ///< set-point of a platform that stays engaged
 };
 
 }  // namespace stillhand::device_rig

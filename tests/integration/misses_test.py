@@ -13,8 +13,8 @@ import time
 import lab_process
 from lab_process import STILLHAND, TRIAL_LIMIT_S, LabTestCase, campaign, quick_session
 
-# The stop may come half a tick after the sample, Eq. MI-1, and the kernel stops a process a little later.
-HALF_TICK_S = 0.5e-3
+# Half a tick (Eq. MI-1), and the time from the signal until each thread stands: no figure for it is known.
+TOLERANCE_S = 0.01
 
 
 def misses(recording, *words):
@@ -26,7 +26,7 @@ def misses(recording, *words):
 class MissesTest(LabTestCase):
     def session_with_a_stop(self, service, length_s):
         """Returns the recording, and when [ns, monotonic] the service stood still."""
-        lab = self.lab(*quick_session(self.folder / f"config-{service}-{length_s}"), "--trial-seconds", "6",
+        lab = self.lab(*quick_session(self.folder / f"config-{service}-{length_s}"), "--trial-seconds", "20",
                        out=self.folder / f"run-{service}-{length_s}")
         lab.wait_for_tick(1, 2, TRIAL_LIMIT_S)
         pid = lab.pid_of(service)
@@ -42,19 +42,18 @@ class MissesTest(LabTestCase):
         recording, stopped_s = self.session_with_a_stop(service, length_s)
         out, result = misses(recording)
         self.assertEqual(out.returncode, 0, out.stderr)
-        found = max((miss for miss in result["misses"] if miss["process"] == service), key=lambda miss: miss["late_s"],
+        found = max((miss for miss in result if miss["process"] == service), key=lambda miss: miss["gap_ms"],
                     default=None)
         self.assertIsNotNone(found, out.stdout)
-        print(out.stdout)
         return found, stopped_s
 
     def test_a_process_that_stood_still_is_named_with_the_time_and_the_force(self):
         found, stopped_s = self.the_stop("sensing", 0.08)
-        self.assertGreaterEqual(found["late_s"], stopped_s - HALF_TICK_S)
+        self.assertGreaterEqual(1e-3 * found["gap_ms"], stopped_s - TOLERANCE_S)
         self.assertIn("cancellation", found["waited"])
         self.assertEqual(found["trial"], 1)
-        self.assertGreater(found["force_before_n"], 0.1)
-        self.assertGreater(found["zero_s"], 0.0)
+        self.assertGreater(found["force_zero_s"], 0.0)
+        self.assertLess(found["trial_s"], found["from_s"])
 
     def test_what_is_no_session_is_refused(self):
         for name, content in (("empty.mcap", b""), ("text.mcap", b"not a recording\n")):
@@ -71,10 +70,11 @@ class MissesTest(LabTestCase):
                 (service, length_s) for service in ("sensing", "cancellation", "motion", "rig", "display")
                 for length_s in (0.03, 0.14)):
             found, stopped_s = self.the_stop(service, length_s)
-            error_s = found["late_s"] - stopped_s
+            error_s = 1e-3 * found["gap_ms"] - stopped_s
             print(f"{number} {service}: stood still for {1e3 * stopped_s:.1f} ms, found {1e3 * found['late_s']:.1f} ms")
             worst_s = max(worst_s, abs(error_s))
         print(f"largest difference {1e3 * worst_s:.2f} ms")
+        self.assertLess(worst_s, TOLERANCE_S)
 
 
 if __name__ == "__main__":

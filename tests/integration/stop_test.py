@@ -131,7 +131,7 @@ class StopTest(LabTestCase):
             connection.close()
 
     def test_without_a_session_the_verb_fails_with_one_line(self):
-        stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab_process.next_domain()), "--wait", "0.5"],
+        stopped = subprocess.run([str(STILLHAND), "stop", "--domain", str(lab_process.next_domain()), "--wait", "2"],
                                  capture_output=True, text=True, timeout=30, check=False)
         self.assertEqual(stopped.returncode, 1)
         self.assertRegex(stopped.stdout, "^domain [0-9]+ rig 1: no rig answers\n$")

@@ -32,13 +32,12 @@ void check_conditions(const Design& design) {
     if (!condition || session::row_of(*condition).where == 0 || word != name_of(*condition)) {
       throw ConfigError("conditions", "\"" + word + "\"", live_conditions());
     }
-    const unsigned where = session::row_of(*condition).where;
-    if ((where & session::kExperimentConditions) == 0) {
+    if ((session::row_of(*condition).where & session::kExperimentConditions) == 0) {
       throw ConfigError("conditions", word,
                         fmt::format("{}: {} {}", live_conditions(), word,
-                                    where == session::kStudyConditions
-                                        ? "runs in one process alone (`stillhand study`)"
-                                        : "needs two arms of each participant"));
+                                    *condition == session::Condition::kScheduled
+                                        ? "needs two arms of each participant"
+                                        : "runs in one process alone (`stillhand study`)"));
     }
     if (std::ranges::count(design.conditions, word) > 1) {
       throw ConfigError("conditions", word + " twice", "each condition once");

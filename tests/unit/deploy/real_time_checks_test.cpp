@@ -68,6 +68,8 @@ TEST(RealTimeCheckTest, EachIsReadOfThisMachineOnce) {
   std::vector<std::string> names;
   for (const Finding& each : check_real_time_kernel()) {
     names.push_back(each.check);
+    // What a machine does not show may have nothing to mend.
+    if (each.state == State::kNotChecked) continue;
     EXPECT_EQ(each.mend.empty(), each.state == State::kGood) << each.check << ": " << each.what;
   }
   EXPECT_THAT(names, testing::ElementsAre("preemption", "throttling", "idle-states", "interrupts",

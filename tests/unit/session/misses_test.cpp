@@ -88,7 +88,7 @@ TEST(MissesTest, WhoStandsIsNamedWithTimeLengthForceAndWhoWaited) {
   EXPECT_EQ(miss.process, "sensing");
   EXPECT_EQ(miss.topic, "stillhand/sensed");
   EXPECT_EQ(miss.trial, 3);
-  EXPECT_NEAR(miss.time_s, 1.5, 1e-3);
+  EXPECT_NEAR(miss.trial_s, 1.5, 1e-3);
   EXPECT_NEAR(miss.late_s, 0.073, 0.5e-3 + 1e-12);  // Eq. MI-1: half a tick
   EXPECT_THAT(miss.waited, ElementsAre("motion", "cancellation", "display", "human_operator"));
   EXPECT_NEAR(miss.force_before_n, 5.0 / std::sqrt(2.0), 0.05);
@@ -146,6 +146,48 @@ TEST(MissesTest, OtherClocksAreConverted) {
   const auto sut = misses_in(recording);
   ASSERT_THAT(sut, SizeIs(1));
   EXPECT_EQ(sut.front().process, "sensing");
+}
+
+// The recorder stood, or the network to it was slow: the rig counts without a jump.
+TEST(MissesTest, WhatTheRecordingLacksIsNobodysSilence) {
+  const auto cut = [](auto& stream) {
+    std::erase_if(stream,
+                  [](const auto& each) { return each.tick() > 2000 && each.tick() < 2060; });
+  };
+  SessionRecording all = session({});
+  cut(all.raw_samples);
+  cut(all.sensed);
+  cut(all.platform_commands);
+  cut(all.motor_commands);
+  cut(all.tracking_samples);
+  cut(all.operator_forces);
+  cut(all.rig_truths);
+  EXPECT_THAT(misses_in(all), IsEmpty());
+  SessionRecording one = session({});
+  cut(one.motor_commands);  // which the rig used
+  EXPECT_THAT(misses_in(one), IsEmpty());
+  cut(one.sensed);
+  EXPECT_THAT(misses_in(one), IsEmpty());
+}
+
+TEST(MissesTest, AForceThatIsNotThePredictionsIsNotJudged) {
+  SessionRecording recording = session({{"sensing", 2000, 2073}});
+  for (auto& command : recording.motor_commands) command.predicted_force_n(0.0);
+  const auto sut = misses_in(recording);
+  ASSERT_THAT(sut, SizeIs(1));
+  EXPECT_GT(sut.front().force_before_n, 1.0);
+  EXPECT_EQ(sut.front().back_s, 0.0);
+}
+
+TEST(MissesTest, TheForceIsJudgedToTheEndOfTheTrial) {
+  SessionRecording recording = session({{"sensing", 4400, 4473}});
+  for (auto& truth : recording.rig_truths) {
+    if (truth.tick() > 4400 && truth.tick() < 4800) truth.motor_force_n(0.0);
+  }
+  const auto sut = misses_in(recording);
+  ASSERT_THAT(sut, SizeIs(1));
+  EXPECT_NEAR(sut.front().zero_s, 0.1, 2e-3);  // the trial ends at tick 4500
+  EXPECT_TRUE(std::isnan(sut.front().back_s));
 }
 
 TEST(MissesTest, AnEmptyRecordingHasNone) { EXPECT_THAT(misses_in({}), IsEmpty()); }
