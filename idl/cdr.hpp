@@ -57,15 +57,21 @@ inline bool has_earlier_form(std::string_view type) noexcept {
          type == "stillhand_msgs::AugmentedModel" || type == "stillhand_msgs::Event";
 }
 
-/// A message as it is sent and recorded: CDR with the 4-byte encapsulation header.
+/// A message as it is sent and recorded: CDR with the 4-byte encapsulation header.  Padding is
+/// zero, so equal messages are equal bytes.
 template <typename Message>
 std::vector<std::byte> to_cdr(const Message& message) {
-  eprosima::fastcdr::FastBuffer buffer;
-  fast_cdr::PlainCdr cdr(buffer);
-  cdr.serialize_encapsulation();
-  fast_cdr::write(cdr, message);
-  const auto* begin = reinterpret_cast<const std::byte*>(buffer.getBuffer());
-  return {begin, begin + cdr.length()};
+  const auto written = [&message](eprosima::fastcdr::FastBuffer& buffer) {
+    fast_cdr::PlainCdr cdr(buffer);
+    cdr.serialize_encapsulation();
+    fast_cdr::write(cdr, message);
+    return cdr.length();
+  };
+  eprosima::fastcdr::FastBuffer grown;
+  std::vector<std::byte> bytes(written(grown));  // Fast CDR leaves padding as it was
+  eprosima::fastcdr::FastBuffer exact(reinterpret_cast<char*>(bytes.data()), bytes.size());
+  written(exact);
+  return bytes;
 }
 
 /// Decodes one message from its recorded bytes: CDR with the 4-byte encapsulation header.  A
