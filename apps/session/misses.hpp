@@ -42,7 +42,7 @@ struct Miss {
 /// @param least_s  [s] a shorter gap is no miss; at least a tick
 std::vector<Miss> misses_in(const SessionRecording& session, double least_s = 0.005);
 
-/// "sensing was late by 73 ms, force 0 for 0.12 s, whole again after 1.1 s"
+/// "sensing was late by 77 ms, force 0 for 0.03 s, whole again after 0.1 s"
 std::string what_happened(const Miss& miss);
 
 }  // namespace stillhand::session
