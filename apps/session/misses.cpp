@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "apps/session/clock_line.hpp"
 #include "idl/topics.hpp"
@@ -42,7 +43,9 @@ std::vector<Sample> samples_of(const SessionRecording& session, std::string_view
   for (const Message& message : messages) {
     samples.push_back({clock.on_experiments_clock(message.stamp_ns()), tick(message)});
   }
-  std::ranges::sort(samples, {}, &Sample::at_ns);
+  // Who was late answers many ticks at one moment.
+  std::ranges::sort(samples, {},
+                    [](const Sample& each) { return std::pair(each.at_ns, each.tick); });
   return samples;
 }
 

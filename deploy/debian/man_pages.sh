@@ -11,15 +11,17 @@ built=$(dirname "$programs")
 files=$(dirname "$0")/man_page_files
 
 page() {  # page PROGRAM [VERB...]
-  local program=$1 name help title
+  local program=$1 name help title option=--help
   shift
   name=$(IFS=-; echo "$program${*:+-$*}")
   help=$("$programs/$program" "$@" --help)
+  # Where it shows the options that people use first, it says so.
+  if grep -q -e --help-all <<<"$help"; then option=--help-all; fi
   # The first sentence, or the text before the colon.
   title=$(sed -e '/^Usage:/,$ d' -e "s/^$program: //" <<<"$help" | tr '\n' ' ' | sed 's/[.:?;] .*//')
   # A page writes "-" as "\-". help2man does not support verbs: it uses the program's name as the page's name.
   help2man --no-info --section=1 --version-string="$version" --name="$title" --include="$files" \
-           --help-option="$* --help" "$programs/$program" |
+           --help-option="$* $option" "$programs/$program" |
     sed -e "s|@prefix@|$prefix|" -e "s|${built//-/\\\\-}/|${prefix//-/\\\\-}/|g" -e "1,/^\.SH SYNOPSIS/ {
       s/^\.TH [^ ]*/.TH ${name^^}/
       s/^$program /${name//-/\\\\-} /

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-# Completes verbs, options and the choices of an option from `stillhand ... --help-all`, and file names elsewhere.
+# Completes verbs, options and the choices of an option from `--help` and `--help-all`, and file names elsewhere.
 _stillhand() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
   local next help words choices=
   local -a path=()
   for next in "${COMP_WORDS[@]:1:COMP_CWORD-1}" ""; do
-    help=$("${COMP_WORDS[0]}" "${path[@]}" --help-all 2>/dev/null) || return
+    help=$("${COMP_WORDS[0]}" "${path[@]}" --help 2>/dev/null) || return
     words=$(sed -n '/^Subcommands:/,$ s/^  \([a-z-]\{1,\}\) .*/\1/p' <<<"$help")
     [[ -n $next && " ${words//$'\n'/ } " == *" $next "* ]] || break
     path+=("$next")
   done
+  help=$("${COMP_WORDS[0]}" "${path[@]}" --help-all 2>/dev/null)
   [[ $before == --* ]] && choices=$(sed -n "s/^  $before [A-Z]*:{\([^}]*\)}.*/\1/p" <<<"$help")
   if [[ -n $choices ]]; then
     words=${choices//,/ }
