@@ -172,11 +172,16 @@ const stillhand_msgs::MotorCommand* Shell::take_motor(const Trial& trial, Tick t
   return motor;
 }
 
-const char* Shell::why_opened(const Trial& trial) const noexcept {
+const char* Shell::why_opened(const Trial& trial, Tick tick) noexcept {
   if (interlock_.stopped()) return "emergency stop";
   if (const char* unsound = plant_.unsound()) return unsound;
   if (drive_ended(trial)) return "growing oscillation of the stick";
-  if (permission_.motion_lost(trial)) return "no commands of motion";
+  if (permission_.motion_lost(trial)) {
+    // Both answer the samples of sensing, whose own life sign is given longer.
+    const bool both = motor_.load().tick() < tick - runtime::PlatformPermission::kMostMissing_ticks;
+    return both ? "motion and cancellation are silent: does sensing stand?"
+                : "no commands of motion";
+  }
   return service_.bus().why_not_alive();
 }
 
@@ -199,7 +204,7 @@ void Shell::report_interlock(const Trial& trial, Tick tick, double motor_force_n
                              interlock_.stopped(), tick, motor_force_n);
   if (notice.opened) {
     service_.note_event(
-        stillhand_msgs::EVENT_INTERLOCK_OPENED, why_opened(trial), 0.0,
+        stillhand_msgs::EVENT_INTERLOCK_OPENED, why_opened(trial, tick), 0.0,
         interlock_.stopped() ? stillhand_msgs::CODE_EMERGENCY_STOP : stillhand_msgs::CODE_NONE);
   }
   if (notice.force_zero) {

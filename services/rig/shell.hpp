@@ -49,7 +49,7 @@ class Shell {
   [[nodiscard]] bool sound(const Trial& trial) const noexcept {
     return service_.bus().peers_alive() && plant_.unsound() == nullptr && !drive_ended(trial);
   }
-  [[nodiscard]] const char* why_opened(const Trial& trial) const noexcept;
+  [[nodiscard]] const char* why_opened(const Trial& trial, Tick tick) noexcept;
   /// The motor's part of the input, as it is now: newest command and interlock.
   const stillhand_msgs::MotorCommand* take_motor(const Trial& trial, Tick tick, RigInput& input);
   /// A vehicle ended this trial's drive.
