@@ -26,15 +26,15 @@ constexpr std::int32_t kUnknownDepth = 100;
 
 }  // namespace
 
-WriterQos discovered_qos(const edds::WriterQos& told) {
+WriterQos discovered_qos(const edds::WriterQos& announced) {
   WriterQos qos;
-  qos.reliable = told.m_reliability.kind == edds::RELIABLE_RELIABILITY_QOS;
-  qos.durability = static_cast<Durability>(told.m_durability.kind);
-  qos.liveliness = static_cast<Liveliness>(told.m_liveliness.kind);
-  qos.exclusive = told.m_ownership.kind == edds::EXCLUSIVE_OWNERSHIP_QOS;
-  qos.deadline_ns = ns_of(told.m_deadline.period);
-  qos.lifespan_ns = ns_of(told.m_lifespan.duration);
-  qos.lease_ns = ns_of(told.m_liveliness.lease_duration);
+  qos.reliable = announced.m_reliability.kind == edds::RELIABLE_RELIABILITY_QOS;
+  qos.durability = static_cast<Durability>(announced.m_durability.kind);
+  qos.liveliness = static_cast<Liveliness>(announced.m_liveliness.kind);
+  qos.exclusive = announced.m_ownership.kind == edds::EXCLUSIVE_OWNERSHIP_QOS;
+  qos.deadline_ns = ns_of(announced.m_deadline.period);
+  qos.lifespan_ns = ns_of(announced.m_lifespan.duration);
+  qos.lease_ns = ns_of(announced.m_liveliness.lease_duration);
   return qos;
 }
 

@@ -13,7 +13,7 @@
 namespace stillhand::runtime {
 
 /// The QoS of a writer, as announced by discovery.
-WriterQos discovered_qos(const edds::WriterQos& told);
+WriterQos discovered_qos(const edds::WriterQos& announced);
 
 /// A writer that offers the same; resource limits as for KEEP_LAST of its depth.
 edds::DataWriterQos offered_qos(const WriterQos& wanted);
