@@ -5,11 +5,13 @@
 The sources of this tree, as committed, are cloned into the root. Everything else comes from Debian, so that a name
 missing in deploy/packages.txt shows. A root has its own processes, /dev/shm and /tmp: what a command leaves is seen.
 
-Usage: fresh_machine_test.py [--short] [--release NAME]...
+Usage: fresh_machine_test.py [--short] [--release NAME]... [--keep FOLDER]
   --short    configure, build, the unit tests and one session, in place of both commands as the README states them
+  --keep     leaves the roots in this folder, to look at what the commands made
 Needs root, debootstrap and a Debian mirror; it is skipped (exit status 77) without one of them.
 """
 import argparse
+import contextlib
 import json
 import os
 import pathlib
@@ -21,6 +23,7 @@ import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 RELEASES = ("trixie", "bookworm")
+CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 SESSION = ("build/bin/stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out demo")
 SHORT = ("deploy/setup.sh", "deploy/build.sh tests", "ctest --test-dir build -L unit -j 2 --output-on-failure", SESSION)
 BOTH = ("deploy/demo.sh", "tests/run.sh", "cpack -G DEB --config build/CPackConfig.cmake")
@@ -65,6 +68,10 @@ def make_root(release, root):
     if made.returncode != 0:
         raise AssertionError(f"debootstrap {release}\n{(made.stdout + made.stderr)[-2000:]}")
     subprocess.run(["git", "clone", "--quiet", "--no-hardlinks", SOURCE, f"{root}/stillhand"], check=True)
+    # npm trusts there what this machine trusts: a network may have a certificate of its own.
+    if pathlib.Path(CERTIFICATES).exists():
+        shutil.copy(CERTIFICATES, f"{root}/root/certificates.crt")
+        pathlib.Path(root, "root/.npmrc").write_text("cafile=/root/certificates.crt\n")
 
 
 def check_results(root, short):
@@ -82,14 +89,20 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--release", action="append", choices=RELEASES)
+    parser.add_argument("--keep", metavar="FOLDER", type=pathlib.Path)
     options = parser.parse_args()
     if os.geteuid() != 0:
         skip("not root: no root of another release")
     if shutil.which("debootstrap") is None:
         skip("no debootstrap")
     for release in options.release or RELEASES:
-        with tempfile.TemporaryDirectory(prefix=f"stillhand-{release}-") as folder:
-            root = pathlib.Path(folder)
+        with contextlib.ExitStack() as until_done:
+            if options.keep:
+                root = options.keep / release
+                root.mkdir(parents=True)
+            else:
+                root = pathlib.Path(until_done.enter_context(
+                    tempfile.TemporaryDirectory(prefix=f"stillhand-{release}-")))
             make_root(release, root)
             for command in SHORT if options.short else BOTH:
                 print(f"{release}: {command}: {inside(root, command):.0f} s", flush=True)
