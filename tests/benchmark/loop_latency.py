@@ -3,7 +3,7 @@
 """How fast the control loop is, next to what the machine and two middlewares allow, in one run.
 
     tests/benchmark/loop_latency.py [--seconds 600] [--round 20] [--only lab,bare] [--lab NAME=PROGRAMS[,CONFIG]]...
-                                    [--awake]
+                                    [--bare NAME=LOOP_FORWARD]... [--awake]
 
 The contenders take turns, a round of each and again, so that what else the machine does hits all alike:
 
@@ -12,7 +12,7 @@ The contenders take turns, a round of each and again, so that what else the mach
   ddsperf      Cyclone DDS: `ddsperf ping 1kHz` and `pong`, 256 bytes, best effort (package cyclonedds-tools)
   cyclictest   how late the kernel wakes a thread, `cyclictest -p80 -i1000` (package rt-tests)
 
---lab adds the lab of another build, so that before and after are of one run. Prints a row a round on standard error,
+--lab adds the lab of another build, --bare the plain loop of another Fast DDS, so that both are of one run. Prints a row a round on standard error,
 and at the end one table: medians over the rounds of p50, p99 and p99.9, and the worst of all, in microseconds. All
 contenders run with SCHED_FIFO where the system grants it. With --awake no processor sleeps meanwhile; cyclictest
 always asks for that itself.
@@ -77,8 +77,8 @@ def lab(programs, config, seconds, domain):
     return rows
 
 
-def bare(seconds, domain):
-    text = subprocess.check_output([BUILD / "tests" / "loop_forward", str(seconds), str(domain)], text=True)
+def bare(program, seconds, domain):
+    text = subprocess.check_output([program, str(seconds), str(domain)], text=True)
     found = json.loads(text)
     return {row: found[row] for row in ("command", "received", "used")}
 
@@ -148,12 +148,13 @@ def print_table(results):
 def print_ratios(results):
     """Ratios of the same round, then their median: what both had to bear cancels out."""
     for name in results:
-        if not name.startswith("lab") or "bare" not in results:
+        peer_name = name.replace("lab", "bare") if name.replace("lab", "bare") in results else "bare"
+        if not name.startswith("lab") or peer_name not in results:
             continue
-        pairs = [(mine, peer) for mine, peer in zip(results[name], results["bare"]) if mine and peer]
+        pairs = [(mine, peer) for mine, peer in zip(results[name], results[peer_name]) if mine and peer]
         for row in ("command", "used") if pairs else ():
             ratios = {key: [mine[row][key] / peer[row][key] for mine, peer in pairs] for key in QUANTILES[:3]}
-            print(f"{name} / bare, {row}: " + ", ".join(f"{key} {statistics.median(values):.2f}"
+            print(f"{name} / {peer_name}, {row}: " + ", ".join(f"{key} {statistics.median(values):.2f}"
                                                       for key, values in ratios.items()))
 
 
@@ -177,6 +178,7 @@ def main():
     words.add_argument("--only", default="lab,bare,ddsperf,cyclictest")
     words.add_argument("--awake", action="store_true", help="keep processors awake (/dev/cpu_dma_latency)")
     words.add_argument("--lab", action="append", default=[], metavar="NAME=PROGRAMS[,CONFIG]")
+    words.add_argument("--bare", action="append", default=[], metavar="NAME=LOOP_FORWARD")
     options = words.parse_args()
     first = real_time_words()
     domain = next_domain()
@@ -191,7 +193,10 @@ def main():
         calls[f"lab {name}"] = lambda programs=programs, own=own: lab(
             pathlib.Path(programs or BUILD / "bin"), pathlib.Path(own or config), options.round, domain)
     if "bare" in chosen:
-        calls["bare"] = lambda: bare(options.round, domain)
+        calls["bare"] = lambda: bare(BUILD / "tests" / "loop_forward", options.round, domain)
+    for each in options.bare:
+        name, _, program = each.partition("=")
+        calls[f"bare {name}"] = lambda program=program: bare(program, options.round, domain)
     if "ddsperf" in chosen and shutil.which("ddsperf"):
         calls["ddsperf"] = lambda: ddsperf(options.round, domain, first)
     if "cyclictest" in chosen and shutil.which("cyclictest"):
