@@ -5,6 +5,7 @@
 #include <fastdds/dds/log/Log.hpp>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <set>
 
@@ -15,6 +16,41 @@
 #include "services/runtime/process/domain.hpp"
 
 namespace stillhand::runtime {
+namespace {
+
+// What Fast DDS logs meanwhile, in place of its lines on standard error.
+class ParserMessages {
+ public:
+  ParserMessages() {
+    edds::Log::ClearConsumers();
+    edds::Log::RegisterConsumer(std::make_unique<Collector>(text_));
+  }
+  ~ParserMessages() { edds::Log::Reset(); }
+  ParserMessages(const ParserMessages&) = delete;
+  ParserMessages& operator=(const ParserMessages&) = delete;
+
+  /// The first of them; empty without one.
+  std::string first() {
+    edds::Log::Flush();
+    return text_;
+  }
+
+ private:
+  class Collector : public edds::LogConsumer {
+   public:
+    explicit Collector(std::string& text) : text_(text) {}
+    void Consume(const edds::Log::Entry& entry) override {
+      if (text_.empty()) text_ = entry.message;
+    }
+
+   private:
+    std::string& text_;
+  };
+
+  std::string text_;
+};
+
+}  // namespace
 
 // The factory keeps profiles for the whole process and refuses a file it has already read.
 void load_profiles(const std::filesystem::path& file) {
@@ -28,9 +64,14 @@ void load_profiles(const std::filesystem::path& file) {
   if (loaded.count(path) != 0) return;
   std::ifstream in(path);
   const std::string text = readable_profiles({std::istreambuf_iterator(in), {}});
-  if (!ok(edds::DomainParticipantFactory::get_instance()->load_XML_profiles_string(text.data(),
-                                                                                   text.size()))) {
-    throw ConfigError("QoS profiles", path + ", which Fast DDS cannot read",
+  ParserMessages messages;
+  const bool read = ok(edds::DomainParticipantFactory::get_instance()->load_XML_profiles_string(
+      text.data(), text.size()));
+  // It may also log what it cannot read and go on without it.
+  const std::string why = messages.first();
+  if (!read || !why.empty()) {
+    throw ConfigError("QoS profiles",
+                      path + ", which Fast DDS cannot read" + (why.empty() ? "" : ": " + why),
                       "an XML file such as qos/profiles.xml");
   }
   loaded.insert(path);
