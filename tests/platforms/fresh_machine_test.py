@@ -27,16 +27,21 @@ CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 SESSION = ("build/bin/stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out demo")
 SHORT = ("deploy/setup.sh", "deploy/build.sh tests", "ctest --test-dir build -L unit -j 2 --output-on-failure", SESSION)
 BOTH = ("deploy/demo.sh", "tests/run.sh", "cpack -G DEB --config build/CPackConfig.cmake")
-# $1 root, $2 command. The command's processes end with it: it is the first of its own namespace.
+# $1 root, $2 command. The command's processes end with it: it is the first of its own namespace. The root is the
+# namespace's own, no chroot, so that a program may enter the namespace by its name in /proc.
 INSIDE = r"""
 set -e
 mount --make-rprivate /
+mount --bind "$1" "$1"
 mount -t proc proc "$1/proc"
 mount --rbind /sys "$1/sys"
 mount --rbind /dev "$1/dev"
 mount -t tmpfs shm "$1/dev/shm"
 cp -L /etc/resolv.conf "$1/etc/resolv.conf"
-exec chroot "$1" env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c '
+cd "$1"
+pivot_root . mnt
+exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c '
+  umount --lazy /mnt
   cd /stillhand && sh -c "$0"; status=$?
   left=$(ls -A /dev/shm; for each in /proc/[0-9]*; do
     [ "$each" = "/proc/$$" ] || readlink "$each/exe" | grep -s stillhand; done)
