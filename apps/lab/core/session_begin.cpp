@@ -29,8 +29,12 @@ std::string Matching::describe(const Seen& seen) const {
   for (const std::string& peer : seen.missing_peers) {
     missing.push_back("experiment waits for " + peer);
   }
-  return fmt::format("not every process was ready within {} s: {}", static_cast<int>(limit_s_),
-                     fmt::join(missing, ", "));
+  // A process that is not on the bus keeps many others waiting: the first causes are enough.
+  constexpr std::size_t kMost = 10;
+  const std::size_t more = missing.size() > kMost ? missing.size() - kMost : 0;
+  missing.resize(missing.size() - more);
+  return fmt::format("not every process was ready within {} s: {}{}", static_cast<int>(limit_s_),
+                     fmt::join(missing, ", "), more > 0 ? fmt::format(", and {} more", more) : "");
 }
 
 Actions Matching::step(Seen& seen, std::int64_t now_ns) {

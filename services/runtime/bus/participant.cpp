@@ -13,6 +13,7 @@
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/bus/replay_mark.hpp"
 #include "services/runtime/bus/security.hpp"
+#include "services/runtime/bus/surroundings.hpp"
 #include "services/runtime/process/domain.hpp"
 
 namespace stillhand::runtime {
@@ -99,6 +100,7 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   if (!ok(factory->get_participant_qos_from_profile("stillhand_participant", qos))) {
     throw missing_profile(profiles, "participant", "stillhand_participant");
   }
+  check_surroundings(qos, profiles);
   qos.name(name);
   if (marked) qos.user_data().data_vec(replay_mark());
   if (!identity.none()) {
@@ -109,8 +111,7 @@ edds::DomainParticipant* create_participant(const std::filesystem::path& profile
   auto* participant = factory->create_participant(domain, qos, listener, edds::StatusMask::none());
   if (participant == nullptr) {
     throw BusError("Fast DDS created no participant on domain " + std::to_string(domain) +
-                   ": are its UDP ports free, and does this machine have the addresses in " +
-                   profiles.string() + "?");
+                   ": are its UDP ports free?");
   }
   if (!identity.none() && !is_secured(*participant, identity)) {
     factory->delete_participant(participant);

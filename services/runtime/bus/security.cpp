@@ -2,7 +2,6 @@
 #include "services/runtime/bus/security.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <memory>
@@ -58,14 +57,9 @@ void discover_in_one_thread(edds::DomainParticipantQos& qos) {
 }  // namespace
 
 void secure(edds::DomainParticipantQos& qos, const Identity& identity) {
-  const bool server_in_profile = qos.wire_protocol().builtin.discovery_config.discoveryProtocol !=
-                                 ertps::DiscoveryProtocol::SIMPLE;
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing here sets a variable
-  if (server_in_profile || std::getenv("ROS_DISCOVERY_SERVER") != nullptr) {
-    throw ConfigError("security",
-                      std::string("a discovery server in ") +
-                          (server_in_profile ? "the participant profile"
-                                             : "the environment (ROS_DISCOVERY_SERVER)"),
+  if (qos.wire_protocol().builtin.discovery_config.discoveryProtocol !=
+      ertps::DiscoveryProtocol::SIMPLE) {
+    throw ConfigError("security", "a discovery server in the participant profile",
                       "initial peers: a discovery server would admit strangers");
   }
   discover_in_one_thread(qos);

@@ -44,6 +44,16 @@ TEST_F(MatchingTest, NamesTheProcessesThatAreMissingWhenTheTimeIsOver) {
             "experiment waits for recorder (stillhand/event)");
 }
 
+TEST_F(MatchingTest, OfManyThatAreMissingTheFirstAreNamedAndTheRestCounted) {
+  seen_.processes.clear();
+  seen_.missing_peers.assign(30, "rig (stillhand/event)");
+  step(sut_);
+  step(sut_, 20 * kSecond + 1);
+  EXPECT_THAT(sut_.failure(), testing::HasSubstr("rig is not on the bus"));
+  EXPECT_THAT(sut_.failure(), testing::ContainsRegex(", and 2[0-9] more$"));
+  EXPECT_LT(sut_.failure().size(), 500U);
+}
+
 TEST_F(MatchingTest, ASecondLabOnTheSameBusIsAFailureEvenWhenEverybodyMatched) {
   seen_.duplicate_peers = {"motion", "rig"};
   step(sut_);
