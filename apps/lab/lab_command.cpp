@@ -185,7 +185,9 @@ void add_motion_options(CLI::App& lab, LabOptions& options, Words& words) {
 
 // What the session writes and shows.
 void add_output_options(CLI::App& lab, LabOptions& options) {
-  lab.add_option("--out", options.out, "folder for the recording, the results and the logs")
+  lab.add_option("--out", options.out,
+                 "folder for the recording, the results and the logs; an earlier session stays in "
+                 "OUT/earlier-1")
       ->required();
   lab.add_flag("--headless", options.headless, "open no window");
   lab.add_flag("--video", options.video, "write the tracking screen to DIR/screen.avi");

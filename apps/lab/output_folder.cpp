@@ -98,7 +98,7 @@ OutputFolder::OutputFolder(const std::filesystem::path& path,
 }
 
 OutputFolder::~OutputFolder() {
-  forget_earlier();
+  keep_earlier();
   close(descriptor_);
 }
 
@@ -173,24 +173,28 @@ void OutputFolder::bring_back() const {
   const auto exists = [&error](const std::filesystem::path& file) {
     return std::filesystem::exists(file, error);
   };
-  if (std::ranges::any_of(session_files(path_), exists)) return forget_earlier();
+  if (std::ranges::any_of(session_files(path_), exists)) return keep_earlier();
   for (const std::filesystem::path& file : session_files(earlier_)) {
     const std::filesystem::path to = path_ / file.lexically_relative(earlier_);
     if (!exists(file)) continue;
     std::filesystem::create_directories(to.parent_path(), error);
     std::filesystem::rename(file, to, error);
   }
-  forget_earlier();
+  for (const char* folder : {"logs/config", "logs", ""}) {
+    std::filesystem::remove(earlier_ / folder, error);
+  }
 }
 
-void OutputFolder::forget_earlier() const {
+// A person's data: they stay, whatever is written next to them.
+void OutputFolder::keep_earlier() const {
   std::error_code error;
-  for (const std::filesystem::path& file : session_files(earlier_)) {
-    std::filesystem::remove(file, error);
+  if (!std::filesystem::exists(earlier_, error)) return;
+  for (int number = 1; !error; ++number) {
+    const std::filesystem::path to = path_ / ("earlier-" + std::to_string(number));
+    if (std::filesystem::exists(std::filesystem::symlink_status(to, error))) continue;
+    std::filesystem::rename(earlier_, to, error);
+    return;
   }
-  std::filesystem::remove(earlier_ / "logs" / "config", error);
-  std::filesystem::remove(earlier_ / "logs", error);
-  std::filesystem::remove(earlier_, error);
 }
 
 void OutputFolder::clear() const {

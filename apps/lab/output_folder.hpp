@@ -8,7 +8,8 @@ namespace stillhand::lab {
 
 /// The folder of a session's results: it is made if need be, proved writable, locked against other
 /// labs, and cleared of the files of an earlier session.  These wait in a hidden folder inside: a
-/// session that never began gives them back.  It removes only files that a session writes.
+/// session that never began gives them back; after any other they stay, in `earlier-1`,
+/// `earlier-2` and so on.
 class OutputFolder {
  public:
   /// @param inputs  files that the session reads; empty ones don't count
@@ -31,7 +32,7 @@ class OutputFolder {
   void clear() const;
   void set_aside() const;
   void bring_back() const;
-  void forget_earlier() const;
+  void keep_earlier() const;
 
   std::filesystem::path path_;
   std::filesystem::path earlier_;  ///< where an earlier session's files wait

@@ -58,7 +58,7 @@ TEST_F(OutputFolderTest, IsMadeAndGoesAgainWithASessionThatNeverWas) {
   EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
-TEST_F(OutputFolderTest, AnEarlierSessionsResultsAreTakenAwayAndNothingElse) {
+TEST_F(OutputFolderTest, AnEarlierSessionsResultsAreMovedAndKeptAndNothingElse) {
   for (const char* name : {"session.mcap", "summary.json", "model.json", "screen.avi", "notes.txt",
                            "logs/rig.log", "logs/mine.log"}) {
     write(name);
@@ -71,7 +71,19 @@ TEST_F(OutputFolderTest, AnEarlierSessionsResultsAreTakenAwayAndNothingElse) {
     EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
     write("session.mcap");
   }
-  EXPECT_THAT(content(), ElementsAre("logs", "logs/mine.log", "notes.txt", "session.mcap"));
+  EXPECT_THAT(content(), ElementsAre("earlier-1", "earlier-1/logs", "earlier-1/logs/rig.log",
+                                     "earlier-1/model.json", "earlier-1/screen.avi",
+                                     "earlier-1/session.mcap", "earlier-1/summary.json", "logs",
+                                     "logs/mine.log", "notes.txt", "session.mcap"));
+}
+
+TEST_F(OutputFolderTest, EachEarlierSessionIsKeptInAFolderOfItsOwn) {
+  for (int i = 0; i < 3; ++i) {
+    const OutputFolder sut(folder, {});
+    write("session.mcap");
+  }
+  EXPECT_THAT(content(), ElementsAre("earlier-1", "earlier-1/session.mcap", "earlier-2",
+                                     "earlier-2/session.mcap", "logs", "session.mcap"));
 }
 
 TEST_F(OutputFolderTest, ASessionThatNeverBeganGivesTheEarlierOnesFilesBack) {
@@ -142,7 +154,7 @@ TEST_F(OutputFolderTest, ALinkAmongTheResultsIsRemovedAndItsTargetIsKept) {
   EXPECT_EQ(text, "x");
 }
 
-TEST_F(OutputFolderTest, TheFilesOfASessionOverSeveralMachinesAreTakenAway) {
+TEST_F(OutputFolderTest, TheFilesOfASessionOverSeveralMachinesAreMoved) {
   for (const char* name : {"logs/profiles.xml", "logs/host_rig-pc.log", "logs/host_notes.txt",
                            "logs/ghost_rig-pc.log", "verdict.json", "report.html"}) {
     write(name);
@@ -150,7 +162,11 @@ TEST_F(OutputFolderTest, TheFilesOfASessionOverSeveralMachinesAreTakenAway) {
   {
     const OutputFolder sut(folder, {});
   }
-  EXPECT_THAT(content(), ElementsAre("logs", "logs/ghost_rig-pc.log", "logs/host_notes.txt"));
+  EXPECT_THAT(
+      content(),
+      ElementsAre("earlier-1", "earlier-1/logs", "earlier-1/logs/host_rig-pc.log",
+                  "earlier-1/logs/profiles.xml", "earlier-1/report.html", "earlier-1/verdict.json",
+                  "logs", "logs/ghost_rig-pc.log", "logs/host_notes.txt"));
 }
 
 TEST_F(OutputFolderTest, AFolderThatWasThereStaysWhenTheSessionIsDiscarded) {
