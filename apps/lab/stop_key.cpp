@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <linux/input.h>
 #include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -14,6 +16,17 @@
 #include "services/runtime/process/clock.hpp"
 
 namespace stillhand::lab {
+namespace {
+
+// A device of evdev, or a pipe with its events.  A plain file ends at once, which would be a press.
+bool gives_events(int device) {
+  struct stat kind{};
+  int version = 0;
+  return fstat(device, &kind) == 0 &&
+         (S_ISFIFO(kind.st_mode) || ioctl(device, EVIOCGVERSION, &version) == 0);
+}
+
+}  // namespace
 
 bool KeyPresses::take(std::span<const std::byte> bytes) {
   rest_.insert(rest_.end(), bytes.begin(), bytes.end());
@@ -35,6 +48,11 @@ StopKey::StopKey(const std::filesystem::path& device, std::function<void()> on_p
     throw ConfigError("--stop-key",
                       device.string() + ", which cannot be opened: " + std::strerror(errno),
                       "a device such as /dev/input/event3 that this user may read");
+  }
+  if (!gives_events(device_)) {
+    close(device_);
+    throw ConfigError("--stop-key", device.string() + ", which is no input device",
+                      "a device such as /dev/input/event3");
   }
   thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/record/record.hpp"
 
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "apps/record/field_trigger.hpp"
@@ -84,10 +87,32 @@ class Run {
     tap.domain = options_.domain;
     tap.profiles = options_.profiles;
     tap.security = options_.security;
-    tap.wanted = [this](const std::string& topic) { return options_.topics.wants(topic); };
+    tap.wanted = [this](const std::string& topic) { return wants(topic); };
     tap.on_sample = [this](const runtime::FoundWriter& writer,
                            const runtime::TappedSample& sample) { take(writer, sample); };
     return tap;
+  }
+
+  // In a thread of discovery.
+  bool wants(const std::string& topic) {
+    const bool wanted = options_.topics.wants(topic);
+    const std::lock_guard lock(seen_);
+    if (wanted) {
+      some_wanted_ = true;
+    } else if (topic != topics::kRecorderStatus.name) {  // every recorder's, this one's too
+      unwanted_.insert(topic);
+    }
+    return wanted;
+  }
+
+  // A pattern with a typing error would record nothing until somebody looks.
+  void warn_of_patterns() {
+    const std::lock_guard lock(seen_);
+    if (some_wanted_ || unwanted_.empty()) return;
+    some_wanted_ = true;  // said once
+    warn(
+        fmt::format("no topic on domain {} is selected by --topics and --block; it has {}; waiting",
+                    options_.domain, fmt::join(unwanted_, ", ")));
   }
 
   // In a receiving thread.
@@ -115,6 +140,7 @@ class Run {
         remote_.tell(status());
       }
       if (now_ns - printed_ns >= kPrintInterval_ns) {
+        if (printed_ns != 0) warn_of_patterns();  // a second for discovery
         printed_ns = now_ns;
         std::uint64_t lost = 0;
         for (const auto& [topic, counts] : recorded_->tally().topics({})) lost += counts.lost;
@@ -134,6 +160,9 @@ class Run {
   runtime::Stop& stop_;
   std::vector<FieldTrigger> triggers_;
   RequiredTopics required_;
+  std::mutex seen_;
+  bool some_wanted_ = false;        ///< of the topics on the bus
+  std::set<std::string> unwanted_;  ///< the other ones
   std::optional<recording::BusRecording> recorded_;
   runtime::Tap tap_;  // its threads use the members above
   Remote remote_;

@@ -180,6 +180,11 @@ class RecordTest(Bus):
         # The commands themselves take a while; the hole is at least what lay between the answers.
         self.assertGreaterEqual(max(steps), 1000)
 
+    def test_a_pattern_that_no_topic_has_is_answered_by_those_that_are_there(self):
+        recorder = self.verb("record", "--topics", "stilhand/*", "--out", self.folder / "a.mcap")
+        wait_for("the topics of the bus", lambda: "stillhand/sensed" in recorder.said())
+        self.assertIn("no topic", recorder.said())
+
     def test_a_request_without_a_recorder_is_answered_by_an_error(self):
         answer = self.remote("record", "pause")
         self.assertEqual(answer.returncode, 1)

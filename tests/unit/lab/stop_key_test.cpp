@@ -115,5 +115,13 @@ TEST(StopKeyRefusalTest, ADeviceThatIsNotThereIsRefused) {
               testing::HasSubstr("/dev/input/none"));
 }
 
+// A plain file ends at once, and an end is a press.
+TEST(StopKeyRefusalTest, WhatIsNoInputDeviceIsRefusedAndStopsNothing) {
+  for (const char* path : {__FILE__, "/dev/null", "/tmp"}) {
+    EXPECT_THAT(support::refusal([&] { const StopKey sut(path, [] { ADD_FAILURE(); }); }),
+                testing::AllOf(testing::HasSubstr(path), testing::HasSubstr("no input device")));
+  }
+}
+
 }  // namespace
 }  // namespace stillhand::lab
