@@ -28,6 +28,8 @@ constexpr std::int64_t kArrow_ns = 5 * runtime::kNsPerSecond;
 constexpr std::int64_t kPrintInterval_ns = runtime::kNsPerSecond / 4;
 constexpr std::int64_t kStatusInterval_ns = runtime::kNsPerSecond / 10;
 constexpr std::int64_t kMatchPoll_ns = 10'000'000;
+// Peers announce themselves every 0.1 s at their start and every 0.5 s later (qos/profiles.xml).
+constexpr std::int64_t kSettled_ns = 6 * runtime::kNsPerSecond / 10;
 constexpr std::int64_t kAcknowledge_ns = 2 * runtime::kNsPerSecond;
 
 /// Every writer of the topic has a reader: discovery finds each writer separately.
@@ -50,6 +52,22 @@ void wait_for_readers(const ReplayOptions& options, const RoutePlan& plan,
       }
       runtime::sleep_until_ns(runtime::monotonic_ns() + kMatchPoll_ns);
     }
+  }
+}
+
+// Discovery takes a moment: the first messages would go out to nobody.  Waits until no writer has
+// found a further reader for as long as peers take to announce themselves.
+void wait_for_discovery(const RoutePlan& plan, const runtime::Playback& playback,
+                        const runtime::Stop& stop) {
+  std::uint64_t known = 0;
+  std::int64_t changed_ns = runtime::monotonic_ns();
+  for (std::int64_t now_ns = changed_ns; !stop.requested() && now_ns - changed_ns < kSettled_ns;
+       now_ns = runtime::monotonic_ns()) {
+    std::uint64_t found = 0;
+    for (const auto& [id, route] : plan.routes) found += playback.matched(route.writer);
+    if (found != known) changed_ns = now_ns;
+    known = found;
+    runtime::sleep_until_ns(now_ns + kMatchPoll_ns);
   }
 }
 
@@ -163,9 +181,10 @@ void play(const ReplayOptions& options, const PlaySpan& span, const Played& play
   if (remote.asked()) tell_last_status(remote, player, played);
 }
 
-void print_end(const Player& player, std::size_t channels) {
+void print_end(const Player& player, std::size_t channels, std::uint64_t unheard) {
   const recording::ReleaseErrors& errors = player.errors();
   fmt::print("{} messages of {} channels played\n", player.released(), channels);
+  if (unheard > 0) fmt::print("{} of them while their topic had no reader\n", unheard);
   fmt::print("release error: p50 {} us, p99 {} us, max {} us; drift {:+.3f} us/s\n",
              errors.percentile_us(0.50), errors.percentile_us(0.99), errors.max_us(),
              errors.drift_us_s());
@@ -194,19 +213,23 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
   Remote remote(runtime::outsider("replay", options.domain, options.profiles, true),
                 topics::kReplayCommand, topics::kReplayStatus);
   wait_for_readers(options, plan, playback, stop);
+  wait_for_discovery(plan, playback, stop);
 
   std::uint64_t refused = 0;
+  std::uint64_t unheard = 0;
   MessageSource source(file, plan.wanted, plan.latched);
   Player player(source, span.first_ns, span.last_ns, options.rate, options.loop,
                 [&](const recording::HeldMessage& message, std::span<const std::byte> bytes) {
                   const auto id = static_cast<ChannelId>(message.channel);
-                  if (!playback.write(plan.routes.at(id).writer, bytes)) ++refused;
+                  const std::size_t writer = plan.routes.at(id).writer;
+                  if (playback.matched(writer) == 0) ++unheard;
+                  if (!playback.write(writer, bytes)) ++refused;
                 });
   play(options, span, {options.file, totals.start_time_ns, totals.end_time_ns}, player, remote,
        stop);
   if (isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\033[K");
   playback.wait_for_acknowledgments(kAcknowledge_ns);
-  print_end(player, plan.routes.size());
+  print_end(player, plan.routes.size(), unheard);
 
   const std::vector<recording::Damage> damage = source.damage();
   const std::string loss =

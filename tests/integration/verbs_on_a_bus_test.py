@@ -322,6 +322,21 @@ class ReplayTest(Bus):
         ticks = [int(row["tick"]) for row in self.rows(heard, "other/three")]
         self.assertEqual(ticks, list(range(len(ticks))))
 
+    def test_readers_that_are_there_hear_the_first_message_and_nobody_is_said(self):
+        words = (self.file, "--topics", "load/3", "--rate", 100)
+        alone = self.verb("replay", *words)
+        self.assertEqual(alone.wait(timeout=LIMIT_S), 0, alone.said())
+        count = self.RATE * self.LENGTH_S // 10
+        self.assertIn(f"{count} of them while their topic had no reader", alone.said())
+        heard = self.folder / "heard.mcap"
+        recorder = self.verb("record", "--out", heard, "--topics", "load/*")
+        wait_for("the recorder", lambda: self.remote("record", "resume").returncode == 0)
+        replay = self.verb("replay", *words)
+        self.assertEqual(replay.wait(timeout=LIMIT_S), 0, replay.said())
+        self.interrupted(recorder)
+        self.assertEqual(self.messages(heard), {"load/3": count})
+        self.assertNotIn("no reader", replay.said())
+
     def test_the_loss_of_a_recording_is_reported_in_one_line(self):
         whole = self.file.read_bytes()
         middle = len(whole) // 2
