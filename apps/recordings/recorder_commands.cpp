@@ -11,6 +11,7 @@
 #include "apps/recordings/export.hpp"
 #include "apps/recordings/info.hpp"
 #include "apps/recordings/recover.hpp"
+#include "apps/recordings/ros2_bag.hpp"
 #include "apps/report/result_files.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/compression.hpp"
@@ -126,15 +127,37 @@ void add_recover(CLI::App& cli, int& status) {
 
 struct ExportWords {
   std::string recording;
+  std::filesystem::path ros2bag;
   ExportOptions options;
 };
+
+// Messages of ROS 2 in the place of tables: of a session alone, and of all its topics.
+int run_ros2_bag(const ExportWords& words, const Stopped& stopped) {
+  const ExportOptions& options = words.options;
+  if (!options.csv.empty() || !options.mat.empty() || !options.hdf5.empty() ||
+      !options.topics.empty()) {
+    throw ConfigError("--ros2bag", "it with --csv, --mat, --hdf5 or --topics", "it alone");
+  }
+  const report::ResultFiles checked({{"--ros2bag", words.ros2bag}}, {words.recording});
+  const Ros2Bag bag = write_ros2_bag(words.recording, words.ros2bag, stopped);
+  fmt::print("{:<40} {:>12}\n", "topic", "messages");
+  for (const auto& [topic, messages] : bag.topics) fmt::print("{:<40} {:>12}\n", topic, messages);
+  std::fflush(stdout);
+  if (bag.unread > 0) {
+    fmt::print(stderr, "stillhand: {} messages that do not match their type are left out\n",
+               bag.unread);
+  }
+  return 0;
+}
 
 int run_export(const ExportWords& words) {
   runtime::Stop stop;
   ExportOptions options = words.options;
   options.stopped = [&stop] { return stop.requested(); };
+  if (!words.ros2bag.empty()) return run_ros2_bag(words, options.stopped);
   if (options.csv.empty() && options.mat.empty() && options.hdf5.empty()) {
-    throw ConfigError("export", "no format", "--csv DIR, --mat FILE or --hdf5 FILE");
+    throw ConfigError("export", "no format",
+                      "--csv DIR, --mat FILE, --hdf5 FILE or --ros2bag FILE");
   }
   const Exported exported = export_recording(words.recording, options);
   fmt::print("{:<40} {:>12} {:>9}\n", "table", "rows", "columns");
@@ -165,6 +188,8 @@ void add_export(CLI::App& cli, int& status) {
   verb->add_option("--csv", words->options.csv, "folder for CSV files, one for each topic");
   verb->add_option("--mat", words->options.mat, "MATLAB file, one struct for each topic");
   verb->add_option("--hdf5", words->options.hdf5, "HDF5 file, one group for each topic");
+  verb->add_option("--ros2bag", words->ros2bag,
+                   "MCAP file with messages of ROS 2 (sensor_msgs/Imu and so on), of a session");
   verb->add_option("--topics", words->options.topics,
                    "names or patterns with * and ?, comma-separated [every topic]")
       ->delimiter(',')

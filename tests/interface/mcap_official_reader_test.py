@@ -4,6 +4,7 @@
 Installs the npm packages that their lock file names into the build tree. Skipped (status 77) without Node.js, without npm,
 or if npm cannot install the packages. Reads a live session's recording (fixture lab_run) and one file of each compression.
 """
+import csv
 import json
 import os
 import pathlib
@@ -131,6 +132,49 @@ class OfficialReaderTest(unittest.TestCase):
         self.assertEqual(ours["messages"], self.info(cut)["messages"])
         compared = node("compare_values.mjs", mended, self.export(mended))
         self.assertEqual(compared.returncode, 0, compared.stderr)
+
+    def test_a_bag_of_ros_2_has_the_values_of_the_recording(self):
+        bag = self.folder / "bag.mcap"
+        written = run(STILLHAND, "export", RECORDING, "--ros2bag", bag)
+        self.assertEqual((written.returncode, written.stderr), (0, ""))
+        read = node("read_ros2.mjs", bag)
+        self.assertEqual(read.returncode, 0, read.stderr)
+        found = json.loads(read.stdout)
+        self.assertEqual(found["profile"], "ros2")
+        self.assertEqual({topic["encoding"] for topic in found["topics"].values()}, {"ros2msg"})
+        tables = self.export(RECORDING)
+
+        def rows(name):
+            with open(tables / f"{name}.csv", newline="", encoding="utf-8") as file:
+                titles, *rest = csv.reader(file)
+                return [dict(zip((title.split(" [")[0] for title in titles), row)) for row in rest]
+
+        # REP 103: y is left there, and right here.
+        expected = {
+            "/rig_1/imu": ("stillhand_sensed", lambda m: list(m["linear_acceleration"].values()),
+                           lambda r: [r["accel_x_m_s2"], -r["accel_y_m_s2"], r["accel_z_m_s2"]]),
+            "/rig_1/hand/wrench": ("stillhand_sensed", lambda m: list(m["wrench"]["force"].values()),
+                                   lambda r: [0, -r["force_n"], 0]),
+            "/rig_1/stick/joint_states": ("stillhand_sensed", lambda m: [*m["position"], *m["velocity"]],
+                                          lambda r: [r["theta_rad"], r["omega_rad_s"]]),
+            "/rig_1/motor/wrench": ("stillhand_motor_command", lambda m: list(m["wrench"]["force"].values()),
+                                    lambda r: [0, -r["force_n"], 0]),
+            "/rig_1/platform/joint_states": ("stillhand_platform_command", lambda m: [*m["position"], *m["velocity"]],
+                                             lambda r: [-r["position_m"], -r["velocity_m_s"]]),
+            "/rig_1/target": ("stillhand_tracking_sample", lambda m: list(m["point"].values()),
+                              lambda r: [0, -r["target_m"], 0]),
+        }
+        for topic, (table, of_message, of_row) in expected.items():
+            ours, theirs = rows(table), found["topics"][topic]
+            self.assertEqual(theirs["messages"], len(ours), topic)
+            for sample, row in zip(theirs["samples"], ours[::1000]):
+                numbers = {name: float(text) for name, text in row.items() if name.endswith(("_n", "_m", "_s", "_s2", "_rad"))}
+                self.assertEqual(of_message(sample["value"]), of_row(numbers), topic)
+                stamp = sample["value"]["header"]["stamp"]
+                self.assertEqual(stamp["sec"] * 10**9 + stamp["nanosec"], int(row["log_time"]))
+        diagnostics = found["topics"]["/diagnostics"]
+        self.assertEqual(diagnostics["type"], "diagnostic_msgs/msg/DiagnosticArray")
+        self.assertIn(diagnostics["samples"][0]["value"]["status"][0]["level"], (0, 1))
 
 
 if __name__ == "__main__":
