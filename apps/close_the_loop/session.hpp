@@ -7,7 +7,7 @@
 
 #include "apps/session/in_process.hpp"
 #include "apps/session/protocol.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/adaptive_gain.hpp"
 #include "services/identification/core/identifier.hpp"
 
 namespace stillhand::close_the_loop {

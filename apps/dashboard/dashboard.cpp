@@ -13,7 +13,7 @@
 #include "apps/dashboard/remote.hpp"
 #include "apps/dashboard/view/snapshot_json.hpp"
 #include "apps/dashboard/view/view_json.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/config.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/rig/core/rig.hpp"
 #include "services/runtime/process/clock.hpp"

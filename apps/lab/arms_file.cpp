@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "services/cancellation/parts/linear_arm.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/mitigation/linear_arm.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/settings/json_entry.hpp"
 
@@ -21,7 +21,7 @@ admittance::ArmValues read_arm(const std::filesystem::path& file) {
     arm[p] = parameters.at(name).at("value").number();
   }
   try {
-    const mitigation::LinearArm sound(arm, {});
+    const cancellation::LinearArm sound(arm, {});
   } catch (const ConfigError& error) {
     throw ConfigError(file.string(), error.what(), "an arm that is stable");
   }

@@ -11,11 +11,12 @@
 
 #include "apps/lab/control_model.hpp"
 #include "apps/lab/core/prompt.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/config.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/cancellation/parts/recipe.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/device_rig/load_devices.hpp"
-#include "services/mitigation/recipe.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/motion/ride_file.hpp"
 #include "services/runtime/process/domain.hpp"
@@ -84,21 +85,25 @@ void check_combinations(const LabOptions& options) {
   }
 }
 
-// In place of those that the session identifies: of the rate that the canceller takes, and of a
-// gain below every bound of its settings.
-mitigation::SessionModels models_of(const LabOptions& options, const cancellation::Config& config) {
-  mitigation::SessionModels models;
-  models.force = options.model.empty()
-                     ? cancellation::control_model({config.sampling.model_rate_hz(), {-0.5}, {1.0}})
-                     : control_model(options.model, options.rig, options.config);
-  models.position = signal::DifferenceModel{kControlRateHz, {-0.001}, {1.0}};
-  return models;
+// As the process of cancellation will make it, with models in place of those that the session
+// identifies: of the rate that it takes, and of a gain below every bound of its settings.
+cancellation::Countermeasure made(const LabOptions& options, const cancellation::Config& config,
+                                  const session::PlannedTrial& planned) {
+  auto recipe =
+      recipe_of(planned.parts, signal::DifferenceModel{kControlRateHz, {-0.001}, {1.0}}, config);
+  if (needs_force(planned.parts)) {
+    recipe.model =
+        options.model.empty()
+            ? cancellation::control_model({config.sampling.model_rate_hz(), {-0.5}, {1.0}})
+            : control_model(options.model, options.rig, options.config);
+  }
+  return cancellation::Countermeasure(config, recipe);
 }
 
 // From its assignment to the first measured tick it settles and fades in (CC-18).  A model that the
 // session identifies is judged when it is there.
-void check_settling(const mitigation::Mitigation& mitigation, const cancellation::Config& config,
-                    const session::PlannedTrial& planned) {
+void check_settling(const cancellation::Countermeasure& mitigation,
+                    const cancellation::Config& config, const session::PlannedTrial& planned) {
   const auto lead_ticks =
       static_cast<std::int64_t>(kTrialLead_s * kControlRateHz) + planned.trial.ramp_ticks;
   const std::int64_t needs_ticks = mitigation.settle_ticks() + config.fade_ticks;
@@ -117,12 +122,10 @@ void check_mitigations(const LabOptions& options,
       settings::load<cancellation::Config>(options.config / "cancellation.yaml", "cancellation");
   // As the process does: without the word its settings hold.
   if (options.canceller != "now") config.sampling = cancellation::sampling_named(options.canceller);
-  const mitigation::SessionModels models = models_of(options, config);
   for (const session::PlannedTrial& planned : trials) {
     if (planned.parts.empty()) continue;
     try {
-      const mitigation::Mitigation sound(recipe_of(planned.parts, models, config));
-      check_settling(sound, config, planned);
+      check_settling(made(options, config, planned), config, planned);
     } catch (const ConfigError& error) {
       const std::string name = session::name_of(planned.label);
       throw ConfigError(

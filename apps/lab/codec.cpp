@@ -180,7 +180,7 @@ stillhand_msgs::TrialAssignment assignment_of(const session::PlannedTrial& plann
   message.peak_m_s2(planned.peak_m_s2);
   message.motion_seed(planned.motion_seed);
   message.cancellation(planned.cancellation);
-  for (const mitigation::Part& part : planned.parts) {
+  for (const cancellation::Part& part : planned.parts) {
     stillhand_msgs::MitigationPart& to = message.parts().emplace_back();
     // Kinds of core and bus have one order (services/cancellation/codec.cpp).
     to.kind(static_cast<stillhand_msgs::MitigationPartKind>(part.kind));

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "apps/lab/lost_service.hpp"
+#include "services/cancellation/core/part.hpp"
 #include "services/identification/codec.hpp"
-#include "services/mitigation/core/part.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -31,7 +31,7 @@ bool needs_model(const LabOptions& options) {
   return std::ranges::any_of(
       options.trials.empty() ? session::plan(options.protocol) : options.trials,
       [](const session::PlannedTrial& planned) {
-        return planned.cancellation || mitigation::needs_force(planned.parts);
+        return planned.cancellation || cancellation::needs_force(planned.parts);
       });
 }
 

@@ -78,7 +78,7 @@ InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tic
       rig_(configs_.rig, std::move(effect)),
       conditioner_(configs_.sensing),
       motion_(configs_.motion),
-      canceller_(configs_.cancellation),
+      countermeasure_(configs_.cancellation, {.force = true}),
       display_(configs_.display),
       operator_(configs_.human_operator),
       command_filter_(configs_.command_filter),
@@ -86,11 +86,11 @@ InProcessLoop::InProcessLoop(const CoreConfigs& configs, std::uint64_t seed, Tic
 
 cancellation::Refusal InProcessLoop::use_model(const identification::FeedthroughModel& model) {
   const bool fit = configs_.cancellation.sampling.model_ticks > 1;
-  return canceller_.load_model(cancellation::control_model(fit ? model.fit : model.control));
+  return countermeasure_.load_model(cancellation::control_model(fit ? model.fit : model.control));
 }
 
 cancellation::Refusal InProcessLoop::use_model(const cancellation::ControlModel& model) {
-  return canceller_.load_model(model);
+  return countermeasure_.load_model(model);
 }
 
 void InProcessLoop::arm(const PlannedTrial& planned) {
@@ -142,13 +142,14 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
 
   const sensing::Sensed sensed = conditioner_.step(device_sample(rig_out.raw, tick));
   const bool enabled = planned.cancellation && tracking;
-  const cancellation::CancellerOutput cancelled =
-      canceller_.step({tick,
-                       {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
-                        sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
-                       sensed.flags,
-                       enabled,
-                       covered});
+  const cancellation::CountermeasureOutput cancelled =
+      countermeasure_.step({tick,
+                            {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
+                             sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
+                            sensed.flags,
+                            enabled,
+                            covered,
+                            {}});
   motor_force_n_ = cancelled.force_n;
   if (same_tick) {
     input.motor_age_ticks = 0;
@@ -167,7 +168,8 @@ void InProcessLoop::tick_once(const PlannedTrial& planned, TrialSignals& signals
 }
 
 void InProcessLoop::keep(const PlannedTrial& planned, const sensing::Sensed& sensed,
-                         const rig::RigTruth& truth, const cancellation::CancellerOutput& cancelled,
+                         const rig::RigTruth& truth,
+                         const cancellation::CountermeasureOutput& cancelled,
                          const display::TrackingSample& shown, TrialSignals& signals) const {
   if (planned.trial.phase == TrialPhase::kPegged) {
     signals.pegged.acceleration_m_s2.push_back(sensed.accel_y_m_s2);

@@ -7,8 +7,8 @@
 
 #include "apps/session/protocol.hpp"
 #include "apps/session/trial_forces.hpp"
-#include "services/cancellation/core/canceller.hpp"
-#include "services/cancellation/core/command_filter.hpp"
+#include "services/cancellation/parts/command_filter.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/display/core/tracking_display.hpp"
 #include "services/human_operator/core/crossover_operator.hpp"
 #include "services/identification/core/identifier.hpp"
@@ -80,8 +80,8 @@ class InProcessLoop {
   void arm(const PlannedTrial& planned);
   void tick_once(const PlannedTrial& planned, TrialSignals& signals);
   void keep(const PlannedTrial& planned, const sensing::Sensed& sensed, const rig::RigTruth& truth,
-            const cancellation::CancellerOutput& cancelled, const display::TrackingSample& shown,
-            TrialSignals& signals) const;
+            const cancellation::CountermeasureOutput& cancelled,
+            const display::TrackingSample& shown, TrialSignals& signals) const;
   void keep_row(const sensing::Sensed& sensed, const display::TrackingSample& shown,
                 recording::Recording& rows) const;
 
@@ -89,7 +89,7 @@ class InProcessLoop {
   rig::Rig rig_;
   sensing::Conditioner conditioner_;
   motion::MotionGenerator motion_;
-  cancellation::Canceller canceller_;
+  cancellation::Countermeasure countermeasure_;
   display::TrackingDisplay display_;
   human_operator::CrossoverOperator operator_;
   cancellation::CommandFilter command_filter_;

@@ -170,8 +170,8 @@ PlannedTrial tracking_trial(const ProtocolOptions& options, Condition condition,
   planned.command_filter = row.means == Means::kCommandFilter;
   if (row.means != Means::kMitigation) return planned;
   planned.parts = row.parts;
-  for (mitigation::Part& part : planned.parts) {
-    if (part.kind == mitigation::PartKind::kSchedule) part.values = options.arms;
+  for (cancellation::Part& part : planned.parts) {
+    if (part.kind == cancellation::PartKind::kSchedule) part.values = options.arms;
   }
   return planned;
 }

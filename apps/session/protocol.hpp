@@ -44,8 +44,9 @@ struct PlannedTrial {
   double rms_m_s2, peak_m_s2;        ///< [m/s^2]
   std::uint64_t motion_seed;
   bool cancellation;
-  bool command_filter;                  ///< in process only
-  std::vector<mitigation::Part> parts;  ///< of a mitigation in place of cancellation; over the bus
+  bool command_filter;  ///< in process only
+  std::vector<cancellation::Part>
+      parts;  ///< of a mitigation in place of cancellation; over the bus
 };
 
 /// For CLI11: the error in the word of a --seed, or an empty text.  (CLI11 itself would take a

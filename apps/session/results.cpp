@@ -19,14 +19,14 @@ namespace {
 
 // By cancellation or by another mitigation.
 bool drives_motor(const PlannedTrial& planned) {
-  return planned.cancellation || mitigation::drives_motor(planned.parts);
+  return planned.cancellation || cancellation::drives_motor(planned.parts);
 }
 
 // A prediction of the feedthrough alone drives it.
 bool opposes_feedthrough(const PlannedTrial& planned) {
   return drives_motor(planned) &&
-         std::ranges::none_of(planned.parts, [](const mitigation::Part& part) {
-           return part.kind == mitigation::PartKind::kImpedance;
+         std::ranges::none_of(planned.parts, [](const cancellation::Part& part) {
+           return part.kind == cancellation::PartKind::kImpedance;
          });
 }
 
@@ -34,13 +34,13 @@ bool opposes_feedthrough(const PlannedTrial& planned) {
 // mitigation that was made before the trial keeps its own.
 TrialResult::Models models_of(const SessionRecording& session, const PlannedTrial& planned) {
   TrialResult::Models models;
-  if (planned.cancellation || mitigation::needs_force(planned.parts)) {
+  if (planned.cancellation || cancellation::needs_force(planned.parts)) {
     const auto first = std::ranges::find_if(session.motor_commands, [&](const auto& command) {
       return planned.trial.measures(command.tick()) && command.model() >= 0;
     });
     if (first != session.motor_commands.end()) models.force = first->model();
   }
-  if (!mitigation::needs_position(planned.parts)) return models;
+  if (!cancellation::needs_position(planned.parts)) return models;
   for (const stillhand_msgs::FeedthroughModel& model : session.models) {
     if (!model.usable() || !model.to_position() || model.trial() >= planned.trial.number) continue;
     models.position = model.model();

@@ -62,14 +62,14 @@ struct Passed {
 DriveLoop::DriveLoop(DriveConfigs configs, std::uint64_t seed)
     : rig_(seeded(configs, seed).rig),
       conditioner_(configs.sensing),
-      canceller_(configs.cancellation),
+      countermeasure_(configs.cancellation, {.force = true}),
       driven_(configs.driven),
       floor_rad_(configs.driven.oscillation.floor_rad),
       ceiling_rad_(configs.driven.oscillation.ceiling_rad),
       answers_in_tick_(configs.rig.motor.answers_in_tick()) {}
 
 void DriveLoop::use_model(const identification::FeedthroughModel& model) {
-  const auto refusal = canceller_.load_model(cancellation::control_model(model.control));
+  const auto refusal = countermeasure_.load_model(cancellation::control_model(model.control));
   if (refusal != cancellation::Refusal::kNone) {
     throw ConfigError("identification.model", std::string(cancellation::describe(refusal)),
                       "a model that the canceller accepts");
@@ -93,12 +93,13 @@ DriveLoop::Now DriveLoop::tick_once(const Asked& asked) {
       conditioner_.step({tick, out.raw.accel_x_v, out.raw.accel_y_v, out.raw.accel_z_v,
                          out.raw.load_cell_v, out.raw.encoder_counts, out.raw.roll_rad});
   const auto cancelled =
-      canceller_.step({tick,
-                       {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
-                        sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
-                       sensed.flags,
-                       asked.cancel,
-                       asked.permitted});
+      countermeasure_.step({tick,
+                            {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
+                             sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
+                            sensed.flags,
+                            asked.cancel,
+                            asked.permitted,
+                            {}});
   motor_force_n_ = cancelled.force_n + asked.perturbation_n;
   if (answers_in_tick_) {
     input.motor_age_ticks = 0;

@@ -7,7 +7,7 @@
 
 #include "services/admittance/core/interleaved_multisines.hpp"
 #include "services/admittance/core/line_responses.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/identification/core/identifier.hpp"
 #include "services/identification/core/record.hpp"
 #include "services/rig/core/rig.hpp"
@@ -89,7 +89,7 @@ class DriveLoop {
 
   rig::Rig rig_;
   sensing::Conditioner conditioner_;
-  cancellation::Canceller canceller_;
+  cancellation::Countermeasure countermeasure_;
   DrivenMotion driven_;
   std::array<motion::PlatformCommand, kLead_ticks> ahead_{};
   motion::PlatformCommand last_command_;

@@ -60,8 +60,8 @@ static_assert(static_cast<std::size_t>(stillhand_msgs::MODEL_DAHL) ==
 
 }  // namespace
 
-CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted) {
-  CancellerInput input{};
+CountermeasureInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted) {
+  CountermeasureInput input{};
   input.tick = sensed.tick();
   // In Channel's order.
   input.sensed = {sensed.accel_x_m_s2(), sensed.accel_y_m_s2(), sensed.accel_z_m_s2(),
@@ -73,20 +73,21 @@ CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool
 }
 
 Assignment from_idl(const stillhand_msgs::TrialAssignment& message) {
-  return {message.trial(), message.cancellation(), !message.parts().empty()};
+  return {message.trial(), message.cancellation(), !message.parts().empty(),
+          needs_force(parts_of(message))};
 }
 
-std::vector<mitigation::Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
-  std::vector<mitigation::Part> parts;
+std::vector<Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
+  std::vector<Part> parts;
   parts.reserve(message.parts().size());
   // Kinds of core and bus have one order.  A number that is no kind stays one, and is refused.
   for (const stillhand_msgs::MitigationPart& part : message.parts()) {
-    parts.push_back({static_cast<mitigation::PartKind>(part.kind()), part.values()});
+    parts.push_back({static_cast<PartKind>(part.kind()), part.values()});
   }
   return parts;
 }
 static_assert(static_cast<std::size_t>(stillhand_msgs::PART_NOTCH) ==
-              static_cast<std::size_t>(mitigation::PartKind::kNotch));
+              static_cast<std::size_t>(PartKind::kNotch));
 
 signal::DifferenceModel from_idl(const stillhand_msgs::FeedthroughModel& message,
                                  const SamplingConfig& sampling) {
@@ -173,8 +174,10 @@ stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t nu
   return message;
 }
 
-stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const CancellerInput& input,
-                                    const stillhand_msgs::Sensed& sensed, std::int32_t model) {
+stillhand_msgs::MotorCommand to_idl(const CountermeasureOutput& output,
+                                    const CountermeasureInput& input,
+                                    const stillhand_msgs::Sensed& sensed, std::int32_t model,
+                                    std::int64_t trial) {
   stillhand_msgs::MotorCommand message;
   message.tick(sensed.tick());
   message.acquired_ns(sensed.acquired_ns());
@@ -185,18 +188,6 @@ stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const Cancell
   message.model(model);
   message.enabled(input.enabled);
   message.permitted(input.permitted);
-  message.flags(output.flags);
-  return message;
-}
-
-stillhand_msgs::MotorCommand to_idl(const mitigation::MitigationOutput& output,
-                                    const CancellerOutput& canceller, const CancellerInput& input,
-                                    const stillhand_msgs::Sensed& sensed, std::int32_t model,
-                                    std::int64_t trial) {
-  stillhand_msgs::MotorCommand message = to_idl(canceller, input, sensed, model);
-  message.force_n(output.force_n);
-  message.gain_weight(output.weights[0]);
-  message.phase_weight(output.weights[1]);
   message.flags(output.flags);
   message.taken_off_rad(output.taken_off_rad);
   message.mitigated_trial(static_cast<std::int32_t>(trial));

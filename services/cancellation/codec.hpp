@@ -7,18 +7,17 @@
 #include "idl/control_loop.h"
 #include "idl/model.h"
 #include "idl/session.h"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/part.hpp"
 #include "services/cancellation/core/trial_arming.hpp"
-#include "services/mitigation/core/part.hpp"
-#include "services/mitigation/mitigation.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 
 namespace stillhand::cancellation {
 
-CancellerInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted);
+CountermeasureInput from_idl(const stillhand_msgs::Sensed& sensed, bool enabled, bool permitted);
 
 Assignment from_idl(const stillhand_msgs::TrialAssignment& message);
-/// As sent; mitigation::recipe_of() judges whether they are sound.
-std::vector<mitigation::Part> parts_of(const stillhand_msgs::TrialAssignment& message);
+/// As sent; recipe_of() judges whether they are sound.
+std::vector<Part> parts_of(const stillhand_msgs::TrialAssignment& message);
 
 /// The filter for the control rate; check_model() judges whether it is sound.
 /// The model at the canceller's rate: the fit where the model runs below 1 kHz.
@@ -36,14 +35,9 @@ stillhand_msgs::AugmentedModel to_idl(const ControlModel& model, std::int32_t nu
 
 /// @param sensed  the sample answered: its tick and acquisition stamp travel on
 /// @param model   number of the model in use, -1 none
-stillhand_msgs::MotorCommand to_idl(const CancellerOutput& output, const CancellerInput& input,
-                                    const stillhand_msgs::Sensed& sensed, std::int32_t model);
-/// The force, the weights and the command of a mitigation in place of the canceller's.
-/// @param canceller  answer of the canceller to the same sample; its prediction is recorded
-/// @param input      of the mitigation
-/// @param trial      whose mitigation it is
-stillhand_msgs::MotorCommand to_idl(const mitigation::MitigationOutput& output,
-                                    const CancellerOutput& canceller, const CancellerInput& input,
+/// @param trial   whose own parts run, 0 none
+stillhand_msgs::MotorCommand to_idl(const CountermeasureOutput& output,
+                                    const CountermeasureInput& input,
                                     const stillhand_msgs::Sensed& sensed, std::int32_t model,
                                     std::int64_t trial);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/config.hpp"
 
 namespace stillhand::cancellation {
 

@@ -22,12 +22,13 @@ Shell::Shell(runtime::Service& service, const Config& config,
     : service_(service),
       config_(config),
       core_(config_),
+      perturbs_(perturbation.has_value()),
       command_(service.bus().publisher<stillhand_msgs::MotorCommand>(topics::kMotorCommand)),
-      mitigation_(config_, [this](const char* why) {
-        service_.note_event(stillhand_msgs::EVENT_NOTE, kNotPrepared);
-        log(why);
-      }) {
-  if (perturbation) perturbation_.emplace(*std::move(perturbation), config_);
+      parts_(config_, Recipe{.force = !perturbation, .perturbation = std::move(perturbation)},
+             [this](const char* why) {
+               service_.note_event(stillhand_msgs::EVENT_NOTE, kNotPrepared);
+               log(why);
+             }) {
   runtime::Bus& bus = service.bus();
   service.on_trial([this](const Trial& trial, const auto&) {
     arming_.announce(trial);
@@ -40,8 +41,8 @@ Shell::Shell(runtime::Service& service, const Config& config,
       topics::kFeedthroughModel, [this](const auto& message, const auto&) {
         if (!message.usable()) return;
         if (message.to_position()) {
-          if (!mitigation_.offer_position({message.control_rate_hz(), message.control_numerator(),
-                                           message.control_denominator()})) {
+          if (!parts_.offer_position({message.control_rate_hz(), message.control_numerator(),
+                                      message.control_denominator()})) {
             service_.note_event(stillhand_msgs::EVENT_NOTE, kTooMany);
           }
           return;
@@ -61,8 +62,8 @@ Shell::Shell(runtime::Service& service, const Config& config,
 }
 
 void Shell::note_when_armed() {
-  const Readiness readiness = arming_.readiness(perturbation_ || core_.has_model(),
-                                                schedule_.waits_for(), mitigation_.prepared());
+  const Readiness readiness =
+      arming_.readiness(perturbs_ || core_.has_model(), schedule_.waits_for(), parts_.prepared());
   // Not armed: nor is it for a trial of the same number from before.
   service_.note_armed(readiness == Readiness::kArmed ? service_.trial().number : -1);
   if (const char* why = why_not(readiness)) {
@@ -96,7 +97,7 @@ void Shell::log(const char* why) { std::cerr << "stillhand-cancellation: " << wh
 
 void Shell::on_assignment(const stillhand_msgs::TrialAssignment& message) {
   arming_.assign(from_idl(message));
-  if (!mitigation_.want({parts_of(message), message.trial(), arming_.newest()})) {
+  if (!parts_.want({parts_of(message), message.trial(), arming_.newest()})) {
     service_.note_event(stillhand_msgs::EVENT_NOTE, kTooMany);
   }
   note_when_armed();
@@ -120,9 +121,6 @@ std::unique_ptr<Shell::Ready> Shell::prepare_received() {
     if (preparation.refusal == Refusal::kNone) {
       newest =
           std::make_unique<Ready>(Ready{preparation.model, received.number, received.from_tick});
-      if (!mitigation_.offer_force(received.model)) {
-        service_.note_event(stillhand_msgs::EVENT_NOTE, kTooMany);
-      }
       return;
     }
     const char* const why =
@@ -165,25 +163,14 @@ void Shell::on_sensed(const stillhand_msgs::Sensed& sensed) {
   const Trial& trial = service_.trial();
   const bool permitted = interlock_.step(trial, sensed.tick(), service_.bus().peers_alive());
   note_interlock(trial);
-  auto message = answer(sensed, permitted);
+  if (parts_.follow(sensed.tick(), arming_, core_)) note_when_armed();
+  CountermeasureInput input =
+      from_idl(sensed, parts_.enables(sensed.tick(), arming_, core_), permitted);
+  input.trial = trial;
+  auto message =
+      to_idl(core_.step(input), input, sensed, schedule_.in_use(), parts_.trial_of(core_));
   command_.write(message);
   service_.note_tick(sensed.tick());
-}
-
-stillhand_msgs::MotorCommand Shell::answer(const stillhand_msgs::Sensed& sensed, bool permitted) {
-  const Tick tick = sensed.tick();
-  // One of them has the motor: the other begins when its force, or what it takes off, is zero.
-  const bool cancels = arming_.cancels(tick) && !mitigation_.acts();
-  const CancellerInput input = from_idl(sensed, cancels, permitted);
-  if (perturbation_) {
-    return to_idl(perturbation_->step(input, service_.trial()), input, sensed, schedule_.in_use());
-  }
-  const CancellerOutput output = core_.step(input);
-  if (output.force_n == 0.0 && mitigation_.follow(tick, arming_)) note_when_armed();
-  const auto mitigated = mitigation_.step(input, arming_);
-  if (!mitigated) return to_idl(output, input, sensed, schedule_.in_use());
-  return to_idl(mitigated->output, output, mitigated->input, sensed, schedule_.in_use(),
-                mitigated->trial);
 }
 
 }  // namespace stillhand::cancellation

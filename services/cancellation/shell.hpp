@@ -10,22 +10,20 @@
 #include "idl/model.h"
 #include "idl/session.h"
 #include "services/cancellation/codec.hpp"
-#include "services/cancellation/core/canceller.hpp"
 #include "services/cancellation/core/model_schedule.hpp"
-#include "services/cancellation/core/perturbation.hpp"
 #include "services/cancellation/core/trial_arming.hpp"
-#include "services/cancellation/trial_mitigation.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
+#include "services/cancellation/trial_parts.hpp"
 #include "services/runtime/process/handover.hpp"
 #include "services/runtime/process/interlock.hpp"
 #include "services/runtime/service.hpp"
 
 namespace stillhand::cancellation {
 
-/// The canceller's process: one motor command for each sensed sample, in the receiving thread.
-/// Models are prepared in another thread and taken by the sample that ModelSchedule names.  A trial
-/// with a mitigation of its own is answered by TrialMitigation; the canceller runs on without its
-/// force, so it stays in time.  The receiving thread takes no lock that another thread holds:
-/// models and mitigations go to the threads that prepare them by queues.
+/// The process of cancellation: one motor command for each sensed sample, in the receiving thread,
+/// by one Countermeasure with the parts of the newest trial.  Models are prepared in another thread
+/// and taken by the sample that ModelSchedule names.  The receiving thread takes no lock that
+/// another thread holds: models and parts go to the threads that prepare them by queues.
 class Shell {
  public:
   /// @param perturbation  force in place of cancelling; none: it cancels
@@ -40,7 +38,7 @@ class Shell {
     std::int32_t number;
     Tick from_tick;
   };
-  /// A sound one, ready for the canceller.
+  /// A sound one, ready to be used.
   struct Ready {
     PreparedModel model;
     std::int32_t number;
@@ -49,12 +47,11 @@ class Shell {
 
   void on_assignment(const stillhand_msgs::TrialAssignment& message);
   void on_sensed(const stillhand_msgs::Sensed& sensed);
-  stillhand_msgs::MotorCommand answer(const stillhand_msgs::Sensed& sensed, bool permitted);
   void on_model(const Received& received);
   /// In the preparing thread: every model that has come since, in order.
   /// @return the newest sound one, or nullptr
   std::unique_ptr<Ready> prepare_received();
-  /// Offers a model that has become ready, and hands the canceller the one that is due.
+  /// Offers a model that has become ready, and hands over the one that is due.
   void follow_models(Tick tick);
   void note_when_armed();
   /// nullptr: it is prepared, or will say so.
@@ -64,8 +61,8 @@ class Shell {
 
   runtime::Service& service_;
   const Config config_;
-  Canceller core_;
-  std::optional<Perturbation> perturbation_;
+  Countermeasure core_;
+  const bool perturbs_;
   ModelSchedule schedule_;
   TrialArming arming_;
   runtime::Interlock interlock_;
@@ -73,9 +70,9 @@ class Shell {
   const Ready* ready_ = nullptr;  ///< the newest; the handover owns it
   std::atomic<const char*> why_no_model_{"no model has come"};  ///< a literal
   runtime::Publisher<stillhand_msgs::MotorCommand> command_;
-  TrialMitigation mitigation_;
+  TrialParts parts_;
   /// Not yet prepared.  One that finds no room is refused.  Its size is set at run time, as that of
-  /// the queues of TrialMitigation.
+  /// those of TrialParts.
   boost::lockfree::spsc_queue<Received> received_{16};
   runtime::Handover<Ready> handover_;  // last: its thread ends before the rest
 };

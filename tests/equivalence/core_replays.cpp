@@ -2,14 +2,15 @@
 #include "tests/equivalence/core_replays.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "services/cancellation/codec.hpp"
+#include "services/cancellation/parts/recipe.hpp"
 #include "services/display/codec.hpp"
 #include "services/human_operator/codec.hpp"
 #include "services/human_operator/core/subject_config.hpp"
-#include "services/mitigation/recipe.hpp"
 #include "services/motion/codec.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/rig/codec.hpp"
@@ -33,25 +34,16 @@ std::int64_t core_seed(const SessionSettings& settings) {
 constexpr auto kAlways = [](const auto&, const auto&) { return true; };
 constexpr auto kSameTrial = [](const auto& a, const auto& b) { return a.trial() == b.trial(); };
 
-/// The recipe of a trial, of the models that the session had identified, or been given, before it.
-mitigation::Recipe recorded_recipe(const SessionRecording& session,
-                                   const cancellation::Config& config, std::int64_t trial) {
-  const Tick start = of_trial(session.trial_controls, trial).start_tick();
-  mitigation::SessionModels models;
+/// The parts of a trial, of the model of position that the session had identified before it.
+cancellation::PartList recorded_parts(const SessionRecording& session,
+                                      const cancellation::Config& config, std::int64_t trial) {
+  std::optional<signal::DifferenceModel> position;
   for (const msgs::FeedthroughModel& model : session.models) {
-    if (!model.usable() || model.trial() >= trial) continue;
-    if (model.to_position()) {
-      models.position = {model.control_rate_hz(), model.control_numerator(),
-                         model.control_denominator()};
-    } else {
-      models.force = cancellation::control_model(cancellation::from_idl(model));
-    }
+    if (!model.usable() || model.trial() >= trial || !model.to_position()) continue;
+    position = {model.control_rate_hz(), model.control_numerator(), model.control_denominator()};
   }
-  for (const msgs::AugmentedModel& model : session.control_models) {
-    if (model.from_tick() <= start) models.force = cancellation::from_idl(model);
-  }
-  return recipe_of(cancellation::parts_of(of_trial(session.trial_assignments, trial)), models,
-                   config);
+  return cancellation::PartList(recipe_of(
+      cancellation::parts_of(of_trial(session.trial_assignments, trial)), position, config));
 }
 
 /// What the display took off the stick's angle.  In recordings from before it did so, `tick` is 0.
@@ -126,10 +118,10 @@ Replay replay_vehicle(const SessionRecording& session, const SessionSettings& se
 
 Replay replay_cancellation(const SessionRecording& session, const SessionSettings& settings) {
   const auto config = settings.of<cancellation::Config>("cancellation");
-  cancellation::Canceller core(config);
+  cancellation::Countermeasure core(config);
+  std::map<std::int64_t, cancellation::PartList> parts;  // of C by 0, and of trials
+  parts.emplace(0, cancellation::Recipe{.force = true});
   const ByTick sensed("sensed", session.sensed);
-  std::optional<mitigation::Mitigation> mitigated;
-  std::int64_t mitigated_trial = 0;
   std::int32_t offered = -1;
   std::int32_t control_model = -1;
   // The canceller's model by its number; one that was refused is never named.
@@ -158,19 +150,11 @@ Replay replay_cancellation(const SessionRecording& session, const SessionSetting
         core.load_model(cancellation::control_model(cancellation::from_idl(*model)));
     }
     const msgs::Sensed& sample = sensed.at(tick);
-    if (like.mitigated_trial() == 0) {
-      const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());
-      return cancellation::to_idl(core.step(input), input, sample, like.model());
-    }
-    // The canceller runs on without its force; the trial's mitigation answers.
-    if (like.mitigated_trial() != mitigated_trial) {
-      mitigated.emplace(recorded_recipe(session, config, like.mitigated_trial()));
-      mitigated_trial = like.mitigated_trial();
-    }
-    const auto alone = core.step(cancellation::from_idl(sample, false, like.permitted()));
+    const std::int64_t trial = like.mitigated_trial();
+    if (!parts.contains(trial)) parts.emplace(trial, recorded_parts(session, config, trial));
+    if (!core.runs(parts.at(trial))) core.use(parts.at(trial));
     const auto input = cancellation::from_idl(sample, like.enabled(), like.permitted());
-    return cancellation::to_idl(mitigated->step(input), alone, input, sample, like.model(),
-                                mitigated_trial);
+    return cancellation::to_idl(core.step(input), input, sample, like.model(), trial);
   };
   const auto agree = [](const msgs::MotorCommand& a, const msgs::MotorCommand& b) {
     return a.enabled() == b.enabled() && a.permitted() == b.permitted() && a.model() == b.model() &&

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "services/cancellation/control_model_file.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/diagnosis/model_file.hpp"
 #include "services/identification/model_file.hpp"
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   } catch (const ConfigError&) {
   }
   try {
-    cancellation::Canceller(cancellation::Config{})
+    cancellation::Countermeasure({}, {.force = true})
         .load_model(cancellation::parse_control_model(json, "file", 1));
   } catch (const ConfigError&) {
   }

@@ -9,7 +9,7 @@
 
 #include "idl/cdr.hpp"
 #include "services/cancellation/codec.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr Tick kTicks = 600;
 
 void drive(const cancellation::ControlModel& model) {
   const cancellation::Config config;
-  cancellation::Canceller canceller(config);
+  cancellation::Countermeasure canceller(config, {.force = true});
   if (canceller.load_model(model) != cancellation::Refusal::kNone) return;
   double last_n = 0.0;
   for (Tick tick = 0; tick < kTicks; ++tick) {
@@ -29,7 +29,7 @@ void drive(const cancellation::ControlModel& model) {
     for (std::size_t i = 0; i < sensed.size(); ++i) {
       sensed[i] = 5.0 * std::sin(0.01 * t * static_cast<double>(i + 1));
     }
-    const double force_n = canceller.step({tick, sensed, kGood, true, true}).force_n;
+    const double force_n = canceller.step({tick, sensed, kGood, true, true, {}}).force_n;
     const double most_n = config.limits.max_slew_n_s * kControlPeriod_s * (1.0 + 1e-9);
     // Written so that a NaN is found, too.
     const bool bounded = std::abs(force_n) <= config.limits.max_force_n;

@@ -2,7 +2,7 @@
 // Settings as YAML.
 #include <string>
 
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/config.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/population/population.hpp"
 #include "services/rig/core/rig.hpp"

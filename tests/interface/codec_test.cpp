@@ -323,7 +323,7 @@ TEST(CancellationCodecTest, AMitigationsForceAndCommandTakeThePlaceOfTheCancelle
   const stillhand_msgs::Sensed sensed = sensed_message();
   const auto input = cancellation::from_idl(sensed, true, false);
   const auto message =
-      cancellation::to_idl(mitigation::MitigationOutput{6.5, 0.25, 1.25, 12, {1.75, 0.5}},
+      cancellation::to_idl(cancellation::CountermeasureOutput{6.5, 0.25, 1.25, 12, {1.75, 0.5}},
                            {3.5, 4.5, 10, {0.75, 0.125}}, input, sensed, 11, 13);
   EXPECT_EQ(message.force_n(), 6.5);
   EXPECT_EQ(message.taken_off_rad(), 1.25);

@@ -22,7 +22,7 @@
 #include "idl/session.h"
 #include "places.hpp"
 #include "services/cancellation/codec.hpp"
-#include "services/mitigation/recipe.hpp"
+#include "services/cancellation/parts/recipe.hpp"
 #include "services/runtime/bus/bus.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/sources_codec.hpp"
@@ -215,10 +215,14 @@ class MitigationProcessTest : public testing::Test {
   /// The same core, of the messages alone, bit for bit.  A command that the recorder lost on a
   /// loaded machine is passed over; up to the sample that cancellation lost, too.
   /// @returns how many commands it answered the same; -1: it answered one otherwise
-  int same_in_one_process(std::int32_t trial, const mitigation::SessionModels& models) {
+  int same_in_one_process(std::int32_t trial,
+                          const std::optional<cancellation::ControlModel>& force,
+                          const std::optional<signal::DifferenceModel>& position) {
     stillhand_msgs::TrialAssignment assignment;
     assignment.parts(parts_);
-    mitigation::Mitigation sut(recipe_of(cancellation::parts_of(assignment), models, {}));
+    auto recipe = recipe_of(cancellation::parts_of(assignment), position, {});
+    recipe.model = force;
+    cancellation::Countermeasure sut({}, recipe);
     int compared = 0;
     bool lost = false;
     Tick next = -1;

@@ -29,9 +29,8 @@ TEST_F(MitigationProcessTest, TheCommandIsTakenOffTheStickAndTheRawStickComesBac
   // A loaded machine's recorder loses samples of both topics: on until enough pairs are there.
   for (int n = 0; n < 2000; ++n) step();
   EXPECT_TRUE(step_until([this] { return tick_ % 100 == 0 && recorded_pairs() > 400; }, 5000));
-  EXPECT_GT(
-      same_in_one_process(trial, {{}, signal::DifferenceModel{1000.0, {kPosition_s2}, {1.0}}}),
-      500);
+  EXPECT_GT(same_in_one_process(trial, {}, signal::DifferenceModel{1000.0, {kPosition_s2}, {1.0}}),
+            500);
   std::map<Tick, stillhand_msgs::MotorCommand> by_tick;
   {
     const std::lock_guard lock(mutex_);
@@ -83,7 +82,7 @@ TEST_F(MitigationProcessTest, TheForceIsBoundedAndEndsWithTheInterlock) {
   ASSERT_GE(trial, kTrial);
   for (int n = 0; n < 2000; ++n) step();
   EXPECT_GT(same_in_one_process(
-                trial, {cancellation::control_model({1000.0, {kFeedthrough_n_s2_m}, {1.0}}), {}}),
+                trial, cancellation::control_model({1000.0, {kFeedthrough_n_s2_m}, {1.0}}), {}),
             500);
   EXPECT_NE(newest_command().gain_weight(), 1.0);  // recorded as they are followed
   stands_.erase("identification");

@@ -23,7 +23,7 @@ sys.path.insert(0, str(SOURCE / "tests" / "integration"))
 import lab_process  # noqa: E402 (found by the line above)
 
 BUILD = lab_process.BUILD
-CORES = ("signal", "statistics", "motion_core", "rig_core", "sensing_core", "identification_core", "cancellation_core",
+CORES = ("signal", "statistics", "admittance_core", "motion_core", "rig_core", "sensing_core", "identification_core", "cancellation_core",
          "diagnosis_core", "clock_core", "display_core", "human_operator_core", "recording_core")
 PROGRAMS = {"stillhand", "stillhand-permissions", "stillhand-device_rig", "stillhand-vehicle_motion",
             *(f"stillhand-{service}" for service in lab_process.SERVICES)}
@@ -67,8 +67,8 @@ endforeach()
 MAIN = """%s
 #include <cstdio>
 int main() {
-  stillhand::cancellation::Canceller canceller{stillhand::cancellation::Config{}};
-  std::printf("%%s\\n", canceller.has_model() ? "a model" : "no model");
+  stillhand::cancellation::Countermeasure sut{stillhand::cancellation::Config{}};
+  std::printf("%%s\\n", sut.has_model() ? "a model" : "no model");
 }
 """
 

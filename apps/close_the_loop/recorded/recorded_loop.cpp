@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "apps/measurement/read.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/config.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/tick.hpp"
 #include "services/diagnosis/core/working_set.hpp"

@@ -9,8 +9,8 @@
 
 #include "apps/measurement/bridge.hpp"
 #include "apps/predict/predict.hpp"
-#include "services/cancellation/core/canceller.hpp"
 #include "services/cancellation/core/model_check.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/flag.hpp"
 #include "services/contract/tick.hpp"
@@ -153,7 +153,7 @@ struct MotorRun {
 
 MotorRun motor_run(const cancellation::ControlModel& model,
                    const std::vector<cancellation::ChannelSample>& motion, double late_s) {
-  cancellation::Canceller canceller{cancellation::Config{}};
+  cancellation::Countermeasure canceller({}, {.force = true});
   const cancellation::Refusal refusal = canceller.load_model(model);
   if (refusal != cancellation::Refusal::kNone) {
     throw ConfigError("the canceller's model", std::string(cancellation::describe(refusal)),
@@ -163,10 +163,10 @@ MotorRun motor_run(const cancellation::ControlModel& model,
   rig.motor.delay_s = late_s;
   rig::Motor motor(rig.motor, rig.stick.lever_m);
   MotorRun out;
-  cancellation::CancellerOutput command{};
+  cancellation::CountermeasureOutput command{};
   for (std::size_t n = 0; n < motion.size(); ++n) {
     out.force_n.push_back(motor.step({n > 0, 1, command.force_n, true}).force_n);
-    command = canceller.step({static_cast<Tick>(n + 1), motion[n], 0, true, true});
+    command = canceller.step({static_cast<Tick>(n + 1), motion[n], 0, true, true, {}});
     out.limited.push_back((command.flags & kLimited) != 0);
   }
   return out;

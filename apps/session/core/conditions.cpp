@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/cancellation/core/command_filter.hpp"
+#include "services/cancellation/core/control_model.hpp"
 
 namespace stillhand::session {
 namespace {
 
-using mitigation::Part;
-using mitigation::PartKind;
+using cancellation::Part;
+using cancellation::PartKind;
 
 // SU-18, apps/study/README.md "Chosen".
 constexpr double kLowPass_hz = 0.7;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/mitigation/core/part.hpp"
+#include "services/cancellation/core/part.hpp"
 
 /// The table of conditions: what is done about feedthrough in a trial.  Command lines, plans,
 /// recordings, experiments, results and exports read it; a new condition is a new row.
@@ -76,7 +76,7 @@ struct ConditionRow {
   /// With the numbers that the study chose on other people (apps/study/METHOD.md, SU-18, seed
   /// 20261125) and the average hand of CC-5: no trial of a session changes them.  They say which
   /// models it needs.  Those of `scheduled` are the person's own, ProtocolOptions::arms.
-  std::vector<mitigation::Part> parts;
+  std::vector<cancellation::Part> parts;
   bool arm_rest;        ///< the forearm rests
   const char* meaning;  ///< in exports
 };
@@ -103,7 +103,7 @@ inline bool is_mitigation(Condition condition) {
 }
 /// Whether it needs trial J: a part of it reads the feedthrough to position.
 inline bool needs_position(Condition condition) {
-  return mitigation::needs_position(row_of(condition).parts);
+  return cancellation::needs_position(row_of(condition).parts);
 }
 /// C' and C+ are C with another model: how a trial is planned and announced.
 inline Condition planned_as(Condition condition) {

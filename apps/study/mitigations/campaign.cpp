@@ -144,7 +144,7 @@ class Running {
         moves = trial_motion(cell.motion, scene.duration_ticks, scene.ramp_ticks, scene.rig_seed);
       }
       scene.motion = moves;
-      const mitigation::Recipe recipe =
+      const cancellation::Recipe recipe =
           recipe_of(cell.mitigation, {models_for(at, cell.model), chosen, hand, cell.task});
       figures.push_back(run_mitigated(scene, recipe, row_of(cell.mitigation).arm_rest));
     }

@@ -8,41 +8,40 @@
 namespace stillhand::study {
 namespace {
 
-using mitigation::PartKind;
-using mitigation::Recipe;
+using cancellation::PartKind;
+using cancellation::Recipe;
 
-void add(const mitigation::Part& part, const Ingredients& from, Recipe& recipe) {
+void add(const cancellation::Part& part, const Ingredients& from, Recipe& recipe) {
   const cancellation::HandCompliance& hand = from.average_hand;
   const Chosen& chosen = from.chosen;
   switch (part.kind) {
     case PartKind::kForce:
-      recipe.force = cancellation::control_model(from.models.pegged);
-      if (!part.values.empty()) recipe.force->adapts = hand;
+      recipe.force = true;
+      if (!part.values.empty()) recipe.follow = hand;
       return;
     case PartKind::kSchedule:
-      recipe.schedule = mitigation::ScheduleConfig{from.models.relaxed, from.models.holding, {}};
+      recipe.schedule = cancellation::ScheduleConfig{from.models.relaxed, from.models.holding, {}};
       return;
     case PartKind::kImpedance:
       recipe.impedance = chosen.impedance.impedance;
       // Without stiffness it is a damper.
       if (part.values[0] == 0.0) {
-        recipe.impedance = mitigation::ImpedanceConfig{.damping_n_s_m = chosen.damping_n_s_m};
+        recipe.impedance = cancellation::ImpedanceConfig{.damping_n_s_m = chosen.damping_n_s_m};
       }
       return;
     case PartKind::kLmsForce:
-      recipe.lms_force = mitigation::LmsConfig{
+      recipe.lms_force = cancellation::LmsConfig{
           chosen.lms_force_step,
-          mitigation::SecondaryPath{hand.mass_kg, hand.damping_n_s_m, hand.stiffness_n_m}};
+          cancellation::SecondaryPath{hand.mass_kg, hand.damping_n_s_m, hand.stiffness_n_m}};
       return;
     case PartKind::kSignal:
-      recipe.signal = mitigation::SignalConfig{from.models.position, {}, {}};
+      recipe.signal = cancellation::SignalConfig{from.models.position, {}, {}};
       return;
     case PartKind::kPredictedSignal:
-      recipe.force = cancellation::control_model(from.models.pegged);
       recipe.predicted_signal = hand;
       return;
     case PartKind::kLmsSignal:
-      recipe.lms_signal = mitigation::LmsConfig{chosen.lms_signal_step, {}};
+      recipe.lms_signal = cancellation::LmsConfig{chosen.lms_signal_step, {}};
       return;
     case PartKind::kLowPass:
       recipe.shaping = chosen.low_pass;
@@ -54,7 +53,7 @@ void add(const mitigation::Part& part, const Ingredients& from, Recipe& recipe) 
 }
 
 cancellation::ControlModel reduced_model(const Ingredients& from) {
-  const mitigation::ReducedChoice& chosen = from.chosen.reduced;
+  const ReducedChoice& chosen = from.chosen.reduced;
   signal::DifferenceModel model = from.models.reduced.at(chosen.order - 1);
   for (double& c : model.numerator) c *= chosen.gain;
   return cancellation::control_model(model);
@@ -63,12 +62,14 @@ cancellation::ControlModel reduced_model(const Ingredients& from) {
 }  // namespace
 
 Recipe recipe_of(Condition condition, const Ingredients& from) {
+  const std::vector<cancellation::Part>& parts = row_of(condition).parts;
   Recipe recipe;
-  for (const mitigation::Part& part : row_of(condition).parts) add(part, from, recipe);
-  if (condition == kRobust) recipe.force = reduced_model(from);
+  if (needs_force(parts)) recipe.model = cancellation::control_model(from.models.pegged);
+  for (const cancellation::Part& part : parts) add(part, from, recipe);
+  if (condition == kRobust) recipe.model = reduced_model(from);
   if (condition == kTaskForce) {
     // Both arms of the schedule are the task's.
-    mitigation::ScheduleConfig& schedule = *recipe.schedule;
+    cancellation::ScheduleConfig& schedule = *recipe.schedule;
     (from.task == TrialTask::kRelax ? schedule.holding : schedule.relaxed) =
         from.task == TrialTask::kRelax ? schedule.relaxed : schedule.holding;
   }
@@ -77,9 +78,9 @@ Recipe recipe_of(Condition condition, const Ingredients& from) {
 }
 
 bool needs_model(Condition condition) {
-  const std::vector<mitigation::Part>& parts = row_of(condition).parts;
-  return mitigation::needs_force(parts) || mitigation::needs_position(parts) ||
-         std::ranges::find(parts, PartKind::kSchedule, &mitigation::Part::kind) != parts.end();
+  const std::vector<cancellation::Part>& parts = row_of(condition).parts;
+  return cancellation::needs_force(parts) || cancellation::needs_position(parts) ||
+         std::ranges::find(parts, PartKind::kSchedule, &cancellation::Part::kind) != parts.end();
 }
 
 std::vector<Condition> mitigations_named(const std::string& names) {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/study/conditions.hpp"
+#include "apps/study/mitigations/design.hpp"
 #include "apps/study/mitigations/person_models.hpp"
-#include "services/mitigation/design.hpp"
-#include "services/mitigation/mitigation.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 
 /// The cells of the table of mitigations: what is done, in which task, with whose model, in which
 /// motion.
@@ -32,11 +32,11 @@ inline constexpr std::array<const char*, 4> kModelOfNames{"none", "own", "averag
 
 /// Parameters that were chosen on other people, METHOD Eq. SU-18.
 struct Chosen {
-  mitigation::ShapingConfig low_pass;
-  mitigation::ShapingConfig notch;
+  cancellation::ShapingConfig low_pass;
+  cancellation::ShapingConfig notch;
   double damping_n_s_m = 0.0;
-  mitigation::ImpedanceChoice impedance;
-  mitigation::ReducedChoice reduced;
+  ImpedanceChoice impedance;
+  ReducedChoice reduced;
   double lms_signal_step = 0.0;
   double lms_force_step = 0.0;
   std::vector<std::string> log;  ///< one line a choice
@@ -51,7 +51,7 @@ struct Ingredients {
 };
 
 /// A condition as a recipe, its numbers and models from the ingredients.
-mitigation::Recipe recipe_of(Condition condition, const Ingredients& from);
+cancellation::Recipe recipe_of(Condition condition, const Ingredients& from);
 bool needs_model(Condition condition);
 
 /// In the order of the table of conditions; B, "none", is always among them.

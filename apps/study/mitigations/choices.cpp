@@ -46,7 +46,7 @@ class Trying {
   }
 
   // Mean over tutors and motions of the error over that without a mitigation.
-  double ratio(const mitigation::Recipe& recipe) const {
+  double ratio(const cancellation::Recipe& recipe) const {
     std::vector<double> ratios(scenes_.size());
     runtime::run_jobs(scenes_.size(), threads_, [&](std::size_t at) {
       ratios[at] = run_mitigated(scenes_[at], recipe, false).error_mm / none_mm_[at];
@@ -84,8 +84,8 @@ double least(const Trying& trying, const char* what, const Values& values, const
 
 // Power of the motions over the band: that of 0.7 to 2 Hz, and that of the road (MO-12: as f^2 in
 // acceleration to 6 Hz), each with the paper's or its own RMS.
-std::vector<mitigation::PowerLine> motion_lines() {
-  std::vector<mitigation::PowerLine> out;
+std::vector<PowerLine> motion_lines() {
+  std::vector<PowerLine> out;
   constexpr double kLine_hz = 0.1;
   constexpr double kBandPower = 1.6 * 1.6 / (2.0 - 0.7);
   // G0 n0^2 u (2 pi)^4 of class B at 20 m/s.
@@ -99,11 +99,11 @@ std::vector<mitigation::PowerLine> motion_lines() {
 }
 
 // The target's lines that a person follows: up to a little above the crossover, 0.3 Hz.
-std::vector<mitigation::PowerLine> target_lines() {
+std::vector<PowerLine> target_lines() {
   constexpr double kDuration_s = 180.0;
   constexpr double kFollowed_hz = 0.5;
   const signal::ReferenceDesign design = signal::reference_design(kDuration_s);
-  std::vector<mitigation::PowerLine> out;
+  std::vector<PowerLine> out;
   for (std::size_t k = 0; k < design.harmonics.size(); ++k) {
     const double f = static_cast<double>(design.harmonics[k]) / kDuration_s;
     if (f < kFollowed_hz) out.push_back({f, design.amplitudes[k] * design.amplitudes[k]});
@@ -136,13 +136,13 @@ TrialScene scene_of(const CampaignOptions& options, const population::Subject& s
 
 Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, std::uint64_t seed,
               unsigned threads, const OnCampaign& on_stage) {
-  using Shaping = mitigation::ShapingConfig;
+  using Shaping = cancellation::ShapingConfig;
   Chosen out;
-  std::vector<mitigation::KnownPerson> people;
+  std::vector<KnownPerson> people;
   people.reserve(tutors.size());
   for (const Tutor& tutor : tutors) people.push_back(known(tutor.models));
-  out.reduced = mitigation::choose_reduced(people, motion_lines(), {});
-  out.impedance = mitigation::choose_impedance(people, motion_lines(), target_lines(), {});
+  out.reduced = choose_reduced(people, motion_lines(), {});
+  out.impedance = choose_impedance(people, motion_lines(), target_lines(), {});
   const auto& shaped = out.impedance.impedance;
   out.log.push_back(fmt::format(
       "reduced model: order {}, gain {:.2f}, {:.0f} % of the motion left in the worst case",
@@ -160,32 +160,37 @@ Chosen choose(const CampaignOptions& options, const std::vector<Tutor>& tutors, 
   if (filters) {
     out.low_pass.frequency_hz = least(
         trying, "low-pass [Hz]", kLowPass_hz,
-        [](double f) { return mitigation::Recipe{.shaping = Shaping{.frequency_hz = f}}; }, out.log,
-        on_stage);
+        [](double f) { return cancellation::Recipe{.shaping = Shaping{.frequency_hz = f}}; },
+        out.log, on_stage);
     const auto notch = [](double z) { return Shaping{Shaping::Kind::kNotch, kNotch_hz, z}; };
     out.notch = notch(least(
         trying, "notch at 1.2 Hz, damping ratio", kNotchDamping,
-        [&](double z) { return mitigation::Recipe{.shaping = notch(z)}; }, out.log, on_stage));
+        [&](double z) { return cancellation::Recipe{.shaping = notch(z)}; }, out.log, on_stage));
   }
   if (damps) {
     out.damping_n_s_m = least(
         trying, "damping [N s/m]", kDamping_n_s_m,
         [](double b) {
-          return mitigation::Recipe{.impedance = mitigation::ImpedanceConfig{.damping_n_s_m = b}};
+          return cancellation::Recipe{.impedance =
+                                          cancellation::ImpedanceConfig{.damping_n_s_m = b}};
         },
         out.log, on_stage);
   }
   if (learns) {
     out.lms_signal_step = least(
         trying, "step of the signal's LMS", kSteps,
-        [](double mu) { return mitigation::Recipe{.lms_signal = mitigation::LmsConfig{mu, {}}}; },
+        [](double mu) {
+          return cancellation::Recipe{.lms_signal = cancellation::LmsConfig{mu, {}}};
+        },
         out.log, on_stage);
     const auto feel = population::mean_subject(options.population).who.arm;
-    const mitigation::SecondaryPath path{feel.effective_mass_kg, feel.effective_damping_n_s_m,
-                                         feel.effective_stiffness_n_m};
+    const cancellation::SecondaryPath path{feel.effective_mass_kg, feel.effective_damping_n_s_m,
+                                           feel.effective_stiffness_n_m};
     out.lms_force_step = least(
         trying, "step of the force's LMS", kSteps,
-        [&](double mu) { return mitigation::Recipe{.lms_force = mitigation::LmsConfig{mu, path}}; },
+        [&](double mu) {
+          return cancellation::Recipe{.lms_force = cancellation::LmsConfig{mu, path}};
+        },
         out.log, on_stage);
   }
   return out;

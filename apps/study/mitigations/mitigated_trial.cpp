@@ -33,7 +33,7 @@ rig::BodyConfig body_of(const TrialScene& scene, bool arm_rest) {
 // Each person practised with the stick as it is in the trial (paper III-C), the motor's impedance
 // included.
 human_operator::CrossoverConfig who_of(const TrialScene& scene, const rig::BodyConfig& body,
-                                       const mitigation::Recipe& recipe) {
+                                       const cancellation::Recipe& recipe) {
   human_operator::CrossoverConfig who = scene.subject.who;
   who.seed = static_cast<std::int64_t>(scene.rig_seed & 0xffffffffu);
   who.arm = population::learnt_feel(body, {}, who.arm);
@@ -47,14 +47,14 @@ human_operator::CrossoverConfig who_of(const TrialScene& scene, const rig::BodyC
 
 }  // namespace
 
-TrialFigures run_mitigated(const TrialScene& scene, const mitigation::Recipe& recipe,
+TrialFigures run_mitigated(const TrialScene& scene, const cancellation::Recipe& recipe,
                            bool arm_rest) {
   const bool tracks = scene.task == TrialTask::kTrack;
   rig::RigConfig rig;
   rig.body = body_of(scene, arm_rest);
   rig.seed = static_cast<std::int64_t>(scene.rig_seed & 0xffffffffu);
   HandStand stand(rig);
-  mitigation::Mitigation mitigated(recipe);
+  cancellation::Countermeasure mitigated({}, recipe);
   human_operator::CrossoverOperator person(who_of(scene, rig.body, recipe));
   display::TrackingDisplay screen(display::TrackingDisplay::Config{});
   motion::MotionGenerator platform(motion::MotionGenerator::Config{});
@@ -77,13 +77,14 @@ TrialFigures run_mitigated(const TrialScene& scene, const mitigation::Recipe& re
   for (Tick tick = 1; tick < end; ++tick) {
     const bool covered = trial.covers(tick);
     const sensing::Sensed sensed = stand.sample(tick, platform.step(tick), operator_n, false);
-    const mitigation::MitigationOutput done =
+    const cancellation::CountermeasureOutput done =
         mitigated.step({tick,
                         {sensed.accel_x_m_s2, sensed.accel_y_m_s2, sensed.accel_z_m_s2,
                          sensed.roll_rad, sensed.theta_rad, sensed.omega_rad_s},
                         sensed.flags,
                         covered,
-                        covered});
+                        covered,
+                        {}});
     const rig::RigTruth& truth = stand.drive(done.force_n, covered);
     const display::TrackingSample shown = screen.step({tick, done.command_rad});
     operator_n =

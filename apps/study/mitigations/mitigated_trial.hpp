@@ -32,8 +32,8 @@ struct TrialFigures {
 
 /// Runs one trial with a mitigation.
 /// @param arm_rest  the forearm rests, as in condition F
-/// @throws ConfigError as mitigation::Mitigation and the cores do.
-TrialFigures run_mitigated(const TrialScene& scene, const mitigation::Recipe& recipe,
+/// @throws ConfigError as cancellation::Countermeasure and the cores do.
+TrialFigures run_mitigated(const TrialScene& scene, const cancellation::Recipe& recipe,
                            bool arm_rest);
 
 /// Motion of a trial.

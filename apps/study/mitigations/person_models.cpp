@@ -206,7 +206,7 @@ PersonModels average_models(const std::vector<PersonModels>& people) {
   return out;
 }
 
-mitigation::KnownPerson known(const PersonModels& models) {
+KnownPerson known(const PersonModels& models) {
   return {{models.relaxed, models.holding}, models.reduced};
 }
 

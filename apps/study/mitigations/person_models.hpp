@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "apps/study/mitigations/design.hpp"
 #include "services/admittance/core/arm_model.hpp"
 #include "services/identification/core/record.hpp"
-#include "services/mitigation/design.hpp"
 #include "services/population/population.hpp"
 #include "services/signal/difference_model.hpp"
 
@@ -43,6 +43,6 @@ PersonModels identify_person(const population::Subject& subject, double identify
 PersonModels average_models(const std::vector<PersonModels>& people);
 
 /// What the choices over a population need of a person.
-mitigation::KnownPerson known(const PersonModels& models);
+KnownPerson known(const PersonModels& models);
 
 }  // namespace stillhand::study

@@ -94,6 +94,8 @@ struct HandCompliance {
   double stiffness_n_m = 0.0;
   double lever_m = 0.0;  ///< hand to pivot
 };
+/// Of the population's mean subject; lever: paper II.
+inline constexpr HandCompliance kAverageHand{1.394, 11.18, 1136.0, 0.10};
 
 /// The model that the canceller runs, METHOD Eq. CC-6 to CC-9 and CC-19: the feedthrough force as a
 /// function of the sensed channels at the control rate.  A linear body with several inputs, at most

@@ -4,10 +4,12 @@
 namespace stillhand::cancellation {
 
 Readiness TrialArming::readiness(bool has_model, std::optional<Tick> next_model,
-                                 const PreparedMitigation& prepared) const noexcept {
+                                 const PreparedParts& prepared) const noexcept {
   if (!assigned()) return Readiness::kUnassigned;
-  if (assignment_->mitigation) return mitigation(prepared);
-  if (!assignment_->cancellation || has_model) return Readiness::kArmed;
+  const Readiness parts = assignment_->parts ? made(prepared) : Readiness::kArmed;
+  if (parts != Readiness::kArmed || has_model) return parts;
+  const bool needs = assignment_->parts ? assignment_->needs_force : assignment_->cancellation;
+  if (!needs) return Readiness::kArmed;
   if (!next_model) return Readiness::kNoModel;
   return *next_model <= trial_.start_tick ? Readiness::kArmed : Readiness::kModelTooLate;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gain and phase followed online, Eq. CC-10 to CC-13, on a hand that is a spring, a damper and a
 // mass.
-#include "services/cancellation/core/adaptive_gain.hpp"
+#include "services/cancellation/parts/adaptive_gain.hpp"
 
 #include <gtest/gtest.h>
 

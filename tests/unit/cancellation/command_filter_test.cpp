@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eq. CC-5 against its statics and its frequency response.
-#include "services/cancellation/core/command_filter.hpp"
+#include "services/cancellation/parts/command_filter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/contract/units.hpp"
 #include "services/signal/random.hpp"
 
@@ -346,7 +346,7 @@ TEST(ControlModelTest, WhatIsNoModelIsRefused) {
   EXPECT_EQ(spoilt([](auto& m) { m.loop->phi.values.resize(130, 1.0); }), Refusal::kTooMany);
 }
 
-TEST(CancellerTest, CostOfAFullModelIsReported) {
+TEST(ForceTest, CostOfAFullModelIsReported) {
   ControlModel model = oscillator();
   model.inputs.resize(4, model.inputs[0]);
   model.loop =
@@ -358,27 +358,28 @@ TEST(CancellerTest, CostOfAFullModelIsReported) {
     model.hysteresis.push_back({i, signal::HysteresisOperator::kDahl, 0.1, -1.0, 1.0});
   }
   model.adapts = HandCompliance{1.38, 9.5, 844.0, 0.1};
-  Canceller sut{Config{}};
+  Countermeasure sut({}, {.force = true});
   ASSERT_EQ(sut.load_model(model), Refusal::kNone);
   double sum = 0.0;
   constexpr Tick kSteps = 500'000;
   const auto begin = std::chrono::steady_clock::now();
   for (Tick n = 0; n < kSteps; ++n) {
-    sum += sut.step({n, at(std::sin(0.01 * static_cast<double>(n))), kGood, true, true}).force_n;
+    sum +=
+        sut.step({n, at(std::sin(0.01 * static_cast<double>(n))), kGood, true, true, {}}).force_n;
   }
   const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
-  std::printf("Canceller::step with everything %.0f ns\n", took.count() / kSteps);
+  std::printf("Countermeasure::step with everything %.0f ns\n", took.count() / kSteps);
   EXPECT_TRUE(std::isfinite(sum));
 }
 
-TEST(CancellerTest, AToneIsAnsweredOnTheSampleClock) {
+TEST(ForceTest, AToneIsAnsweredOnTheSampleClock) {
   ControlModel model = control_model({1000.0, {0.0}, {1.0}});
   model.waves = {{std::nullopt, 7.0, 2.0, 0.0}};
-  Canceller sut{Config{}};
+  Countermeasure sut({}, {.force = true});
   ASSERT_EQ(sut.load_model(model), Refusal::kNone);
   for (Tick n = 100'000; n < 104'000; ++n) {
     if (n >= 103'000 && n < 103'010) continue;  // lost samples don't shift it
-    const auto out = sut.step({n, at(0.0), kGood, true, true});
+    const auto out = sut.step({n, at(0.0), kGood, true, true, {}});
     if (n < 103'600) continue;
     ASSERT_NEAR(out.force_n, -2.0 * std::sin(kTwoPi * 7.0 * static_cast<double>(n) / 1000.0), 1e-9);
   }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/cancellation/core/perturbation.hpp"
+#include "services/cancellation/parts/perturbation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/signal/random.hpp"
 
 namespace stillhand::cancellation {
@@ -22,10 +23,11 @@ constexpr Trial kPerturbedTrial{.number = 1,
 
 signal::Multisine tone() { return {kPeriod, 1000.0, {{3, kForce_n, 0.7}}}; }
 
-CancellerInput good(Tick tick) {
-  CancellerInput input{};
+CountermeasureInput good(Tick tick) {
+  CountermeasureInput input{};
   input.tick = tick;
   input.enabled = input.permitted = true;
+  input.trial = kPerturbedTrial;
   return input;
 }
 
@@ -39,9 +41,9 @@ double weight_at(Tick tick) {
 
 // Eq. CC-17: 6 N at 3 Hz needs 113 N/s, far below the limits.
 TEST(PerturbationTest, IsTheMultisineOverTheMeasuredTicksAndZeroOutsideTheTrial) {
-  Perturbation sut(tone(), {});
+  Countermeasure sut({}, {.perturbation = tone()});
   for (Tick tick = 0; tick < 9000; ++tick) {
-    const double force_n = sut.step(good(tick), kPerturbedTrial).force_n;
+    const double force_n = sut.step(good(tick)).force_n;
     if (kPerturbedTrial.measures(tick)) {
       ASSERT_DOUBLE_EQ(force_n, tone().at(tick - 2000).accel_m_s2) << tick;
     } else if (kPerturbedTrial.covers(tick)) {
@@ -54,7 +56,7 @@ TEST(PerturbationTest, IsTheMultisineOverTheMeasuredTicksAndZeroOutsideTheTrial)
 
 TEST(PerturbationTest, FallsToZeroWithinTheRampOnceItMayNotAct) {
   const Config config;
-  const auto spoil = [&](int how, CancellerInput& input) {
+  const auto spoil = [&](int how, CountermeasureInput& input) {
     if (how == 0) input.permitted = false;
     if (how == 1) input.enabled = false;
     if (how == 2) input.sensed_flags = kFault;
@@ -62,13 +64,13 @@ TEST(PerturbationTest, FallsToZeroWithinTheRampOnceItMayNotAct) {
     if (how == 4) input.tick = 3000;  // a stuck sender
   };
   for (int how = 0; how < 5; ++how) {
-    Perturbation sut(tone(), config);
-    for (Tick tick = 1500; tick <= 3000; ++tick) sut.step(good(tick), kPerturbedTrial);
+    Countermeasure sut(config, {.perturbation = tone()});
+    for (Tick tick = 1500; tick <= 3000; ++tick) sut.step(good(tick));
     double force_n = 1.0;
     for (Tick tick = 3001; tick <= 3001 + config.limits.ramp_ticks; ++tick) {
-      CancellerInput input = good(tick);
+      CountermeasureInput input = good(tick);
       spoil(how, input);
-      force_n = sut.step(input, kPerturbedTrial).force_n;
+      force_n = sut.step(input).force_n;
     }
     EXPECT_EQ(force_n, 0.0) << how;
   }
@@ -78,7 +80,7 @@ TEST(PerturbationTest, FallsToZeroWithinTheRampOnceItMayNotAct) {
 TEST(PerturbationTest, IsBoundedForAnyInput) {
   Config config;
   config.limits.max_force_n = 4.0;  // below what the multisine asks for
-  Perturbation sut(tone(), config);
+  Countermeasure sut(config, {.perturbation = tone()});
   signal::Gaussian draw(1, 2);
   double before_n = 0.0;
   Tick tick = 0;
@@ -86,11 +88,11 @@ TEST(PerturbationTest, IsBoundedForAnyInput) {
     const double chance = draw.uniform();
     tick += chance < 0.02 ? -50 : chance < 0.04 ? 90 : 1;
     if (tick > 9000) tick = 0;
-    CancellerInput input = good(tick);
+    CountermeasureInput input = good(tick);
     input.enabled = draw.uniform() > 0.01;
     input.permitted = draw.uniform() > 0.01;
     if (draw.uniform() < 0.01) input.sensed[1] = 1e308;
-    const double force_n = sut.step(input, kPerturbedTrial).force_n;
+    const double force_n = sut.step(input).force_n;
     ASSERT_LE(std::abs(force_n), 4.0);
     // The envelope's slew, and its ramp to zero of at most 4 N in 40 ticks.
     ASSERT_LE(std::abs(force_n - before_n), 2.0 + 1e-12);

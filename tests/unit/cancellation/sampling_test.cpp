@@ -9,27 +9,27 @@
 #include <numbers>
 #include <vector>
 
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/units.hpp"
 
 namespace stillhand::cancellation {
 namespace {
 
-Canceller with_gain(const Config& config, double gain_n_s2_m) {
-  Canceller sut(config);
+Countermeasure with_gain(const Config& config, double gain_n_s2_m) {
+  Countermeasure sut(config, {.force = true});
   const signal::DifferenceModel gain{config.sampling.model_rate_hz(), {gain_n_s2_m}, {1.0}};
   EXPECT_EQ(sut.load_model(control_model(gain)), Refusal::kNone);
   return sut;
 }
 
-CancellerOutput step(Canceller& sut, Tick tick, double accel_m_s2) {
-  return sut.step({tick, {0.0, accel_m_s2, 9.81, 0.0, 0.0, 0.0}, kGood, true, true});
+CountermeasureOutput step(Countermeasure& sut, Tick tick, double accel_m_s2) {
+  return sut.step({tick, {0.0, accel_m_s2, 9.81, 0.0, 0.0, 0.0}, kGood, true, true, {}});
 }
 
 // [s] Delay of the force behind a sinusoid of the acceleration, by projection on its line.
 double measured_delay_s(const Config& config, double frequency_hz) {
-  Canceller sut = with_gain(config, 2.0);
+  Countermeasure sut = with_gain(config, 2.0);
   const Tick period = static_cast<Tick>(kControlRateHz / frequency_hz);
   std::complex<double> line;
   for (Tick n = 0; n < 20 * period; ++n) {
@@ -71,7 +71,7 @@ TEST(SamplingTest, EachStageIsASetting) {
 TEST(SamplingTest, BetweenTwoSamplesTheForceIsHeld) {
   Config config;
   config.sampling.model_ticks = 20;
-  Canceller sut = with_gain(config, 1.0);
+  Countermeasure sut = with_gain(config, 1.0);
   double held_n = 0.0;
   for (Tick n = 0; n < 2000; ++n) {
     const double force_n = step(sut, n, 1e-3 * static_cast<double>(n)).predicted_force_n;
@@ -87,7 +87,7 @@ TEST(SamplingTest, BetweenTwoSamplesTheForceIsHeld) {
 TEST(SamplingTest, AModelOfAnotherRateIsRefused) {
   Config config;
   config.sampling = sampling_named("paper");
-  Canceller sut(config);
+  Countermeasure sut(config, {.force = true});
   const signal::DifferenceModel slow{50.0, {1.0}, {1.0}};
   const signal::DifferenceModel fast{1000.0, {1.0}, {1.0}};
   EXPECT_EQ(sut.load_model(control_model(fast)), Refusal::kWrongRate);
@@ -95,7 +95,7 @@ TEST(SamplingTest, AModelOfAnotherRateIsRefused) {
   ControlModel richer = control_model(slow);
   richer.paths.push_back({Channel::kAccelX, 0.1, {}, 1.0});
   EXPECT_EQ(sut.load_model(richer), Refusal::kWrongRate);
-  Canceller now{Config{}};
+  Countermeasure now({}, {.force = true});
   EXPECT_EQ(now.load_model(control_model(slow)), Refusal::kWrongRate);
 }
 
@@ -104,7 +104,7 @@ TEST(SamplingTest, AModelOfAnotherRateIsRefused) {
 TEST(SamplingTest, AnUnsoundSampleNeverReachesTheLowPass) {
   Config config;
   config.sampling = sampling_named("paper");
-  Canceller sut = with_gain(config, 1.0);
+  Countermeasure sut = with_gain(config, 1.0);
   for (Tick n = 0; n < 3000; ++n) step(sut, n, 1.0);
   step(sut, 3000, std::numeric_limits<double>::quiet_NaN());
   step(sut, 3001, 1e9);
@@ -118,10 +118,10 @@ TEST(SamplingTest, SettingsOutOfRangeAndUnknownNamesAreRefused) {
   EXPECT_THROW(sampling_named("later"), ConfigError);
   Config config;
   config.sampling.latency_samples = kMostLatency_samples + 1;
-  EXPECT_THROW(Canceller{config}, ConfigError);
+  EXPECT_THROW(Countermeasure(config, {.force = true}), ConfigError);
   config.sampling = {};
   config.sampling.model_ticks = 0;
-  EXPECT_THROW(Canceller{config}, ConfigError);
+  EXPECT_THROW(Countermeasure(config, {.force = true}), ConfigError);
 }
 
 }  // namespace

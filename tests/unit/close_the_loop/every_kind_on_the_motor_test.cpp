@@ -12,7 +12,7 @@
 #include "apps/close_the_loop/control_check.hpp"
 #include "apps/close_the_loop/control_model.hpp"
 #include "services/cancellation/control_model_file.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/contract/units.hpp"
 #include "services/diagnosis/core/model/effect_kind.hpp"
 #include "services/diagnosis/core/model/evaluation.hpp"
@@ -91,7 +91,7 @@ double difference(const std::vector<double>& got, const std::vector<double>& wan
 
 // What the canceller predicts of a motion, tick by tick, at the signals' instants; each 10 ticks.
 std::vector<double> live(const ControlModel& model, const Signals& signals) {
-  cancellation::Canceller canceller{cancellation::Config{}};
+  cancellation::Countermeasure canceller({}, {.force = true});
   EXPECT_EQ(canceller.load_model(model), cancellation::Refusal::kNone);
   std::vector<double> out;
   for (std::size_t n = 0; n < signals.size(); ++n) {
@@ -104,7 +104,7 @@ std::vector<double> live(const ControlModel& model, const Signals& signals) {
           sample[c] = diagnosis::value_at(signal.values, static_cast<double>(tick) / 10.0);
         }
       }
-      const auto answer = canceller.step({tick, sample, kGood, true, true});
+      const auto answer = canceller.step({tick, sample, kGood, true, true, {}});
       if (part == 0) out.push_back(answer.predicted_force_n);
     }
   }

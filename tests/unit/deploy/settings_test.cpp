@@ -10,7 +10,7 @@
 
 #include "apps/dashboard/core/config.hpp"
 #include "places.hpp"
-#include "services/cancellation/core/canceller.hpp"
+#include "services/cancellation/core/config.hpp"
 #include "services/device_rig/core/devices_config.hpp"
 #include "services/display/core/tracking_display.hpp"
 #include "services/human_operator/core/subject_config.hpp"

@@ -147,8 +147,8 @@ TEST(LabCodecTest, TheAssignmentHoldsTheBlindedPart) {
 TEST(LabCodecTest, PartsOfAnAssignmentComeBackAsTheyWereSent) {
   session::PlannedTrial planned{};
   planned.label = session::Condition::kDampingForce;
-  planned.parts = {{mitigation::PartKind::kForce, {}},
-                   {mitigation::PartKind::kImpedance, {1.5, 2.5, 3.5}}};
+  planned.parts = {{cancellation::PartKind::kForce, {}},
+                   {cancellation::PartKind::kImpedance, {1.5, 2.5, 3.5}}};
   const auto message = assignment_of(planned);
   EXPECT_STREQ(message.mitigation().c_str(), "damping+force");
   EXPECT_FALSE(message.cancellation());

@@ -11,9 +11,9 @@
 #include "apps/study/mitigations/hand_stand.hpp"
 #include "apps/study/mitigations/mitigated_trial.hpp"
 #include "services/cancellation/codec.hpp"
+#include "services/cancellation/parts/recipe.hpp"
 #include "services/display/codec.hpp"
 #include "services/human_operator/core/crossover_operator.hpp"
-#include "services/mitigation/recipe.hpp"
 #include "services/motion/core/motion_generator.hpp"
 #include "services/population/task.hpp"
 
@@ -26,10 +26,8 @@ using study::run_mitigated;
 using study::TrialScene;
 
 // Feedthrough of an idle hand, roughly: -3.2 N per m/s^2; to position over a stiff arm.
-mitigation::SessionModels models() {
-  return {cancellation::control_model({1000.0, {-3.2}, {1.0}}),
-          signal::DifferenceModel{1000.0, {-3.2 / 1136.0}, {1.0}}};
-}
+const signal::DifferenceModel kForce{1000.0, {-3.2}, {1.0}};
+const signal::DifferenceModel kPosition{1000.0, {-3.2 / 1136.0}, {1.0}};
 
 TrialScene scene() {
   TrialScene out;
@@ -54,16 +52,18 @@ stillhand_msgs::Sensed message_of(const sensing::Sensed& sensed, Tick tick) {
   return out;
 }
 
-mitigation::Recipe over_the_bus(Condition condition) {
+cancellation::Recipe over_the_bus(Condition condition) {
   session::ProtocolOptions options;
   options.trial_s = 12.0;
-  return recipe_of(
+  auto recipe = recipe_of(
       cancellation::parts_of(assignment_of(session::tracking_trial(options, condition, 1))),
-      models(), {});
+      kPosition, {});
+  recipe.model = cancellation::control_model(kForce);
+  return recipe;
 }
 
 // RMS error [mm] behind the settled part.
-double live_error_mm(const TrialScene& scene, const mitigation::Recipe& recipe) {
+double live_error_mm(const TrialScene& scene, const cancellation::Recipe& recipe) {
   rig::RigConfig rig;
   rig.body = scene.subject.body;
   rig.seed = static_cast<std::int64_t>(scene.rig_seed);
@@ -73,7 +73,7 @@ double live_error_mm(const TrialScene& scene, const mitigation::Recipe& recipe) 
   who.arm = population::learnt_feel(rig.body, {}, who.arm);
   if (recipe.impedance) who.arm.effective_damping_n_s_m += recipe.impedance->damping_n_s_m;
   human_operator::CrossoverOperator person(who);
-  mitigation::Mitigation mitigated(recipe);
+  cancellation::Countermeasure mitigated({}, recipe);
   display::TrackingDisplay screen(display::TrackingDisplay::Config{});
   display::CommandInUse command;
   motion::MotionGenerator platform(motion::MotionGenerator::Config{});
@@ -92,7 +92,7 @@ double live_error_mm(const TrialScene& scene, const mitigation::Recipe& recipe) 
     // The display has the sample before cancellation's answer to it.
     const display::TrackingSample shown = screen.step(display::from_idl(sensed, command.at(tick)));
     const auto input = cancellation::from_idl(sensed, covered, covered);
-    const auto answer = cancellation::to_idl(mitigated.step(input), {}, input, sensed, -1, 1);
+    const auto answer = cancellation::to_idl(mitigated.step(input), input, sensed, -1, 1);
     command.offer(display::from_idl(answer));
     stand.drive(answer.force_n(), covered);
     operator_n =
@@ -111,7 +111,7 @@ TEST(LivePathTest, TheBusCostsATickOfTheCommandAndNothingOfTheForce) {
   const double without_mm = run_mitigated(trial, {}, false).error_mm;
   for (const Condition condition : {Condition::kLowPass, Condition::kNotch, Condition::kModelFilter,
                                     Condition::kSignal, Condition::kLmsSignal}) {
-    const mitigation::Recipe recipe = over_the_bus(condition);
+    const cancellation::Recipe recipe = over_the_bus(condition);
     const double live_mm = live_error_mm(trial, recipe);
     const double study_mm = run_mitigated(trial, recipe, false).error_mm;
     std::cout << name_of(condition) << ": " << live_mm << " mm, in the study " << study_mm
@@ -121,7 +121,7 @@ TEST(LivePathTest, TheBusCostsATickOfTheCommandAndNothingOfTheForce) {
   // A force is used in the tick of its sample: to the bit.
   for (const Condition condition : {Condition::kAdaptive, Condition::kLmsForce, Condition::kDamping,
                                     Condition::kDampingForce}) {
-    const mitigation::Recipe recipe = over_the_bus(condition);
+    const cancellation::Recipe recipe = over_the_bus(condition);
     EXPECT_DOUBLE_EQ(live_error_mm(trial, recipe), run_mitigated(trial, recipe, false).error_mm)
         << name_of(condition);
   }

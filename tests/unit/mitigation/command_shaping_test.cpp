@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Low-pass and notch on the command: Eq. MI-1.
-#include "services/mitigation/core/command_shaping.hpp"
+#include "services/cancellation/parts/command_shaping.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "services/contract/config_error.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
 using Kind = ShapingConfig::Kind;
@@ -72,4 +72,4 @@ TEST(CommandShapingTest, RefusesAFilterOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A fitted arm in the time domain: Eq. MI-4.
-#include "services/mitigation/linear_arm.hpp"
+#include "services/cancellation/parts/linear_arm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "services/admittance/core/arm_fit.hpp"
 #include "services/contract/config_error.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
 using Complex = std::complex<double>;
@@ -110,4 +110,4 @@ TEST(LinearArmTest, RefusesAnArmThatIsNone) {
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

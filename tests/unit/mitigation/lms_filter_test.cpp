@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normalised LMS with the acceleration as reference: Eq. MI-3.
-#include "services/mitigation/core/lms_filter.hpp"
+#include "services/cancellation/parts/lms_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/signal/second_order_lag.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -152,4 +152,4 @@ TEST(LmsFilterTest, RefusesSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A difference model sample by sample.
-#include "services/mitigation/core/model_line.hpp"
+#include "services/cancellation/parts/model_line.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "services/contract/config_error.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
 const signal::DifferenceModel kModel{1000.0, {-0.3, 0.2, 0.05, -0.1}, {1.0, -2.1, 1.55, -0.4}};
@@ -48,4 +48,4 @@ TEST(ModelLineTest, RefusesWhatItCannotRun) {
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

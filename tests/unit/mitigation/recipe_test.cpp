@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a trial's assignment carries becomes a mitigation, or is refused before the trial begins.
-#include "services/mitigation/recipe.hpp"
+#include "services/cancellation/parts/recipe.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,21 +12,21 @@
 #include <string>
 
 #include "services/admittance/core/arm_fit.hpp"
+#include "services/cancellation/parts/countermeasure.hpp"
 #include "services/contract/config_error.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
-SessionModels models() {
-  return {cancellation::control_model({1000.0, {-3.0}, {1.0}}),
-          signal::DifferenceModel{1000.0, {-0.002}, {1.0}}};
-}
+using Position = std::optional<signal::DifferenceModel>;
+const Position kPosition = signal::DifferenceModel{1000.0, {-0.002}, {1.0}};
 
-Recipe made(const std::vector<Part>& parts) { return recipe_of(parts, models(), {}); }
+Recipe made(const std::vector<Part>& parts) { return recipe_of(parts, kPosition, {}); }
 
-std::string refusal(const std::vector<Part>& parts, const SessionModels& known = models()) {
+std::string refusal(const std::vector<Part>& parts, const Position& known = kPosition,
+                    const Config& config = {}) {
   try {
-    const Mitigation sut(recipe_of(parts, known, {}));
+    const PartList sut(recipe_of(parts, known, config));
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -42,20 +42,20 @@ TEST(RecipeTest, ValuesStandInTheOrderOfTheIdl) {
   EXPECT_EQ(lms.lms_force->path->stiffness_n_m, 300.0);
   const Recipe both = made({{PartKind::kForce}, {PartKind::kImpedance, {200.0, 60.0, 0.5}}});
   ASSERT_TRUE(both.force && both.impedance);
-  EXPECT_FALSE(both.force->adapts);
+  EXPECT_FALSE(both.follow);
   EXPECT_EQ(both.impedance->stiffness_n_m, 200.0);
   EXPECT_EQ(both.impedance->damping_n_s_m, 60.0);
   EXPECT_EQ(both.impedance->mass_kg, 0.5);
   const Recipe adaptive = made({{PartKind::kForce, {1.0, 2.0, 300.0, 0.1}}});
-  ASSERT_TRUE(adaptive.force && adaptive.force->adapts);
-  EXPECT_EQ(adaptive.force->adapts->stiffness_n_m, 300.0);
+  ASSERT_TRUE(adaptive.force && adaptive.follow);
+  EXPECT_EQ(adaptive.follow->stiffness_n_m, 300.0);
   const Recipe notch = made({{PartKind::kNotch, {1.2, 0.9}}});
   ASSERT_TRUE(notch.shaping);
   EXPECT_EQ(notch.shaping->kind, ShapingConfig::Kind::kNotch);
   EXPECT_EQ(notch.shaping->frequency_hz, 1.2);
   EXPECT_EQ(notch.shaping->damping_ratio, 0.9);
   const Recipe filter = made({{PartKind::kPredictedSignal, {1.0, 2.0, 300.0, 0.1}}});
-  ASSERT_TRUE(filter.force && filter.predicted_signal);
+  ASSERT_TRUE(!filter.force && filter.predicted_signal);
   EXPECT_EQ(filter.predicted_signal->damping_n_s_m, 2.0);
   std::vector<double> arms(2 * admittance::kArmParameters, 0.0);
   arms[admittance::kArmMass] = 1.5;
@@ -66,10 +66,12 @@ TEST(RecipeTest, ValuesStandInTheOrderOfTheIdl) {
   EXPECT_EQ(schedule.schedule->holding[admittance::kArmMass], 2.5);
 }
 
-TEST(RecipeTest, TheSettingsOfTheProcessBoundTheForce) {
-  cancellation::Config settings;
-  settings.limits.max_force_n = 7.0;
-  EXPECT_EQ(recipe_of({{PartKind::kSignal}}, models(), settings).canceller.limits.max_force_n, 7.0);
+TEST(RecipeTest, GainAndPhaseAreFollowedAt1kHzAlone) {
+  Config settings;
+  settings.sampling = sampling_named("paper");
+  const Part follow{PartKind::kForce, {1.394, 11.18, 1136.0, 0.10}};
+  EXPECT_THAT(refusal({follow}, kPosition, settings), testing::HasSubstr("1000 Hz"));
+  EXPECT_EQ(refusal({{PartKind::kForce}}, kPosition, settings), "no error");
 }
 
 TEST(RecipeTest, WhatIsUnsoundIsRefused) {
@@ -112,15 +114,17 @@ const std::vector<double> kAbsurd{kNan, kInf, -kInf,  1e300,  -1e300, 1e150,
                                   1e9,  -1.0, 1e-300, 5e-324, 0.0};
 
 // Refused in one line, or a mitigation whose outputs are bounded.
-bool refused_or_bounded(const Part& part, const SessionModels& known = models()) {
+bool refused_or_bounded(const Part& part, const Position& known = kPosition) {
   try {
-    Mitigation sut(recipe_of({part}, known, {}));
+    Recipe recipe = recipe_of({part}, known, {});
+    recipe.model = control_model({1000.0, {-3.0}, {1.0}});
+    Countermeasure sut({}, recipe);
     for (Tick n = 1; n <= 400; ++n) {
-      cancellation::CancellerInput input{};
+      CountermeasureInput input{};
       input.tick = n;
       input.enabled = input.permitted = true;
       input.sensed = {0.0, 7.5, 9.8, 0.0, n % 2 == 0 ? 0.5 : -0.5, 15.0};
-      const MitigationOutput out = sut.step(input);
+      const CountermeasureOutput out = sut.step(input);
       if (!(std::abs(out.force_n) <= signal::ForceLimits{}.max_force_n)) return false;
       if (!std::isfinite(out.command_rad)) return false;
     }
@@ -179,10 +183,8 @@ TEST(RecipeTest, AHandOrAnArmOfNoPersonIsRefusedByName) {
 TEST(RecipeTest, AModelOfPositionIsCheckedAndItsGainBounded) {
   using testing::HasSubstr;
   const auto refusal_of = [](const signal::DifferenceModel& position) {
-    SessionModels known = models();
-    known.position = position;
-    EXPECT_TRUE(refused_or_bounded({PartKind::kSignal}, known));
-    return refusal({{PartKind::kSignal}}, known);
+    EXPECT_TRUE(refused_or_bounded({PartKind::kSignal}, position));
+    return refusal({{PartKind::kSignal}}, position);
   };
   EXPECT_EQ(refusal_of({1000.0, {-0.059}, {1.0}}), "no error");
   EXPECT_THAT(refusal_of({1000.0, {-0.061}, {1.0}}), HasSubstr("0.06 m per m/s^2"));
@@ -202,14 +204,9 @@ TEST(RecipeTest, AModelOfPositionIsCheckedAndItsGainBounded) {
 }
 
 TEST(RecipeTest, WithoutItsModelAPartIsRefused) {
-  SessionModels known = models();
-  known.position.reset();
-  EXPECT_THAT(refusal({{PartKind::kSignal}}, known), testing::HasSubstr("no model"));
-  known = models();
-  known.force.reset();
-  EXPECT_THAT(refusal({{PartKind::kForce}}, known), testing::HasSubstr("no model"));
-  EXPECT_EQ(refusal({{PartKind::kSignal}}, known), "no error");
+  EXPECT_THAT(refusal({{PartKind::kSignal}}, {}), testing::HasSubstr("no model"));
+  EXPECT_EQ(refusal({{PartKind::kSignal}}), "no error");
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

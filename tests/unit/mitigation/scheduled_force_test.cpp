@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The force of an arm between two known ones: Eq. MI-5.
-#include "services/mitigation/scheduled_force.hpp"
+#include "services/cancellation/parts/scheduled_force.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "services/admittance/core/arm_fit.hpp"
 #include "services/contract/config_error.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -110,4 +110,4 @@ TEST(ScheduledForceTest, RefusesSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The motor as spring, damper and mass: Eq. MI-2.
-#include "services/mitigation/core/stick_impedance.hpp"
+#include "services/cancellation/parts/stick_impedance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "services/contract/config_error.hpp"
 
-namespace stillhand::mitigation {
+namespace stillhand::cancellation {
 namespace {
 
 TEST(StickImpedanceTest, HoldsAgainstAStillStickByItsStiffness) {
@@ -51,4 +51,4 @@ TEST(StickImpedanceTest, RefusesWhatGivesEnergy) {
 }
 
 }  // namespace
-}  // namespace stillhand::mitigation
+}  // namespace stillhand::cancellation

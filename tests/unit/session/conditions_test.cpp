@@ -10,8 +10,8 @@
 
 #include "apps/session/protocol.hpp"
 #include "services/admittance/core/arm_fit.hpp"
+#include "services/cancellation/parts/recipe.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/mitigation/recipe.hpp"
 
 namespace stillhand::session {
 namespace {
@@ -90,8 +90,7 @@ TEST(ConditionsTest, OnlyTheCancellersArePlannedAsC) {
 
 // The canceller's process makes each of them of what a session identifies.
 TEST(ConditionsTest, EachIsMadeOfASessionsModels) {
-  const mitigation::SessionModels models{cancellation::control_model({1000.0, {-3.0}, {1.0}}),
-                                         signal::DifferenceModel{1000.0, {-0.002}, {1.0}}};
+  const signal::DifferenceModel position{1000.0, {-0.002}, {1.0}};
   ProtocolOptions options;
   const admittance::ArmValues arm = admittance::mean_arm();
   options.arms.assign(arm.begin(), arm.end());
@@ -100,7 +99,7 @@ TEST(ConditionsTest, EachIsMadeOfASessionsModels) {
     const PlannedTrial trial = tracking_trial(options, each, 1);
     EXPECT_EQ(trial.parts.empty(), !is_mitigation(each)) << name_of(each);
     if (trial.parts.empty()) continue;
-    EXPECT_NO_THROW(mitigation::Mitigation(recipe_of(trial.parts, models, {}))) << name_of(each);
+    EXPECT_NO_THROW(cancellation::PartList(recipe_of(trial.parts, position, {}))) << name_of(each);
   }
 }
 
@@ -121,7 +120,8 @@ TEST(ConditionsTest, AMitigatedTrialCarriesItsPartsAndDoesNotPassForC) {
   for (const PlannedTrial& trial : trials) {
     const bool mitigated = trial.label == Condition::kDamping;
     EXPECT_EQ(trial.cancellation, trial.label == Condition::kC);
-    EXPECT_EQ(trial.parts, mitigated ? row_of(trial.label).parts : std::vector<mitigation::Part>{});
+    EXPECT_EQ(trial.parts,
+              mitigated ? row_of(trial.label).parts : std::vector<cancellation::Part>{});
   }
 }
 

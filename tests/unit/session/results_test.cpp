@@ -99,7 +99,7 @@ TEST(EvaluateTest, AModelOfAFreeStickIsNotTheSessionsModel) {
 // Which model a mitigation ran: that of the force as the commands name it, that of the position as
 // the newest that came before the trial.
 TEST(EvaluateTest, TheModelsOfAMitigationAreThoseOfItsTrial) {
-  using mitigation::PartKind;
+  using cancellation::PartKind;
   Tape tape;
   tape.whole_tracking(kStart, kEnd, 0.0);
   // Number, trial, to position, usable.
@@ -127,7 +127,7 @@ TEST(EvaluateTest, TheModelsOfAMitigationAreThoseOfItsTrial) {
     tape.file.add(topics::kMotorCommand, command);
   }
   const std::string path = tape.close();
-  const auto models = [&](const std::vector<mitigation::Part>& parts, Condition label) {
+  const auto models = [&](const std::vector<cancellation::Part>& parts, Condition label) {
     TrialOutcome outcome = outcome_of(4, label, kStart);
     outcome.planned.parts = parts;
     return evaluate(path, {outcome}).trials.at(0).models;
@@ -198,12 +198,12 @@ void force(Tape& tape, double share, Tick late) {
 
 // The force of a damper answers the stick: how late it opposes f' means nothing.
 TEST(EvaluateTest, OnlyACounterforceHasADelay) {
-  using mitigation::PartKind;
+  using cancellation::PartKind;
   Tape tape;
   tape.whole_tracking(kStart, kEnd, 0.0);
   force(tape, 0.8, 3);
   const std::string path = tape.close();
-  const auto delays = [&](const std::vector<mitigation::Part>& parts) {
+  const auto delays = [&](const std::vector<cancellation::Part>& parts) {
     TrialOutcome outcome = outcome_of(1, Condition::kDampingForce, kStart);
     outcome.planned.parts = parts;
     return evaluate(path, {outcome}).trials.at(0).counterforce_delay_s.has_value();

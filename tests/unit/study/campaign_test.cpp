@@ -54,8 +54,9 @@ TEST(MitigatedTrialTest, IsTheSessionsTrial) {
   scene.duration_ticks = planned.trial.duration_ticks;
   scene.ramp_ticks = planned.trial.ramp_ticks;
   scene.settle_ticks = 0;
-  mitigation::Recipe recipe;
-  recipe.force = cancellation::control_model(second_order_model());
+  cancellation::Recipe recipe;
+  recipe.force = true;
+  recipe.model = cancellation::control_model(second_order_model());
   const TrialFigures sut = run_mitigated(scene, recipe, false);
   EXPECT_DOUBLE_EQ(sut.error_mm, expected_mm);
   EXPECT_GT(sut.motor_n, 1.0);
