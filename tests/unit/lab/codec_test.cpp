@@ -153,10 +153,10 @@ TEST(LabCodecTest, PartsOfAnAssignmentComeBackAsTheyWereSent) {
   EXPECT_STREQ(message.mitigation().c_str(), "damping+force");
   EXPECT_FALSE(message.cancellation());
   EXPECT_EQ(cancellation::parts_of(message), planned.parts);
-  EXPECT_TRUE(cancellation::from_idl(message).mitigation);
+  EXPECT_TRUE(cancellation::from_idl(message).parts);
   planned.parts.clear();
   EXPECT_STREQ(assignment_of(planned).mitigation().c_str(), "");
-  EXPECT_FALSE(cancellation::from_idl(assignment_of(planned)).mitigation);
+  EXPECT_FALSE(cancellation::from_idl(assignment_of(planned)).parts);
 }
 
 }  // namespace
