@@ -207,9 +207,10 @@ TEST(CancellationCodecTest, EveryFieldOfASensedSampleReachesTheCore) {
   message.accel_x_m_s2(0.1);
   message.accel_z_m_s2(0.2);
   message.roll_rad(0.3);
-  const auto [tick, sensed, flags, enabled, permitted] =
+  const auto [tick, sensed, flags, enabled, permitted, trial] =
       cancellation::from_idl(message, true, false);
   EXPECT_EQ(tick, 7);
+  EXPECT_EQ(trial.number, Trial().number);  // the newest is not in a sample
   EXPECT_EQ(sensed, (cancellation::ChannelSample{0.1, 0.5, 0.2, 0.3, 1.5, 2.5}));
   EXPECT_EQ(flags, 9u);
   EXPECT_EQ(std::tuple(enabled, permitted), std::tuple(true, false));
@@ -298,8 +299,8 @@ TEST(CancellationCodecTest, AControlModelComesBackAsItWasSent) {
 TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
   const auto command = [](bool enabled, bool permitted) {
     const auto input = cancellation::from_idl(sensed_message(), enabled, permitted);
-    return fields_of(
-        cancellation::to_idl({3.5, 4.5, 10, {0.75, 0.125}}, input, sensed_message(), 11));
+    return fields_of(cancellation::to_idl({3.5, 4.5, 10, {0.75, 0.125}, 0.5, 1.25}, input,
+                                          sensed_message(), 11, 13));
   };
   EXPECT_EQ(command(true, false), (Fields{{"rig", "0"},
                                           {"tick", "7"},
@@ -313,28 +314,10 @@ TEST(CancellationCodecTest, EveryFieldOfAMotorCommandIsSet) {
                                           {"enabled", "true"},
                                           {"permitted", "false"},
                                           {"flags", "10"},
-                                          {"taken_off_rad", "0"},
-                                          {"mitigated_trial", "0"}}));
+                                          {"taken_off_rad", "1.25"},
+                                          {"mitigated_trial", "13"}}));
   EXPECT_EQ(command(false, true).at(9).second, "false");
   EXPECT_EQ(command(false, true).at(10).second, "true");
-}
-
-TEST(CancellationCodecTest, AMitigationsForceAndCommandTakeThePlaceOfTheCancellers) {
-  const stillhand_msgs::Sensed sensed = sensed_message();
-  const auto input = cancellation::from_idl(sensed, true, false);
-  const auto message =
-      cancellation::to_idl(cancellation::CountermeasureOutput{6.5, 0.25, 1.25, 12, {1.75, 0.5}},
-                           {3.5, 4.5, 10, {0.75, 0.125}}, input, sensed, 11, 13);
-  EXPECT_EQ(message.force_n(), 6.5);
-  EXPECT_EQ(message.taken_off_rad(), 1.25);
-  EXPECT_EQ(message.flags(), 12u);
-  EXPECT_EQ(message.mitigated_trial(), 13);
-  // Of the force that acts.
-  EXPECT_EQ(message.gain_weight(), 1.75);
-  EXPECT_EQ(message.phase_weight(), 0.5);
-  // The canceller's prediction is recorded on.
-  EXPECT_EQ(message.predicted_force_n(), 4.5);
-  EXPECT_EQ(std::tuple(message.enabled(), message.permitted()), std::tuple(true, false));
 }
 
 TEST(DisplayCodecTest, WhatAMitigationTakesOffReachesTheCore) {
