@@ -176,7 +176,8 @@ class ContentTest(unittest.TestCase):
         for path, place in self.files():
             self.assertRegex(str(place), r"^(usr(/(bin|include|lib|share)(/|$)|$)|etc(/security(/|$)|$))")
             mode = path.lstat().st_mode & 0o7777
-            executable = path.is_dir() or place.parts[:2] == ("usr", "bin") or place.suffix in (".sh", ".py")
+            program = place.suffix == ".sh" or (place.suffix == ".py" and place.parts[1] == "share")
+            executable = path.is_dir() or place.parts[:2] == ("usr", "bin") or program
             self.assertEqual(oct(mode), oct(0o755 if executable else 0o644), place)
         for package in (PACKAGES.programs, PACKAGES.development):
             for line in output_of("dpkg-deb", "--contents", package).splitlines():
