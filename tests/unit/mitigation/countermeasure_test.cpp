@@ -50,6 +50,7 @@ CountermeasureInput input(Tick tick, double accel_m_s2, double theta_rad, double
   out.sensed[static_cast<std::size_t>(Channel::kTheta)] = theta_rad;
   out.sensed[static_cast<std::size_t>(Channel::kOmega)] = omega_rad_s;
   out.enabled = out.permitted = true;
+  out.trial = {1, TrialPhase::kTracking, 0, 1'000'000, 0};
   return out;
 }
 
@@ -69,6 +70,9 @@ std::vector<Recipe> recipes() {
   out.push_back(one);
   one = {};
   one.lms_force = all.lms_force;
+  out.push_back(one);
+  one = {};
+  one.perturbation = signal::Multisine(1000, 1000.0, {{3, 30.0, 0.7}});  // above the limit
   out.push_back(one);
   return out;
 }
@@ -405,6 +409,13 @@ TEST(CountermeasureTest, RefusesAnUnsoundModel) {
   unstable.denominator = {1.0, -2.1, 1.2};
   recipe.model = control_model(unstable);
   EXPECT_THROW(Countermeasure({}, recipe), ConfigError);
+  recipe = {};
+  // Another rate; a numerator that is too short.
+  for (const auto& each : {unstable, signal::DifferenceModel{50.0, {1e-3}, {1.0}},
+                           signal::DifferenceModel{1000.0, {1e-3}, {1.0, -0.9}}}) {
+    recipe.signal = SignalConfig{each, {}, {}};
+    EXPECT_THROW(Countermeasure({}, recipe), ConfigError);
+  }
   recipe = {};
   recipe.lever_m = 0.0;
   EXPECT_THROW(Countermeasure({}, recipe), ConfigError);
