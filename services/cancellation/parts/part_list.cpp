@@ -24,8 +24,13 @@ PartList::PartList(const Recipe& recipe) : force_(recipe.force), lever_m_(recipe
   if (recipe.impedance) impedance_.emplace(*recipe.impedance);
   if (recipe.lms_force) lms_force_.emplace(*recipe.lms_force);
   if (recipe.signal) {
-    signal_.emplace(recipe.signal->feedthrough_to_position);
-    settle_ticks_ = cancellation::settle_ticks(recipe.signal->feedthrough_to_position);
+    const signal::DifferenceModel& model = recipe.signal->feedthrough_to_position;
+    if (!signal::well_formed(model) || !signal::is_stable(model) ||
+        model.order() > ControlModelFilter::kMaxOrder || model.rate_hz != kControlRateHz) {
+      throw ConfigError("mitigation.signal", "a model that is none", "a stable one at 1000 Hz");
+    }
+    settle_ticks_ = cancellation::settle_ticks(model);
+    signal_.emplace(control_model(model), settle_ticks_);
     if (recipe.signal->moved_by_motor) {
       moved_by_motor_.emplace(*recipe.signal->moved_by_motor, recipe.signal->stick);
     }
@@ -46,7 +51,11 @@ double PartList::forces(const Moment& now) noexcept {
 
 double PartList::moved(const Moment& now) noexcept {
   double moved_m = 0.0;
-  if (signal_) moved_m += signal_->step(now.accel_m_s2);
+  if (signal_) {
+    ChannelSample sample{};
+    sample[static_cast<std::size_t>(Channel::kAccelY)] = now.accel_m_s2;
+    moved_m += signal_->step(sample, now.tick).feedthrough_n;
+  }
   if (moved_by_motor_) moved_m += moved_by_motor_->step(0.0, now.motor_n).displacement_m;
   if (predicted_signal_) {
     moved_m += lever_m_ * (now.theta_rad - predicted_signal_->step(now.theta_rad, now.predicted_n));

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "services/cancellation/core/control_model_filter.hpp"
 #include "services/cancellation/parts/adaptive_gain.hpp"
 #include "services/cancellation/parts/command_filter.hpp"
 #include "services/cancellation/parts/command_shaping.hpp"
 #include "services/cancellation/parts/linear_arm.hpp"
 #include "services/cancellation/parts/lms_filter.hpp"
-#include "services/cancellation/parts/model_line.hpp"
 #include "services/cancellation/parts/perturbation.hpp"
 #include "services/cancellation/parts/scheduled_force.hpp"
 #include "services/cancellation/parts/stick_impedance.hpp"
@@ -97,7 +97,7 @@ class PartList {
   std::optional<ScheduledForce> schedule_;
   std::optional<StickImpedance> impedance_;
   std::optional<LmsFilter> lms_force_;
-  std::optional<ModelLine> signal_;
+  std::optional<ControlModelFilter> signal_;
   std::optional<LinearArm> moved_by_motor_;
   std::optional<CommandFilter> predicted_signal_;
   std::optional<LmsFilter> lms_signal_;
