@@ -12,9 +12,8 @@ if ! cmake --preset "$preset" >"$log" 2>&1; then
   echo "build: cmake --preset $preset failed" >&2
   exit 1
 fi
-if [ -t 1 ]; then
-  cmake --build --preset "$preset"
-elif ! cmake --build --preset "$preset" >"$log" 2>&1; then
+: >"$log"
+if ! deploy/with_progress.sh build "$log" cmake --build --preset "$preset"; then
   tail -n 60 "$log" >&2
   echo "build: the build failed; its last lines are above" >&2
   exit 1

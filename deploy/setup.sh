@@ -30,9 +30,9 @@ fi
 echo "set-up: installing ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if ! { "${as_root[@]}" apt-get update &&
-       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get satisfy -y --no-install-recommends "${missing[@]}"; } \
-     >"$log" 2>&1; then
+step() { deploy/with_progress.sh set-up "$log" "${as_root[@]}" "$@"; }
+if ! { step apt-get update &&
+       step env DEBIAN_FRONTEND=noninteractive apt-get satisfy -y --no-install-recommends "${missing[@]}"; }; then
   tail -n 20 "$log" >&2
   echo "set-up: apt-get failed; its last lines are above" >&2
   exit 1
