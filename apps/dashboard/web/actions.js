@@ -72,7 +72,7 @@ export class Actions {
   }
 
   show({ actions, session, recorders = [] }) {
-    const enabled = actions?.enabled === true;
+    const enabled = actions?.enabled === true && session.replayed !== true;
     this.emergency.hidden = !enabled;
     element("actions-part").hidden = !enabled;
     if (!enabled) return;

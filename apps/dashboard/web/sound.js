@@ -51,9 +51,10 @@ export class Sound {
     }
   }
 
-  hear({ mode, alarms }) {
-    this.button.hidden = mode === "recording";
-    if (!this.on || mode === "recording") return;
+  hear({ mode, alarms, session }) {
+    const past = mode === "recording" || session.replayed === true;
+    this.button.hidden = past;
+    if (!this.on || past) return;
     const open = alarms.filter((alarm) => !alarm.acknowledged);
     const level = open.length === 0 ? null : open.some((alarm) => alarm.level === "critical") ? "critical" : "warning";
     const now = performance.now();

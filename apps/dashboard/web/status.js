@@ -2,7 +2,7 @@
 // The strip, which is read from across the room.
 import { SIGN_IN, clock, element, short, span, write } from "/elements.js";
 
-const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–" };
+const SIGNS = { healthy: "✓", warning: "!", critical: "✕", none: "–", replay: "▶" };
 const WORDS = { healthy: "Healthy", warning: "Warning", critical: "Critical" };
 const SESSIONS = { none: "No session", waiting: "Session waiting", ending: "Session over", unknown: "Session unknown" };
 const SECOND_WRITER_SHOWN_MS = 60000; // it also stays in the list of events
@@ -71,12 +71,17 @@ export function alarmsOfNow({ mode, alarms, recent = [] }) {
 export function showStatus(snapshot) {
   const { alarms, session, now_ms: now } = snapshot;
   const recording = snapshot.mode === "recording";
-  element("acknowledge").disabled = recording || !alarms.some((alarm) => !alarm.acknowledged);
-  element("acknowledge").hidden = recording;
+  const past = recording || session.replayed === true;
+  element("acknowledge").disabled = past || !alarms.some((alarm) => !alarm.acknowledged);
+  element("acknowledge").hidden = past;
   const title = recording ? `recording ${snapshot.file}` : `domain ${snapshot.domain}, rig ${snapshot.rig}`;
   const shown = alarmsOfNow(snapshot);
   const second = snapshot.events.find(({ kind, at_ms: at }) => kind === "second writer" && now - at < SECOND_WRITER_SHOWN_MS);
-  if (session.emergency) {
+  if (session.replayed) {
+    // What was an emergency then is none now.
+    const then = session.emergency ? "; at that time: emergency stop" : shown.length > 0 ? `; at that time: ${what(shown[0])}` : "";
+    strip("replay", "REPLAY", `a recording is played on ${title}: no rig runs, and no action reaches one${then}`, "");
+  } else if (session.emergency) {
     const when = session.emergency_ms ? `requested ${clock(session.emergency_ms)}\n${span(now - session.emergency_ms)} ago` : "";
     const ends = session.state === "ending" ? "the session is over" : "the motor's force goes to zero, the platform brakes, the session ends";
     strip("critical", "Emergency stop", ends, when);

@@ -155,7 +155,8 @@ export class Tables {
     const place = (name, at, all) => (at > 0 ? `${name} ${at}${all > 0 ? ` of ${all}` : ""}` : "");
     const left = protocol.left_s === null ? "" : ` ${minutes(protocol.left_s)}`;
     const asks = protocol.kind === "question" ? "waits for the participant's answer" : "waits for the participant to go on";
-    const waits = { start: "waits for Start", participant: asks, break: "break, next one in", rest: "rest, begins in", trial: "runs, left" }[protocol.waits_for] ?? "";
+    const timed = (word, then) => (left === "" ? word : word + then);
+    const waits = { start: "waits for Start", participant: asks, break: timed("break", ", next one in"), rest: timed("rest", ", begins in"), trial: timed("runs", ", left") }[protocol.waits_for] ?? "";
     const step = protocol.kind === "practice" ? place("practice", protocol.trial, protocol.trials)
       : protocol.kind === "identification" || protocol.kind === "instructions" || protocol.kind === "end" ? protocol.kind : place("trial", protocol.trial, protocol.trials);
     const parts = [protocol.participant, place("block", protocol.block, protocol.blocks), step, state === "ending" ? "over" : waits + left];
