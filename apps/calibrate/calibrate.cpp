@@ -16,6 +16,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/calibration_fit.hpp"
 #include "services/device_rig/load_devices.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::calibrate {
@@ -188,7 +189,7 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
   std::cout << fmt::format("{}: {}; no motor is armed\n", words.name, device);
   Steps steps(options, station);
   if (!steps.take(known, interrupted)) {
-    std::cerr << "stillhand calibrate: broken off; nothing is written\n";
+    runtime::remark("broken off; nothing is written");
     return 1;
   }
   const CalibrationFit fit = device_rig::calibration_fit(steps.steps());
@@ -196,7 +197,7 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
   std::string fault = device_rig::calibration_fault(fit, options.tolerance, words.unit);
   if (fault.empty()) fault = gain_fault(options, fit, sensing);
   if (!fault.empty()) {
-    std::cerr << "stillhand calibrate: " << words.name << ": " << fault << "; nothing is written\n";
+    runtime::remark(words.name + ": " + fault + "; nothing is written");
     return 1;
   }
   write(options, record_of(options, fit, device, steps, sensing), sensing);

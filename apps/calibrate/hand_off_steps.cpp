@@ -16,6 +16,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/hand_off.hpp"
 #include "services/device_rig/load_devices.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/settings/load.hpp"
 #include "services/signal/smooth_step.hpp"
 
@@ -270,15 +271,14 @@ int run_hand_off_check(const CalibrateOptions& options, const runtime::Stop& int
     write_calibrations(options.config, all);
     return 0;
   } catch (const Wrong& wrong) {
-    std::cerr << "stillhand calibrate: check: " << wrong.what
-              << "; no session pushes before it is right\n";
+    runtime::remark("check: " + wrong.what + "; no session pushes before it is right");
     forget_earlier_check();
   } catch (const ConfigError&) {
     // A figure that is no number: nothing is known.
     forget_earlier_check();
     throw;
   } catch (const BrokenOff&) {
-    std::cerr << "stillhand calibrate: broken off; nothing is written\n";
+    runtime::remark("broken off; nothing is written");
   }
   return 1;
 }

@@ -15,6 +15,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/device_rig/core/platform_response.hpp"
 #include "services/device_rig/load_devices.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::calibrate {
@@ -149,7 +150,7 @@ int run_calibrate_platform(const CalibrateOptions& options, const runtime::Stop&
       "{} s, and brakes on Ctrl-C.",
       1e3 * options.motion_m, 2 * options.periods + 6);
   const auto broken_off = [] {
-    std::cerr << "stillhand calibrate: broken off; nothing is written\n";
+    runtime::remark("broken off; nothing is written");
     return 1;
   };
   if (!done_by_person(step, interrupted)) return broken_off();
@@ -157,7 +158,7 @@ int run_calibrate_platform(const CalibrateOptions& options, const runtime::Stop&
   if (!found) return broken_off();
   print(*found);
   if (const std::string fault = fault_of(*found); !fault.empty()) {
-    std::cerr << "stillhand calibrate: platform: " << fault << "; nothing is written\n";
+    runtime::remark("platform: " + fault + "; nothing is written");
     return 1;
   }
   auto all = device_rig::load_calibrations(options.config / "calibration.yaml");

@@ -42,7 +42,7 @@ TrialRun LiveTrialSession::run(const session::PlannedTrial& planned, const std::
   const session::TrialOutcome& outcome = trials_.run(numbered);
   if (!outcome.completed) {
     throw std::runtime_error("trial " + std::to_string(outcome.planned.trial.number) + " (" +
-                             label + ") is marked: " + outcome.aborted);
+                             label + ") does not count: " + outcome.aborted);
   }
   TrialRun out;
   out.label = label;

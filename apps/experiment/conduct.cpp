@@ -5,12 +5,12 @@
 
 #include <cstdio>
 #include <exception>
-#include <iostream>
 #include <optional>
 
 #include "apps/experiment/session_script.hpp"
 #include "apps/lab/lab.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::experiment {
 namespace {
@@ -113,7 +113,7 @@ int conduct(const Folder& folder, std::size_t index, lab::LabOptions lab, runtim
               static_cast<long long>(session), static_cast<long long>(progress.trials_done()),
               static_cast<long long>(trials_of(plan)));
   if (complete) return 0;
-  std::cerr << "stillhand experiment: " << why << "; run it again to go on\n";
+  runtime::remark(why + "; run it again to go on");
   return 1;
 }
 

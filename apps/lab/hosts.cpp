@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <iostream>
 #include <stdexcept>
 
 #include "apps/deploy/generated_file.hpp"
@@ -16,6 +15,7 @@
 #include "idl/topics.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -39,9 +39,9 @@ Hosts::Hosts(const LabOptions& options)
     local_.security = inventory_->security;
     check(options);
     if (inventory_->open_to_all()) {
-      std::cerr << "stillhand lab: " << options.inventory.string()
-                << ": security: none: every program on the network of these machines can read, "
-                   "disturb or imitate this session\n";
+      runtime::remark(options.inventory.string() +
+                      ": security: none: every program on the network of these machines can read, "
+                      "disturb or imitate this session");
     }
   }
   // A service that runs already has checked its own keys.
@@ -171,9 +171,8 @@ void Hosts::bring_back() noexcept {
       if (video_ && host == host_of("display")) fetch("display", "screen.avi");
       remote->close();
     } catch (const std::exception& error) {
-      std::cerr << fmt::format(
-          "stillhand lab: host {}: the files in {} could not be brought here: {}\n", host->name,
-          remote->folder(), error.what());
+      runtime::remark(fmt::format("host {}: the files in {} could not be brought here: {}",
+                                  host->name, remote->folder(), error.what()));
     }
   }
   remotes_.clear();
@@ -190,9 +189,9 @@ void Hosts::bring_recording(const std::filesystem::path& file) noexcept {
       RemoteHost(*host, local_.out / "logs" / ("host_" + host->name + ".log")).fetch(file, to);
     }
   } catch (const std::exception& error) {
-    std::cerr << fmt::format("stillhand lab: the recording stays {}, \"{}\": {}\n",
-                             host == nullptr ? "where it is" : "on host " + host->name,
-                             file.string(), error.what());
+    runtime::remark(fmt::format("the recording stays {}, \"{}\": {}",
+                                host == nullptr ? "where it is" : "on host " + host->name,
+                                file.string(), error.what()));
   }
 }
 

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <iostream>
-
 #include "apps/lab/remote.hpp"
 #include "services/runtime/bus/identity.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::lab {
 
@@ -17,7 +16,7 @@ void check_keys(const std::filesystem::path& folder, std::uint32_t domain,
     const auto identity = runtime::Identity::of(folder, service);
     runtime::check_identity(identity, domain);
     const std::string warning = runtime::expiry_warning(identity);
-    if (!warning.empty()) std::cerr << "stillhand lab: " << warning << '\n';
+    if (!warning.empty()) runtime::remark(warning);
   }
 }
 

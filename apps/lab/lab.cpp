@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <exception>
-#include <iostream>
 #include <optional>
 #include <stdexcept>
 
@@ -24,6 +23,7 @@
 #include "services/rig/sealed_file.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -188,7 +188,7 @@ int run_lab(const LabOptions& options, runtime::Stop& stop) {
     }
   });
   if (live.outcomes.empty() && live.interrupted) {
-    std::cerr << "stillhand lab: interrupted before the first trial\n";
+    runtime::remark("interrupted before the first trial");
     return 1;
   }
   const runtime::OrdinaryWhile ordinary;

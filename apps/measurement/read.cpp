@@ -17,6 +17,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/csv.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -65,7 +66,7 @@ diagnosis::Measurement read_session(const std::string& path, const ReadOptions& 
   SessionRows session = options.session_trial.empty()
                             ? read_session_rows(path, options.trial)
                             : read_session_rows(path, options.session_trial, true);
-  if (!session.loss.empty()) std::fprintf(stderr, "stillhand: %s\n", session.loss.c_str());
+  if (!session.loss.empty()) runtime::remark(session.loss);
   return with_notes(std::move(session.rows), options.most_values, session.notes);
 }
 

@@ -19,6 +19,7 @@
 #include "apps/session/misses_json.hpp"
 #include "apps/session/session_recording.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::misses {
 namespace {
@@ -100,7 +101,7 @@ int run(const Words& words) {
   }
   files.publish();
   for (const std::string& damage : session.damage) {
-    fmt::print(stderr, "stillhand misses: {}: {}\n", words.recording, damage);
+    runtime::remark(words.recording + ": " + damage);
   }
   return 0;
 }

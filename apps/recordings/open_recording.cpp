@@ -7,6 +7,7 @@
 
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/mcap_loss.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::recordings {
 
@@ -31,7 +32,7 @@ OpenRecording::OpenRecording(const std::string& file, Stopped stopped)
 
 void OpenRecording::tell_loss(std::uint64_t messages) const {
   const std::string line = recording::loss_line(path, reader, messages, source.being_written());
-  if (!line.empty()) std::fprintf(stderr, "stillhand: %s\n", line.c_str());
+  if (!line.empty()) runtime::remark(line);
 }
 
 void check(const recording::Status& status) {

@@ -16,6 +16,7 @@
 #include "services/contract/config_error.hpp"
 #include "services/recording/core/mcap/compression.hpp"
 #include "services/recording/core/mcap/mcap_loss.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/runtime/process/stop.hpp"
 
 namespace stillhand::recordings {
@@ -167,11 +168,11 @@ int run_export(const ExportWords& words) {
   std::fflush(stdout);
   for (const ExportedTopic& topic : exported.topics) {
     if (topic.unread == 0) continue;
-    fmt::print(stderr, "stillhand: {}: {} messages that do not match their type are left out\n",
-               topic.topic, topic.unread);
+    runtime::remark(fmt::format("{}: {} messages that do not match their type are left out",
+                                topic.topic, topic.unread));
   }
   for (const std::string& reason : exported.left_out) {
-    fmt::print(stderr, "stillhand: left out: {}\n", reason);
+    runtime::remark("left out: " + reason);
   }
   return 0;
 }

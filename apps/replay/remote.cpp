@@ -11,6 +11,7 @@
 #include "apps/replay/replay.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/contract/units.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::replay {
 namespace {
@@ -152,11 +153,11 @@ int run_remote(const std::string& text, const ReplayOptions& options, runtime::S
       runtime::outsider("remote", options.domain, options.profiles, true), topics::kReplayCommand,
       topics::kReplayStatus, parse_command(text), runtime::kAnswerLimit_ns, stop);
   if (!status) {
-    fmt::print(stderr, "stillhand: no replay answers on domain {}\n", options.domain);
+    runtime::remark(fmt::format("no replay answers on domain {}", options.domain));
     return 1;
   }
   if (!status->accepted()) {
-    fmt::print(stderr, "stillhand: {}: {}\n", text, status->answer().c_str());
+    runtime::remark(text + ": " + status->answer().c_str());
     return 1;
   }
   fmt::print("{:.3f} of {:.3f} s, rate {:g}{}{}, {} messages\n", status->position_s(),

@@ -17,6 +17,7 @@
 #include "services/recording/core/mcap/mcap_loss.hpp"
 #include "services/runtime/bus/playback.hpp"
 #include "services/runtime/process/clock.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::replay {
 
@@ -234,8 +235,8 @@ int run_replay(const ReplayOptions& options, runtime::Stop& stop) {
   const std::vector<recording::Damage> damage = source.damage();
   const std::string loss =
       recording::loss_line(options.file, damage, std::nullopt, file.being_written());
-  if (!loss.empty()) fmt::print(stderr, "stillhand: {}\n", loss);
-  if (refused > 0) fmt::print(stderr, "stillhand: Fast DDS refused {} messages\n", refused);
+  if (!loss.empty()) runtime::remark(loss);
+  if (refused > 0) runtime::remark(fmt::format("Fast DDS refused {} messages", refused));
   return recording::lost_bytes(damage) == 0 && refused == 0 ? 0 : 1;
 }
 

@@ -29,16 +29,18 @@
 #include "apps/study/study_command.hpp"
 #include "apps/vehicle/vehicle_command.hpp"
 #include "services/contract/config_error.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "version.hpp"
 
 namespace {
+
+namespace runtime = stillhand::runtime;
 
 // A verb whose output could not be written has failed.
 int flushed(int status) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0) return status;
-  std::cerr << "stillhand: standard output cannot be written; redirect it to a file or terminal "
-               "with room\n";
+  runtime::remark("standard output cannot be written; redirect it to a file or terminal with room");
   return status == 0 ? 1 : status;
 }
 
@@ -87,19 +89,20 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return flushed(cli.exit(error));  // --help, --version
     const std::string why = stillhand::misspelt_word(cli);
-    std::cerr << (why.empty()
-                      ? "stillhand: " + std::string(error.what()) + "; see `stillhand help VERB`"
-                      : why)
-              << '\n';
+    if (!why.empty()) {
+      std::cerr << why << '\n';
+    } else {
+      runtime::remark(std::string(error.what()) + "; see `stillhand help VERB`");
+    }
     return 2;
   } catch (const stillhand::ConfigError& error) {
-    std::cerr << "stillhand: " << error.what() << '\n';
+    runtime::remark(error.what());
     return 2;
   } catch (const stillhand::lab::RefusedByProcess& error) {
     std::cerr << error.what() << '\n';
     return 2;
   } catch (const std::exception& error) {
-    std::cerr << "stillhand: " << error.what() << '\n';
+    runtime::remark(error.what());
     return 1;
   }
 }

@@ -21,6 +21,7 @@
 #include "services/runtime/emergency_stop.hpp"
 #include "services/runtime/process/clock.hpp"
 #include "services/runtime/process/real_time.hpp"
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::stop {
 namespace {
@@ -138,20 +139,20 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
   };
   std::deque<Asked> all;
   std::exception_ptr why;
-  std::string failures;
+  std::vector<std::string> failures;
   const auto ask = [&] {
     for (Asked& asked : all) asked.ask();
   };
   for (const RunningSession& session : sessions) {
     if (!in_time()) {
-      failures += fmt::format("stillhand stop: {}: no time was left to ask it\n", name_of(session));
+      failures.push_back(name_of(session) + ": no time was left to ask it");
       continue;
     }
     try {
       all.emplace_back(options, session);
     } catch (const std::exception& error) {
       why = std::current_exception();
-      failures += fmt::format("stillhand stop: {}: {}\n", name_of(session), error.what());
+      failures.push_back(name_of(session) + ": " + error.what());
     }
     ask();
   }
@@ -163,10 +164,10 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
     runtime::sleep_until_ns(runtime::monotonic_ns() + kPeriod_ns);
   }
   for (const Asked& asked : all) std::cout << asked.line(began_ns) << '\n';
-  std::cerr << failures;
+  for (const std::string& failure : failures) runtime::remark(failure);
   const bool confirmed = !open();
   if (!confirmed && options.security.empty()) {
-    std::cerr << "stillhand stop: a session with keys hears only a stop with --security DIR\n";
+    runtime::remark("a session with keys hears only a stop with --security DIR");
   }
   return confirmed && all.size() == sessions.size() ? 0 : 1;
 }
@@ -174,8 +175,7 @@ int stop_sessions(std::span<const RunningSession> sessions, const StopOptions& o
 int run_stop(const StopOptions& options, const runtime::Stop& interrupted) {
   const std::vector<RunningSession> sessions = asked_sessions(options);
   if (!sessions.empty()) return stop_sessions(sessions, options, interrupted);
-  std::cerr << "stillhand stop: no session runs on this machine; --domain N asks one whose lab "
-               "runs elsewhere\n";
+  runtime::remark("no session runs on this machine; --domain N asks one whose lab runs elsewhere");
   return 1;
 }
 

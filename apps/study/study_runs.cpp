@@ -16,6 +16,7 @@
 #include "apps/study/study.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/rig/sealed_file.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "services/settings/describe.hpp"
 
@@ -70,10 +71,9 @@ void conclude(StudyRecord& record, report::StagedFolder& folder, const runtime::
   write_study(record, folder);
   print_study(record);
   if (record.options.subjects <= 2) {
-    fmt::print(stderr,
-               "stillhand study: got {} subject(s), want 3 or more for a meaningful t-test; the "
-               "paper has 12\n",
-               record.options.subjects);
+    runtime::remark(
+        fmt::format("got {} subject(s), want 3 or more for a meaningful t-test; the paper has 12",
+                    record.options.subjects));
   }
   fmt::print("report and figures in {}\n", out.string());
 }

@@ -13,6 +13,7 @@
 #include "apps/report/staged_folder.hpp"
 #include "apps/vehicle/region.hpp"
 #include "apps/vehicle/region_output.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/runtime/process/stop.hpp"
 #include "services/settings/check_name.hpp"
 #include "services/settings/check_number.hpp"
@@ -39,7 +40,7 @@ int run(const Words& words) {
   });
   progress.finish();
   if (region.runs.empty()) {
-    std::fputs("stillhand vehicle: stopped; nothing was written\n", stderr);
+    runtime::remark("stopped; nothing was written");
     return 1;
   }
   folder.write("summary.json", region_json(options, region));

@@ -45,7 +45,7 @@ class InterruptedVerbsTest(unittest.TestCase):
         finally:
             verb.kill()
         self.assertEqual(verb.returncode, 1, errors)
-        self.assertEqual(errors, "stillhand: stopped before the end; nothing was written\n")
+        self.assertEqual(errors, f"stillhand {words[0]}: stopped before the end; nothing was written\n")
         self.assertEqual(output, "")
         self.assertEqual(list(self.folder.iterdir()), [])
 
