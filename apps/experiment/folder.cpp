@@ -131,6 +131,12 @@ std::filesystem::path Folder::session(std::size_t index, std::int64_t number) co
 
 Plan Folder::plan(std::size_t index) const { return plan_of(design_, assignment_, index); }
 
+std::size_t Folder::with_session(const std::string& code) const {
+  const std::size_t index = participant_index(code, design_.participants);
+  if (std::filesystem::exists(journal(index))) return index;
+  throw ConfigError("--participant", code + ", who has no session", "a participant with a journal");
+}
+
 std::vector<std::string> Folder::findings(std::size_t index,
                                           const std::vector<Entry>& entries) const {
   std::vector<std::string> found;
@@ -195,11 +201,6 @@ void make_folder(const std::filesystem::path& path, Design design, std::uint64_t
   write_whole(path / kSealedFile, sealed);
   write_whole(path / kDigestFile, digest_line(rig::sha256(yaml), kDesignFile));
   write_whole(path / kDesignFile, yaml);  // last: it makes the folder an experiment
-}
-
-std::vector<Entry> read_journal(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return {};
-  return entries_of(recording::read_file(file.string()), file.string());
 }
 
 }  // namespace stillhand::experiment

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/experiment/core/plan.hpp"
-#include "apps/experiment/journal.hpp"
+#include "apps/experiment/file/journal.hpp"
 
 namespace stillhand::experiment {
 
@@ -38,6 +38,8 @@ class Folder {
   /// "sessions/02" of a participant.
   [[nodiscard]] std::filesystem::path session(std::size_t index, std::int64_t number) const;
   [[nodiscard]] Plan plan(std::size_t index) const;
+  /// Index of the participant of a code.  @throws ConfigError for one who has no session
+  [[nodiscard]] std::size_t with_session(const std::string& code) const;
 
   /// What a participant's folder has against its journal: a missing recording, one of another
   /// participant, session or experiment, one that the journal does not know.  Empty: nothing.
@@ -61,8 +63,5 @@ class Folder {
 /// Makes the folder of a new experiment.
 /// @throws ConfigError when the folder holds anything already
 void make_folder(const std::filesystem::path& path, Design design, std::uint64_t order_seed);
-
-/// The entries of a participant's journal, without a lock; none if there is no journal.
-std::vector<Entry> read_journal(const std::filesystem::path& file);
 
 }  // namespace stillhand::experiment

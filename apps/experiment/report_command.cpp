@@ -16,37 +16,37 @@ namespace {
 
 constexpr const char* kReportFolder = "report";
 
-struct Words {
+struct ReportOptions {
   std::filesystem::path folder;
   study::StudyRecord record;
 };
 
 // The study of the recordings: `stillhand study --sessions DIR --out DIR/report`, after the checks
 // of the folder.
-int report_on(Words& words) {
-  const Folder folder(words.folder);
+int report_on(ReportOptions& options) {
+  const Folder folder(options.folder);
   folder.refuse_findings();
-  words.record.command_line = report::command_line();
-  return study::run_recorded(words.record, {folder.path()}, folder.path() / kReportFolder);
+  options.record.command_line = report::command_line();
+  return study::run_recorded(options.record, {folder.path()}, folder.path() / kReportFolder);
 }
 
 }  // namespace
 
 void add_report_command(CLI::App& verb, int& status) {
-  const auto words = std::make_shared<Words>();
+  const auto options = std::make_shared<ReportOptions>();
   CLI::App* sub = verb.add_subcommand(
       "report",
       "Writes DIR/report: tables, figures and tests of an unblinded experiment, as\n"
       "`stillhand study --sessions DIR` computes them.");
-  sub->add_option("DIR", words->folder, "folder of the experiment")
+  sub->add_option("DIR", options->folder, "folder of the experiment")
       ->required()
       ->check(settings::check_name);
-  study::add_plan_options(*sub, words->record.plan_dz);
-  study::add_people_options(*sub, words->record);
-  sub->add_option("--threads", words->record.options.threads,
+  study::add_plan_options(*sub, options->record.plan_dz);
+  study::add_people_options(*sub, options->record);
+  sub->add_option("--threads", options->record.options.threads,
                   "number of threads, 0: one per core; the results do not depend on it")
       ->check(CLI::Range(0, 256));
-  sub->callback([words, &status] { status = report_on(*words); });
+  sub->callback([options, &status] { status = report_on(*options); });
 }
 
 }  // namespace stillhand::experiment

@@ -46,10 +46,12 @@ std::uint64_t order_seed_of(const std::string& sealed, const std::string& origin
   return root.at("order_seed").count();
 }
 
-std::string opened_text(const Design& design, const Assignment& assignment) {
+std::string opened_text(const Design& design, const Assignment& assignment,
+                        std::optional<std::size_t> only) {
   nlohmann::ordered_json json;
   for (std::int64_t n = 0; n < design.participants; ++n) {
     const auto participant = static_cast<std::size_t>(n);
+    if (only && *only != participant) continue;
     const auto labels = labels_of(design.conditions.size(), assignment, participant);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       json["labels"][participant_code(participant)][labels[i]] = design.conditions[i];

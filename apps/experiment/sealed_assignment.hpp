@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "apps/experiment/core/plan.hpp"
@@ -19,6 +20,8 @@ std::string sealed_text(std::uint64_t order_seed);
 std::uint64_t order_seed_of(const std::string& sealed, const std::string& origin);
 
 /// Content of assignment.json: each participant's labels with their conditions, and order.
-std::string opened_text(const Design& design, const Assignment& assignment);
+/// @param only  index of the one participant whose they are; nothing: everybody's
+std::string opened_text(const Design& design, const Assignment& assignment,
+                        std::optional<std::size_t> only = {});
 
 }  // namespace stillhand::experiment

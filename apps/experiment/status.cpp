@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 
+#include "apps/experiment/file/standing.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
@@ -33,11 +35,19 @@ std::string row_of(const std::string& code, const Progress& progress, const Plan
 Overview overview_of(const Folder& folder) {
   Overview overview;
   overview.table =
-      fmt::format("{}\nexperiment.yaml: SHA-256 {}\nconditions: {}\n\n", folder.design().title,
+      fmt::format("{}\nexperiment.yaml: SHA-256 {}\nconditions: {}\n", folder.design().title,
                   folder.digest(), folder.unblinded() ? "unblinded" : "blinded");
+  const auto planned = static_cast<std::size_t>(folder.design().participants);
+  for (const Entry& entry : read_journal(folder.path() / "journal.jsonl")) {
+    overview.table += in_words(entry, planned) + "\n";
+  }
+  overview.table += "\n";
   overview.table += fmt::format("{:<12} {:>8} {:>8} {:>9} {:>8}   {}\n", "participant", "sessions",
                                 "practice", "trials", "repeats", "state");
-  for (const std::size_t index : folder.participants()) {
+  const std::vector<std::size_t> begun = folder.participants();
+  std::set<std::size_t> all(begun.begin(), begun.end());
+  for (std::size_t index = 0; index < planned; ++index) all.insert(index);
+  for (const std::size_t index : all) {
     const std::vector<Entry> entries = read_journal(folder.journal(index));
     const Plan plan = folder.plan(index);
     Progress progress(folder.design(), plan);

@@ -8,7 +8,7 @@
 
 namespace stillhand::experiment {
 
-/// What a folder holds of each participant.
+/// What a folder holds of each planned participant, also who has not begun.
 struct Overview {
   std::string table;                  ///< for a person
   std::vector<std::string> findings;  ///< what is wrong in the folder, a line each

@@ -72,6 +72,9 @@ std::vector<report::Drawing> draw_session(const session::SessionResult& result,
   if (shown.empty()) return {};
   report::Figure figure;
   figure.name = kSessionFigure;
+  figure.caption =
+      "The first 12 s of B and C. Above: the force that the body would put on a stick that is held "
+      "(feedthrough), and the motor's. Below: target and cursor.";
   figure.columns = static_cast<int>(shown.size());
   figure.height_px = 520;
   for (const auto* trial : shown) figure.panels.push_back(force_panel(*trial, result.rig_parts));

@@ -7,7 +7,11 @@
 #include <optional>
 
 #include "apps/lab/summary_json.hpp"
+#include "apps/report/command_line.hpp"
+#include "apps/report/provenance.hpp"
+#include "apps/report/text.hpp"
 #include "apps/session/paper_table.hpp"
+#include "version.hpp"
 
 namespace stillhand::lab {
 namespace {
@@ -18,8 +22,8 @@ std::string number(std::optional<double> value) {
   return value && std::isfinite(*value) ? fmt::format("{:.2f}", *value) : kNone;
 }
 
-std::string percent(std::optional<double> share) {
-  return share && std::isfinite(*share) ? fmt::format("{:.0f} %", 100.0 * *share) : kNone;
+std::string restored(std::optional<double> share) {
+  return share && std::isfinite(*share) ? report::restored(*share) : kNone;
 }
 
 std::vector<report::Cell> own_row(const session::SessionResult& result,
@@ -30,16 +34,15 @@ std::vector<report::Cell> own_row(const session::SessionResult& result,
     row.emplace_back(number(trial ? std::optional(value_of(*trial, metric)) : std::nullopt),
                      report::Emphasis::kStrong);
   }
-  row.emplace_back(percent(restoration_of(result, metric)), report::Emphasis::kStrong);
+  row.emplace_back(restored(restoration_of(result, metric)), report::Emphasis::kStrong);
   return row;
 }
 
-// The paper's RMS error has no unit: its row says so.
 std::vector<report::Cell> paper_row(const session::Metric& metric) {
-  const bool unitless = metric.key == session::kMetrics.front().key;
-  return {unitless ? "RMS error [no unit], paper" : "paper, mean of 12", number(metric.paper_a),
-          number(metric.paper_b), number(metric.paper_c),
-          fmt::format("{:.0f} %", metric.paper_restored_percent)};
+  std::vector<report::Cell> row{"paper, mean of 12"};
+  for (const double mean : metric.paper_means()) row.emplace_back(number(mean));
+  row.emplace_back(fmt::format("{:.0f} %", metric.paper_restored_percent));
+  return row;
 }
 
 void add_mitigations(const session::SessionResult& result, report::Page& page) {
@@ -53,7 +56,7 @@ void add_mitigations(const session::SessionResult& result, report::Page& page) {
       {"", "RMS error [mm]", "restored (B - it)/(B - A)", "motor [N]", "hand [N]"}};
   for (const session::TrialResult* trial : trials) {
     table.rows.push_back({session::name_of(trial->label), number(trial->settled_rms_error_mm),
-                          percent(settled_restoration_of(result, trial->label)),
+                          restored(settled_restoration_of(result, trial->label)),
                           number(trial->forces.motor_n), number(trial->forces.volitional_n)});
   }
   page.section("Mitigations");
@@ -62,11 +65,17 @@ void add_mitigations(const session::SessionResult& result, report::Page& page) {
 
 }  // namespace
 
-report::Page session_page(const session::SessionResult& result,
+report::Page session_page(const LabOptions& options, const session::SessionResult& result,
                           const std::vector<report::Drawing>& drawings) {
   report::Page page("One session",
                     "A: the platform stands. B: it moves. C: it moves, and the motor cancels what "
                     "the body passes on to the stick.");
+  if (simulated_subject(options)) page.banner(report::kSimulatedBanner);
+  page.facts({{"date", report::provenance_of_this_call({}).date},
+              {"seed", fmt::to_string(options.protocol.seed)},
+              {"trial", report::short_number(options.protocol.trial_s) + " s"},
+              {"version", kVersion},
+              {"command line", report::command_line()}});
   if (!result.rig_parts.empty()) page.paragraph("The " + result.rig_parts + ".");
   page.section("The three figures");
   report::Table table{"This session and the paper (Gillespie and Sövényi, Tables I and II).",
@@ -77,8 +86,8 @@ report::Page session_page(const session::SessionResult& result,
   }
   page.table(table);
   page.paragraph(
-      "One unit of the paper's RMS error is near 5.5 mm. One trial of each condition has no "
-      "interval: another session gives other figures.");
+      "The paper's RMS error has no unit; it stands here at 5.5 mm a unit. One trial of each "
+      "condition has no interval: another session gives other figures.");
   for (const std::string& line : disturbance_lines(result)) page.paragraph(line + ".");
   add_mitigations(result, page);
   if (drawings.empty()) return page;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "apps/lab/lab_options.hpp"
 #include "apps/report/page.hpp"
 #include "apps/session/results.hpp"
 
@@ -13,7 +14,7 @@ inline constexpr const char* kSessionPage = "session.html";
 /// One page for the person who tracked: the three figures of each condition next to the paper's,
 /// and the traces.  It needs no other file.
 /// @param drawings  of draw_session()
-report::Page session_page(const session::SessionResult& result,
+report::Page session_page(const LabOptions& options, const session::SessionResult& result,
                           const std::vector<report::Drawing>& drawings);
 
 }  // namespace stillhand::lab

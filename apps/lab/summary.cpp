@@ -5,16 +5,17 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <stdexcept>
 
 #include "apps/lab/session_figure.hpp"
 #include "apps/lab/session_page.hpp"
 #include "apps/lab/summary_json.hpp"
+#include "apps/report/text.hpp"
 #include "services/device_rig/core/parts.hpp"
 #include "services/identification/codec.hpp"
 #include "services/identification/model_file.hpp"
 #include "services/recording/file_io.hpp"
+#include "services/runtime/process/remark.hpp"
 #include "services/settings/load.hpp"
 
 namespace stillhand::lab {
@@ -25,8 +26,8 @@ void print_table(const session::SessionResult& result) {
     std::printf("`stillhand identify session.mcap --admittance` reads the perturbed trial\n");
     return;
   }
-  std::printf("\n%-22s %9s %9s %9s   %9s   %s\n", "", "A", "B", "C", "restored",
-              "paper (12 subjects): A, B, C, restored");
+  std::printf("\n%-22s %9s %9s %9s   %s\n", "", "A", "B", "C",
+              "restored, and the paper's 12 subjects: A, B, C, restored");
   for (const session::Metric& metric : session::kMetrics) {
     std::printf("%-22s", metric.title);
     for (const auto label : session::kPaperConditions) {
@@ -39,15 +40,17 @@ void print_table(const session::SessionResult& result) {
     }
     const std::optional<double> restored = restoration_of(result, metric);
     if (restored && std::isfinite(*restored)) {
-      std::printf("   %7.0f %%", 100.0 * *restored);
+      std::printf("   %s", report::restored(*restored).c_str());
     } else {
-      std::printf("   %9s", "-");
+      std::printf("   -");
     }
-    std::printf("   %.2f, %.2f, %.2f, %.0f %%\n", metric.paper_a, metric.paper_b, metric.paper_c,
+    const auto paper = metric.paper_means();
+    std::printf("   paper: %.2f, %.2f, %.2f, %.0f %%\n", paper[0], paper[1], paper[2],
                 metric.paper_restored_percent);
   }
   std::printf(
-      "The paper's RMS error has no unit; one unit is near 5.5 mm. One trial of each condition has "
+      "The paper's RMS error has no unit and stands at 5.5 mm a unit. One trial of each condition "
+      "has "
       "no interval;\n`stillhand close-the-loop --repeats` measures it.\n");
 }
 
@@ -96,8 +99,8 @@ void print_models(const session::SessionResult& result,
     }
     if (trial.sensed_share) {
       std::printf(
-          "of the stick's motion with the seat, as sensed in B, %s takes away: %.0f %% (%.0f to "
-          "%.0f)\n",
+          "%s takes away %.0f %% (%.0f to %.0f) of the motion that the seat gives to the stick in "
+          "B, as sensed\n",
           session::name_of(trial.label), 100.0 * trial.sensed_share->share,
           100.0 * trial.sensed_share->low, 100.0 * trial.sensed_share->high);
     }
@@ -139,13 +142,13 @@ void write(const std::filesystem::path& path, const std::string& text) {
 }
 
 // A picture is worth a line, not the session's results.
-void draw(const session::SessionResult& result, const std::filesystem::path& folder) {
+void draw(const LabOptions& options, const session::SessionResult& result) {
   if (result.trials.empty()) return;
   try {
-    session_page(result, draw_session(result, folder)).write(folder / kSessionPage);
+    session_page(options, result, draw_session(result, options.out))
+        .write(options.out / kSessionPage);
   } catch (const std::exception& error) {
-    std::cerr << "stillhand lab: " << kSessionFigure << ".png is not drawn: " << error.what()
-              << "\n";
+    runtime::remark(std::string(kSessionFigure) + ".png is not drawn: " + error.what());
   }
 }
 
@@ -170,7 +173,7 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
   }
   write(options.out / "summary.json",
         summary_json(options, outcomes, result, interrupted).dump(2) + "\n");
-  draw(result, options.out);
+  draw(options, result);
   print_table(result);
   print_mitigations(result);
   print_disturbances(result);
@@ -187,9 +190,8 @@ int report_session(const LabOptions& options, std::vector<session::TrialOutcome>
       ++completed;
       continue;
     }
-    std::cerr << fmt::format("stillhand lab: trial {} ({}) is marked: {}\n",
-                             outcome.planned.trial.number, session::name_of(outcome.planned.label),
-                             outcome.aborted);
+    runtime::remark(fmt::format("trial {} ({}) does not count: {}", outcome.planned.trial.number,
+                                session::name_of(outcome.planned.label), outcome.aborted));
   }
   return !interrupted && completed == session::plan(options.protocol).size() ? 0 : 1;
 }

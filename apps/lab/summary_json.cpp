@@ -202,6 +202,14 @@ ordered_json identification_json(const session::SessionResult& result) {
 
 }  // namespace
 
+bool simulated_subject(const LabOptions& options) {
+  if (options.who != Operator::kSimulated || options.devices.empty()) {
+    return options.who == Operator::kSimulated;
+  }
+  return settings::load<device_rig::DevicesConfig>(options.devices, "devices").signals.angle ==
+         "simulated";
+}
+
 const session::TrialResult* trial_of(const session::SessionResult& result,
                                      session::Condition label) {
   const auto trial = std::ranges::find(result.trials, label, &session::TrialResult::label);
@@ -294,6 +302,7 @@ ordered_json summary_json(const LabOptions& options,
   summary["interrupted"] = interrupted;
   summary["seed"] = options.protocol.seed;
   summary["subject"] = options.subject;
+  summary["operator"] = simulated_subject(options) ? "simulated" : "person";
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
   summary["reference_note"] =

@@ -13,6 +13,8 @@
 
 namespace stillhand::lab {
 
+/// Nobody tracked: no person's pointer, and no stick whose angle a device measures.
+bool simulated_subject(const LabOptions& options);
 /// The trial of a condition; nullptr: none was completed.
 const session::TrialResult* trial_of(const session::SessionResult& result,
                                      session::Condition label);

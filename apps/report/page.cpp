@@ -97,14 +97,19 @@ Cell linked(std::string text, std::string_view file) {
 Page::Page(std::string title, std::string lead)
     : title_(std::move(title)), lead_(std::move(lead)) {}
 
+void Page::banner(std::string_view text) {
+  head_ += fmt::format("<div class=\"warning\" role=\"note\"><strong>{}</strong></div>\n",
+                       html_escaped(text));
+}
+
 void Page::facts(const std::vector<std::pair<std::string, std::string>>& pairs) {
-  facts_ += "<dl>\n";
+  head_ += "<dl>\n";
   for (const auto& [name, value] : pairs) {
-    facts_ += fmt::format("<div{}><dt>{}</dt><dd>{}</dd></div>\n",
-                          value.size() > kLongValue ? R"( class="wide")" : "", html_escaped(name),
-                          html_escaped(value));
+    head_ += fmt::format("<div{}><dt>{}</dt><dd>{}</dd></div>\n",
+                         value.size() > kLongValue ? R"( class="wide")" : "", html_escaped(name),
+                         html_escaped(value));
   }
-  facts_ += "</dl>\n";
+  head_ += "</dl>\n";
 }
 
 void Page::section(std::string_view heading, int level) {
@@ -173,7 +178,7 @@ std::string Page::html() const {
   html += "<style>\n" + page_style() + "</style>\n</head>\n<body>\n";
   html += contents() + "<main>\n<header>\n" + element("h1", title_);
   if (!lead_.empty()) html += fmt::format("<p class=\"lead\">{}</p>\n", html_escaped(lead_));
-  return html + facts_ + "</header>\n" + body_ + "</main>\n</body>\n</html>\n";
+  return html + head_ + "</header>\n" + body_ + "</main>\n</body>\n</html>\n";
 }
 
 void Page::write(const std::filesystem::path& path) const {

@@ -27,6 +27,10 @@ struct Cell {
 /// @param file  its name, not encoded
 Cell linked(std::string text, std::string_view file);
 
+/// Banner of every page whose subjects are simulated.
+inline constexpr std::string_view kSimulatedBanner =
+    "Simulated subjects: no person took part. These figures say nothing about people.";
+
 enum class Align { kLeft, kRight, kCentre };
 
 /// Rows may be shorter than the header, not longer; missing cells stay empty.
@@ -53,6 +57,8 @@ class Page {
  public:
   explicit Page(std::string title, std::string lead = {});
 
+  /// What has to be known before anything else is read.
+  void banner(std::string_view text);
   /// Origin of the results: seed, versions, command line.
   void facts(const std::vector<std::pair<std::string, std::string>>& pairs);
   /// A heading, listed in the table of contents.  `level` is 2 or 3.
@@ -84,7 +90,7 @@ class Page {
 
   std::string title_;
   std::string lead_;
-  std::string facts_;
+  std::string head_;  ///< banners and facts, in the order of the calls
   std::string body_;
   std::vector<Heading> headings_;
   int tables_ = 0;

@@ -144,6 +144,16 @@ std::string short_number(double value) {
   return with_minus_sign(mantissa) + "×" + power;
 }
 
+std::string restored(double share, const std::optional<std::pair<double, double>>& interval95) {
+  std::string out = number(100.0 * share, 0) + " % ";
+  out += interval95 ? fmt::format("[{}, {}]", number(100.0 * interval95->first, 0),
+                                  number(100.0 * interval95->second, 0))
+                    : "(no interval)";
+  if (share > 1.0) out += ", better than A";
+  if (share < 0.0) out += ", worse than B";
+  return out;
+}
+
 std::string power_of_ten(int factor, int exponent) {
   const std::string power = "10" + superscript(exponent);
   return factor == 1 ? power : std::to_string(factor) + "×" + power;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace stillhand::report {
 
@@ -27,6 +29,10 @@ std::string number(double value, int decimals);
 /// For people: as short as three significant digits allow, powers of ten as "2×10⁻⁵" outside
 /// 1e-4 .. 1e6.
 std::string short_number(double value);
+
+/// Of what the motion took, a share is given back: "47 % [30, 60]".  Without an interval the text
+/// says so, and a share outside of 0 to 1 has its meaning: "130 % (no interval), better than A".
+std::string restored(double share, const std::optional<std::pair<double, double>>& interval95 = {});
 
 /// factor×10^exponent for people, with superscripts: "10⁻⁵", "2×10³".
 std::string power_of_ten(int factor, int exponent);

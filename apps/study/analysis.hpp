@@ -18,8 +18,7 @@
 namespace stillhand::study {
 
 inline constexpr std::size_t kMetricCount = session::kMetrics.size();
-/// Assumed size of a unit of the paper's RMS error [mm]; METHOD, "The paper's unit".
-inline constexpr double kPaperUnit_mm = 5.5;
+using session::kPaperUnit_mm;
 
 /// One metric under one condition.
 struct MetricSample {

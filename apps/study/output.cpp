@@ -54,7 +54,7 @@ void print_metric(const Analysis& analysis, std::size_t k) {
   for (const auto& [condition, metrics] : analysis.conditions) {
     fmt::print(" {:{}.3f}", metrics[k].mean, column_width(condition));
   }
-  fmt::print("   {:>16}", restored_text(analysis, k));
+  fmt::print("   {:>27}", restored_text(analysis, k));
   fmt::print("   {:.2f}, {:.2f}, {:.2f}, {:.0f} %\n", paper_value(k, kA), paper_value(k, kB),
              paper_value(k, kC), metric.paper_restored_percent);
   for (const auto& entry : analysis.restoration) {
@@ -73,6 +73,7 @@ void print_manova(const MultivariateResult& result, const std::string& of) {
 }
 
 void print_comparison(const Comparison& comparison) {
+  if (!has_test(comparison)) return;
   fmt::print("paired t-test {}, p:", pair_word(comparison.from, comparison.to));
   for (const auto& test : comparison.tests) {
     if (!test) {
@@ -94,6 +95,7 @@ void print_registered(const StudyRecord& record) {
       fmt::print("excluded by a rule: {}\n", line);
     const auto show = [](const std::vector<PlannedComparison>& all, const char* which) {
       for (const PlannedComparison& planned : all) {
+        if (!has_test(planned.comparison)) continue;
         fmt::print("planned {}, {}, p of Holm:",
                    pair_word(planned.comparison.from, planned.comparison.to), which);
         for (const auto& p : planned.p_holm) {
@@ -152,11 +154,15 @@ void write_study(const StudyRecord& record, report::StagedFolder& folder) {
 
 void print_study(const StudyRecord& record) {
   const Analysis& analysis = record.analysis;
+  if (const std::string state = state_of(record); !state.empty()) fmt::print("{}\n", state);
+  if (record.recorded && subjects_of(record) == Subjects::kSimulated) {
+    fmt::print("{}\n", report::kSimulatedBanner);
+  }
   fmt::print("\n{:<22}", "mean of the subjects");
   for (const auto& entry : analysis.conditions) {
     fmt::print(" {:>{}}", name_of(entry.first), column_width(entry.first));
   }
-  fmt::print("   {:>16}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
+  fmt::print("   {:>27}   {}\n", "restored [95 %]", "paper: A, B, C, restored");
   for (std::size_t k = 0; k < kMetricCount; ++k) print_metric(analysis, k);
   fmt::print("The paper's RMS error has no unit; {:.1f} mm a unit is assumed.{}\n", kPaperUnit_mm,
              record.recorded                 ? ""

@@ -31,6 +31,10 @@ struct StudyRecord {
   double wall_s = 0.0;
 };
 
+/// Who the subjects are: all of them, some, or none are simulated.
+enum class Subjects { kSimulated, kMixed, kPeople };
+Subjects subjects_of(const StudyRecord& record);
+
 /// Level of one test, and the planned comparisons: those of the registration, otherwise 0.05 and
 /// A-B, B-C.
 double alpha_of(const StudyRecord& record);

@@ -113,7 +113,7 @@ report::Table restored_table(const StudyRecord& record, const SubjectResult* own
       const double share = (b - own_value(own, entry.first, k)) / (b - a);
       table.rows.push_back(
           {kMetrics[k].title, name_of(entry.first),
-           Cell(std::isfinite(share) ? percent(share) : "–", Emphasis::kStrong),
+           Cell(std::isfinite(share) ? report::restored(share) : "–", Emphasis::kStrong),
            restored_text(record.analysis, k, entry.first),
            Cell(entry.first == kC ? number(kMetrics[k].paper_restored_percent, 0) + " %" : "–",
                 Emphasis::kFaint)});
@@ -187,6 +187,7 @@ report::Page participant_page(const StudyRecord& record, const std::string& code
   const SubjectResult* own = result_of(record, code);
   const bool in_tables = std::ranges::find(source.participants, code) != source.participants.end();
   report::Page page("Participant " + code, kPageLead);
+  if (source.simulated.contains(code)) page.banner(report::kSimulatedBanner);
   page.facts({{"participant", code},
               {"order", order_of(source, code)},
               {"in the tables", in_tables ? "yes" : "no"},

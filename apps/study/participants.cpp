@@ -35,6 +35,16 @@ std::map<std::string, std::string> participant_files(const RecordedSource& sourc
   return out;
 }
 
+std::string state_of(const StudyRecord& record) {
+  if (!record.recorded || !record.recorded->registered) return "";
+  const experiment::Standing& standing = record.recorded->registered->registration.standing;
+  std::string out = in_words(standing);
+  for (const experiment::Entry& entry : standing.openings) {
+    out += " " + in_words(entry, standing.planned());
+  }
+  return out;
+}
+
 std::vector<std::string> remarks_on(const RecordedSource& source, const std::string& code) {
   std::vector<std::string> out;
   const auto take = [&](const std::vector<std::string>& lines, const char* before) {

@@ -23,6 +23,9 @@ inline constexpr const char* kPageLead =
 /// digits, '-' and '_' of the code stay; every file has another name.
 std::map<std::string, std::string> participant_files(const RecordedSource& source);
 
+/// How far a registered experiment is, and when and why it was unblinded; empty without one.
+std::string state_of(const StudyRecord& record);
+
 /// What the tables say of a participant: in them, or why not; one line each.
 std::vector<std::string> remarks_on(const RecordedSource& source, const std::string& code);
 

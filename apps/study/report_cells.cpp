@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/report/text.hpp"
 
 namespace stillhand::study {
@@ -13,10 +15,12 @@ using session::kMetrics;
 
 int decimals(std::size_t metric) { return metric == 0 ? 1 : 2; }
 
+bool has_test(const Comparison& comparison) {
+  return std::ranges::any_of(comparison.tests, [](const auto& test) { return test.has_value(); });
+}
+
 double paper_value(std::size_t metric, Condition condition) {
-  const session::Metric& what = kMetrics[metric];
-  const double unit = metric == 0 ? kPaperUnit_mm : 1.0;
-  return unit * (condition == kA ? what.paper_a : condition == kB ? what.paper_b : what.paper_c);
+  return kMetrics[metric].paper_means().at(condition == kA ? 0 : condition == kB ? 1 : 2);
 }
 
 // A tail below the range of a double is 0, but no probability is.
@@ -27,11 +31,11 @@ std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 std::string restored_text(const Analysis& analysis, std::size_t metric, Condition condition) {
   const auto found = analysis.restoration.find(condition);
   if (found == analysis.restoration.end() || !found->second[metric].share) return "–";
-  std::string out = percent(*found->second[metric].share);
+  std::optional<std::pair<double, double>> ends;
   if (const auto& interval = found->second[metric].interval) {
-    out += fmt::format(" [{:.0f}, {:.0f}]", 100.0 * interval->low, 100.0 * interval->high);
+    ends.emplace(interval->low, interval->high);
   }
-  return out;
+  return report::restored(*found->second[metric].share, ends);
 }
 
 const Comparison* find_comparison(const Analysis& analysis, Condition from, Condition to) {

@@ -12,6 +12,8 @@ namespace stillhand::study {
 /// Digits after the point of a metric, an index of session::kMetrics.
 int decimals(std::size_t metric);
 
+/// Whether any of its metrics was tested: one subject, or no variance, has no test.
+bool has_test(const Comparison& comparison);
 /// The paper's mean of a metric under condition A, B or C; RMS error at kPaperUnit_mm a unit.
 double paper_value(std::size_t metric, Condition condition);
 

@@ -92,11 +92,23 @@ void add_registered(report::Page& page, const StudyRecord& record) {
           "figures.");
       page.list(registered.excluded);
     }
-    page.table(comparisons_table(registered));
+    const auto tested = [](const auto& all) {
+      return std::ranges::any_of(
+          all, [](const PlannedComparison& each) { return has_test(each.comparison); });
+    };
+    if (tested(registered.planned) || tested(registered.planned_without)) {
+      page.table(comparisons_table(registered));
+    } else {
+      page.paragraph("No planned comparison can be tested with so few participants.");
+    }
   }
   if (record.plan_dz) {
     page.section("The next study");
-    page.table(needed_table(record));
+    if (record.needed.empty()) {
+      page.paragraph("Without a test there is no effect to plan the next study with.");
+    } else {
+      page.table(needed_table(record));
+    }
   }
 }
 

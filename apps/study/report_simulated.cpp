@@ -26,8 +26,10 @@ report::Table means_table(const StudyRecord& record) {
   const SimulatedSide& simulated = *record.simulated;
   report::Table table;
   table.caption = fmt::format(
-      "{} participants as recorded, {} simulated subjects, and the paper's twelve: mean ± SD.",
-      record.results.size(), simulated.results.size());
+      "{} {} as recorded, {} subjects simulated in one process, and the paper's twelve: mean ± SD.",
+      record.results.size(),
+      subjects_of(record) == Subjects::kPeople ? "participants" : "simulated subjects",
+      simulated.results.size());
   table.header = {"metric", "condition", "recorded", "simulated", "paper"};
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     for (const auto& [condition, metrics] : record.analysis.conditions) {

@@ -23,15 +23,13 @@ report::Table paper_table(const Analysis& analysis, Condition from, Condition to
                           double session::Metric::* paper_p) {
   report::Table table;
   table.caption = title;
-  table.header = {"metric",
-                  name_of(from),
-                  name_of(to),
-                  "change [95 % CI]",
-                  "p",
-                  "g_z",
-                  fmt::format("paper {}, {}", name_of(from), name_of(to)),
-                  "paper p"};
+  table.header = {"metric", name_of(from), name_of(to)};
   const Comparison* comparison = find_comparison(analysis, from, to);
+  // One subject, for example: there is nothing to test.
+  const bool tested = has_test(*comparison);
+  if (tested) table.header.insert(table.header.end(), {"change [95 % CI]", "p", "g_z"});
+  table.header.push_back(fmt::format("paper {}, {}", name_of(from), name_of(to)));
+  table.header.push_back("paper p");
   for (std::size_t k = 0; k < kMetricCount; ++k) {
     std::vector<Cell> row{kMetrics[k].title, mean_and_deviation(analysis.conditions.at(from)[k], k),
                           mean_and_deviation(analysis.conditions.at(to)[k], k)};
@@ -42,7 +40,7 @@ report::Table paper_table(const Analysis& analysis, Condition from, Condition to
                                    number(test->ci_high, decimals(k))));
       row.emplace_back(p_value(test->p), test->p < 0.01 ? Emphasis::kStrong : Emphasis::kNone);
       row.emplace_back(test->hedges_gz ? number(*test->hedges_gz, 2) : "–");
-    } else {
+    } else if (tested) {
       row.insert(row.end(), 3, Cell("–"));
     }
     row.emplace_back(
@@ -106,7 +104,7 @@ void add_outcome(report::Page& page, const Analysis& analysis) {
   const double paper = kMetrics[0].paper_restored_percent / 100.0;
   page.paragraph(fmt::format(
       "The motor cancels {} of the feedthrough force and restores {} of the RMS error. {}",
-      percent(analysis.cancelled_share.at(kC).mean), percent(restored),
+      percent(analysis.cancelled_share.at(kC).mean), restored_text(analysis, 0),
       restored > paper
           ? "That is more than in the paper. Between the pegged trial and tracking, these "
             "subjects differ only in the stiffness of a co-contracted arm. Real subjects "

@@ -2,6 +2,7 @@
 #include "apps/study/study_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -108,6 +109,30 @@ void add_lead_facts(report::Page& page, const StudyRecord& record) {
               {"command line", record.command_line}});
 }
 
+// Who the subjects are, and how far an experiment is: before anything else.
+void add_banners(report::Page& page, const StudyRecord& record) {
+  const Subjects who = subjects_of(record);
+  if (who == Subjects::kSimulated) page.banner(report::kSimulatedBanner);
+  if (who == Subjects::kMixed) {
+    page.banner(fmt::format("Some of these subjects are simulated, no persons: {}.",
+                            fmt::join(record.recorded->simulated, ", ")));
+  }
+  const std::string state = state_of(record);
+  if (!state.empty() && !record.recorded->registered->registration.standing.incomplete.empty()) {
+    page.banner("This experiment is not finished. " + state);
+  } else if (!state.empty()) {
+    page.facts({{"experiment", state}});
+  }
+}
+
+const char* people_of(const StudyRecord& record) {
+  const Subjects who = subjects_of(record);
+  return !record.recorded              ? "Simulated subjects track"
+         : who == Subjects::kPeople    ? "Participants, as recorded, track"
+         : who == Subjects::kSimulated ? "Simulated subjects, as recorded, track"
+                                       : "Participants and simulated subjects, as recorded, track";
+}
+
 void add_warnings(report::Page& page, const StudyRecord& record) {
   if (record.options.subjects == 1) {
     page.warning("One subject: there is no deviation, no test and no box plot.");
@@ -122,11 +147,11 @@ report::Page study_report(const StudyRecord& record, const std::vector<report::D
   const Analysis& analysis = record.analysis;
   report::Page page(
       "Biodynamic feedthrough cancellation: the study",
-      std::string(record.recorded ? "Participants, as recorded, track"
-                                  : "Simulated subjects track") +
+      std::string(people_of(record)) +
           " a target on a stationary platform (A), on a moving one (B), and on "
           "a moving one where the motorised joystick cancels the biodynamic feedthrough (C), after "
           "Gillespie and Sövényi.");
+  add_banners(page, record);
   add_lead_facts(page, record);
   add_warnings(page, record);
   const bool whole = conditions_run(record, kPaperConditions).size() == kPaperConditions.size();

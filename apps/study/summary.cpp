@@ -177,6 +177,24 @@ ordered_json planned_json(const std::vector<PlannedComparison>& all, double alph
   return out;
 }
 
+ordered_json standing_json(const experiment::Standing& standing) {
+  ordered_json out{{"planned", standing.planned()},
+                   {"complete", standing.complete},
+                   {"excluded", ordered_json::object()},
+                   {"incomplete", ordered_json::object()},
+                   {"unblinded", ordered_json::array()}};
+  for (const auto& [code, why] : standing.excluded) out["excluded"][code] = why;
+  for (const auto& [code, state] : standing.incomplete) out["incomplete"][code] = state;
+  for (const experiment::Entry& entry : standing.openings) {
+    out["unblinded"].push_back(
+        {{"time", entry.time},
+         {"participant", or_null(entry.participant)},
+         {"complete", entry.complete ? ordered_json(*entry.complete) : ordered_json(nullptr)},
+         {"reason", entry.text}});
+  }
+  return out;
+}
+
 ordered_json registered_json(const Registered& registered) {
   const Registration& registration = registered.registration;
   const auto& rules = registration.rules;
@@ -188,6 +206,7 @@ ordered_json registered_json(const Registered& registered) {
   };
   experiment::Exclusion::fields(put, rules);
   out["excluded"] = registered.excluded;
+  out["standing"] = standing_json(registration.standing);
   const Analysis& without = registered.analysis_without;
   out["without_rules"] = {
       {"participants", registered.without.participants},
@@ -273,6 +292,16 @@ ordered_json simulated_json(const SimulatedSide& simulated) {
 
 }  // namespace
 
+Subjects subjects_of(const StudyRecord& record) {
+  if (!record.recorded) return Subjects::kSimulated;
+  const RecordedSource& source = *record.recorded;
+  const auto made = std::ranges::count_if(source.participants, [&](const std::string& code) {
+    return source.simulated.contains(code);
+  });
+  if (made == 0) return Subjects::kPeople;
+  return made == std::ssize(source.participants) ? Subjects::kSimulated : Subjects::kMixed;
+}
+
 double alpha_of(const StudyRecord& record) {
   constexpr double kAlpha = 0.05;
   const bool registered = record.recorded && record.recorded->registered;
@@ -301,6 +330,10 @@ std::string summary_json(const StudyRecord& record) {
   summary["wrong_models"] = wrong_json(record.analysis);
   summary["identification"] = identification_json(record);
   summary["subjects"] = options.subjects;
+  const Subjects who = subjects_of(record);
+  summary["operator"] = who == Subjects::kSimulated ? "simulated"
+                        : who == Subjects::kMixed   ? "simulated and person"
+                                                    : "person";
   summary["seed"] = record.recorded ? ordered_json(nullptr) : ordered_json(options.seed);
   summary["trial_seconds"] = options.protocol.trial_s;
   summary["identify_seconds"] = options.protocol.identify_s;
@@ -310,6 +343,7 @@ std::string summary_json(const StudyRecord& record) {
                            {"trials", record.recorded->trials.size()},
                            {"left_out", record.recorded->left_out},
                            {"remarks", record.recorded->remarks},
+                           {"simulated", record.recorded->simulated},
                            {"digest", or_null(record.recorded->digest)}};
     if (record.recorded->registered) {
       summary["registered"] = registered_json(*record.recorded->registered);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/experiment/file/experiment_file.hpp"
-#include "apps/experiment/journal.hpp"
+#include "apps/experiment/file/journal.hpp"
 #include "apps/experiment/sealed_assignment.hpp"
 #include "services/contract/config_error.hpp"
 

@@ -143,6 +143,7 @@ class BidsTest(ExportTestCase):
         people = rows(self.set / "participants.tsv")
         self.assertEqual([row["participant_id"] for row in people], [f"sub-P0{n}" for n in range(1, 6)])
         self.assertEqual([row["excluded"] for row in people], ["no"] * 4 + ["yes"])
+        self.assertEqual({row["simulated"] for row in people}, {"yes"})
         self.assertEqual([row["sessions"] for row in people], ["1", "1", "2", "1", "1"])
         self.assertEqual({"".join(sorted(row["order"].split())) for row in people}, {"ABC"})
         # Journals and recordings hold "Anna", times of day and this machine's name; the set does not.

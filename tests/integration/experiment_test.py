@@ -24,10 +24,10 @@ SESSION_LIMIT_S = 300.0
 END_LIMIT_S = 60.0
 
 
-def experiment(*words, status=0):
+def experiment(*words, status=0, typed=""):
     """Runs `stillhand experiment` to its end; returns (standard output, standard error)."""
     done = subprocess.run([str(STILLHAND), "experiment", *map(str, words)], capture_output=True, text=True, check=False,
-                          timeout=SESSION_LIMIT_S)
+                          timeout=SESSION_LIMIT_S, input=typed)
     if done.returncode != status:
         raise AssertionError(f"{words}: status {done.returncode}: {done.stdout}{done.stderr}")
     return done.stdout, done.stderr
@@ -177,11 +177,13 @@ class SessionTest(ExperimentTestCase):
         self.assertEqual(study.returncode, 2)
         self.assertIn("an experiment that is still blinded", study.stderr)
         self.assertIn("blinded", experiment("status", self.study)[0])
-        opened = json.loads(experiment("unblind", self.study, "--reason", "the end")[0])
+        self.assertIn("P01 (not begun), P03 (not begun)",
+                      experiment("unblind", self.study, "--reason", "the end", status=2)[1])
+        opened = json.loads(experiment("unblind", self.study, "--reason", "the end", "--incomplete", typed="study\n")[0])
         self.assertEqual([sorted(labels.values()) for labels in opened["labels"].values()],
                          [["A", "B", "C"]] * len(opened["orders"]))
         trace = [json.loads(line) for line in (self.study / "journal.jsonl").read_text().splitlines()]
-        self.assertEqual(trace[0]["text"], "unblinded: the end")
+        self.assertEqual((trace[0]["what"], trace[0]["text"], trace[0]["complete"]), ("unblinded", "the end", 1))
         self.judge_conditions(opened)
 
     def judge_conditions(self, opened):
@@ -215,6 +217,8 @@ class SessionTest(ExperimentTestCase):
         self.assertEqual(summary["recorded"]["participants"], ["P02"])
         self.assertEqual(summary["recorded"]["trials"], 6)
         self.assertEqual(summary["registered"]["excluded"], [])
+        self.assertEqual(summary["operator"], "simulated")
+        self.assertEqual(summary["registered"]["standing"]["incomplete"], {"P01": "not begun", "P03": "not begun"})
 
     def judge_bad_folders(self):
         """Each is named in one line with status 2, and no file is changed."""

@@ -283,6 +283,9 @@ void conduct(const experiment::Folder& folder, std::size_t index, const Otherwis
   auto session = std::make_unique<SampleSession>(folder, index, 1, journal, otherwise);
   session->identify();
   for (std::size_t step = 0; step < plan.size(); ++step) {
+    if (plan[step].kind == experiment::StepKind::kBreak) {
+      journal.append({.kind = EntryKind::kBreakOver, .step = static_cast<std::int64_t>(step)});
+    }
     if (plan[step].kind != experiment::StepKind::kTrial) continue;
     const bool first = plan[step].place == 1;
     if (first && index == kBrokenOff) session->track(plan, step, 0.5);

@@ -66,6 +66,7 @@ void Progress::take(const Entry& entry) {
       return;
     case EntryKind::kTrialBegan:
     case EntryKind::kNote:
+    case EntryKind::kUnblinded:
       return;
   }
 }

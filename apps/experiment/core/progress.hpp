@@ -12,7 +12,7 @@
 
 namespace stillhand::experiment {
 
-/// Kinds of lines in a participant's journal.
+/// Kinds of lines in a participant's journal, and kUnblinded in that of the folder.
 enum class EntryKind : std::uint8_t {
   kSessionBegan,
   kTrialBegan,
@@ -23,9 +23,10 @@ enum class EntryKind : std::uint8_t {
   kNote,
   kSessionEnded,
   kExcluded,
+  kUnblinded,
 };
 
-/// One line of a participant's journal.  Fields that a kind does not use keep their defaults.
+/// One line of a journal.  Fields that a kind does not use keep their defaults.
 struct Entry {
   EntryKind kind = EntryKind::kNote;
   std::string time = {};                   ///< UTC, ISO 8601
@@ -36,8 +37,12 @@ struct Entry {
   bool completed = false;                  ///< of a trial's or session's end
   std::optional<double> dwell_ratio = {};  ///< of a practice trial
   std::int64_t answer = 0;
-  std::string digest = {};  ///< of experiment.yaml, at a session's begin
-  std::string text = {};    ///< reason, note or name of a question
+  std::string digest = {};       ///< of experiment.yaml, at a session's begin
+  std::string text = {};         ///< reason, note or name of a question
+  std::string participant = {};  ///< of kUnblinded: whose conditions; empty: everybody's
+  /// Of kUnblinded: participants whose protocol was complete then.  An older version did not write
+  /// it.
+  std::optional<std::int64_t> complete = {};
 
   bool operator==(const Entry&) const = default;
 };

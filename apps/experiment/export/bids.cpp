@@ -75,7 +75,7 @@ std::string answers_tsv(const ExportedParticipant& participant, std::int64_t ses
 }
 
 std::string participants_tsv(const DataSet& set) {
-  std::string text = "participant_id\texcluded\tsessions\ttrials\torder\n";
+  std::string text = "participant_id\texcluded\tsessions\ttrials\torder\tsimulated\n";
   for (const ExportedParticipant& each : set.participants) {
     std::int64_t trials = 0;
     std::string order;
@@ -84,8 +84,9 @@ std::string participants_tsv(const DataSet& set) {
       ++trials;
       order += (order.empty() ? "" : " ") + trial.condition;
     }
-    text += fmt::format("sub-{}\t{}\t{}\t{}\t{}\n", each.code, cell(each.excluded),
-                        each.sessions.size(), trials, order.empty() ? kNone : order);
+    text += fmt::format("sub-{}\t{}\t{}\t{}\t{}\t{}\n", each.code, cell(each.excluded),
+                        each.sessions.size(), trials, order.empty() ? kNone : order,
+                        cell(each.simulated));
   }
   return text;
 }

@@ -166,6 +166,8 @@ std::string participants_json() {
   json["sessions"] = column("Number of recorded sessions");
   json["trials"] = column("Number of completed tracking trials, without practice");
   json["order"] = column("Conditions of the completed tracking trials in their order");
+  json["simulated"] = levels("Whether a person took part",
+                             {{"yes", "a simulated subject, no person"}, {"no", "a person"}});
   return text_of(json);
 }
 
@@ -202,6 +204,7 @@ std::string columns_json(const Design& design) {
   json["participants"]["participant"] = column("Code of the participant");
   json["participants"]["excluded"] = column("1: the experimenter excluded the participant");
   json["participants"]["sessions"] = column("Number of recorded sessions");
+  json["participants"]["simulated"] = column("1: a simulated subject, no person");
   ordered_json& trials = json["trials"];
   trials["participant"] = column("Code of the participant");
   trials["session"] = column("Number of the session of the participant");

@@ -129,10 +129,12 @@ void add_answers(ExportedParticipant& participant, const Folder& folder, const P
   }
 }
 
-// "2026-11-25" of the first line of the folder's journal, which unblinding wrote.
+// "2026-11-25" of the first line of the folder's journal that opened all conditions.
 std::string day_of_unblinding(const Folder& folder) {
-  const auto entries = read_journal(folder.path() / "journal.jsonl");
-  return entries.empty() ? "n/a" : entries.front().time.substr(0, 10);
+  for (const Entry& entry : read_journal(folder.path() / "journal.jsonl")) {
+    if (entry.participant.empty()) return entry.time.substr(0, 10);
+  }
+  return "n/a";
 }
 
 }  // namespace
@@ -170,6 +172,7 @@ DataSet data_set_of(const Folder& folder, const OnSession& on_session) {
     participant.index = index;
     participant.code = participant_code(index);
     participant.excluded = !progress.excluded().empty();
+    participant.simulated = folder.design().who == "simulated";
     const JournalTrials known = trials_in(entries);
     for (std::int64_t session = 1; session <= progress.sessions(); ++session) {
       add_session(participant, folder, plan, session, known);

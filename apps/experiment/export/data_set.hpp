@@ -55,6 +55,7 @@ struct ExportedParticipant {
   std::size_t index = 0;
   std::string code;  ///< "P07"
   bool excluded = false;
+  bool simulated = false;              ///< no person
   std::vector<std::int64_t> sessions;  ///< those with a recording
   std::vector<ExportedTrial> trials;   ///< by session, then number
   std::vector<ExportedAnswer> answers;

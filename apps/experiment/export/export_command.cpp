@@ -27,7 +27,7 @@
 namespace stillhand::experiment {
 namespace {
 
-struct Words {
+struct ExportOptions {
   std::filesystem::path folder;
   std::filesystem::path out;
   bool bids = false;
@@ -47,13 +47,14 @@ void check_new(const std::filesystem::path& out) {
 }
 
 // Plain tables, and the texts next to them.
-std::vector<std::string> write_plain(const Words& words, const DataSet& set, const Folder& folder,
-                                     report::StagedFolder& staged, const OnSession& shown) {
+std::vector<std::string> write_plain(const ExportOptions& options, const DataSet& set,
+                                     const Folder& folder, report::StagedFolder& staged,
+                                     const OnSession& shown) {
   const auto place = [&](const char* name) { return (staged.path() / name).string(); };
   std::unique_ptr<recordings::TableFile> file =
-      words.csv   ? recordings::csv_tables(staged.path())
-      : words.mat ? recordings::mat_tables(place("experiment.mat"))
-                  : recordings::hdf5_tables(place("experiment.h5"));
+      options.csv   ? recordings::csv_tables(staged.path())
+      : options.mat ? recordings::mat_tables(place("experiment.mat"))
+                    : recordings::hdf5_tables(place("experiment.h5"));
   const auto left_out = write_tables(set, folder, *file, shown);
   file->publish();
   file.reset();
@@ -61,20 +62,20 @@ std::vector<std::string> write_plain(const Words& words, const DataSet& set, con
   for (const auto& entry : std::filesystem::directory_iterator(staged.path())) {
     files.add(entry.path().filename().string());
   }
-  files.write("README", tables_readme(folder, set, words.release));
+  files.write("README", tables_readme(folder, set, options.release));
   files.write("columns.json", columns_json(folder.design()));
   files.write(kDesignFile, recording::read_file((folder.path() / kDesignFile).string()));
   files.write_sums();
   return left_out;
 }
 
-void export_set(const Words& words) {
-  if (int{words.bids} + int{words.csv} + int{words.mat} + int{words.hdf5} != 1) {
+void export_set(const ExportOptions& options) {
+  if (int{options.bids} + int{options.csv} + int{options.mat} + int{options.hdf5} != 1) {
     throw ConfigError("export", "no form, or more than one",
                       "one of --bids, --csv, --mat and --hdf5");
   }
-  const Folder folder(words.folder);
-  check_new(words.out);
+  const Folder folder(options.folder);
+  check_new(options.out);
   runtime::Stop stop;
   report::ProgressLine progress;
   const auto shown = [&](const char* what) {
@@ -84,39 +85,39 @@ void export_set(const Words& words) {
     };
   };
   const DataSet set = data_set_of(folder, shown("reading participants"));
-  report::StagedFolder staged(words.out);
+  report::StagedFolder staged(options.out);
   const auto writing = shown("writing participants");
-  const auto left_out = words.bids ? write_bids(set, folder, words.release, staged, writing)
-                                   : write_plain(words, set, folder, staged, writing);
+  const auto left_out = options.bids ? write_bids(set, folder, options.release, staged, writing)
+                                     : write_plain(options, set, folder, staged, writing);
   progress.finish();
   staged.publish({});
   for (const std::string& line : left_out) fmt::print("left out: {}\n", line);
-  fmt::print("{} participants in {}\n", set.participants.size(), words.out.string());
+  fmt::print("{} participants in {}\n", set.participants.size(), options.out.string());
 }
 
 }  // namespace
 
 void add_export_command(CLI::App& verb) {
-  const auto words = std::make_shared<Words>();
+  const auto options = std::make_shared<ExportOptions>();
   CLI::App* sub = verb.add_subcommand(
       "export",
       "Writes the data set of an unblinded experiment: codes, conditions, samples, results.");
-  sub->add_option("DIR", words->folder, "folder of the experiment")
+  sub->add_option("DIR", options->folder, "folder of the experiment")
       ->required()
       ->check(settings::check_name);
-  sub->add_option("--out", words->out, "new folder of the data set")->required();
-  sub->add_flag("--bids", words->bids,
+  sub->add_option("--out", options->out, "new folder of the data set")->required();
+  sub->add_flag("--bids", options->bids,
                 "Brain Imaging Data Structure: motion and behavioural tables with JSON side files");
-  sub->add_flag("--csv", words->csv, "a CSV file for each table and trial");
-  sub->add_flag("--mat", words->mat, "the same tables as one MATLAB file (version 5)");
-  sub->add_flag("--hdf5", words->hdf5, "the same tables as one HDF5 file");
-  sub->add_option("--license", words->release.licence,
+  sub->add_flag("--csv", options->csv, "a CSV file for each table and trial");
+  sub->add_flag("--mat", options->mat, "the same tables as one MATLAB file (version 5)");
+  sub->add_flag("--hdf5", options->hdf5, "the same tables as one HDF5 file");
+  sub->add_option("--license", options->release.licence,
                   "licence of the data set, for example CC0-1.0 or CC-BY-4.0")
       ->check(settings::check_name)
       ->capture_default_str();
-  sub->add_option("--author", words->release.authors, "author of the data set; may be repeated")
+  sub->add_option("--author", options->release.authors, "author of the data set; may be repeated")
       ->allow_extra_args(false);
-  sub->callback([words] { export_set(*words); });
+  sub->callback([options] { export_set(*options); });
 }
 
 }  // namespace stillhand::experiment

@@ -42,10 +42,11 @@ void write_participants(const DataSet& set, recordings::TableFile& file) {
   Table table(file, "participants", "participants",
               {{"participant", "-", CellKind::kText},
                {"excluded", "-", CellKind::kInteger},
-               {"sessions", "-", CellKind::kInteger}});
+               {"sessions", "-", CellKind::kInteger},
+               {"simulated", "-", CellKind::kInteger}});
   for (const ExportedParticipant& each : set.participants) {
     table.add({std::string_view(each.code), std::int64_t{each.excluded},
-               static_cast<std::int64_t>(each.sessions.size())});
+               static_cast<std::int64_t>(each.sessions.size()), std::int64_t{each.simulated}});
   }
   table.finish();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/experiment/journal.hpp"
+#include "apps/experiment/file/journal.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -22,7 +22,7 @@
 namespace stillhand::experiment {
 namespace {
 
-constexpr std::array<std::pair<const char*, EntryKind>, 9> kKinds{
+constexpr std::array<std::pair<const char*, EntryKind>, 10> kKinds{
     {{"session began", EntryKind::kSessionBegan},
      {"trial began", EntryKind::kTrialBegan},
      {"trial ended", EntryKind::kTrialEnded},
@@ -31,7 +31,8 @@ constexpr std::array<std::pair<const char*, EntryKind>, 9> kKinds{
      {"repeat asked", EntryKind::kRepeatAsked},
      {"note", EntryKind::kNote},
      {"session ended", EntryKind::kSessionEnded},
-     {"excluded", EntryKind::kExcluded}}};
+     {"excluded", EntryKind::kExcluded},
+     {"unblinded", EntryKind::kUnblinded}}};
 
 EntryKind kind_of(const settings::JsonEntry& entry) {
   for (const auto& [name, kind] : kKinds) {
@@ -44,7 +45,7 @@ Entry entry_of(const std::string& line, const std::string& place) {
   const auto json = settings::parsed_json(line, place, "a line of a journal of stillhand");
   const settings::JsonEntry root(json, place);
   root.allow_only({"time", "what", "session", "step", "trial", "label", "completed", "dwell_ratio",
-                   "answer", "digest", "text"});
+                   "answer", "digest", "text", "participant", "complete"});
   Entry entry;
   entry.kind = kind_of(root.at("what"));
   entry.time = root.at("time").text();
@@ -57,6 +58,14 @@ Entry entry_of(const std::string& line, const std::string& place) {
   if (root.has("answer")) entry.answer = root.at("answer").whole();
   if (root.has("digest")) entry.digest = root.at("digest").text();
   if (root.has("text")) entry.text = root.at("text").text();
+  if (root.has("participant")) entry.participant = root.at("participant").text();
+  if (root.has("complete")) entry.complete = root.at("complete").whole();
+  // An older version wrote a note.
+  if (constexpr std::string_view kNoted = "unblinded: ";
+      entry.kind == EntryKind::kNote && entry.text.starts_with(kNoted)) {
+    entry.kind = EntryKind::kUnblinded;
+    entry.text.erase(0, kNoted.size());
+  }
   return entry;
 }
 
@@ -79,6 +88,8 @@ std::string line_of(const Entry& entry) {
   if (entry.dwell_ratio) json["dwell_ratio"] = *entry.dwell_ratio;
   if (entry.answer > 0) json["answer"] = entry.answer;
   if (!entry.digest.empty()) json["digest"] = entry.digest;
+  if (!entry.participant.empty()) json["participant"] = entry.participant;
+  if (entry.complete) json["complete"] = *entry.complete;
   if (!entry.text.empty()) json["text"] = entry.text;
   // Bytes that are no UTF-8 come from the network: they must not break the journal.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -93,6 +104,11 @@ std::vector<Entry> entries_of(const std::string& text, const std::string& origin
     from = end + 1;
   }
   return entries;
+}
+
+std::vector<Entry> read_journal(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return {};
+  return entries_of(recording::read_file(file.string()), file.string());
 }
 
 Journal::Journal(const std::filesystem::path& file) : file_(file) {

@@ -19,9 +19,13 @@ std::string line_of(const Entry& entry);
 /// @throws ConfigError "file:line: ..." for a whole line that is no entry
 std::vector<Entry> entries_of(const std::string& text, const std::string& origin);
 
-/// The append-only journal of one participant, one JSON line for each entry.  append() returns when
-/// the disk has the line, so a kill at any instant leaves whole lines and at most one cut one.  The
-/// next open removes the cut line.  It holds a lock (flock) on the file as long as it lives.
+/// The entries of a journal's file, without a lock; none if there is no file.
+std::vector<Entry> read_journal(const std::filesystem::path& file);
+
+/// The append-only journal of one participant, or of the folder, one JSON line for each entry.
+/// append() returns when the disk has the line, so a kill at any instant leaves whole lines and at
+/// most one cut one.  The next open removes the cut line.  It holds a lock (flock) on the file as
+/// long as it lives.
 class Journal {
  public:
   /// Opens or makes the file.

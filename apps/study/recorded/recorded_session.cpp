@@ -173,6 +173,9 @@ RecordedSession read_recorded_session(const SessionFile& file, double least_shar
   RecordedSession out;
   keep_valid(recorded, trials.rig);
   out.rig_parts = trials.rig_parts;
+  // A person's hand is a pointer of the screen, or a stick whose angle a device measures.
+  const bool real_stick = out.rig_parts.find("angle") < out.rig_parts.find("simulated:");
+  out.simulated = !recorded.operator_forces.empty() && recorded.pointers.empty() && !real_stick;
   const std::map<std::int64_t, Announced> announced = announced_in(recorded);
   const std::set<std::int64_t> driven = driven_in(recorded);
   for (const SessionTrial& trial : trials.trials) {

@@ -24,6 +24,7 @@ void read_session_of(const SessionFile& file, double least_share, Person& person
     person.identify_s = session.identify_s;
   }
   person.code = file.participant;
+  if (session.simulated) source.simulated.insert(file.participant);
   person.broken_trials += session.broken_trials;
   for (RecordedTrial& trial : session.trials) {
     trial.place = static_cast<std::int64_t>(person.trials.size()) + 1;
@@ -101,6 +102,10 @@ void read_recorded(const std::vector<SessionFile>& files,
   std::ranges::copy(selection.left_out, std::back_inserter(source.left_out));
   refuse_nobody(selection, source.left_out);
   if (registration) {
+    source.simulated.clear();
+    if (registration->design.who == "simulated") {
+      for (const Person& person : people) source.simulated.insert(person.code);
+    }
     Registered registered;
     registered.registration = *registration;
     registered.excluded = apply_rules(*registration, people);

@@ -68,6 +68,7 @@ struct RecordedSource {
   std::vector<std::string> remarks;       ///< one line each, on who and what is in the tables
   std::set<TrialId> used;                 ///< of `trials` those in the tables
   std::vector<PeggedTrial> pegged;        ///< all complete ones
+  std::set<std::string> simulated;        ///< codes of subjects who are no persons
   std::string digest;                     ///< of the pre-registration, or empty
   std::optional<Registered> registered;   ///< none: no experiment.yaml was given
 };

@@ -27,6 +27,7 @@ std::optional<Registration> registration_of(const std::vector<std::filesystem::p
     out->trials_a_condition = design.blocks * design.trials;
     out->alpha = design.alpha;
     out->design = design;
+    out->standing = experiment::standing_of(folder, design);
     out->folder = folder;
     for (const std::string& condition : design.conditions) {
       out->conditions.push_back(named(condition));

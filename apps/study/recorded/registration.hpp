@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/experiment/core/design.hpp"
+#include "apps/experiment/file/standing.hpp"
 
 namespace stillhand::study {
 
@@ -20,6 +20,7 @@ struct Registration {
   std::vector<std::pair<Condition, Condition>> comparisons;  ///< first, second
   double alpha = 0.05;                                       ///< of all comparisons together
   experiment::Design design;                                 ///< the whole of it
+  experiment::Standing standing;                             ///< who is complete, when unblinded
   std::filesystem::path folder;                              ///< of the experiment
 };
 

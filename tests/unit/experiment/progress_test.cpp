@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/experiment/journal.hpp"
+#include "apps/experiment/file/journal.hpp"
 #include "services/contract/config_error.hpp"
 #include "services/recording/file_io.hpp"
 
@@ -168,7 +168,8 @@ TEST_F(ProgressTest, EveryFieldOfAnEntryReadsBack) {
        .text = "why \"so\"\n"},
       {.kind = EntryKind::kQuestionAnswered, .step = 1, .answer = 7, .text = "effort"},
       {.kind = EntryKind::kSessionEnded, .session = 2, .completed = true},
-      {.kind = EntryKind::kExcluded, .text = "withdrew"}};
+      {.kind = EntryKind::kExcluded, .text = "withdrew"},
+      {.kind = EntryKind::kUnblinded, .text = "fainted", .participant = "P05", .complete = 4}};
   std::string text;
   for (const Entry& entry : entries) text += line_of(entry) + "\n";
   EXPECT_EQ(entries_of(text, "j"), entries);

@@ -23,17 +23,35 @@ TEST(SessionPageTest, TheSessionsFiguresStandNextToThePapers) {
   session::SessionResult result;
   result.trials = {trial(Condition::kA, 20.0), trial(Condition::kB, 50.0),
                    trial(Condition::kC, 35.0)};
-  const std::string sut = session_page(result, {}).html();
-  for (const char* figure : {"20.00", "50.00", "35.00", "50 %", "4.04", "9.62", "7.01", "47 %"}) {
+  LabOptions options;
+  options.protocol.seed = 7;
+  const std::string sut = session_page(options, result, {}).html();
+  for (const char* figure : {"20.00", "50.00", "35.00", "50 % (no interval)", "22.22", "52.91",
+                             "38.55", "47 %", "<dd>7</dd>"}) {
     EXPECT_THAT(sut, HasSubstr(figure));
   }
   EXPECT_THAT(sut, Not(HasSubstr("Traces")));
 }
 
+TEST(SessionPageTest, ASimulatedSubjectIsNamedAndAPersonIsNot) {
+  LabOptions options;
+  EXPECT_THAT(session_page(options, {}, {}).html(), HasSubstr("no person took part"));
+  options.who = Operator::kMouse;
+  EXPECT_THAT(session_page(options, {}, {}).html(), Not(HasSubstr("no person took part")));
+}
+
+TEST(SessionPageTest, MoreThanAllHasItsWord) {
+  session::SessionResult result;
+  result.trials = {trial(Condition::kA, 20.0), trial(Condition::kB, 50.0),
+                   trial(Condition::kC, 11.0)};
+  EXPECT_THAT(session_page(LabOptions{}, result, {}).html(),
+              HasSubstr("130 % (no interval), better than A"));
+}
+
 TEST(SessionPageTest, AConditionThatDidNotRunHasNoFigure) {
   session::SessionResult result;
   result.trials = {trial(Condition::kA, 20.0)};
-  const std::string sut = session_page(result, {}).html();
+  const std::string sut = session_page(LabOptions{}, result, {}).html();
   EXPECT_THAT(sut, HasSubstr("20.00"));
   EXPECT_THAT(sut, Not(HasSubstr("nan")));
 }

@@ -81,5 +81,15 @@ TEST(TextTest, EstimatedWidthCoversTheFontsOwn) {
   }
 }
 
+TEST(TextTest, ARestoredShareHasItsIntervalOrSaysThatItHasNone) {
+  EXPECT_EQ(restored(0.47, std::pair(0.3, 0.6)), "47 % [30, 60]");
+  EXPECT_EQ(restored(0.47), "47 % (no interval)");
+}
+
+TEST(TextTest, ARestoredShareOutsideOfZeroToOneHasItsWord) {
+  EXPECT_EQ(restored(1.3, std::pair(0.9, 1.7)), "130 % [90, 170], better than A");
+  EXPECT_EQ(restored(-0.2), "\u221220 % (no interval), worse than B");
+}
+
 }  // namespace
 }  // namespace stillhand::report

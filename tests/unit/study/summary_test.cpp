@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "apps/study/output.hpp"
+#include "apps/study/participants.hpp"
+#include "apps/study/study_report.hpp"
 #include "tests/unit/study/made_record.hpp"
 
 namespace stillhand::study {
@@ -15,6 +17,8 @@ namespace {
 
 using made::kNan;
 using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
 
 json summary_of(const StudyRecord& record) { return json::parse(summary_json(record)); }
 
@@ -49,6 +53,51 @@ TEST(SummaryTest, HasEveryKeyOfItsShape) {
   EXPECT_EQ(sut.at("seed"), 9'007'199'254'740'993u);
   EXPECT_EQ(sut.at("subjects"), 4);
   EXPECT_EQ(sut.at("trial_seconds"), 60.0);
+}
+
+TEST(SummaryTest, SimulatedSubjectsArePersonsInNoFile) {
+  StudyRecord record = made::record_of(made::random_results(3, "ABC", 71));
+  EXPECT_EQ(summary_of(record).at("operator"), "simulated");
+  record.recorded.emplace();
+  record.recorded->participants = {"P01", "P02", "P03"};
+  EXPECT_EQ(summary_of(record).at("operator"), "person");
+  record.recorded->simulated = {"P01"};
+  EXPECT_EQ(summary_of(record).at("operator"), "simulated and person");
+  record.recorded->simulated = {"P01", "P02", "P03"};
+  EXPECT_EQ(summary_of(record).at("operator"), "simulated");
+  const std::string page = study_report(record, {}).html();
+  EXPECT_THAT(page, HasSubstr("no person took part"));
+  EXPECT_THAT(page, Not(HasSubstr("Participants, as recorded")));
+  EXPECT_THAT(participant_page(record, "P02", {}).html(), HasSubstr("no person took part"));
+}
+
+TEST(SummaryTest, AnUnfinishedExperimentIsStatedFirst) {
+  StudyRecord record = made::record_of(made::random_results(1, "ABC", 71));
+  record.recorded.emplace();
+  record.recorded->participants = {"P01"};
+  Registered& registered = record.recorded->registered.emplace();
+  experiment::Standing& standing = registered.registration.standing;
+  standing.complete = {"P01"};
+  standing.excluded = {{"P02", "felt sick"}};
+  standing.incomplete = {{"P03", "not begun"}};
+  standing.openings = {{.kind = experiment::EntryKind::kUnblinded,
+                        .time = "2026-11-27T00:00:00Z",
+                        .text = "the grant ends",
+                        .complete = 1}};
+  const std::string page = study_report(record, {}).html();
+  const std::size_t state = page.find(
+      "This experiment is not finished. 1 of 3 participants complete; 1 excluded: P02 (felt sick); "
+      "1 not complete: P03 (not begun). All conditions were unblinded at 2026-11-27T00:00:00Z, "
+      "with 1 of 3 participants complete: the grant ends.");
+  EXPECT_LT(state, page.find("<dl>"));
+  // One participant has no interval, no deviation and no test: no column and no table for them.
+  EXPECT_THAT(page, HasSubstr("No planned comparison can be tested"));
+  EXPECT_THAT(page, Not(HasSubstr("change [95 % CI]")));
+  EXPECT_THAT(page, HasSubstr("(no interval)"));
+  const json found = summary_of(record).at("registered").at("standing");
+  EXPECT_EQ(found.at("planned"), 3);
+  EXPECT_EQ(found.at("incomplete").at("P03"), "not begun");
+  EXPECT_EQ(found.at("unblinded").at(0).at("reason"), "the grant ends");
 }
 
 TEST(SummaryTest, EveryNumberIsReadBackBitForBit) {
