@@ -197,7 +197,7 @@ int run_calibrate(const CalibrateOptions& options, const runtime::Stop& interrup
   std::string fault = device_rig::calibration_fault(fit, options.tolerance, words.unit);
   if (fault.empty()) fault = gain_fault(options, fit, sensing);
   if (!fault.empty()) {
-    runtime::remark(words.name + ": " + fault + "; nothing is written");
+    runtime::remark(std::string(words.name) + ": " + fault + "; nothing is written");
     return 1;
   }
   write(options, record_of(options, fit, device, steps, sensing), sensing);
