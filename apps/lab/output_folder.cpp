@@ -74,6 +74,10 @@ OutputFolder::OutputFolder(const std::filesystem::path& path,
     locked = true;
     for (const std::filesystem::path& input : inputs) refuse_if_needed(input);
     bring_back();  // of a lab that was killed
+    if (std::error_code unseen; std::filesystem::exists(earlier_, unseen)) {
+      throw ConfigError("--out", earlier_.string() + ", which cannot be moved out of the way",
+                        "a folder in which an earlier session can be kept");
+    }
     set_aside();
     clear();
     std::error_code error;

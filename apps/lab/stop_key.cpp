@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -18,12 +19,15 @@
 namespace stillhand::lab {
 namespace {
 
-// A device of evdev, or a pipe with its events.  A plain file ends at once, which would be a press.
-bool gives_events(int device) {
+// A device of evdev with a key, or a pipe with its events.  A plain file ends at once, which would
+// be a press; a lid switch or an accelerometer has no key, and would never be pressed.
+bool gives_presses(int device) {
   struct stat kind{};
-  int version = 0;
-  return fstat(device, &kind) == 0 &&
-         (S_ISFIFO(kind.st_mode) || ioctl(device, EVIOCGVERSION, &version) == 0);
+  if (fstat(device, &kind) != 0) return false;
+  if (S_ISFIFO(kind.st_mode)) return true;
+  std::array<unsigned char, KEY_CNT / 8> keys{};
+  return ioctl(device, EVIOCGBIT(EV_KEY, keys.size()), keys.data()) >= 0 &&
+         std::ranges::any_of(keys, [](unsigned char bits) { return bits != 0; });
 }
 
 }  // namespace
@@ -49,9 +53,9 @@ StopKey::StopKey(const std::filesystem::path& device, std::function<void()> on_p
                       device.string() + ", which cannot be opened: " + std::strerror(errno),
                       "a device such as /dev/input/event3 that this user may read");
   }
-  if (!gives_events(device_)) {
+  if (!gives_presses(device_)) {
     close(device_);
-    throw ConfigError("--stop-key", device.string() + ", which is no input device",
+    throw ConfigError("--stop-key", device.string() + ", which is no input device with a key",
                       "a device such as /dev/input/event3");
   }
   thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });

@@ -107,12 +107,16 @@ class Run {
 
   // A pattern with a typing error would record nothing until somebody looks.
   void warn_of_patterns() {
-    const std::lock_guard lock(seen_);
-    if (some_wanted_ || unwanted_.empty()) return;
-    some_wanted_ = true;  // said once
+    std::set<std::string> there;
+    {
+      const std::lock_guard lock(seen_);
+      if (some_wanted_ || unwanted_.empty()) return;
+      some_wanted_ = true;  // said once
+      there = unwanted_;
+    }
     warn(
         fmt::format("no topic on domain {} is selected by --topics and --block; it has {}; waiting",
-                    options_.domain, fmt::join(unwanted_, ", ")));
+                    options_.domain, fmt::join(there, ", ")));
   }
 
   // In a receiving thread.

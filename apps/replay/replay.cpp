@@ -57,16 +57,18 @@ void wait_for_readers(const ReplayOptions& options, const RoutePlan& plan,
 }
 
 // Discovery takes a moment: the first messages would go out to nobody.  Waits until no writer has
-// found a further reader for as long as peers take to announce themselves.
+// found a further reader for as long as peers take to announce themselves; 5 s at most.
 void wait_for_discovery(const RoutePlan& plan, const runtime::Playback& playback,
                         const runtime::Stop& stop) {
   std::uint64_t known = 0;
   std::int64_t changed_ns = runtime::monotonic_ns();
-  for (std::int64_t now_ns = changed_ns; !stop.requested() && now_ns - changed_ns < kSettled_ns;
+  const std::int64_t end_ns = changed_ns + 5 * runtime::kNsPerSecond;
+  for (std::int64_t now_ns = changed_ns;
+       !stop.requested() && now_ns < end_ns && now_ns - changed_ns < kSettled_ns;
        now_ns = runtime::monotonic_ns()) {
     std::uint64_t found = 0;
     for (const auto& [id, route] : plan.routes) found += playback.matched(route.writer);
-    if (found != known) changed_ns = now_ns;
+    if (found > known) changed_ns = now_ns;
     known = found;
     runtime::sleep_until_ns(now_ns + kMatchPoll_ns);
   }

@@ -82,7 +82,8 @@ std::vector<Part> parts_of(const stillhand_msgs::TrialAssignment& message) {
   parts.reserve(message.parts().size());
   // Kinds of core and bus have one order.  A number that is no kind stays one, and is refused.
   for (const stillhand_msgs::MitigationPart& part : message.parts()) {
-    parts.push_back({static_cast<PartKind>(part.kind()), part.values()});
+    parts.push_back(
+        {static_cast<PartKind>(in_8_bits(static_cast<std::uint32_t>(part.kind()))), part.values()});
   }
   return parts;
 }

@@ -62,8 +62,9 @@ Shell::Shell(runtime::Service& service, const Config& config,
 }
 
 void Shell::note_when_armed() {
+  const bool model_or_none_needed = core_.has_model() || (perturbs_ && arming_.cancels());
   const Readiness readiness =
-      arming_.readiness(perturbs_ || core_.has_model(), schedule_.waits_for(), parts_.prepared());
+      arming_.readiness(model_or_none_needed, schedule_.waits_for(), parts_.prepared());
   // Not armed: nor is it for a trial of the same number from before.
   service_.note_armed(readiness == Readiness::kArmed ? service_.trial().number : -1);
   if (const char* why = why_not(readiness)) {
@@ -140,7 +141,11 @@ void Shell::follow_models(Tick tick) {
     service_.note_event(stillhand_msgs::EVENT_MODEL_LOADED, "");
   }
   const ModelSchedule::Due due = schedule_.step(tick);
-  if (due.take) core_.take(ready_->model);
+  if (due.take) {
+    core_.take(ready_->model);
+    parts_.note_model(tick, arming_, core_);
+    note_when_armed();
+  }
   if (due.late_ticks > 0) {
     std::array<char, 100> text{};
     std::snprintf(text.data(), text.size(),

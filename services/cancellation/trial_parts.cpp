@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/cancellation/trial_parts.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "services/cancellation/parts/recipe.hpp"
@@ -55,6 +56,14 @@ PartList& TrialParts::wanted(const TrialArming& arming) noexcept {
                                                                                  : nothing_;
 }
 
+// Within a trial, the model before acts until the new one has settled.
+void TrialParts::note_model(Tick tick, const TrialArming& arming,
+                            const Countermeasure& core) noexcept {
+  if (running_ == nullptr || !running_->parts.needs_force() || arming.begun(tick)) return;
+  Tick& in_effect = running_->prepared.in_effect;
+  in_effect = std::max(in_effect, tick + core.unsettled_ticks());
+}
+
 bool TrialParts::follow(Tick tick, const TrialArming& arming, Countermeasure& core) noexcept {
   if (core.acts()) return false;
   bool took = false;
@@ -65,6 +74,7 @@ bool TrialParts::follow(Tick tick, const TrialArming& arming, Countermeasure& co
     if (took) {
       running_ = newest;
       running_->prepared.in_effect = tick + running_->parts.settle_ticks() + config_.fade_ticks;
+      note_model(tick, arming, core);
     }
   }
   PartList& parts = wanted(arming);

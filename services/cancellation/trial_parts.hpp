@@ -43,6 +43,8 @@ class TrialParts {
   /// Before each step of `core`: gives it the parts of the newest assignment, once it has let go of
   /// stick and command.  @return true where it took parts that have become ready
   bool follow(Tick tick, const TrialArming& arming, Countermeasure& core) noexcept;
+  /// After `core` took a model of f^, at that tick: parts that need it are in effect with it.
+  void note_model(Tick tick, const TrialArming& arming, const Countermeasure& core) noexcept;
   /// True where `core` has the parts of the newest assignment, which may act at this tick.
   bool enables(Tick tick, const TrialArming& arming, const Countermeasure& core) noexcept {
     return core.runs(wanted(arming)) && arming.acts(tick, prepared());

@@ -22,8 +22,12 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "fast_dds/types.hpp"
 #include "idl/control_loop.h"
@@ -127,7 +131,7 @@ void death_noticed(int others) {
   std::vector<pid_t> alive{living("facts")};
   for (int i = 0; i < others; ++i) alive.push_back(living("others"));
   auto* self = participant();
-  Heard heard, of_others;
+  static Heard heard, of_others;  // their participant outlives this function
   reader(self, topic(self), &heard, 0.0, kLease_s);
   reader(self, topic(self, "others"), &of_others, 0.0, kLease_s);
   const bool all = eventually([&] { return heard.alive == 1 && of_others.matched == others; });
@@ -144,7 +148,7 @@ void death_noticed(int others) {
 void missed_deadlines(double period_s) {
   auto* reading = participant();
   auto* writing = participant();
-  Heard heard;
+  static Heard heard;
   reader(reading, topic(reading), &heard, period_s);
   auto* out = writer(writing, topic(writing), offered(period_s));
   Sensed sample;
@@ -193,7 +197,7 @@ void misspelt_security() {
 void white_list_by_name() {
   auto* reading = participant("lo");
   auto* writing = participant("lo");
-  Heard heard;
+  static Heard heard;
   reader(reading, topic(reading), &heard);
   writer(writing, topic(writing), offered());
   std::printf("| a white list with the name of an interface | %s |\n",

@@ -41,7 +41,7 @@ cp -L /etc/resolv.conf "$1/etc/resolv.conf"
 cd "$1"
 pivot_root . mnt
 exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c '
-  umount --lazy /mnt
+  umount --lazy /mnt || exit 1
   cd /stillhand && sh -c "$0"; status=$?
   left=$(ls -A /dev/shm; for each in /proc/[0-9]*; do
     [ "$each" = "/proc/$$" ] || readlink "$each/exe" | grep -s stillhand; done)

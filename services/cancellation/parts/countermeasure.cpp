@@ -63,8 +63,9 @@ std::int64_t Countermeasure::settle_ticks() const noexcept {
 
 CountermeasureOutput Countermeasure::step(const CountermeasureInput& input) noexcept {
   const std::int64_t full = config_.fade_ticks;
-  const Force::Output force =
-      force_.step(input.tick, input.sensed, input.sensed_flags, engaged_ == full);
+  // Where the motor does not act against f^, what is left of it says nothing about the model.
+  const bool in_effect = engaged_ == full && parts_->acts_against_force();
+  const Force::Output force = force_.step(input.tick, input.sensed, input.sensed_flags, in_effect);
   const bool acting = input.enabled && input.permitted && force.sound && finite_ &&
                       (has_model() || !parts_->needs_force());
   // Falls as fast as the envelope, so that one bad sample costs no more than one tick of its ramp.
@@ -80,10 +81,11 @@ CountermeasureOutput Countermeasure::step(const CountermeasureInput& input) noex
                      force_n_,
                      input.tick,
                      input.trial};
-    wanted_n += share * parts_->forces(now);
+    const double parts_n = parts_->forces(now);
+    wanted_n += share * parts_n;
     const double off_rad = parts_->off(now);
-    finite_ = std::isfinite(off_rad);
-    if (finite_) off_rad_ = off_rad;
+    if (std::isfinite(off_rad)) off_rad_ = off_rad;
+    finite_ = std::isfinite(off_rad) && std::isfinite(parts_n);
     parts_->learn(now.theta_rad, acting && engaged_ == full);
   } else if (engaged_ == 0) {
     parts_->restart();

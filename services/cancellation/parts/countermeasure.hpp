@@ -54,6 +54,8 @@ class Countermeasure {
   /// prepare() and take() at once, where no deadline waits: in one process, in tests.
   Refusal load_model(const ControlModel& model) noexcept;
   [[nodiscard]] bool has_model() const noexcept { return force_.has_model(); }
+  /// Until f^ is that of a model in full effect [ticks], Force::unsettled_ticks().
+  [[nodiscard]] std::int64_t unsettled_ticks() const noexcept { return force_.unsettled_ticks(); }
 
   /// Other parts from the next step on; only while it does not act.  Those of before may be gone.
   /// @param parts  outlives its use

@@ -55,6 +55,11 @@ class Force {
   [[nodiscard]] const AdaptiveGain::Pair& weights() const noexcept {
     return newest().adaptive.weights();
   }
+  /// Until the first model has settled and is faded in [ticks]; 0 while one acts, or without any.
+  [[nodiscard]] std::int64_t unsettled_ticks() const noexcept {
+    const bool first = incoming_.filter.loaded() && !active_.filter.loaded();
+    return first ? settle_left_ + config_.fade_ticks - fade_done_ : 0;
+  }
   /// Of the newest model; 0 without one.
   [[nodiscard]] std::int64_t settle_ticks() const noexcept {
     return newest().filter.settle_ticks();

@@ -24,7 +24,7 @@ class ParserMessages {
  public:
   ParserMessages() {
     edds::Log::ClearConsumers();
-    edds::Log::RegisterConsumer(std::make_unique<Collector>(text_));
+    edds::Log::RegisterConsumer(std::make_unique<Collector>(*this));
   }
   ~ParserMessages() { edds::Log::Reset(); }
   ParserMessages(const ParserMessages&) = delete;
@@ -33,21 +33,25 @@ class ParserMessages {
   /// The first of them; empty without one.
   std::string first() {
     edds::Log::Flush();
+    const std::lock_guard lock(mutex_);
     return text_;
   }
 
  private:
   class Collector : public edds::LogConsumer {
    public:
-    explicit Collector(std::string& text) : text_(text) {}
+    explicit Collector(ParserMessages& of) : of_(of) {}
     void Consume(const edds::Log::Entry& entry) override {
-      if (text_.empty()) text_ = entry.message;
+      const bool of_the_parser = std::string_view(entry.context.category) == "XMLPARSER";
+      const std::lock_guard lock(of_.mutex_);
+      if (of_the_parser && of_.text_.empty()) of_.text_ = entry.message;
     }
 
    private:
-    std::string& text_;
+    ParserMessages& of_;
   };
 
+  std::mutex mutex_;  // Fast DDS's thread writes
   std::string text_;
 };
 

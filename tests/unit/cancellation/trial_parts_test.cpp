@@ -257,5 +257,19 @@ TEST_F(TrialPartsTest, AMitigationHasToSettleAndFadeInBeforeTheTrial) {
   EXPECT_EQ(off_rad_, 0.0);
 }
 
+// The same for the first model of f^: 919 and 250 ticks.
+TEST_F(TrialPartsTest, TheFirstModelOfTheForceHasToSettleBeforeATrialThatNeedsIt) {
+  core_.load_model(control_model({1000.0, {-3.2 * 0.005, 0.0}, {1.0, -0.995}}));
+  EXPECT_EQ(core_.unsettled_ticks(), 919 + 250);
+  announce(1, {{PartKind::kForce, {}}}, false, 1169);
+  ASSERT_TRUE(taken());
+  EXPECT_EQ(readiness(), Readiness::kArmed);
+  announce(2, {{PartKind::kForce, {}}}, false, 1168);
+  ASSERT_TRUE(taken());
+  EXPECT_EQ(readiness(), Readiness::kMitigationTooLate);
+  step_to(trial_.start_tick + 500);
+  EXPECT_EQ(force_n_, 0.0);
+}
+
 }  // namespace
 }  // namespace stillhand::cancellation

@@ -261,10 +261,11 @@ TEST(SummaryJsonTest, TheSessionsOwnNumbersAreThereAlsoWithoutATrial) {
   const auto json = json_of(result, {}, options, true);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, ElementsAre("conditions", "t_tests", "manova", "restoration", "identification",
-                                "rig", "control_model", "canceller", "trials", "lost_ticks",
-                                "clocks", "recording_damage", "interrupted", "seed", "subject",
-                                "trial_seconds", "identify_seconds", "reference_note", "version"));
+  EXPECT_THAT(keys,
+              ElementsAre("conditions", "t_tests", "manova", "restoration", "identification", "rig",
+                          "control_model", "canceller", "trials", "lost_ticks", "clocks",
+                          "recording_damage", "interrupted", "seed", "subject", "operator",
+                          "trial_seconds", "identify_seconds", "reference_note", "version"));
   EXPECT_EQ(json["conditions"], ordered_json::object());
   EXPECT_EQ(json["clocks"], ordered_json::object());
   EXPECT_EQ(json["trials"], ordered_json::array());

@@ -201,7 +201,8 @@ TEST(BagTableTest, StampsThatGoBackInOneTopicAloneAreRefused) {
   Bag bag(path);
   for (std::int64_t i = 0; i < 400; ++i) {
     bag.imu(i * 10'000'000, 0.1 * static_cast<double>(i % 7));
-    bag.wrench(i * 10'000'000 - (i < 200 ? 0 : 1'000'000'000) + 1'000'000'000, 1.0 * (i % 5));
+    bag.wrench(i * 10'000'000 - (i < 200 ? 0 : 1'000'000'000) + 1'000'000'000,
+               static_cast<double>(i % 5));
   }
   bag.close();
   EXPECT_THAT(error_of(path, mapped({"/imu/data.linear_acceleration.y=a_y",

@@ -259,6 +259,10 @@ TEST(CountermeasureTest, TheWeightsOfAnAdaptiveForceComeOutWithIt) {
   const auto weights = weights_after(20'000);
   EXPECT_GT(std::abs(weights[0] - 1.0), 0.01);
   EXPECT_NE(weights[1], 0.0);
+  // Without the motor against f^, what is left of it says nothing about the model.
+  recipe.force = false;
+  recipe.impedance = ImpedanceConfig{.mass_kg = 0.0, .damping_n_s_m = 5.0, .stiffness_n_m = 0.0};
+  EXPECT_EQ(weights_after(20'000), (AdaptiveGain::Pair{1.0, 0.0}));
 }
 
 // command = (1 - e) theta + e shaped, Eq. MI-6: a tick changes it by what theta and the filter

@@ -36,7 +36,7 @@ Person person_of(const std::string& code, double rms_error_b_mm = 50.0, double d
 }
 
 Registration registration_of(const experiment::Exclusion& rules) {
-  return {rules, 1, {kA, kB, kC}, {{kA, kB}}, 0.05, {}, {}};
+  return {rules, 1, {kA, kB, kC}, {{kA, kB}}, 0.05, {}, {}, {}};
 }
 
 std::vector<std::string> codes_of(const std::vector<Person>& people) {
