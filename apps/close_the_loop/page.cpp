@@ -102,7 +102,9 @@ std::string lead(const LoopRecord& record) {
   };
   const std::string lacks = verdict.strongest() != nullptr
                                 ? "The paper's model lacks: " + verdict.kind() + ". "
-                                : without_effect(verdict, verdict.body.options.least_force_n) + " ";
+                            : verdict.conclusion() == kUnexplained
+                                ? "The residual has a cause that no kind explains. "
+                                : nothing_that_counts(verdict.body.options.least_force_n) + " ";
   return lacks + "Of the tracking error that the motion costs, C restores " +
          percent(restored(record.conditions, "C", error)) + ", C' " +
          percent(restored(record.conditions, "C'", error)) + ", C+ " +
@@ -130,7 +132,7 @@ void add_verdict(report::Page& page, const LoopResult& result,
   const Verdict& verdict = result.verdict();
   page.section("What the model lacked");
   if (verdict.strongest() == nullptr) {
-    page.paragraph(without_effect(verdict, verdict.body.options.least_force_n));
+    page.paragraph(nothing_that_counts(verdict.body.options.least_force_n));
   }
   std::vector<std::string> findings;
   for (const Finding& each : verdict.findings) {

@@ -108,10 +108,7 @@ double detectable_n(const Verdict& verdict, bool in_drive) {
 
 std::string Verdict::conclusion() const {
   if (strongest() != nullptr) return kFound;
-  for (const char* other : {kUnexplained, kNoModel}) {
-    if (body.verdict() == other) return other;
-  }
-  return kNothing;
+  return body.verdict() == kUnexplained ? kUnexplained : kNothing;
 }
 
 Verdict diagnose_all(const Evidence& evidence, const DeclaredDrive& declared,

@@ -52,10 +52,8 @@ void check_different(const std::vector<std::string>& recordings) {
 
 diagnosis::Measurement read_all(const Words& words) {
   std::vector<diagnosis::Measurement> parts;
-  measurement::ReadOptions read = words.read;
-  read.channels = {words.options.inputs, words.options.output};
   for (const std::string& path : words.recordings) {
-    parts.push_back(measurement::read_measurement(path, read));
+    parts.push_back(measurement::read_measurement(path, words.read));
   }
   return parts.size() == 1 ? std::move(parts.front()) : measurement::join(std::move(parts));
 }
@@ -82,10 +80,6 @@ int run(const Words& words) {
   };
   const diagnosis::Diagnosis result = diagnosis::diagnose(measurement, options);
   progress.finish();
-  if (result.no_model && files.wants("--save")) {
-    throw ConfigError("--save", "no model (" + result.no_model->why + ")",
-                      "no --save, or recordings whose inputs explain the output");
-  }
   if (files.wants("--save")) {
     files.set_json("--save",
                    diagnosis::model_json(result.model, result.carried, result.baseline.model));

@@ -65,10 +65,8 @@ int run(const Words& words) {
   }
   report::ResultFiles files({{"--save", words.save}, {"--json", words.json}},
                             {words.recording, words.read.map_file});
-  measurement::ReadOptions read = words.read;
-  read.channels = {{words.identify.input}, words.identify.output};
   const IdentifyResult result =
-      identify(measurement::read_measurement(words.recording, read), words.identify);
+      identify(measurement::read_measurement(words.recording, words.read), words.identify);
   if (files.wants("--save")) {
     if (!result.unusable.empty()) {
       throw ConfigError("--save", "a model that can't cancel (" + result.unusable + ")",

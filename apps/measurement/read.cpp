@@ -55,25 +55,10 @@ void check_table_size(const std::string& path, const std::string& text, std::siz
   }
 }
 
-// Every recording comes this way.
-diagnosis::Measurement screened(recording::Recording rows, const ReadOptions& options,
-                                const std::vector<std::string>& notes,
-                                const std::vector<BackStep>& back_steps = {}) {
-  std::vector<diagnosis::SampleFault> faults = screen(rows, options.channels);
-  for (const BackStep& step : back_steps) {
-    faults.push_back({"t",
-                      "time_goes_back",
-                      {step.time_s},
-                      0.0,
-                      fmt::format("t: the stamps go back by {:.4g} s after {:.4g} s: a new stretch "
-                                  "begins there, and time goes on.",
-                                  step.back_s, step.time_s)});
-  }
-  diagnosis::Measurement out = on_grid(std::move(rows), options.most_values);
-  std::vector<std::string> before = notes;
-  for (const diagnosis::SampleFault& fault : faults) before.push_back(fault.says);
-  out.notes.insert(out.notes.begin(), before.begin(), before.end());
-  out.screening = std::move(faults);
+diagnosis::Measurement with_notes(recording::Recording rows, std::size_t most_values,
+                                  const std::vector<std::string>& notes) {
+  diagnosis::Measurement out = on_grid(std::move(rows), most_values);
+  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
   return out;
 }
 
@@ -82,7 +67,7 @@ diagnosis::Measurement read_session(const std::string& path, const ReadOptions& 
                             ? read_session_rows(path, options.trial)
                             : read_session_rows(path, options.session_trial, true);
   if (!session.loss.empty()) runtime::remark(session.loss);
-  return screened(std::move(session.rows), options, session.notes);
+  return with_notes(std::move(session.rows), options.most_values, session.notes);
 }
 
 // The mapping of a file; signs and sample rate that are options count before those of a file.
@@ -129,7 +114,7 @@ diagnosis::Measurement read_table(const std::string& path, FileKind kind,
       std::vector<std::string> notes;
       if (!decoded.note.empty()) notes.push_back(decoded.note);
       diagnosis::Measurement out =
-          screened(recording::parse_csv(decoded.text, path), options, notes);
+          with_notes(recording::parse_csv(decoded.text, path), options.most_values, notes);
       refuse_slow_hand(out);
       return out;
     }
@@ -141,7 +126,7 @@ diagnosis::Measurement read_table(const std::string& path, FileKind kind,
   MappedRows mapped = apply_mapping(*file, mapping);
   file.reset();  // a text is as large as its numbers
   diagnosis::Measurement out =
-      screened(std::move(mapped.rows), options, mapped.notes, mapped.back_steps);
+      with_notes(std::move(mapped.rows), options.most_values, mapped.notes);
   if (mapping.columns.empty()) refuse_slow_hand(out);  // a mapping confirms the unit of the times
   return out;
 }

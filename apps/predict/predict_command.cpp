@@ -74,9 +74,8 @@ int run(const Words& words) {
   const bool svg = is_svg(words.picture);
   if (files.wants("--picture")) report::require_gnuplot();
   const Models models = read_models(words.model);
-  measurement::ReadOptions read = words.read;
-  read.channels = {models.carried.model.inputs, models.carried.model.output};
-  const diagnosis::Measurement measured = measurement::read_measurement(words.recording, read);
+  const diagnosis::Measurement measured =
+      measurement::read_measurement(words.recording, words.read);
   Prediction prediction = predict(models.carried, measured);
   const std::optional<Judgement> judgement = judged(prediction, models.linear, measured);
   if (files.wants("--json")) {

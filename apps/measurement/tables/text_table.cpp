@@ -54,7 +54,7 @@ class TextTable : public TableFile {
       split(line.text, layout_.form.separator, cells);
       if (cells.size() < layout_.titles.size()) {
         if (!line.ended) {
-          out.notes.emplace_back("The last line is cut off and left out.");
+          out.notes.push_back("The last line is cut off and left out.");
           break;
         }
         ++short_rows;
