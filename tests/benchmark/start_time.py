@@ -43,7 +43,7 @@ def rows(folder, topic):
 def costs(lab):
     """{process: (processor time [s], most memory [MB])} of the lab's processes until it ends: those of its session."""
     found = {}
-    while lab.poll() is None:
+    while True:
         for each in pathlib.Path("/proc").glob("[0-9]*"):
             try:
                 name, _, rest = (each / "stat").read_text().partition(" (")[2].rpartition(") ")
@@ -55,8 +55,11 @@ def costs(lab):
             if int(fields[3]) == lab.pid and memory:
                 used_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
                 found[name] = (used_s, int(memory[1]) / 1024.0)
-        time.sleep(0.2)
-    return found
+        try:
+            lab.wait(timeout=0.2)
+            return found
+        except subprocess.TimeoutExpired:
+            continue
 
 
 def session(programs, folder, identify_s):

@@ -24,10 +24,11 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 RELEASES = ("trixie", "bookworm")
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
+TRUSTED = "/etc/trusted.crt"  # in the root
 SESSION = ("build/bin/stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out demo")
 SHORT = ("deploy/setup.sh", "deploy/build.sh tests", "ctest --test-dir build -L unit -j 2 --output-on-failure", SESSION)
 BOTH = ("deploy/demo.sh", "tests/run.sh", "cpack -G DEB --config build/CPackConfig.cmake")
-# $1 root, $2 command. The command's processes end with it: it is the first of its own namespace. The root is the
+# $1 root, $2 command, $3 certificates. The command's processes end with it: it is the first of its own namespace. The root is the
 # namespace's own, no chroot, so that a program may enter the namespace by its name in /proc.
 INSIDE = r"""
 set -e
@@ -40,7 +41,8 @@ mount -t tmpfs shm "$1/dev/shm"
 cp -L /etc/resolv.conf "$1/etc/resolv.conf"
 cd "$1"
 pivot_root . mnt
-exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c '
+trusted=$([ ! -e "$3" ] || echo "NPM_CONFIG_CAFILE=$3")
+exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin $trusted sh -c '
   umount --lazy /mnt || exit 1
   cd /stillhand && sh -c "$0"; status=$?
   left=$(ls -A /dev/shm; for each in /proc/[0-9]*; do
@@ -59,7 +61,7 @@ def inside(root, command):
     """One command in the root; its seconds. @throws AssertionError with its last lines"""
     begin = time.monotonic()
     done = subprocess.run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "bash", "-c", INSIDE, "bash", root,
-                           command], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+                           command, TRUSTED], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
         raise AssertionError(f"{command}: exit status {done.returncode}\n{(done.stdout + done.stderr)[-4000:]}")
     return time.monotonic() - begin
@@ -75,8 +77,7 @@ def make_root(release, root):
     subprocess.run(["git", "clone", "--quiet", "--no-hardlinks", SOURCE, f"{root}/stillhand"], check=True)
     # npm trusts there what this machine trusts: a network may have a certificate of its own.
     if pathlib.Path(CERTIFICATES).exists():
-        shutil.copy(CERTIFICATES, f"{root}/root/certificates.crt")
-        pathlib.Path(root, "root/.npmrc").write_text("cafile=/root/certificates.crt\n")
+        shutil.copy(CERTIFICATES, f"{root}{TRUSTED}")
 
 
 def check_results(root, short):

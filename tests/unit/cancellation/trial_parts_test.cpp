@@ -230,7 +230,7 @@ TEST_F(TrialPartsTest, AMakingThreadThatStandsStillHoldsNobodyUp) {
   EXPECT_EQ(readiness(), Readiness::kArmed);
 }
 
-// C' behind C: the same model, whose gain and phase begin anew.
+// C' behind C: the same model, whose gain and phase begin at 1 and 0.
 TEST_F(TrialPartsTest, AHandIsFollowedInItsTrialAlone) {
   core_.load_model(control_model({1000.0, {-3.2}, {1.0}}));
   announce(1, {{PartKind::kForce, {1.394, 11.18, 1136.0, 0.10}}});
