@@ -69,6 +69,17 @@ std::string wrong_place(const std::filesystem::path& file,
   return "";
 }
 
+// The ends of lines as they were registered: an editor of Windows changes them, and nothing else.
+std::string with_plain_line_ends(std::string text) {
+  std::erase(text, '\r');
+  return text;
+}
+
+// What a desktop leaves in a folder that somebody looked at.
+bool is_a_desktops(const std::string& name) {
+  return name.starts_with('.') || name == "Thumbs.db" || name == "desktop.ini";
+}
+
 }  // namespace
 
 Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
@@ -77,7 +88,7 @@ Folder::Folder(std::filesystem::path path) : path_(std::move(path)) {
     throw ConfigError(path_.string(), "a folder without experiment.yaml",
                       "a folder that `stillhand experiment new` made");
   }
-  const std::string yaml = recording::read_file(file.string());
+  const std::string yaml = with_plain_line_ends(recording::read_file(file.string()));
   digest_ = rig::sha256(yaml);
   const std::string registered = recording::read_file((path_ / kDigestFile).string());
   if (!registered.starts_with(digest_) && !participants().empty()) {
@@ -106,6 +117,7 @@ std::vector<std::size_t> Folder::participants() const {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(path_ / "participants", error)) {
     const std::string name = entry.path().filename().string();
+    if (is_a_desktops(name)) continue;
     try {
       indices.push_back(participant_index(name, kMost));
     } catch (const ConfigError&) {
@@ -162,8 +174,9 @@ std::vector<std::string> Folder::findings(std::size_t index,
   for (const auto& entry :
        std::filesystem::directory_iterator(participant(index) / "sessions", error)) {
     const std::string name = entry.path().filename().string();
-    const bool known = std::ranges::any_of(
-        entries, [&](const Entry& each) { return fmt::format("{:02}", each.session) == name; });
+    const bool known = is_a_desktops(name) || std::ranges::any_of(entries, [&](const Entry& each) {
+                         return fmt::format("{:02}", each.session) == name;
+                       });
     if (!known)
       found.push_back(entry.path().string() + ": a session that the journal does not know");
   }

@@ -13,9 +13,7 @@
 #include "apps/measurement/session.hpp"
 #include "apps/measurement/tables/apply_mapping.hpp"
 #include "apps/measurement/tables/bag_table.hpp"
-#include "apps/measurement/tables/text_table.hpp"
 #include "services/contract/config_error.hpp"
-#include "services/recording/core/csv.hpp"
 #include "services/recording/file_io.hpp"
 #include "services/runtime/process/remark.hpp"
 
@@ -25,34 +23,40 @@ namespace {
 // A hand moves at 0.1 to 10 Hz, which fewer rows a second don't show.
 constexpr double kLeastHandRate_hz = 5.0;
 
+// A table whose 't [ms]' holds seconds looks like a fast one that ends within a blink.  At 10 Hz,
+// the fastest that a hand moves, a second holds ten periods; fewer show no response.
+constexpr double kFast_hz = 10e3;
+constexpr double kBlink_s = 1.0;
+
+std::string hands_channel(const diagnosis::Measurement& measurement) {
+  for (const diagnosis::Channel& channel : measurement.channels) {
+    if (!si_unit(channel.name).empty()) return channel.name;
+  }
+  return {};
+}
+
+void refuse_blink(const diagnosis::Measurement& measurement) {
+  const double length_s = static_cast<double>(measurement.size()) / measurement.rate_hz;
+  const std::string hand = hands_channel(measurement);
+  if (hand.empty() || measurement.rate_hz < kFast_hz || length_s >= kBlink_s) return;
+  throw ConfigError(
+      measurement.source + ", time",
+      fmt::format("{:.4g} Hz and {:.3g} s in all, of {}", measurement.rate_hz, length_s, hand),
+      fmt::format("at least {:g} s; if the times are seconds, although the title says "
+                  "milliseconds: --map 'TITLE=t * 1000' and the other columns",
+                  kBlink_s));
+}
+
 // A table whose 't [s]' holds milliseconds looks like one of a very slow sensor.  Slow sensors
 // exist, but none measures the motion or the force of a hand.
 void refuse_slow_hand(const diagnosis::Measurement& measurement) {
-  if (measurement.rate_hz >= kLeastHandRate_hz) return;
-  for (const diagnosis::Channel& channel : measurement.channels) {
-    if (si_unit(channel.name).empty()) continue;
-    throw ConfigError(
-        measurement.source + ", time",
-        fmt::format("{:.4g} s between rows of {}", 1.0 / measurement.rate_hz, channel.name),
-        fmt::format("at most {:.4g} s; if the times are milliseconds, although 't [s]' "
-                    "means seconds: --map 't [s]=t [ms]' and the other columns",
-                    1.0 / kLeastHandRate_hz));
-  }
-}
-
-// Checks the number of values before the table is built.
-void check_table_size(const std::string& path, const std::string& text, std::size_t most_values) {
-  const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
-  const std::size_t rows = std::max<std::size_t>(lines, 1) - 1;  // without the header
-  const auto header =
-      text.begin() + static_cast<std::ptrdiff_t>(std::min(text.find('\n'), text.size()));
-  const auto columns = static_cast<std::size_t>(std::count(text.begin(), header, ','));
-  if (columns > 0 && rows > most_values / columns) {
-    throw ConfigError(path,
-                      std::to_string(rows) + " rows of " + std::to_string(columns) + " channels",
-                      "at most " + std::to_string(most_values) +
-                          " values; use a part of the file, fewer columns or a lower rate");
-  }
+  const std::string hand = hands_channel(measurement);
+  if (hand.empty() || measurement.rate_hz >= kLeastHandRate_hz) return;
+  throw ConfigError(measurement.source + ", time",
+                    fmt::format("{:.4g} s between rows of {}", 1.0 / measurement.rate_hz, hand),
+                    fmt::format("at most {:.4g} s; if the times are milliseconds, although 't [s]' "
+                                "means seconds: --map 't [s]=t [ms]' and the other columns",
+                                1.0 / kLeastHandRate_hz));
 }
 
 diagnosis::Measurement with_notes(recording::Recording rows, std::size_t most_values,
@@ -103,30 +107,15 @@ void ask_if_needed(TableFile& file, const ReadOptions& options, Mapping& mapping
   if (!status.ok()) throw ConfigError("--map-file", status.text, "a place that can be written");
 }
 
-diagnosis::Measurement read_table(const std::string& path, FileKind kind,
-                                  const ReadOptions& options) {
+diagnosis::Measurement read_table(const std::string& path, const ReadOptions& options) {
   Mapping mapping = mapping_for(path, options);
-  std::unique_ptr<TableFile> file;
-  if (kind == FileKind::kText) {
-    DecodedText decoded = to_utf8(read_text(path), path);
-    if (options.map_file.empty() && mapping.empty() && recording::has_own_header(decoded.text)) {
-      check_table_size(path, decoded.text, options.most_values);
-      std::vector<std::string> notes;
-      if (!decoded.note.empty()) notes.push_back(decoded.note);
-      diagnosis::Measurement out =
-          with_notes(recording::parse_csv(decoded.text, path), options.most_values, notes);
-      refuse_slow_hand(out);
-      return out;
-    }
-    file = text_table(std::move(decoded), path, mapping.form, options.most_values);
-  } else {
-    file = open_table(path, mapping.form, options.most_values);
-  }
+  std::unique_ptr<TableFile> file = open_table(path, mapping.form, options.most_values);
   ask_if_needed(*file, options, mapping);
   MappedRows mapped = apply_mapping(*file, mapping);
   file.reset();  // a text is as large as its numbers
   diagnosis::Measurement out =
       with_notes(std::move(mapped.rows), options.most_values, mapped.notes);
+  refuse_blink(out);
   if (mapping.columns.empty()) refuse_slow_hand(out);  // a mapping confirms the unit of the times
   return out;
 }
@@ -134,14 +123,14 @@ diagnosis::Measurement read_table(const std::string& path, FileKind kind,
 }  // namespace
 
 diagnosis::Measurement read_measurement(const std::string& path, const ReadOptions& options) {
-  const FileKind kind = kind_of(path);
   const bool mapped = !options.mapping.empty() || !options.map_file.empty();
-  if (kind == FileKind::kMcap && !mapped && is_session(path)) return read_session(path, options);
+  if (kind_of(path) == FileKind::kMcap && !mapped && is_session(path))
+    return read_session(path, options);
   if (!options.trial.empty()) {
     throw ConfigError("--trial", options.trial + " with the table " + path,
                       "no --trial, or the recording of a session (MCAP) without --map");
   }
-  return read_table(path, kind, options);
+  return read_table(path, options);
 }
 
 }  // namespace stillhand::measurement

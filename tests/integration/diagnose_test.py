@@ -96,7 +96,7 @@ class DiagnoseTest(unittest.TestCase):
             "output_is_input": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},{2 * a}\n" for t, a, _ in rows), "itself"),
             "ten_rows": ("t [s],a_y [m/s^2],f [N]\n" + "".join(f"{t},{a},{f}\n" for t, a, f in rows[:10]), "want"),
             "backwards": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.02,1,3\n0.01,2,2\n", ":4:"),
-            "not_a_number": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,nan,2\n", ":3:"),
+            "not_a_number": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,nan,2\n", "every value"),
             "infinite": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,1,inf\n", ":3:"),
             "repeated_times": ("t [s],a_y [m/s^2],f [N]\n0,1,2\n0.01,1,3\n0.01,2,2\n", ":4:"),
             "acceleration_in_volts": ("t [s],a_y [V],f [N]\n0,1,2\n0.01,1,3\n", "a_y [m/s^2]"),

@@ -252,6 +252,14 @@ class SessionTest(ExperimentTestCase):
         whole = file.read_text()
         file.write_text(whole.replace("alpha: 0.05", "alpha: 0.06"))
         refused(("status", self.study), "the pre-registration changed")
+        # What a desktop or an editor of Windows leaves is no change.
+        file.write_bytes(whole.replace("\n", "\r\n").encode())
+        left = [folder / ".DS_Store" for folder in (sessions, sessions.parent.parent)]
+        for each in left:
+            each.write_bytes(b"\0")
+        experiment("status", self.study)
+        for each in left:
+            each.unlink()
         file.write_text(whole)
         other = self.folder / "other"
         experiment("new", other, "--seed", 12, "--participants", 3)

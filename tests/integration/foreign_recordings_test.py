@@ -4,6 +4,7 @@
 The files are written by others: SciPy, h5py, Octave, Python's wave, libsndfile, the MCAP project's writer.  A case whose
 writer is not installed is skipped.
 """
+import datetime
 import json
 import os
 import pathlib
@@ -45,10 +46,17 @@ RATE_HZ = 100
 ROWS = 3000
 MAP = ["--map", "time=t [s]", "acc=a_y [m/s^2]", "force=f [N]"]
 DAMAGED_EACH = 25
+LABVIEW = ("LabVIEW Measurement\t\r\nSeparator\tTab\r\nDecimal_Separator\t.\r\n***End_of_Header***\t\r\n\t\r\n"
+           "Channels\t2\t\t\r\nSamples\t3000\t3000\t\r\n***End_of_Header***\t\t\t\r\n")
 
 
 def stillhand(*words, **keywords):
     return subprocess.run([STILLHAND, *map(str, words)], capture_output=True, text=True, timeout=300, **keywords)
+
+
+def stamp(t):
+    """Date and clock of a time [s] after the beginning, to the microsecond."""
+    return datetime.datetime(2026, 11, 26, 9, 59, 50) + datetime.timedelta(microseconds=round(1e6 * t))
 
 
 def draw():
@@ -131,6 +139,15 @@ class ForeignRecordingsTest(unittest.TestCase):
             ("us.csv", dict(header="stamp,acc,force", first=lambda t: str(round(1e6 * t))),
              ["--map", "stamp=t [us]", "acc=a_y", "force=f"]),
             ("bare.csv", dict(header="x,x,x"), ["--map", "#1=t", "#2=a_y", "#3=f"]),
+            ("unmarked.csv", dict(header="time,acc,force", encoding="utf-16-le"), MAP),
+            ("old.csv", dict(header="time,acc,force", end="\r"), MAP),
+            ("no_break.csv", dict(header="t\u00a0[s],a_y\u00a0[m/s^2],f\u00a0[N]"), []),
+            ("rate.csv", dict(header="100\ntime,acc,force"), MAP),
+            ("ends.csv", dict(header="time,acc,force", end=",\n"), MAP),
+            ("labview.lvm", dict(header=LABVIEW + "X_Value\tacc\tforce\tComment", separator="\t", end="\r\n"),
+             ["--map", "X_Value=t [s]", "acc=a_y", "force=f"]),
+            ("stamps.csv", dict(header="time,acc,force", first=lambda t: stamp(t).isoformat()), MAP),
+            ("clock.csv", dict(header="time,acc,force", first=lambda t: stamp(t).time().isoformat()), MAP),
         ]
         for name, form, words in cases:
             with self.subTest(name):
@@ -179,6 +196,20 @@ class ForeignRecordingsTest(unittest.TestCase):
             self.assert_same(path, "--map", "both(:,1)=a_y", "both(:,2)=f [N]", "--sample-rate", 100)
         self.assertIn("'log.acc=a_y [m/s^2]' 'log.force=f [N]'", self.refused("identify", path))
 
+    @unittest.skipIf(scipy is None, "SciPy is not installed")
+    def test_matlab_cells_and_an_element_for_each_signal(self):
+        signals = numpy.zeros(40, dtype=[("Name", "O"), ("Data", "O")])
+        for i in range(40):
+            signals[i] = (f"signal {i}", {16: self.acc, 39: self.force}.get(i, numpy.zeros(ROWS)))
+        cells = numpy.empty(3, dtype=object)
+        cells[:] = [self.time, self.acc, "ride"]
+        path = self.folder / "dspace.mat"
+        scipy.io.savemat(path, {"rec": {"X": self.time, "Y": signals}, "cells": cells})
+        self.assert_same(path, "--map", "rec.X=t [s]", "rec.Y(17).Data=a_y", "rec.Y(40).Data=f [N]")
+        self.assert_same(path, "--map", "cells{1}=t [s]", "cells{2}=a_y", "rec.Y(40).Data=f [N]")
+        scipy.io.savemat(path, {"z": self.acc + 1j * self.force, "cube": numpy.zeros((50, 3, 3))})
+        self.assertIn("z (complex numbers), cube (3 dimensions)", self.refused("identify", path))
+
     @unittest.skipIf(h5py is None, "h5py is not installed")
     def test_matlab_7_3(self):
         path = self.folder / "v73.mat"
@@ -221,13 +252,22 @@ class ForeignRecordingsTest(unittest.TestCase):
             file["table"] = record
             file["picture"] = numpy.zeros((200, 300))
             file["short"] = numpy.zeros(200)
+            for name, values in (("a_y", self.acc), ("f", self.force)):
+                packed = file.create_dataset(f"packed/{name}", data=values * 1024.0 - 512.0)
+                packed.attrs["scale_factor"], packed.attrs["add_offset"] = 2.0**-10, 0.5
+            file["pose"] = numpy.zeros(9, dtype=[("at", [("x", "f8")])])
             file["elsewhere"] = h5py.ExternalLink("/etc/passwd", "/x")
         self.assert_same(path, "--map", "run/t=t", "run/a_y=a_y", "run/f=f")
         self.assert_same(path, "--map", "table.time=t [s]", "table.acc=a_y", "table.force=f")
         self.assert_same(path, "--map", "matrix[0,:]=a_y", "matrix[1,:]=f", "--sample-rate", 100)
+        packed = self.identified(path, "--map", "packed/a_y=a_y [m/s^2]", "packed/f=f [N]", "--sample-rate", 100)
+        self.assertAlmostEqual(packed["heldout"]["free_run_vaf_percent"], self.wanted["heldout"]["free_run_vaf_percent"], 6)
         self.assertIn("3000 values of 'run/t' and 200 of 'short'",
                       self.refused("identify", path, "--map", "run/t=t", "short=a_y"))
         self.assertIn("no column of", self.refused("identify", path, "--map", "run/t=t", "elsewhere=a_y"))
+        with h5py.File(path, "w") as file:
+            file["pose"] = numpy.zeros(9, dtype=[("at", [("x", "f8")])])
+        self.assertIn("pose.at (a compound)", self.refused("identify", path))
 
     def test_our_own_exports_come_back(self):
         bag = self.ros_bag()
@@ -260,6 +300,12 @@ class ForeignRecordingsTest(unittest.TestCase):
             self.identified(path, "--map", "channel 1=a_y [m/s^2] * 49.05", "channel 2=f [N] * 40"),
             self.identified(table))
         self.assertIn("--map 'channel 1=a_y [m/s^2]' 'channel 2=f [N]'", self.refused("identify", path))
+        whole = path.read_bytes()
+        path.write_bytes(whole[: len(whole) * 2 // 3])
+        run = stillhand("identify", path, "--map", "channel 1=a_y [m/s^2] * 49.05", "channel 2=f [N] * 40", "--json",
+                        self.folder / "cut.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("cut off", " ".join(json.loads((self.folder / "cut.json").read_text())["notes"]))
 
     @unittest.skipIf(soundfile is None, "soundfile is not installed")
     def test_a_wav_file_of_doubles(self):

@@ -86,7 +86,8 @@ std::vector<double> times_of(const TableHead& head, const Mapping& mapping, cons
   return time_s;
 }
 
-// Moves the rows that are kept into the recording.  A row that repeats the one before is left out.
+// Moves the rows that are kept into the recording.  A row that repeats an earlier one, as a
+// recorder writes a block of rows twice, is left out.
 class RowTaker {
  public:
   RowTaker(const TableFile& file, const Mapping& mapping, const Choice& choice)
@@ -102,7 +103,11 @@ class RowTaker {
     for (const std::size_t row : kept) {
       for (std::size_t i = 0; i < values.size(); ++i) check_finite(row, i, values[i][row]);
       if (!rows.empty() && !(time_s[row] > time_s[rows.back()])) {
-        if (!repeats(values, rows.back(), row)) fail_order(time_s[rows.back()], time_s[row], row);
+        const auto same = std::ranges::lower_bound(
+            rows, time_s[row], {}, [&](std::size_t earlier) { return time_s[earlier]; });
+        if (same == rows.end() || !repeats(values, *same, row)) {
+          fail_order(time_s, rows.back(), row);
+        }
         ++rows_.repeated_rows;
         continue;
       }
@@ -135,9 +140,18 @@ class RowTaker {
                       fmt::format("{} in {}", value, mapping_.columns[column].name),
                       "finite numbers; an empty cell for a value that is not there");
   }
-  [[noreturn]] void fail_order(double before_s, double time_s, std::size_t row) const {
-    throw ConfigError(file_.place(row), fmt::format("time {} s", time_s),
-                      fmt::format("more than {} s, the time of the row before", before_s));
+  [[noreturn]] void fail_order(const std::vector<double>& time_s, std::size_t before,
+                               std::size_t row) const {
+    std::string want = fmt::format("more than {} s, the time of the row before", time_s[before]);
+    if (time_s[row] == time_s[before]) {
+      const double span_s = time_s.back() - time_s.front();
+      want = fmt::format(
+          "{}; for rows that share a stamp in blocks, no column of times but their rate{}", want,
+          span_s > 0.0 ? fmt::format(", about --sample-rate {:.4g}",
+                                     static_cast<double>(time_s.size() - 1) / span_s)
+                       : ": --sample-rate HZ");
+    }
+    throw ConfigError(file_.place(row), fmt::format("time {} s", time_s[row]), want);
   }
   static bool repeats(const std::vector<std::vector<double>>& values, std::size_t row,
                       std::size_t other) {

@@ -88,7 +88,12 @@ Choice choose(const TableHead& head, const Mapping& mapping) {
 
 std::pair<std::string, std::string> units_of(const ColumnHead& column, const ColumnWish& wish) {
   const std::string si = si_unit(wish.name);
-  std::string from = column.unit.empty() ? wish.unit : column.unit;
+  const std::string of_angles = si == "rad" ? column.angle_unit
+                                : si == "rad/s" && !column.angle_unit.empty()
+                                    ? column.angle_unit + "/s"
+                                    : "";
+  const std::string stated = column.unit.empty() ? of_angles : column.unit;
+  std::string from = stated.empty() ? wish.unit : stated;
   if (!si.empty()) {
     // A unit that is not the channel's own says what the values are, whatever the title says.
     if (!wish.unit.empty() && wish.unit != si) from = wish.unit;

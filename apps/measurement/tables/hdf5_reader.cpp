@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // HDF5 files: data sets of one or two dimensions, and tables (compound types).
+#include <fmt/format.h>
 #include <hdf5.h>
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "apps/measurement/tables/guarded_table.hpp"
 #include "apps/measurement/tables/in_child.hpp"
+#include "apps/measurement/tables/titles.hpp"
 
 namespace stillhand::measurement {
 namespace {
@@ -44,7 +48,25 @@ struct Place {
 struct Found {
   std::vector<ColumnHead> heads;
   std::vector<Place> places;
+  std::vector<std::string> left_out;  // "log.pose (a compound in a compound)"
 };
+
+std::string class_name(hid_t type) {
+  switch (H5Tget_class(type)) {
+    case H5T_STRING:
+      return "text";
+    case H5T_COMPOUND:
+      return "a compound";
+    case H5T_ENUM:
+      return "an enumeration";
+    case H5T_ARRAY:
+      return "arrays";
+    case H5T_VLEN:
+      return "lists";
+    default:
+      return "no numbers";
+  }
+}
 
 bool is_number(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
@@ -74,6 +96,35 @@ std::string text_attribute(hid_t object, const char* name) {
   return out;
 }
 
+// A number that an attribute of one element holds.
+std::optional<double> number_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return std::nullopt;
+  const Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Id type(H5Aget_type(attribute), H5Tclose);
+  const Id space(H5Aget_space(attribute), H5Sclose);
+  double value = 0.0;
+  if (attribute < 0 || !is_number(type) || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+// Values of a set that is packed by the conventions of netCDF (CF 1.11, sections 2.5.1 and 8.1):
+// what is missing, then a factor and an offset.
+std::string unpack(hid_t set, std::vector<double>& values) {
+  for (const char* name : {"_FillValue", "missing_value"}) {
+    const std::optional<double> missing = number_attribute(set, name);
+    if (missing) std::ranges::replace(values, *missing, std::numeric_limits<double>::quiet_NaN());
+  }
+  const double factor = number_attribute(set, "scale_factor").value_or(1.0);
+  const double offset = number_attribute(set, "add_offset").value_or(0.0);
+  if (factor == 1.0 && offset == 0.0) return {};
+  for (double& value : values) value = value * factor + offset;
+  return fmt::format("stored numbers times {:.6g} plus {:.6g} (scale_factor, add_offset)", factor,
+                     offset);
+}
+
 std::string unit_of(hid_t set) {
   for (const char* name : {"unit", "units", "Unit", "Units"}) {
     std::string unit = text_attribute(set, name);
@@ -86,11 +137,14 @@ void add_table(hid_t type, const std::string& path, hsize_t rows, Found& found) 
   const int members = H5Tget_nmembers(type);
   for (int i = 0; i < members; ++i) {
     const Id member(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose);
-    if (!is_number(member)) continue;
     char* raw = H5Tget_member_name(type, static_cast<unsigned>(i));
     const std::string name = raw == nullptr ? "" : raw;
     H5free_memory(raw);
     if (name.empty()) continue;
+    if (!is_number(member)) {
+      found.left_out.push_back(path + "." + name + " (" + class_name(member) + ")");
+      continue;
+    }
     found.heads.push_back({path + "." + name, path + "." + name, {}, rows});
     found.places.push_back({path, name});
   }
@@ -101,7 +155,10 @@ void add_matrix(const std::string& path, const std::array<hsize_t, 2>& size,
   const bool along_rows = size[0] >= size[1];
   const hsize_t rows = along_rows ? size[0] : size[1];
   const hsize_t signals = along_rows ? size[1] : size[0];
-  if (signals > kMostMatrixSignals) return;
+  if (signals > kMostMatrixSignals) {
+    found.left_out.push_back(path + " (" + std::to_string(signals) + " signals in one matrix)");
+    return;
+  }
   for (hsize_t i = 0; i < signals; ++i) {
     const std::string number = std::to_string(i);
     const std::string title =
@@ -118,6 +175,7 @@ void add_set(hid_t file, const std::string& path, Found& found) {
   const Id space(H5Dget_space(set), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
   std::array<hsize_t, 2> size{};
+  if (rank > 2) found.left_out.push_back(path + " (" + std::to_string(rank) + " dimensions)");
   if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, size.data(), nullptr) < 0) return;
   if (size[0] < 1 || (rank == 2 && size[1] < 1)) return;
   if (rank == 1 && H5Tget_class(type) == H5T_COMPOUND) {
@@ -127,6 +185,8 @@ void add_set(hid_t file, const std::string& path, Found& found) {
     found.places.push_back({path, {}});
   } else if (rank == 2 && is_number(type) && std::max(size[0], size[1]) > 1) {
     add_matrix(path, size, unit_of(set), found);
+  } else if (!is_number(type)) {
+    found.left_out.push_back(path + " (" + class_name(type) + ")");
   }
 }
 
@@ -160,12 +220,18 @@ TableHead hdf5_head(const std::string& path) {
   TableHead head;
   head.path = path;
   head.form = "HDF5";
-  head.columns = find_sets(path).heads;
+  Found found = find_sets(path);
+  if (found.heads.empty() && !found.left_out.empty()) {
+    throw Refused{path, "an HDF5 file without a column of numbers, but " + listed(found.left_out),
+                  "data sets of numbers with one or two dimensions, or tables of numbers"};
+  }
+  head.columns = std::move(found.heads);
+  if (!found.left_out.empty()) head.notes.push_back("Not read: " + listed(found.left_out) + ".");
   return head;
 }
 
 std::vector<double> values_at(hid_t file, const Place& place, std::size_t rows,
-                              const std::string& path) {
+                              const std::string& path, std::vector<std::string>& notes) {
   std::vector<double> values(rows);
   const Id set(H5Dopen2(file, place.set.c_str(), H5P_DEFAULT), H5Dclose);
   const Id file_space(H5Dget_space(set), H5Sclose);
@@ -185,6 +251,9 @@ std::vector<double> values_at(hid_t file, const Place& place, std::size_t rows,
       return values;
     }
   } else if (H5Dread(set, type, memory_space, file_space, H5P_DEFAULT, values.data()) >= 0) {
+    if (const std::string how = unpack(set, values); !how.empty()) {
+      notes.push_back(place.set + ": " + how + ".");
+    }
     return values;
   }
   throw Refused{path, "the data set " + place.set + ", which cannot be read",
@@ -201,7 +270,7 @@ RawColumns hdf5_values(const std::string& path, const TableHead& head,
     if (column >= found.heads.size() || found.heads[column].rows != wanted.rows) {
       throw Refused{path, "a file that changes while it is read", "a file at rest"};
     }
-    out.values.push_back(values_at(file, found.places[column], wanted.rows, path));
+    out.values.push_back(values_at(file, found.places[column], wanted.rows, path, out.notes));
   }
   return out;
 }

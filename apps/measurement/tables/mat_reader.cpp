@@ -9,13 +9,14 @@
 
 #include "apps/measurement/tables/guarded_table.hpp"
 #include "apps/measurement/tables/in_child.hpp"
+#include "apps/measurement/tables/titles.hpp"
 
 namespace stillhand::measurement {
 namespace {
 
 // A matrix has a column for each signal; an image has more.
 constexpr std::size_t kMostSignals = 64;
-constexpr std::size_t kMostElements = 16;  // of a struct array
+constexpr std::size_t kMostElements = 1024;  // of a struct or cell array: dSPACE has one a signal
 constexpr int kMostDepth = 16;
 
 struct VariableFree {
@@ -35,8 +36,8 @@ MatFile open_mat(const std::string& path) {
 }
 
 bool is_numeric(const matvar_t& variable) {
-  const bool number = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
-  return number && variable.isComplex == 0 && variable.rank == 2 && variable.dims != nullptr;
+  return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
+         variable.dims != nullptr;
 }
 
 template <typename Number>
@@ -122,6 +123,8 @@ class ColumnWalk {
   // @param first, step  place of the values in the variable's data
   virtual void take(const std::string& title, const std::string& unit, const matvar_t& variable,
                     std::size_t first, std::size_t step, std::size_t rows) = 0;
+  // A variable that cannot be a column, and why.
+  virtual void leave_out(const std::string& /*title*/, const std::string& /*why*/) {}
 
   void walk(matvar_t* variable, const std::string& title, const std::string& unit, int depth) {
     if (variable == nullptr || depth > kMostDepth) return;
@@ -129,17 +132,24 @@ class ColumnWalk {
       numbers(*variable, title, unit);
     } else if (variable->class_type == MAT_C_STRUCT) {
       structure(variable, title, depth);
+    } else if (variable->class_type == MAT_C_CELL) {
+      cells(variable, title, depth);
     }
   }
 
  private:
   void numbers(const matvar_t& variable, const std::string& title, const std::string& unit) {
+    if (variable.isComplex != 0) return leave_out(title, "complex numbers");
+    if (variable.rank != 2) return leave_out(title, std::to_string(variable.rank) + " dimensions");
     const std::size_t down = variable.dims[0];
     const std::size_t across = variable.dims[1];
     const bool along_rows = down >= across;
     const std::size_t rows = along_rows ? down : across;
     const std::size_t signals = along_rows ? across : down;
-    if (rows < 2 || signals < 1 || signals > kMostSignals) return;
+    if (rows < 2 || signals < 1) return;
+    if (signals > kMostSignals) {
+      return leave_out(title, std::to_string(signals) + " signals in one matrix");
+    }
     for (std::size_t i = 0; i < signals; ++i) {
       const std::string number = std::to_string(i + 1);
       const std::string name =
@@ -153,7 +163,9 @@ class ColumnWalk {
     const unsigned fields = Mat_VarGetNumberOfFields(variable);
     if (names == nullptr || variable->rank != 2 || variable->dims == nullptr) return;
     const std::size_t elements = variable->dims[0] * variable->dims[1];
-    if (elements > kMostElements) return;
+    if (elements > kMostElements) {
+      return leave_out(title, std::to_string(elements) + " elements");
+    }
     for (std::size_t e = 0; e < elements; ++e) {
       const std::string at = elements == 1 ? "" : "(" + std::to_string(e + 1) + ")";
       // `stillhand export` states the units of a struct's fields in meta.units.
@@ -165,14 +177,30 @@ class ColumnWalk {
       }
     }
   }
+
+  void cells(matvar_t* variable, const std::string& title, int depth) {
+    if (variable->rank != 2 || variable->dims == nullptr) return;
+    const std::size_t elements = variable->dims[0] * variable->dims[1];
+    if (elements > kMostElements) {
+      return leave_out(title, std::to_string(elements) + " cells");
+    }
+    for (std::size_t e = 0; e < elements; ++e) {
+      walk(Mat_VarGetCell(variable, static_cast<int>(e)), title + "{" + std::to_string(e + 1) + "}",
+           {}, depth + 1);
+    }
+  }
 };
 
 class HeadWalk : public ColumnWalk {
  public:
   std::vector<ColumnHead> heads;
+  std::vector<std::string> left_out;  // "spectrum (complex numbers)"
   void take(const std::string& title, const std::string& unit, const matvar_t& /*variable*/,
             std::size_t /*first*/, std::size_t /*step*/, std::size_t rows) override {
     heads.push_back({title, title, unit == "?" ? "" : unit, rows});
+  }
+  void leave_out(const std::string& title, const std::string& why) override {
+    left_out.push_back(title + " (" + why + ")");
   }
 };
 
@@ -200,12 +228,6 @@ class ValueWalk : public ColumnWalk {
   const std::vector<std::size_t>& wanted_;
 };
 
-std::string objects_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 TableHead mat_head(const std::string& path) {
   const MatFile file = open_mat(path);
   std::vector<std::string> names;
@@ -227,24 +249,28 @@ TableHead mat_head(const std::string& path) {
     walk.walk(variable.get(), name, {}, 0);
   }
   if (walk.heads.empty()) {
-    throw Refused{path,
-                  objects.empty() ? "a MATLAB file without a column of numbers"
-                                  : "objects of MATLAB (" + objects_of(objects) + ") alone",
-                  "arrays, or structs of arrays: save a timetable or timeseries as its arrays"};
+    std::string got = "a MATLAB file without a column of numbers";
+    if (!walk.left_out.empty()) got += ", but " + listed(walk.left_out);
+    if (!objects.empty()) got = "objects of MATLAB (" + listed(objects) + ") alone";
+    throw Refused{
+        path, got,
+        "real arrays, or structs and cells of them: save a timetable or timeseries as its "
+        "arrays"};
   }
   TableHead head;
   head.path = path;
   head.form = Mat_GetVersion(file.get()) == MAT_FT_MAT73 ? "MATLAB 7.3" : "MATLAB 5";
   head.columns = std::move(walk.heads);
   if (!objects.empty()) {
-    head.notes.push_back("Objects of MATLAB are not read: " + objects_of(objects) + ".");
+    head.notes.push_back("Objects of MATLAB are not read: " + listed(objects) + ".");
   }
+  if (!walk.left_out.empty()) head.notes.push_back("Not read: " + listed(walk.left_out) + ".");
   return head;
 }
 
 // "a" of "a.b(:,1)"
 std::string variable_of(const std::string& title) {
-  return title.substr(0, title.find_first_of(".("));
+  return title.substr(0, title.find_first_of(".({"));
 }
 
 RawColumns mat_values(const std::string& path, const TableHead& head,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <initializer_list>
 #include <span>
 #include <string_view>
@@ -30,15 +31,94 @@ std::string first_bytes(const std::string& path) {
   return {reinterpret_cast<const char*>(begin.data()), count};
 }
 
+// A kind of file that is not read, and the line that makes one that is.
+struct ForeignKind {
+  std::string_view begin;  // of the file
+  std::string_view kind;
+  std::string_view convert;  // FILE stands for its name
+};
+using namespace std::string_view_literals;
+constexpr std::array<ForeignKind, 13> kForeignKinds{{
+    {"SQLite format 3\0"sv, "an SQLite file (rosbag2's .db3)",
+     "MCAP: printf 'output_bags: [{uri: mcap, storage_id: mcap, all_topics: true}]' > o.yaml; "
+     "ros2 bag convert -i FILE -o o.yaml"},
+    {"#ROSBAG V2.0", "a bag of ROS 1", "MCAP: mcap convert FILE out.mcap"},
+    {"\x28\xB5\x2F\xFD", "a file compressed with Zstandard", "the file in it: zstd -d FILE"},
+    {"\x1F\x8B", "a file compressed with gzip", "the file in it: gunzip --keep FILE"},
+    {"\xFD"
+     "7zXZ",
+     "a file compressed with xz", "the file in it: xz --decompress --keep FILE"},
+    {"PK\x03\x04", "a zip archive (.xlsx, .ods, .zip)",
+     "a CSV of the sheet: libreoffice --convert-to csv FILE"},
+    {"\xD0\xCF\x11\xE0", "an old Excel file (.xls)",
+     "a CSV of the sheet: libreoffice --convert-to csv FILE"},
+    {"TDSm", "a TDMS file of LabVIEW",
+     "a CSV: python3 -c \"import nptdms; nptdms.TdmsFile.read('FILE').as_dataframe(time_index=True)"
+     ".to_csv('out.csv')\""},
+    {"MDF ", "a measurement file of ASAM (.mf4)",
+     "a CSV: python3 -c \"import asammdf; asammdf.MDF('FILE').export('csv', 'out.csv', "
+     "single_time_base=True)\""},
+    {"XDF:", "an XDF file of LabRecorder",
+     "a CSV a stream: python3 -c \"import numpy, pyxdf; [numpy.savetxt(f'{i}.csv', "
+     "numpy.column_stack("
+     "(s['time_stamps'], s['time_series'])), delimiter=',') for i, s in "
+     "enumerate(pyxdf.load_xdf('FILE')[0])]\""},
+    {"PAR1", "a Parquet file",
+     "a CSV: python3 -c \"import pandas; pandas.read_parquet('FILE').to_csv('out.csv')\""},
+    {"\x93NUMPY", "an array of NumPy",
+     "a CSV: python3 -c \"import numpy; numpy.savetxt('out.csv', numpy.load('FILE'), "
+     "delimiter=',')\""},
+    {"%PDF", "a PDF", "the table that it was made from"},
+}};
+
+// C3D has no magic but the number of its parameter block and 0x50 (c3d.org, "The C3D file format").
+constexpr ForeignKind kC3d{
+    "", "a C3D file of a motion capture",
+    "a CSV: python3 -c \"import ezc3d, numpy; c = ezc3d.c3d('FILE'); numpy.savetxt('out.csv', "
+    "c['data']['analogs'][0].T, delimiter=',')\""};
+
+[[noreturn]] void refuse_kind(const std::string& path, const ForeignKind& foreign) {
+  std::string convert(foreign.convert);
+  if (const std::size_t at = convert.find("FILE"); at != std::string::npos)
+    convert.replace(at, 4, path);
+  throw ConfigError(path, std::string(foreign.kind), convert);
+}
+
+void refuse_foreign(const std::string& path, std::string_view begin) {
+  for (const ForeignKind& foreign : kForeignKinds) {
+    if (begin.starts_with(foreign.begin)) refuse_kind(path, foreign);
+  }
+  if (begin.size() > 1 && begin[1] == 0x50 && static_cast<unsigned char>(begin[0]) < 32 &&
+      path.ends_with(".c3d")) {
+    refuse_kind(path, kC3d);
+  }
+}
+
 bool is_any_of(std::string_view begin, std::initializer_list<std::string_view> magics) {
   return std::ranges::any_of(magics,
                              [&](std::string_view magic) { return begin.starts_with(magic); });
 }
 
+// @throws stillhand::ConfigError if it cannot be read, or has over 2 GiB
+std::string read_text(const std::string& path) {
+  const std::uint64_t bytes = recording::FileSource(path).size();
+  if (bytes > kMostText_bytes) {
+    throw ConfigError(path, std::to_string(bytes >> 20) + " MiB",
+                      "at most " + std::to_string(kMostText_bytes >> 20) +
+                          " MiB; use a part of the file, fewer columns or a lower rate");
+  }
+  return recording::read_file(path);
+}
+
 }  // namespace
 
 FileKind kind_of(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) {
+    throw ConfigError(path, "a folder", "a file in it, for example the .mcap of a bag");
+  }
   const std::string begin = first_bytes(path);
+  refuse_foreign(path, begin);
   // MCAP specification, "Magic".  Only five of its eight bytes: the rest may be cut off.
   if (begin.starts_with("\x89MCAP")) return FileKind::kMcap;
   if (is_any_of(begin, {"MATLAB 5.0", "MATLAB 7.3"})) return FileKind::kMatlab;
@@ -50,16 +130,6 @@ FileKind kind_of(const std::string& path) {
   if (binary && named(".mat")) return FileKind::kMatlab;
   if (binary && (named(".h5") || named(".hdf5"))) return FileKind::kHdf5;
   return FileKind::kText;
-}
-
-std::string read_text(const std::string& path) {
-  const std::uint64_t bytes = recording::FileSource(path).size();
-  if (bytes > kMostText_bytes) {
-    throw ConfigError(path, std::to_string(bytes >> 20) + " MiB",
-                      "at most " + std::to_string(kMostText_bytes >> 20) +
-                          " MiB; use a part of the file, fewer columns or a lower rate");
-  }
-  return recording::read_file(path);
 }
 
 std::unique_ptr<TableFile> open_table(const std::string& path, const TextForm& form,

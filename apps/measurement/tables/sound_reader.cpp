@@ -3,7 +3,12 @@
 #include <sndfile.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string_view>
 
 #include "apps/measurement/tables/guarded_table.hpp"
 #include "apps/measurement/tables/in_child.hpp"
@@ -35,10 +40,29 @@ struct Sound {
   }
 };
 
+// Size of the whole file that the head of a RIFF (WAV) or FORM (AIFF) file states; 0: it states
+// none, as one that was written into a pipe.
+std::uint64_t stated_bytes(const std::string& path) {
+  std::array<unsigned char, 8> head{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(head.data()), head.size())) return 0;
+  const std::string_view magic(reinterpret_cast<const char*>(head.data()), 4);
+  if (magic != "RIFF" && magic != "FORM") return 0;
+  std::uint32_t size = 0;
+  for (std::size_t i = 0; i < 4; ++i) size = size << 8U | head.at(magic == "RIFF" ? 7 - i : 4 + i);
+  return size == 0 || size == UINT32_MAX ? 0 : std::uint64_t{size} + head.size();
+}
+
 TableHead sound_head(const std::string& path) {
   const Sound sound(path);
   TableHead head;
   head.path = path;
+  const std::uint64_t bytes = std::filesystem::file_size(path);
+  // One byte may be the padding of an odd chunk.
+  if (const std::uint64_t stated = stated_bytes(path); stated > bytes + 1) {
+    head.notes.push_back("The file is cut off: " + std::to_string(bytes) + " of " +
+                         std::to_string(stated) + " bytes.");
+  }
   head.form = "Sound file of " + std::to_string(sound.info.samplerate) +
               " Hz; full scale of whole numbers is 1";
   head.rate_hz = sound.info.samplerate;

@@ -13,6 +13,7 @@ namespace stillhand::measurement {
 namespace {
 
 // Time stamps without a unit that step by 1 or more are more likely ms, us or ns than seconds.
+// Empty: each step is 1, which a counter does too.
 std::string likely_time_unit(TableFile& file, const std::string& from) {
   try {
     const std::vector<double> time = file.read({find_column(file.head(), from)}).values.at(0);
@@ -21,6 +22,7 @@ std::string likely_time_unit(TableFile& file, const std::string& from) {
       if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
     }
     if (steps.empty()) return "s";
+    if (std::ranges::all_of(steps, [](double step) { return step == 1.0; })) return {};
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
     std::ranges::nth_element(steps, middle);
     return *middle < 1.0 ? "s" : *middle < 1e3 ? "ms" : *middle < 1e6 ? "us" : "ns";
@@ -52,11 +54,11 @@ Mapping suggestion(TableFile& file) {
   const TableHead& head = file.head();
   Mapping guess = guess_mapping(head);
   fill_guess(head, head.has_times || head.rate_hz > 0.0, guess);
-  for (ColumnWish& wish : guess.columns) {
-    if (wish.name == "t" && wish.unit == "s" &&
-        head.columns[find_column(head, wish.from)].unit.empty()) {
-      wish.unit = likely_time_unit(file, wish.from);
-    }
+  const auto time = std::ranges::find(guess.columns, "t", &ColumnWish::name);
+  if (time != guess.columns.end() && time->unit == "s" &&
+      head.columns[find_column(head, time->from)].unit.empty()) {
+    time->unit = likely_time_unit(file, time->from);
+    if (time->unit.empty()) guess.columns.erase(time);
   }
   return guess;
 }

@@ -11,10 +11,11 @@ namespace stillhand::measurement {
 
 /// One column of a file, before its values are read.
 struct ColumnHead {
-  std::string title;     ///< as in the file
-  std::string name;      ///< without its unit
-  std::string unit;      ///< empty: the file states none
-  std::size_t rows = 0;  ///< [-] 0: not known yet
+  std::string title;            ///< as in the file
+  std::string name;             ///< without its unit
+  std::string unit;             ///< empty: the file states none
+  std::size_t rows = 0;         ///< [-] 0: not known yet
+  std::string angle_unit = {};  ///< of a file that states one for all its angles
 };
 
 /// What a file states about its columns.
@@ -65,11 +66,10 @@ struct TextForm {
 enum class FileKind { kText, kMcap, kMatlab, kHdf5, kSound };
 
 /// Kind of a file by its first bytes; of a binary file without any, by its name.
-/// @throws stillhand::ConfigError if it cannot be read
+/// @throws stillhand::ConfigError if it cannot be read, or is of a kind that must be converted:
+/// then
+///         with the line that does it
 FileKind kind_of(const std::string& path);
-
-/// A text file's bytes.  @throws stillhand::ConfigError if it cannot be read, or has over 2 GiB
-std::string read_text(const std::string& path);
 
 /// Opens a file of any kind.
 /// @param most_values  [-] rows times columns that may be read

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -38,6 +39,92 @@ void split_at_blanks(std::string_view line, std::vector<std::string_view>& cells
     cells.push_back(line.substr(at, end - at));
     at = end;
   }
+}
+
+bool is_whole_number(std::string_view text, double& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
+}
+
+// "1.5D+03", as Fortran writes an exponent.
+bool is_fortran_number(std::string_view text, double& number) {
+  const std::size_t sign = text.find_first_of("Dd");
+  if (sign == std::string_view::npos || sign == 0) return false;
+  std::string with_e(text);
+  with_e[sign] = 'e';
+  return is_whole_number(with_e, number);
+}
+
+// Fixed digits of a date or a clock, as an int.
+bool take_digits(std::string_view& text, std::size_t count, int& value) {
+  if (text.size() < count) return false;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + count, value);
+  if (error != std::errc() || end != text.data() + count || text.front() == '-') return false;
+  text.remove_prefix(count);
+  return true;
+}
+
+bool take(std::string_view& text, std::string_view any_of) {
+  if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+// "hh:mm", "hh:mm:ss" or "hh:mm:ss.fff" (ISO 8601), in [s].
+bool take_clock(std::string_view& text, double& seconds) {
+  int hour = 0;
+  int minute = 0;
+  int second = 0;
+  if (!take_digits(text, 2, hour) || !take(text, ":") || !take_digits(text, 2, minute))
+    return false;
+  double fraction = 0.0;
+  if (take(text, ":")) {
+    if (!take_digits(text, 2, second)) return false;
+    if (take(text, ".,")) {
+      double scale = 0.1;
+      for (int digit = 0; take_digits(text, 1, digit); scale /= 10.0) fraction += scale * digit;
+    }
+  }
+  seconds = hour * 3600.0 + minute * 60.0 + second + fraction;
+  return hour <= 24 && minute < 60 && second <= 60;
+}
+
+// "", "Z", "+hh", "+hhmm" or "+hh:mm": [s] ahead of UTC.
+bool is_zone(std::string_view text, double& ahead) {
+  ahead = 0.0;
+  if (text.empty() || text == "Z") return true;
+  const double sign = text.front() == '-' ? -1.0 : 1.0;
+  int hour = 0;
+  int minute = 0;
+  if (!take(text, "+-") || !take_digits(text, 2, hour)) return false;
+  take(text, ":");
+  if (!text.empty() && !take_digits(text, 2, minute)) return false;
+  ahead = sign * (hour * 3600.0 + minute * 60.0);
+  return text.empty();
+}
+
+// A stamp of ISO 8601: a date and a clock in [s] since 1970 (UTC where it states no zone), or a
+// clock alone in [s] since midnight.
+bool is_stamp(std::string_view text, double& seconds) {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  double date = 0.0;
+  std::string_view rest = text;
+  if (take_digits(rest, 4, year) && take(rest, "-") && take_digits(rest, 2, month) &&
+      take(rest, "-") && take_digits(rest, 2, day) && take(rest, "T ")) {
+    const std::chrono::year_month_day ymd(std::chrono::year(year),
+                                          std::chrono::month(static_cast<unsigned>(month)),
+                                          std::chrono::day(static_cast<unsigned>(day)));
+    if (!ymd.ok()) return false;
+    date = static_cast<double>(std::chrono::sys_days(ymd).time_since_epoch().count()) * 86400.0;
+    text = rest;
+  }
+  double clock = 0.0;
+  double ahead = 0.0;
+  if (!take_clock(text, clock) || !is_zone(text, ahead)) return false;
+  seconds = date + clock - ahead;
+  return true;
 }
 
 }  // namespace
@@ -81,13 +168,15 @@ CellContent read_cell(std::string_view cell, char decimal, double& number) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   std::array<char, kLongestNumber> point{};
   if (decimal != '.') {
-    if (text.find('.') != std::string_view::npos) return CellContent::kText;
+    if (text.find('.') != std::string_view::npos) {
+      return is_stamp(text, number) ? CellContent::kNumber : CellContent::kText;
+    }
     std::ranges::replace_copy(text, point.begin(), decimal, '.');
     text = {point.data(), text.size()};
   }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(number) ? CellContent::kNumber : CellContent::kText;
+  const bool read =
+      is_whole_number(text, number) || is_stamp(text, number) || is_fortran_number(text, number);
+  return read ? CellContent::kNumber : CellContent::kText;
 }
 
 bool is_comment(std::string_view line) {

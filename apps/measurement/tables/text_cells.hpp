@@ -37,8 +37,9 @@ class TextLines {
 /// any number of blanks and tabs.
 void split(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
-/// Reads a number; blanks and quotes around it are left out.  Empty cells and the usual words for
-/// nothing (NaN, NA, null, -, ...) are missing.
+/// Reads a number, also with Fortran's exponent ("1.5D+03"), or a stamp of ISO 8601 as [s]: since
+/// 1970 with a date, since midnight without.  Blanks and quotes around it are left out.  Empty
+/// cells and the usual words for nothing (NaN, NA, null, -, ...) are missing.
 CellContent read_cell(std::string_view cell, char decimal, double& number);
 
 /// "#", "%" or "//" in front.

@@ -4,6 +4,7 @@
 #include <iconv.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -76,22 +77,73 @@ DecodedText from(std::string_view bytes, const char* encoding, const std::string
   return out;
 }
 
+// Encoding of a text by its byte order mark, or by its zeros: a table has mostly characters below
+// 256, so that each second byte of UTF-16 is 0.  Null: one byte a character.
+const char* wide_encoding(std::string_view bytes) {
+  if (bytes.starts_with("\xFF\xFE") && bytes.size() > 2) return "UTF-16LE";
+  if (bytes.starts_with("\xFE\xFF") && bytes.size() > 2) return "UTF-16BE";
+  constexpr std::size_t kLookedAt_bytes = 1024;
+  std::array<std::size_t, 2> zeros{};  // at even and odd places
+  const std::size_t count = std::min(bytes.size(), kLookedAt_bytes) / 2 * 2;
+  for (std::size_t i = 0; i < count; ++i) zeros.at(i % 2) += bytes[i] == '\0' ? 1 : 0;
+  if (count == 0) return nullptr;
+  if (zeros[0] == 0 && zeros[1] > count * 2 / 5) return "UTF-16LE";
+  if (zeros[1] == 0 && zeros[0] > count * 2 / 5) return "UTF-16BE";
+  return nullptr;
+}
+
+// A file that was made longer in advance and not closed ends in zeros.
+std::string without_zeros_at_end(std::string& bytes) {
+  const std::size_t end = bytes.find_last_not_of('\0') + 1;
+  const std::size_t zeros = bytes.size() - end;
+  if (zeros == 0 || end == 0) return {};
+  bytes.resize(end);
+  return std::to_string(zeros) + " zero bytes at the end are left out.";
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
+    text.replace(at, from.size(), to);
+    at += to.size();
+  }
+}
+
+// Signs that programs write for a blank, a minus and the end of a line.
+void take_plain_signs(std::string& text) {
+  if (!is_ascii(text)) {
+    replace_all(text, "\u00A0", " ");  // no-break space
+    replace_all(text, "\u202F", " ");  // narrow no-break space
+    replace_all(text, "\u2212", "-");  // minus sign
+    replace_all(text, "\uFEFF", "");   // byte order mark within a joined file
+  }
+  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
+}
+
+DecodedText decoded(std::string bytes, const std::string& path) {
+  const std::string_view all = bytes;
+  if (const char* encoding = wide_encoding(all)) {
+    const bool marked = all.starts_with("\xFF\xFE") || all.starts_with("\xFE\xFF");
+    return from(all.substr(marked ? 2 : 0), encoding, path);
+  }
+  std::string note = without_zeros_at_end(bytes);
+  if (const std::size_t zero = bytes.find('\0'); zero != std::string::npos) {
+    const auto line =
+        std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
+    throw ConfigError(line > 1 ? path + ":" + std::to_string(line) : path, "binary data",
+                      "a text table (CSV), or MATLAB, HDF5, MCAP or WAV");
+  }
+  if (is_utf8(bytes)) return {std::move(bytes), std::move(note)};
+  DecodedText out = from(bytes, "WINDOWS-1252", path);
+  if (!note.empty()) out.note += " " + note;
+  return out;
+}
+
 }  // namespace
 
 DecodedText to_utf8(std::string bytes, const std::string& path) {
-  const std::string_view all = bytes;
-  if (all.starts_with("\xEF\xBB\xBF")) {
-    bytes.erase(0, 3);
-  } else if (all.starts_with("\xFF\xFE") && all.size() > 2) {
-    return from(all.substr(2), "UTF-16LE", path);
-  } else if (all.starts_with("\xFE\xFF") && all.size() > 2) {
-    return from(all.substr(2), "UTF-16BE", path);
-  }
-  if (bytes.find('\0') != std::string::npos) {
-    throw ConfigError(path, "binary data", "a text table (CSV), or MATLAB, HDF5, MCAP or WAV");
-  }
-  if (is_utf8(bytes)) return {std::move(bytes), {}};
-  return from(bytes, "WINDOWS-1252", path);
+  DecodedText out = decoded(std::move(bytes), path);
+  take_plain_signs(out.text);
+  return out;
 }
 
 }  // namespace stillhand::measurement

@@ -57,19 +57,23 @@ struct Reading {
   std::ptrdiff_t score = 0;  ///< numbers less texts, over the rows with that many cells
 };
 
-Reading read_as(const TextForm& form, const std::vector<TextLine>& lines) {
+Reading read_as(const TextForm& form, const std::vector<TextLine>& lines,
+                const std::vector<TextLine>& later) {
   Reading out{form, {}, {}, 0};
   std::vector<std::string_view> cells;
   std::map<LineShape, std::ptrdiff_t> counts;
   std::map<std::size_t, std::ptrdiff_t> scores;  // by the number of cells
-  for (const TextLine& line : lines) {
-    const LineShape shape = shape_of(line.text, form, cells);
-    out.lines.push_back(shape);
-    if (shape.numbers == 0) continue;
+  const auto add = [&](const LineShape& shape) {
+    if (shape.numbers == 0) return;
     ++counts[shape];
     scores[shape.cells] +=
         static_cast<std::ptrdiff_t>(shape.numbers) - static_cast<std::ptrdiff_t>(shape.texts);
+  };
+  for (const TextLine& line : lines) {
+    out.lines.push_back(shape_of(line.text, form, cells));
+    add(out.lines.back());
   }
+  for (const TextLine& line : later) add(shape_of(line.text, form, cells));
   for (const auto& [width, score] : scores) {
     if (score <= out.score) continue;
     out.score = score;
@@ -90,14 +94,56 @@ bool is_row(const LineShape& line, const LineShape& usual) {
          line.numbers >= std::max<std::size_t>(1, usual.numbers / 2);
 }
 
+bool is_blank_line(const TextLine& line) {
+  return line.text.find_first_not_of(" \t") == std::string_view::npos;
+}
+
 std::vector<TextLine> first_lines(std::string_view text) {
   std::vector<TextLine> lines;
   TextLines walk(text);
   TextLine line;
   while (lines.size() < kLinesLookedAt && walk.next(line)) {
-    if (line.text.find_first_not_of(" \t") != std::string_view::npos) lines.push_back(line);
+    if (!is_blank_line(line)) lines.push_back(line);
   }
   return lines;
+}
+
+bool says_degrees(std::string_view line) {
+  std::string plain;
+  for (const char c : line) {
+    if (c != ' ' && c != '\t') plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return plain == "indegrees=yes";
+}
+
+// As many lines again, spread over the rest: the first may hold whole numbers alone, which do not
+// show the decimal sign.
+std::vector<TextLine> later_lines(std::string_view text, std::size_t from) {
+  std::vector<TextLine> lines;
+  const std::size_t step = (text.size() - std::min(from, text.size())) / kLinesLookedAt + 1;
+  for (std::size_t at = from; at < text.size(); at += step) {
+    at = text.find('\n', at);
+    TextLine line;
+    if (at == std::string_view::npos || !TextLines(text, at + 1).next(line) || !line.ended) break;
+    if (!is_blank_line(line) && !is_comment(line.text)) lines.push_back(line);
+    at = line.offset;
+  }
+  return lines;
+}
+
+// A number alone above a table of several columns is a rate or a count, no row; and so is one that
+// titles follow.
+std::size_t first_row(const Reading& reading) {
+  const std::size_t least_cells = std::min<std::size_t>(2, reading.usual.cells);
+  const auto good = [&](std::size_t i) {
+    return reading.lines[i].cells >= least_cells && is_row(reading.lines[i], reading.usual);
+  };
+  for (std::size_t i = 0; i + 1 < reading.lines.size(); ++i) {
+    if (good(i) && good(i + 1)) return i;
+  }
+  const auto row = std::ranges::find_if(
+      reading.lines, [&](const LineShape& line) { return is_row(line, reading.usual); });
+  return static_cast<std::size_t>(row - reading.lines.begin());
 }
 
 // The first line of a spreadsheet that states its separator: "sep=;".
@@ -130,14 +176,42 @@ bool are_units(const std::vector<std::string>& cells) {
   });
 }
 
+struct RowWidth {
+  std::size_t cells = 0;
+  bool end_with_separator = false;  // the last cell of each is empty
+};
+
+RowWidth width_of(const std::vector<TextLine>& lines, const Reading& reading) {
+  RowWidth out{reading.usual.cells, reading.form.separator != ' ' && reading.usual.cells > 1};
+  std::vector<std::string_view> cells;
+  for (std::size_t i = 0; i < lines.size() && out.end_with_separator; ++i) {
+    if (!is_row(reading.lines[i], reading.usual) || reading.lines[i].cells < out.cells) continue;
+    split(lines[i].text, reading.form.separator, cells);
+    out.end_with_separator = plain_cell(cells.back()).empty();
+  }
+  return out;
+}
+
 std::string_view without_comment_mark(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t#%/");
   return first == std::string_view::npos ? std::string_view() : line.substr(first);
 }
 
+// Titles of one line.  Those at its end that no row has a cell for are left out: a separator behind
+// the last title, and LabVIEW's "Comment".  Rows that end with a separator have a cell too many.
+std::vector<std::string> titles_in(std::string_view line, char separator, RowWidth rows) {
+  std::vector<std::string> titles = cells_of(line, separator);
+  while (titles.size() > rows.cells && (titles.back().empty() || titles.back() == "Comment")) {
+    titles.pop_back();
+  }
+  if (rows.end_with_separator && titles.size() + 1 == rows.cells) titles.emplace_back();
+  return titles;
+}
+
 // Titles from the lines above the first row, nearest line first.
-void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, std::size_t cells,
+void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, RowWidth rows,
                  const std::string& path, TextLayout& out) {
+  const std::size_t cells = rows.cells;
   const char separator = out.form.separator;
   std::vector<std::vector<std::string>> above;
   std::string_view comment;
@@ -146,7 +220,7 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, std:
       if (comment.empty()) comment = without_comment_mark(lines[i].text);
       continue;
     }
-    std::vector<std::string> titles = cells_of(lines[i].text, separator);
+    std::vector<std::string> titles = titles_in(lines[i].text, separator, rows);
     if (titles.size() == cells) {
       above.push_back(std::move(titles));
       continue;
@@ -161,7 +235,7 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, std:
     break;
   }
   if (above.empty() && !comment.empty()) {
-    std::vector<std::string> titles = cells_of(comment, separator);
+    std::vector<std::string> titles = titles_in(comment, separator, rows);
     if (titles.size() == cells) above.push_back(std::move(titles));
   }
   if (above.size() == 2 && are_units(above[0])) {
@@ -170,7 +244,8 @@ void take_titles(const std::vector<TextLine>& lines, std::size_t first_row, std:
   }
   if (!above.empty()) out.titles = std::move(above[0]);
   out.titles.resize(cells);
-  for (std::size_t i = 0; i < cells; ++i) {
+  if (rows.end_with_separator && out.titles.back().empty()) out.titles.pop_back();
+  for (std::size_t i = 0; i < out.titles.size(); ++i) {
     if (out.titles[i].empty()) out.titles[i] = "column " + std::to_string(i + 1);
   }
 }
@@ -193,13 +268,17 @@ TextLayout find_layout(std::string_view text, const TextForm& asked, const std::
   std::vector<TextLine> plain;
   std::ranges::copy_if(lines, std::back_inserter(plain),
                        [](const TextLine& line) { return !is_comment(line.text); });
+  const std::vector<TextLine> later =
+      lines.empty() ? lines : later_lines(text, lines.back().offset);
   Reading best;
   for (const TextForm& form : kForms) {
     if (wanted.separator != 0 && form.separator != wanted.separator) continue;
     if (wanted.decimal != 0 && form.decimal != wanted.decimal) continue;
-    Reading reading = read_as(form, plain);
+    Reading reading = read_as(form, plain, later);
     // Of equals the one with more columns: ",1" may be a tenth, or a cell behind an empty one.
-    if (reading.score > best.score ||
+    // Blanks divide at tabs, too: they must explain clearly more than those do.
+    const std::ptrdiff_t margin = form.separator == ' ' ? best.score / 10 : 0;
+    if (reading.score > best.score + margin ||
         (reading.score == best.score && reading.usual.cells > best.usual.cells)) {
       best = std::move(reading);
     }
@@ -208,15 +287,16 @@ TextLayout find_layout(std::string_view text, const TextForm& asked, const std::
     throw ConfigError(path, lines.empty() ? "an empty file" : "no rows of numbers",
                       "a table: a line of titles, then rows of numbers");
   }
-  const auto row = std::ranges::find_if(
-      best.lines, [&](const LineShape& line) { return is_row(line, best.usual); });
-  const TextLine& first = plain[static_cast<std::size_t>(row - best.lines.begin())];
+  const TextLine& first = plain[first_row(best)];
   TextLayout out;
   out.form = best.form;
   out.first_offset = first.offset;
   out.first_line = first.number;
   const auto at = std::ranges::find(lines, first.number, &TextLine::number);
-  take_titles(lines, static_cast<std::size_t>(at - lines.begin()), best.usual.cells, path, out);
+  out.in_degrees =
+      std::any_of(lines.begin(), at, [](const TextLine& line) { return says_degrees(line.text); });
+  take_titles(lines, static_cast<std::size_t>(at - lines.begin()), width_of(plain, best), path,
+              out);
   return out;
 }
 

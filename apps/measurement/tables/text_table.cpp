@@ -26,7 +26,8 @@ TableHead head_of_text(const TextLayout& layout, const std::string& path, const 
   for (std::size_t i = 0; i < layout.titles.size(); ++i) {
     Title title = parse_title(layout.titles[i]);
     if (title.unit.empty() && !layout.units.empty()) title.unit = layout.units[i];
-    head.columns.push_back({layout.titles[i], title.name, title.unit, 0});
+    head.columns.push_back(
+        {layout.titles[i], title.name, title.unit, 0, layout.in_degrees ? "degree" : ""});
   }
   return head;
 }

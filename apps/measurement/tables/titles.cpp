@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/measurement/tables/titles.hpp"
 
+#include <algorithm>
+
 #include "apps/measurement/tables/units.hpp"
 
 namespace stillhand::measurement {
@@ -33,6 +35,15 @@ std::string_view plain_cell(std::string_view text) {
     text = trimmed(text.substr(1, text.size() - 2));
   }
   return text;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() > kMost ? text + ", ..." : text;
 }
 
 Title parse_title(std::string_view title) {

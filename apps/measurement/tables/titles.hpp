@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stillhand::measurement {
 
@@ -18,5 +19,8 @@ Title parse_title(std::string_view title);
 
 /// Text without blanks at its ends, and without one pair of double quotes around it.
 std::string_view plain_cell(std::string_view text);
+
+/// "a, b, c", of a longer list the first six.
+std::string listed(const std::vector<std::string>& names);
 
 }  // namespace stillhand::measurement

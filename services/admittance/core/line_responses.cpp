@@ -19,24 +19,24 @@ constexpr std::int64_t kFewestPeriods = 4;
 
 void check_signal(const std::string& name, const std::vector<double>& values, std::size_t count) {
   if (values.size() != count) {
-    throw ConfigError("record." + name, std::to_string(values.size()) + " samples",
+    throw ConfigError("recording, " + name, std::to_string(values.size()) + " samples",
                       std::to_string(count) + ", as many as of motor_force_n");
   }
   if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) {
-    throw ConfigError("record." + name, "a value that is not finite", "finite values");
+    throw ConfigError("recording, " + name, "a value that is not finite", "finite values");
   }
 }
 
 std::int64_t periods_of(const FreeStickRecord& record, std::int64_t samples_per_period) {
   const std::size_t count = record.motor_force_n.size();
-  check_signal("motor_force_n", record.motor_force_n, count);
-  check_signal("acceleration_m_s2", record.acceleration_m_s2, count);
-  check_signal("displacement_m", record.displacement_m, count);
-  check_signal("hand_force_n", record.hand_force_n, count);
+  check_signal("motor force", record.motor_force_n, count);
+  check_signal("acceleration", record.acceleration_m_s2, count);
+  check_signal("displacement", record.displacement_m, count);
+  check_signal("hand force", record.hand_force_n, count);
   const auto samples = static_cast<std::int64_t>(count);
   if (samples % samples_per_period != 0 || samples / samples_per_period < kFewestPeriods) {
     throw ConfigError(
-        "record.motor_force_n", std::to_string(count) + " samples",
+        "recording, motor force", std::to_string(count) + " samples",
         "whole periods of " + std::to_string(samples_per_period) + " samples, four or more");
   }
   return samples / samples_per_period;

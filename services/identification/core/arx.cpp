@@ -132,7 +132,7 @@ void check_determined(const Record& record, int order) {
   check_order(order);
   const auto least = 3 * static_cast<std::size_t>(order) + 2;
   if (record.size() < least) {
-    throw ConfigError("identification.record", std::to_string(record.size()) + " samples",
+    throw ConfigError("recording", std::to_string(record.size()) + " samples",
                       std::to_string(least) + " or more");
   }
 }

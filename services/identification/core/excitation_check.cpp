@@ -110,7 +110,7 @@ Excitation check_excitation(const Record& record, int order) {
   }
   const std::size_t least = least_samples(order);
   if (record.size() < least) {
-    found.verdict = "record: got " + std::to_string(record.size()) + " samples, want " +
+    found.verdict = "recording: got " + std::to_string(record.size()) + " samples, want " +
                     std::to_string(least) + " or more for order " + std::to_string(order);
     return found;
   }

@@ -142,7 +142,7 @@ OutputErrorFit refine_output_error(const Record& record, const DifferenceModel& 
                       "a well formed one at " + std::to_string(record.rate_hz) + " Hz");
   }
   if (record.size() < 10 * (2 * start.order() + 1)) {
-    throw ConfigError("record", std::to_string(record.size()) + " samples",
+    throw ConfigError("recording", std::to_string(record.size()) + " samples",
                       std::to_string(10 * (2 * start.order() + 1)) + " or more");
   }
   const std::size_t split = record.size() - record.size() / 4;

@@ -75,11 +75,12 @@ std::vector<double> at_fit_rate(const std::vector<double>& samples, double rate_
 Record preprocessed(const Record& recorded) {
   check(recorded);
   if (recorded.rate_hz < kRecordingRateHz * (1.0 - kRateTolerance)) {
-    throw ConfigError("record.rate_hz", std::to_string(recorded.rate_hz),
+    throw ConfigError("recording, sample rate [Hz]", std::to_string(recorded.rate_hz),
                       "100 Hz or more, the paper's recording rate");
   }
   if (static_cast<double>(recorded.size()) < recorded.rate_hz) {
-    throw ConfigError("record", std::to_string(recorded.size()) + " samples", "a second or more");
+    throw ConfigError("recording", std::to_string(recorded.size()) + " samples",
+                      "a second or more");
   }
   return {kFitRateHz, at_fit_rate(recorded.acceleration_m_s2, recorded.rate_hz),
           at_fit_rate(recorded.force_n, recorded.rate_hz)};

@@ -20,7 +20,7 @@ void check_finite(const std::vector<double>& samples, const std::string& channel
     if (!(std::abs(samples[n]) < kLargestValue)) {
       std::array<char, 32> value{};
       std::snprintf(value.data(), value.size(), "%.3g", samples[n]);
-      throw ConfigError("record." + channel + "[" + std::to_string(n) + "]", value.data(),
+      throw ConfigError("recording, " + channel + ", sample " + std::to_string(n + 1), value.data(),
                         "a finite value, below 1e30 in size");
     }
   }
@@ -55,15 +55,16 @@ std::vector<double> one_step(const DifferenceModel& model, const Record& record,
 
 void check(const Record& record) {
   if (!(record.rate_hz > 0.0) || !std::isfinite(record.rate_hz)) {
-    throw ConfigError("record.rate_hz", std::to_string(record.rate_hz), "a positive finite value");
+    throw ConfigError("recording, sample rate [Hz]", std::to_string(record.rate_hz),
+                      "a positive finite value");
   }
   if (record.acceleration_m_s2.size() != record.force_n.size()) {
     throw ConfigError(
-        "record.force_n", std::to_string(record.force_n.size()) + " samples",
+        "recording, force", std::to_string(record.force_n.size()) + " samples",
         std::to_string(record.acceleration_m_s2.size()) + ", as many as of the acceleration");
   }
-  check_finite(record.acceleration_m_s2, "acceleration_m_s2");
-  check_finite(record.force_n, "force_n");
+  check_finite(record.acceleration_m_s2, "acceleration");
+  check_finite(record.force_n, "force");
 }
 
 Record part(const Record& record, std::size_t first, std::size_t count) {

@@ -240,19 +240,6 @@ Recording parse_csv(std::string_view text, const std::string& source) {
   return recording;
 }
 
-bool has_own_header(std::string_view text) {
-  const std::string source;
-  CsvText csv(text, source);
-  std::string_view line;
-  if (!csv.next_line(line)) return false;
-  try {
-    (void)parse_header(csv, line);
-    return true;
-  } catch (const ConfigError&) {
-    return false;
-  }
-}
-
 std::string_view known_unit(std::string_view name) {
   const auto known = std::ranges::find(kKnownColumns, name, &KnownColumn::name);
   return known == kKnownColumns.end() ? std::string_view() : known->unit;

@@ -17,9 +17,6 @@ namespace stillhand::recording {
 ///         from 1.
 Recording parse_csv(std::string_view text, const std::string& source);
 
-/// True if the first line is a header as parse_csv() reads it.
-bool has_own_header(std::string_view text);
-
 /// The unit that a column of this name has ("a_y": "m/s^2"), or empty: any.
 std::string_view known_unit(std::string_view name);
 

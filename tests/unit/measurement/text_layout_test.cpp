@@ -84,9 +84,55 @@ TEST(TextLayoutTest, TheFirstRowMayLackValues) {
   EXPECT_EQ(sut.first_line, 2u);
 }
 
+TEST(TextLayoutTest, TitlesAtTheEndWithoutACellAreLeftOut) {
+  for (const char* titles : {"X_Value\tacc\tforce\tComment", "t\ta\tf\t", "t\ta\tf\t\t\t"}) {
+    const TextLayout sut =
+        find_layout(std::string(titles) + "\n0.0\t1.5\t2\n0.1\t1.5\t2\n", {}, "x");
+    EXPECT_EQ(sut.titles.size(), 3u) << titles;
+    EXPECT_EQ(sut.first_line, 2u) << titles;
+  }
+}
+
+TEST(TextLayoutTest, RowsMayEndWithASeparator) {
+  for (const char* text :
+       {"t,a,f\n0.0,1.5,2,\n0.1,1.5,2,\n", "t,a,f,\n0.0,1.5,2,\n0.1,1.5,2,\n",
+        "t;a;f\n0,0;1,5;2;\n0,1;1,5;2;\n", "# t,a,f\n0.0,1.5,2,\n0.1,1.5,2,\n"}) {
+    EXPECT_THAT(find_layout(text, {}, "x").titles, ElementsAre("t", "a", "f")) << text;
+  }
+  // A channel that has no value yet is one.
+  EXPECT_THAT(find_layout("t,a,f\n0.0,1.5,\n0.1,1.5,\n", {}, "x").titles,
+              ElementsAre("t", "a", "f"));
+}
+
+TEST(TextLayoutTest, ANumberAloneAboveTheTableIsNoRow) {
+  for (const char* rate : {"100", "100.0", "Rate: 100 Hz", "100,"}) {
+    const TextLayout sut =
+        find_layout(std::string(rate) + "\nt,a,f\n0.0,1.5,2\n0.1,1.5,2\n0.2,1,2\n", {}, "x");
+    EXPECT_THAT(sut.titles, ElementsAre("t", "a", "f")) << rate;
+    EXPECT_EQ(sut.first_line, 3u) << rate;
+  }
+}
+
+TEST(TextLayoutTest, TheDecimalSignMayShowBehindTheLinesLookedAtFirst) {
+  std::string text = "t;a;f\n";
+  for (int row = 0; row < 5000; ++row) text += std::to_string(row) + ";0;0\n";
+  for (int row = 0; row < 5000; ++row) text += std::to_string(5000 + row) + ";0,5;1,25\n";
+  EXPECT_EQ(find_layout(text, {}, "x").form.decimal, ',');
+}
+
+TEST(TextLayoutTest, DegreesAreStatedForAllAngles) {
+  const std::string rows = "time\telbow\n0.0\t1.5\n0.1\t1.6\n";
+  EXPECT_TRUE(find_layout("nRows=2\ninDegrees=yes\nendheader\n" + rows, {}, "x").in_degrees);
+  EXPECT_TRUE(find_layout("In Degrees = Yes\n" + rows, {}, "x").in_degrees);
+  EXPECT_FALSE(find_layout("inDegrees=no\n" + rows, {}, "x").in_degrees);
+}
+
 TEST(TextLayoutTest, SaysWhatIsWrong) {
   EXPECT_THAT(error_of(""), HasSubstr("ride.csv: got an empty file"));
   EXPECT_THAT(error_of("Dear reader,\n\nthis is a letter.\n"), HasSubstr("no rows of numbers"));
+  // A comma within a title that has no quotes: whose cells these are is not known.
+  EXPECT_THAT(error_of("t,force, lateral,acc\n0.0,1.5,2\n0.1,1.5,2\n"),
+              HasSubstr("got 4 titles above rows of 3 cells"));
   // The decimal comma is the separator, too.
   EXPECT_THAT(error_of("t,f\n0,01,1,5\n0,02,1,5\n"),
               HasSubstr("ride.csv:1:1: got 2 titles above rows of 4 cells, with ',' between them"));
