@@ -68,6 +68,9 @@ int run(const Words& words) {
     report::require_gnuplot();
     folder.emplace(words.report, "--report");
   }
+  const runtime::EndAfterStop end(stop, [&] {
+    if (folder) folder->clear_away();
+  });
   const diagnosis::Measurement measurement = read_all(words);
   report::ProgressLine progress;
   diagnosis::DiagnoseOptions options = words.options;

@@ -36,11 +36,12 @@ class StagedFolder {
   ///             did not write are from an earlier run and are removed
   /// @throws ConfigError as check(); then nothing was moved
   void publish(const std::vector<std::string>& own);
+  /// Removes what is not in place, as the destructor does.
+  void clear_away() noexcept;
 
  private:
   void make();
   void lock();
-  void clear_away() noexcept;
 
   std::string option_;
   std::filesystem::path out_;  ///< absolute

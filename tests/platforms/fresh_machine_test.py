@@ -25,10 +25,11 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 RELEASES = ("trixie", "bookworm")
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 TRUSTED = "/etc/trusted.crt"  # in the root
+CLONE = "srv/clone"  # in the root
 SESSION = ("build/bin/stillhand lab --conditions A,B,C --trial-seconds 20 --seed 1 --headless --out demo")
 SHORT = ("deploy/setup.sh", "deploy/build.sh tests", "ctest --test-dir build -L unit -j 2 --output-on-failure", SESSION)
 BOTH = ("deploy/demo.sh", "tests/run.sh", "cpack -G DEB --config build/CPackConfig.cmake")
-# $1 root, $2 command, $3 certificates. The command's processes end with it: it is the first of its own namespace. The root is the
+# $1 root, $2 command, $3 certificates, $4 clone. The command's processes end with it: it is the first of its own namespace. The root is the
 # namespace's own, no chroot, so that a program may enter the namespace by its name in /proc.
 INSIDE = r"""
 set -e
@@ -44,11 +45,11 @@ pivot_root . mnt
 trusted=$([ ! -e "$3" ] || echo "NPM_CONFIG_CAFILE=$3")
 exec env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin $trusted sh -c '
   umount --lazy /mnt || exit 1
-  cd /stillhand && sh -c "$0"; status=$?
+  cd "$1" && sh -c "$0"; status=$?
   left=$(ls -A /dev/shm; for each in /proc/[0-9]*; do
     [ "$each" = "/proc/$$" ] || readlink "$each/exe" | grep -s stillhand; done)
   [ -z "$left" ] || { echo "left behind: $left" >&2; status=1; }
-  exit $status' "$2"
+  exit $status' "$2" "/$4"
 """
 
 
@@ -61,7 +62,7 @@ def inside(root, command):
     """One command in the root; its seconds. @throws AssertionError with its last lines"""
     begin = time.monotonic()
     done = subprocess.run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "bash", "-c", INSIDE, "bash", root,
-                           command, TRUSTED], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+                           command, TRUSTED, CLONE], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
         raise AssertionError(f"{command}: exit status {done.returncode}\n{(done.stdout + done.stderr)[-4000:]}")
     return time.monotonic() - begin
@@ -74,21 +75,21 @@ def make_root(release, root):
         skip(f"no Debian mirror: {(made.stdout + made.stderr).strip().splitlines()[-1]}")
     if made.returncode != 0:
         raise AssertionError(f"debootstrap {release}\n{(made.stdout + made.stderr)[-2000:]}")
-    subprocess.run(["git", "clone", "--quiet", "--no-hardlinks", SOURCE, f"{root}/stillhand"], check=True)
+    subprocess.run(["git", "clone", "--quiet", "--no-hardlinks", SOURCE, f"{root}/{CLONE}"], check=True)
     # npm trusts there what this machine trusts: a network may have a certificate of its own.
     if pathlib.Path(CERTIFICATES).exists():
         shutil.copy(CERTIFICATES, f"{root}{TRUSTED}")
 
 
 def check_results(root, short):
-    summary = json.loads((root / "stillhand/demo/summary.json").read_text())
+    summary = json.loads((root / CLONE / "demo/summary.json").read_text())
     assert set(summary["conditions"]) >= {"A", "B", "C"}, sorted(summary["conditions"])
     wanted = ["demo/session.mcap", "demo/model.json", "demo/session.png"]
     if not short:
         wanted += ["demo/closed-loop/summary.json"]
-        assert len(list((root / "stillhand").glob("build/packages/*.deb"))) == 2
+        assert len(list((root / CLONE).glob("build/packages/*.deb"))) == 2
     for name in wanted:
-        assert (root / "stillhand" / name).stat().st_size > 0, name
+        assert (root / CLONE / name).stat().st_size > 0, name
 
 
 def main():

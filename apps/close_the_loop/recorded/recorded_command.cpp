@@ -103,6 +103,7 @@ void run_recorded(RecordedOptions options, const std::filesystem::path& out, std
   check_apart(options);
   check_folder(options, out);
   report::StagedFolder folder(out);
+  const runtime::EndAfterStop end(stop, [&] { folder.clear_away(); });
   report::require_gnuplot();
   report::ProgressLine progress;
   double done = 0.0;

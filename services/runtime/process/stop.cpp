@@ -3,8 +3,12 @@
 
 #include <pthread.h>
 
+#include <chrono>
 #include <csignal>
-#include <thread>
+#include <cstdlib>
+#include <utility>
+
+#include "services/runtime/process/remark.hpp"
 
 namespace stillhand::runtime {
 namespace {
@@ -54,6 +58,28 @@ Stop::~Stop() {
 void Stop::request() noexcept {
   requested_.store(true);
   requested_.notify_all();
+}
+
+EndAfterStop::EndAfterStop(const Stop& stop, std::function<void()> tidy)
+    : watcher_([this, &stop, tidy = std::move(tidy)] {
+        using std::chrono::milliseconds;
+        std::unique_lock lock(mutex_);
+        while (
+            !done_.wait_for(lock, milliseconds(50), [&] { return is_done_ || stop.requested(); })) {
+        }
+        if (done_.wait_for(lock, milliseconds(650), [&] { return is_done_; })) return;
+        remark("interrupted");
+        tidy();
+        std::_Exit(1);
+      }) {}
+
+EndAfterStop::~EndAfterStop() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_done_ = true;
+  }
+  done_.notify_all();
+  watcher_.join();
 }
 
 }  // namespace stillhand::runtime

@@ -83,5 +83,30 @@ TEST(StopDeathTest, ARequestOfTheProgramItselfStaysAndEndsEveryWait) {
       testing::ExitedWithCode(0), "");
 }
 
+// A step that never looks at the flag.
+TEST(EndAfterStopDeathTest, WorkThatDoesNotAnswerEndsTidied) {
+  EXPECT_EXIT(
+      {
+        const Stop stop;
+        const EndAfterStop sut(stop, [] { (void)!write(STDERR_FILENO, "tidied\n", 7); });
+        kill(getpid(), SIGINT);
+        for (;;) pause();
+      },
+      testing::ExitedWithCode(1), "interrupted\ntidied\n");
+}
+
+TEST(EndAfterStopDeathTest, WorkThatAnswersEndsByItself) {
+  EXPECT_EXIT(
+      {
+        Stop stop;
+        {
+          const EndAfterStop sut(stop, [] { _exit(3); });
+          stop.request();
+        }
+        _exit(0);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
 }  // namespace
 }  // namespace stillhand::runtime
