@@ -187,6 +187,7 @@ report::Table treatment_table(const ConvertedModel& control, bool used) {
 report::Page loop_page(const LoopRecord& record, const std::vector<report::Drawing>& drawings) {
   const LoopResult& result = record.result;
   report::Page page("Closing the loop", lead(record));
+  page.banner(report::kSimulatedBanner);
   page.facts(
       {{"command", record.command_line},
        {"seed", std::to_string(record.options.protocol.seed)},

@@ -271,6 +271,7 @@ report::Page region_page(const RegionOptions& options, const Region& region,
   report::Page page("Vehicle in the loop",
                     "Stable region of the loop through vehicle and hand. All subjects are "
                     "simulated.");
+  page.banner(report::kSimulatedBanner);
   page.facts({{"preset", options.preset},
               {"subjects", fmt::to_string(options.subjects)},
               {"seed", fmt::to_string(options.seed)},

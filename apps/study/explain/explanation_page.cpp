@@ -185,6 +185,7 @@ report::Page explanation_page(const Explanation& explanation, const std::string&
   report::Page page("What explains the paper's C",
                     "The model predicts that cancellation restores more than the paper's twelve "
                     "people got. This page looks for causes in the paper's Tables I and II.");
+  page.banner(report::kSimulatedBanner);
   page.facts({{"seed", std::to_string(explanation.options.seed)},
               {"subjects for each setting", std::to_string(explanation.options.subjects)},
               {"unit of the RMS error", number(explanation.options.unit_mm, 1) + " mm"},

@@ -153,6 +153,7 @@ report::Page campaign_page(const Campaign& campaign, const std::string& command_
   report::Page page("Every mitigation",
                     "Simulated people, each with every mitigation, in the same motion and with "
                     "the same noise.");
+  page.banner(report::kSimulatedBanner);
   page.facts({{"seed", std::to_string(campaign.options.seed)},
               {"people", std::to_string(campaign.options.subjects)},
               {"parameters chosen on", fmt::format("{} other people", campaign.chosen_on)},
