@@ -8,6 +8,7 @@
 #include "idl/session_state.hpp"
 #include "services/recording/sample_clock.hpp"
 #include "services/recording/session_texts.hpp"
+#include "services/runtime/process/log_clock.hpp"
 
 namespace stillhand::recording {
 namespace {
@@ -67,7 +68,7 @@ void Shell::subscribe(const topics::Topic& topic) {
         if (arrival.writer != nullptr) {
           recording_->take(*arrival.writer,
                            {arrival.writer_number, arrival.sequence, arrival.source_ns,
-                            arrival.logged_ns, arrival.received_ns, bytes});
+                            runtime::log_ns(arrival.received_ns), arrival.received_ns, bytes});
         } else {
           unattributed_.fetch_add(1, std::memory_order_relaxed);
         }

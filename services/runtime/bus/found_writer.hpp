@@ -29,7 +29,7 @@ struct TappedSample {
   std::size_t writer;                ///< its writer's number, in the order of finding
   std::int64_t sequence;             ///< RTPS sequence number of that writer
   std::int64_t source_ns;            ///< [ns] system clock of the writer's host, as DDS stamped it
-  std::int64_t logged_ns;            ///< [ns] system clock of this host
+  std::int64_t logged_ns;            ///< [ns] log_ns() of received_ns
   std::int64_t received_ns;          ///< [ns] CLOCK_MONOTONIC
   std::span<const std::byte> bytes;  ///< CDR with encapsulation header, valid during the call
 };

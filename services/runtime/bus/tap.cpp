@@ -25,6 +25,7 @@
 #include "services/runtime/bus/found_writers.hpp"
 #include "services/runtime/bus/participant.hpp"
 #include "services/runtime/bus/type_tag.hpp"
+#include "services/runtime/process/log_clock.hpp"
 
 namespace stillhand::runtime {
 
@@ -106,11 +107,12 @@ struct Tap::Impl::Reader final : edds::DataReaderListener {
       const SampleWriters::Entry* entry = writer_of.of(info.publication_handle);
       if (entry == nullptr) owner.unattributed.fetch_add(1, std::memory_order_relaxed);
       if (entry == nullptr || class_of(entry->writer.qos) != key.second) continue;
+      const std::int64_t received_ns = monotonic_ns();
       owner.options.on_sample(
           entry->writer,
           {entry->number,
            static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long()),
-           info.source_timestamp.to_ns(), system_ns(), monotonic_ns(), sample});
+           info.source_timestamp.to_ns(), log_ns(received_ns), received_ns, sample});
     }
   }
 
